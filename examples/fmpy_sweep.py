@@ -1,14 +1,18 @@
-"""The FMU with FMPy alone, without this project's package: the largest gap over frequency ratio.
+"""The FMU with FMPy alone: the largest gap over the frequency ratio.
 
-python fmpy_sweep.py build/fmi2/TwoMassImpactOscillator.fmu
+python fmpy_sweep.py [build/fmi2/TwoMassImpactOscillator.fmu]
 """
 
 import math
+import subprocess
 import sys
+from pathlib import Path
 
 import fmpy
 
 fmu = sys.argv[1] if len(sys.argv) > 1 else "build/fmi2/TwoMassImpactOscillator.fmu"
+if not Path(fmu).exists():  # once: exports all forms
+    subprocess.run([sys.executable, "-m", "orchestrate", "build", "--folder", "build"], check=True)
 folder, model = fmpy.extract(fmu), fmpy.read_model_description(fmu)
 number = {variable.name: variable.valueReference for variable in model.modelVariables}
 instance = fmpy.instantiate_fmu(folder, model, fmi_type="CoSimulation")

@@ -6,32 +6,9 @@
 >>> response.impacts_per_period.dims
 ('eta',)
 
-What is described
-    :class:`Structure`, :class:`Excitation`, :class:`Drive`, :class:`Shaker`: two masses and their
-    contact, the box's harmonic motion, and a motor of limited power or an electrodynamic shaker
-    that shakes the box; in SI or by the paper's numbers, in Python or in TOML files.
-What is asked
-    :func:`simulate`, :func:`resonance`, :func:`resonance_levels`, :func:`contact_threshold`,
-    :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`, :func:`poincare`,
-    :func:`attractors`, :func:`basin`, :func:`basin_entropy`, :func:`impact_statistics`;
-    :func:`shake` as in the laboratory, by a :class:`SweptSine` or :class:`SteppedSine`,
-    :class:`Random` vibration, a :class:`Shock` or :class:`Sampled` acceleration; :func:`measure`
-    what a :class:`Sensor` reads of it, :func:`record`, :func:`read_record` and
-    :func:`write_record` what was measured, :func:`read_curve` and :func:`resonance_curve` if that
-    is a table of amplitudes; :func:`frf`, :func:`psd`, :func:`track_orders`,
-    :func:`harmonics`, :func:`spectrogram`, :func:`shock_spectrum` and :func:`probability_density`
-    of such a record, or of a measured one, :func:`record_of_run` of a motor's;
-    :func:`signs` of delamination in it, :func:`fit` a structure to it and :func:`detect` whether
-    it is delaminated, :func:`detect_all` of many; :func:`plan_test` for a record that shows it;
-    :func:`orbit`, :func:`branch`, :func:`border` for what is periodic, :func:`manifold` for what
-    leaves it; :func:`cosimulate`, :func:`couple`, :func:`couple_all`,
-    :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
-    :func:`drive_branch` and :func:`drive_spectra` for the weak drive, its voltage a
-    :class:`Course`, a :class:`SpeedControl` or a :class:`SpeedGradient` too; :func:`write_ssp`
-    for other tools.
-What is answered
-    An :class:`xarray.Dataset` with units, long names, all parameters, and where it comes from.
-    :func:`plot` draws it, :func:`report` makes it a page to read, print and sign.
+Structures, excitations, drives and shakers are described in SI or by the paper's numbers, in Python
+or in TOML files; ``__init__.pyi`` lists the functions. Each returns an :class:`xarray.Dataset` with
+units, long names, all parameters, and where it comes from; :func:`plot` draws it.
 
 All is computed by FMPy through exported FMUs. Every function that computes takes the keywords of
 :class:`orchestrate.running.options.Running`: ``jobs``, ``cluster``, ``store`` and more.

@@ -30,6 +30,7 @@ from .laboratory.analysis.psd import psd as psd
 from .laboratory.analysis.shock_spectrum import shock_spectrum as shock_spectrum
 from .laboratory.analysis.spectrogram import spectrogram as spectrogram
 from .laboratory.curve_files import read_curve as read_curve
+from .laboratory.level_control import LevelControl as LevelControl
 from .laboratory.random_vibration import Random as Random
 from .laboratory.record import record as record
 from .laboratory.record_files import read_record as read_record

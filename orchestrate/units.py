@@ -112,6 +112,11 @@ def has_own_frequency(data: xr.Dataset) -> bool:
     return math.isfinite(omega) and not math.isclose(omega, 1.0, rel_tol=1e-9)
 
 
+def is_in_ratios(data: xr.Dataset) -> bool:
+    """Return whether lengths are shown as the paper's ratios, without a unit."""
+    return not (has_own_frequency(data) or units_of(data).length)
+
+
 def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
     """Return datasets with display lengths in m, mm or um, by their largest length.
 

@@ -3,8 +3,6 @@
 Each takes its randomness from outside, so that a campaign is repeated by its seed.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import random

@@ -1,7 +1,5 @@
 """Which cases of a parametrized test an ordinary run takes, and which only ``-m slow``."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The README keeps pace: its commands are the ones that run, what it points to is there."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What people install: a wheel that carries the FMUs asks and answers without a compiler."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -35,13 +35,6 @@ TABLES = Path(__file__).resolve().parents[1] / "docs" / "variables.md"
 SERIES = re.compile(r"\[(?!1\])\d+\]$")  # of a series, the first stands for all
 
 
-def table_marks(reference: Reference) -> tuple[str, str]:
-    """Return the comment lines that stand before and after a model's variable table."""
-    source = f"fmu_src/models/{reference.folder}/variables.py"
-    begin = f"<!-- variables: generated from {source}, kept so by a test -->"
-    return begin, "<!-- end of variables -->"
-
-
 def variable_table(path: str | PathLike[str]) -> str:
     """Return an FMU's variables as Markdown tables by causality, from its model description."""
     variables = [v for v in describe(path).variables.values() if not SERIES.search(v.name)]
@@ -63,7 +56,8 @@ def variable_table(path: str | PathLike[str]) -> str:
 
 def replace_table(page: str, reference: Reference, table: str) -> str:
     """Return a page's text with a model's variable table replaced."""
-    begin, end = table_marks(reference)
+    source, end = f"fmu_src/models/{reference.folder}/variables.py", "<!-- end of variables -->"
+    begin = f"<!-- variables: generated from {source}, kept so by a test -->"
     head, rest = page.split(begin + "\n")
     _, tail = rest.split(end, 1)
     return f"{head}{begin}\n{table}{end}{tail}"
@@ -92,9 +86,7 @@ def simulate_example(
 def simulate_limits(
     fmu: str | PathLike[str], points: int = 800
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Simulate a growing sine of voltage, cubic from step to step, until both limits act; return
-    times and values by name.
-    """
+    """Simulate a growing sine of voltage until both limits act; return times and values."""
     names, frequency = ("voltage", "current", "box_position", "limited"), 40.0
     times = np.linspace(0.0, 1.5, points + 1)
     rows = []

@@ -1,15 +1,14 @@
 """Measure the FMU's speed beside other solvers and versions: ``python -m tools.benchmark``.
 
 Kernel, FMU calls and a sampled solver, measured one after the other in one run on one core; times
-are of this machine, the ratios travel. With ``--before FMU``, another version's native FMI 3.0 FMU,
-both are measured in turn.
+are of this machine, the ratios travel. With ``--before CHECKOUT``, another version's clone with its
+FMUs built, both are asked the same questions in turn; ``--scale 0.1`` asks for a tenth of each.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
-import operator
 import os
 import subprocess
 import sys
@@ -30,8 +29,49 @@ from . import c_host, sampled_solver
 
 PAPER = Structure.nondimensional(e=0.7, D=0.005, kappa=1.2)
 ETAS = (0.3, 0.5, 0.8, 1.047, 1.13, 2.0, 2.9, 4.2, 6.3)
-SETTLE = 50  # periods
 COLUMNS = ("eta", "us/period", "ns/impact", "pure Python", "solve_ivp")
+SETTLE = 50  # periods
+CHATTERING = (0.2, 0.25, 0.3)
+QUESTION = """
+import resource, subprocess, sys, tempfile, time
+import numpy as np
+import orchestrate as o
+structure, quiet = o.Structure.nondimensional(), {{"progress": False, "jobs": 1}}
+etas = lambda first, last, count: np.linspace(first, last, count)
+o.simulate(structure, eta=0.8, periods=1)
+used = lambda whose: sum(resource.getrusage(whose)[:2])
+now = lambda: (used(resource.RUSAGE_SELF) + used(resource.RUSAGE_CHILDREN), time.perf_counter())
+begin = now()
+{question}
+print(*np.subtract(now(), begin))
+"""
+SIZES = {"sweep": 7901, "side": 87, "starts": 100, "values": 50, "exponents": 100, "runs": 100}
+QUESTIONS = {  # the sizes are scaled
+    "Figure 6": "o.sweep(structure, eta=etas(0.1, 8.0, {sweep}), **quiet)",
+    "Figure 6, jobs=2": "o.sweep(structure, eta=etas(0.1, 8.0, {sweep}), progress=False, jobs=2)",
+    "map of 87 x 87 points": (
+        "o.map(structure, eta=etas(0.3, 3.0, {side}), e=etas(0.3, 0.9, {side}), **quiet)"
+    ),
+    "basin of 100 x 100 starts": (
+        "o.basin(structure, eta=1.315, x=('x_rel', 0, 1.3, {starts}), "
+        "y=('v_rel', -1.3, 1.3, {starts}), **quiet)"
+    ),
+    "attractors, 50 x 60 starts": (
+        "o.attractors(structure, eta=etas(0.9, 2.4, {values}), **quiet)"
+    ),
+    "100 exponents": "o.lyapunov(structure, eta=etas(0.3, 3.0, {exponents}), **quiet)",
+    "command sweep, two cores": (
+        "subprocess.run([sys.executable, '-m', 'orchestrate', 'sweep', '--eta', "
+        "f'0.1:8:{{7.9 / {sweep}:.6f}}', '--output', tempfile.mkdtemp()], check=True, "
+        "stdout=subprocess.DEVNULL)"
+    ),
+    "simulate, 100 times": "[o.simulate(structure, eta=eta) for eta in etas(0.3, 3.0, {runs})]",
+    "orbit, 100 values": "[o.orbit(structure, eta=eta, **quiet) for eta in etas(1.0, 1.1, {runs})]",
+    "couple, 4000 s": (
+        "o.couple(o.Structure.from_file('quick'), o.Drive.from_file('quick'), voltage=1.5, "
+        "duration=40.0 * {runs}, **quiet)"
+    ),
+}
 
 
 def harmonic_acceleration(eta: float, time: float) -> float:
@@ -71,28 +111,20 @@ def time_pure_python(fmu: str | PathLike[str], eta: float, count: int) -> float:
     return float(done.stdout)
 
 
-def time_figure_6(
-    fmu: str | PathLike[str], watched: bool = False, step: float = 0.02
-) -> tuple[float, int]:
-    """Compute a part of Figure 6, the gap watched or not; return its seconds and impacts."""
+def time_impact(fmu: str | PathLike[str], etas: Sequence[float], count: int) -> float:
+    """Return the processor seconds of an impact in steps of many periods, the gap not watched."""
     seconds, impacts = 0.0, 0
-    state = dict.fromkeys(("x1_start", "x2_start", "v1_start", "v2_start"), 0.0)
     with Instance(fmu) as instance:
-        for eta in np.arange(0.1, 8.0, step):
-            period = 2.0 * math.pi / eta
+        for eta in etas:
+            period = TURN / eta
             instance.reset()
             drive = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
-            instance.initialize(**state, **drive, x_rel_max_on=watched)
+            instance.initialize(**drive, x_rel_max_on=False)
             begin = time.process_time()
-            instance.step(0.0, 500 * period)
-            seconds += time.process_time() - begin
-            instance.set(x_rel_max_on=True)
-            begin = time.process_time()
-            instance.step(500 * period, 700 * period)
+            instance.step(0.0, count * period)
             seconds += time.process_time() - begin
             impacts += instance.get("impact_count")[0]
-            state = dict(zip(state, instance.get("x1", "x2", "v1", "v2"), strict=True))
-    return seconds, impacts
+    return seconds / impacts
 
 
 def time_resonance(fmu: str | PathLike[str], count: int = 500) -> tuple[float, float]:
@@ -113,29 +145,41 @@ def time_resonance(fmu: str | PathLike[str], count: int = 500) -> tuple[float, f
     return asked, alone
 
 
-def fastest_of_each(
-    measure: Callable[[Path], float], fmus: Sequence[Path], rounds: int
-) -> list[float]:
-    """Return the shortest of several measurements of each FMU, taken in turn."""
-    return [
-        min(row) for row in zip(*([measure(f) for f in fmus] for _ in range(rounds)), strict=True)
-    ]
+def time_question(checkout: Path, question: str) -> tuple[float, float]:
+    """Return processor and elapsed seconds of a line of Python in a checkout, in its own process.
+
+    The processor time is that of the process and its children, imports of the package left out;
+    elapsed time counts where worker processes live on, whose processor time is not seen.
+    """
+    code = QUESTION.format(repository=str(checkout), question=question)
+    command = [sys.executable, "-W", "ignore", "-c", code]
+    done = subprocess.run(command, cwd=checkout, capture_output=True, text=True, check=True)
+    busy, elapsed = done.stdout.splitlines()[-1].split()
+    return float(busy), float(elapsed)
 
 
-def compare_versions(before: Path, rounds: int = 5) -> None:
-    """Print times in ns of this version and another one by measure, and their ratio."""
-    fmus = (find(OSCILLATOR).path, before)
-    measures: dict[str, Callable[[Path], float]] = {
-        "Figure 6, an impact": lambda fmu: operator.truediv(*time_figure_6(fmu)),
-        "Figure 6, largest gap watched all along": lambda fmu: operator.truediv(
-            *time_figure_6(fmu, True)
-        ),
-        "a step without impact, from C": c_host.time_quiet_step,
-        "the same, largest gap watched": lambda fmu: c_host.time_quiet_step(fmu, watched=True),
+def compare_versions(before: Path, scale: float, rounds: int) -> None:
+    """Print times of this version and of another checkout, measured in turn, and their ratios."""
+    checkouts = Path(__file__).parents[1], before
+    fmus = [path / "build" / "fmi3" / f"{OSCILLATOR}.fmu" for path in checkouts]
+    sizes = {name: max(4, round(size * scale)) for name, size in SIZES.items()}
+    periods = max(10, round(4000 * scale))
+    measures: dict[str, Callable[[int], tuple[float, ...]]] = {
+        name: partial(lambda text, i: time_question(checkouts[i], text), text.format(**sizes))
+        for name, text in QUESTIONS.items()
     }
+    measures["an impact while chattering"] = lambda i: (time_impact(fmus[i], CHATTERING, periods),)
+    measures["an impact elsewhere"] = lambda i: (time_impact(fmus[i], ETAS[3:], 4 * periods),)
+    measures["a step without impact, from C"] = lambda i: (c_host.time_quiet_step(fmus[i]),)
+    print(f"{'':32}{'processor: now':>16}{'before':>12}{'ratio':>8}{'elapsed: ratio':>16}")
     for name, measure in measures.items():
-        now, then = (seconds * 1e9 for seconds in fastest_of_each(measure, fmus, rounds))
-        print(f"{name:40}{now:8.1f} ns{then:8.1f} ns before{now / then:8.3f}", flush=True)
+        times = np.array([[measure(0), measure(1)] for _ in range(rounds)]).min(axis=0)
+        ratios, (unit, factor) = (
+            times[0] / times[1],
+            ("s", 1.0) if times[1, 0] > 1e-3 else ("ns", 1e9),
+        )
+        text = "".join(f"{value * factor:9.3f} {unit:2}" for value in times[:, 0])
+        print(f"{name:36}{text}{ratios[0]:8.3f}", *(f"{r:15.3f}" for r in ratios[1:]), flush=True)
 
 
 def compare_solvers(count: int) -> None:
@@ -168,10 +212,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tools.benchmark", description=__doc__)
     parser.add_argument("--periods", type=int, default=2000, help="periods a frequency")
     parser.add_argument("--once", nargs=3, metavar=("FMU", "ETA", "PERIODS"), help="seconds of one")
-    parser.add_argument("--before", type=Path, metavar="FMU", help="another version's FMI 3.0 FMU")
+    parser.add_argument("--before", type=Path, metavar="CHECKOUT", help="another version's clone")
+    parser.add_argument("--scale", type=float, default=1.0, help="of the questions' sizes")
+    parser.add_argument("--rounds", type=int, default=3, help="the shortest of so many counts")
     arguments = parser.parse_args()
     if arguments.before:
-        compare_versions(arguments.before)
+        compare_versions(arguments.before.resolve(), arguments.scale, arguments.rounds)
     elif arguments.once:
         fmu, eta, count = arguments.once
         print(time_periods(fmu, float(eta), int(count))[0])

@@ -146,13 +146,8 @@ def gap_signal(values: Mapping[str, float], first: Signal, second: Signal) -> Si
 def contact_motion(
     values: Mapping[str, float], x: Any, v: Any, phase: Any
 ) -> tuple[Signal, Signal]:
-    """Return mass 1's motion in contact, and the force with which it pushes mass 2.
-
-    The force is by Newton's law of mass 1.
-
-    With a clearance mass 2 is by so much behind, and its spring loaded by so much: that moves the
-    position around which both swing.
-    """
+    """Return mass 1's motion in contact, and the force with which it pushes mass 2."""
+    # with a clearance the spring of mass 2 is loaded: that moves the position both swing around
     m1, d1, k1 = (mp.mpf(values[name]) for name in ("m1", "d1", "k1"))
     shaken = box_acceleration(values, phase)
     load = mp.mpf(values["k2"]) * mp.mpf(values.get("clearance", 0.0)) / (k1 + values["k2"])
@@ -169,10 +164,7 @@ def refine_root(signal: Signal, low: Any, high: Any) -> Any:
 
 
 def first_root(signal: Signal, stop: float, start: float = 0.0) -> Any | None:
-    """Return a signal's first root in ``start < t <= stop``; None without one.
-
-    By a scan with hundreds of points a period, each near miss settled by its own minimum.
-    """
+    """Return a signal's first root in ``start < t <= stop``; None without one."""
     spacing = 0.02 / signal.fastest_rate()
     fine = start + np.geomspace(1e-8, 1.0, 60) * min(spacing, stop - start)
     t = np.concatenate([fine, np.arange(fine[-1] + spacing, stop, spacing), [stop]])

@@ -7,10 +7,9 @@ everywhere. To be made anew when the kernel changes: a test says so.
 from __future__ import annotations
 
 import numpy as np
-import xarray as xr
 
 import orchestrate
-from orchestrate.explorer.figure6 import FILE, STAMP
+from orchestrate.explorer.sweep_data import FILE, STAMP
 from orchestrate.files import write_whole
 from orchestrate.fmu import OSCILLATOR
 from orchestrate.fmu.webassembly import kernel_digest
@@ -19,18 +18,13 @@ KEPT = ["frequency", "amplitude", "impacts_per_period", "end_state"]
 LEFT_OUT = ("identity", "history")  # of every source: the stamp tells what decides the bits
 
 
-def compute_figure6() -> xr.Dataset:
-    """Compute Figure 6's sweep; return the part of it that the page needs."""
-    etas = np.arange(100, 8001) / 1000
-    answer = orchestrate.sweep(orchestrate.Structure(), eta=etas, direction="up")
-    answer = answer[KEPT].drop_vars("period")
-    answer.attrs = {name: value for name, value in answer.attrs.items() if name not in LEFT_OUT}
-    return answer.assign_attrs({STAMP: kernel_digest(OSCILLATOR)})
-
-
 def main() -> None:
     """Compute Figure 6's start states and write them to the explorer's folder."""
-    data = compute_figure6()
+    etas = np.arange(100, 8001) / 1000
+    data = orchestrate.sweep(orchestrate.Structure(), eta=etas, direction="up")
+    data = data[KEPT].drop_vars("period")
+    data.attrs = {name: value for name, value in data.attrs.items() if name not in LEFT_OUT}
+    data = data.assign_attrs({STAMP: kernel_digest(OSCILLATOR)})
     small = {"zlib": True, "complevel": 9, "shuffle": True}
     encoding = dict.fromkeys((*KEPT, "eta"), small)
     write_whole(FILE, lambda place: data.to_netcdf(place, engine="netcdf4", encoding=encoding))

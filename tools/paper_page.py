@@ -17,10 +17,10 @@ from typing import Any
 
 from orchestrate.files import write_whole
 from orchestrate.paper.claims import WORDS
-from tools.marked import MARK, replace_part
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 IMPLIED = re.compile(r"; the paper's number agrees with (?:both|neither)\b")  # by the verdict
+MARK = "<!-- {}: {} -->\n"
 PAGES, CLAIMS = (DOCS / "paper.md", DOCS / "claims.md"), DOCS / "claims.json"
 
 
@@ -44,11 +44,6 @@ def section_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
     return lines
 
 
-def escape_cell(text: str) -> str:
-    """Return a text escaped for a cell of a Markdown table."""
-    return text.replace("|", "\\|").replace("*", "\\*").replace("_", "\\_")
-
-
 def claim_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
     """Return Markdown tables, one for each section, of all claims with their verdicts."""
     lines = []
@@ -58,7 +53,7 @@ def claim_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
         for row in rows:
             if row["section"] == section:
                 texts = (row["text"], row["printed"], IMPLIED.sub("", row["found"]))
-                cells = [escape_cell(text) for text in texts]
+                cells = [re.sub(r"([|*_])", r"\\\1", text) for text in texts]
                 lines.append(f"| {' | '.join(cells)} | {WORDS[row['verdict']]} |")
         lines.append("")
     return lines[:-1]
@@ -85,11 +80,12 @@ def fill_page(text: str, found: Mapping[str, Any]) -> str:
         "sections": lambda: section_table(found["claims"]),
         "verdicts": lambda: claim_table(found["claims"]),
         "regions": lambda: region_table(found["regions"]),
-        "answers": lambda: [f"- {sentence}" for sentence in found["answers"]],
     }
     for name, lines in parts.items():
-        if MARK.format(name, "begin") in text:
-            text = replace_part(text, name, lines())
+        begin, end = (MARK.format(name, word) for word in ("begin", "end"))
+        if begin in text:
+            before, rest = text.split(begin)
+            text = "\n".join([before + begin + lines()[0], *lines()[1:], end + rest.split(end)[1]])
     return text
 
 

@@ -35,21 +35,6 @@ class Reference:
         return [round(i * self.step, 10) for i in range(round(self.stop / self.step) + 1)]
 
 
-def oscillator_inputs(time: float) -> tuple[float, ...]:
-    """Return box amplitude, frequency and acceleration at a time, with steps at 30 and 45 s."""
-    return 1.0, 0.4 if time < 30.0 else 0.8, 0.0 if time < 45.0 else 0.05
-
-
-def shaker_inputs(time: float) -> tuple[float, ...]:
-    """Return voltage and force at a time: the voltage steps at 3 s, the force at 4 s."""
-    return 3.0 if time < 3.0 else 8.0, 0.0 if time < 4.0 else 20.0
-
-
-def coil_inputs(time: float) -> tuple[float, ...]:
-    """Return command and force at a time: the command steps at 1 and 2 s, the force at 2 s."""
-    return 5.0 if time < 1.0 else -5.0 if time < 2.0 else 0.0, 0.0 if time < 2.0 else 50.0
-
-
 OSCILLATOR = Reference(
     model="TwoMassImpactOscillator",
     folder="oscillator",
@@ -58,7 +43,7 @@ OSCILLATOR = Reference(
         *("x1", "x2", "v1", "v2", "x_rel"),
         *("box_force", "contact_force", "phase", "impact_energy"),
     ),
-    input_at=oscillator_inputs,
+    input_at=lambda t: (1.0, 0.4 if t < 30.0 else 0.8, 0.0 if t < 45.0 else 0.05),
     jumps=(30.0, 45.0),
     step=0.05,
     stop=60.0,
@@ -71,7 +56,7 @@ SHAKER = Reference(
         *("box_position", "box_velocity", "angle", "speed", "motor_torque"),
         *("motor_energy", "box_damper_energy", "stored_energy"),
     ),
-    input_at=shaker_inputs,
+    input_at=lambda t: (3.0 if t < 3.0 else 8.0, 0.0 if t < 4.0 else 20.0),
     jumps=(3.0, 4.0),
     step=0.005,
     stop=5.0,
@@ -84,7 +69,7 @@ COIL = Reference(
         *("box_position", "box_velocity", "box_acceleration", "current", "voltage", "power"),
         *("energy", "coil_heat", "suspension_loss", "box_force_work", "stored_energy"),
     ),
-    input_at=coil_inputs,
+    input_at=lambda t: (5.0 if t < 1.0 else -5.0 if t < 2.0 else 0.0, 0.0 if t < 2.0 else 50.0),
     jumps=(1.0, 2.0),
     step=0.005,
     stop=3.0,

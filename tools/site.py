@@ -68,10 +68,7 @@ class Site:
         ]
 
     def broken_links(self) -> list[str]:
-        """Return links, pictures and scripts whose targets are missing, as ``page: address``.
-
-        Those of other hosts are not asked.
-        """
+        """Return links, pictures and scripts whose targets are missing, as ``page: address``."""
         return [
             f"{path.name}: {address}"
             for path, page in self.pages.items()

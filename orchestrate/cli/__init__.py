@@ -17,8 +17,10 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, StaleError, Terminated, VibroimpactError
+from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest
 from ..version import __version__
 from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
+from .grammar import SET_NAMES
 from .options import QUANTITIES, list_shipped_sets
 from .safe_output import safe_outputs
 from .table import DEBUG, parse_options
@@ -30,6 +32,7 @@ COMMANDS = (
 )
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 STORE = "orchestrate.running.store"
+STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *SET_NAMES)
 EXAMPLES = """examples:
   {program} build
   {program} sweep
@@ -80,6 +83,28 @@ def join_negative_values(arguments: Sequence[str]) -> list[str]:
     return joined
 
 
+def parse_arguments(arguments: Sequence[str]) -> argparse.Namespace:
+    """Parse the arguments; raise for an unknown command or option, with the one most alike."""
+    command = next((word for word in arguments if word != "--debug"), "-")
+    names = [row.name for row in COMMANDS]
+    if not command.startswith("-") and command not in names:
+        near = closest(command, names)
+        meant = f"; did you mean {near}?" if near else ""
+        raise InputError(f"{command}: no command{meant} ({program_name()} --help lists them)")
+    parser = make_parser(arguments)
+    chosen, unknown = parser.parse_known_args(join_negative_values(arguments))
+    if unknown:
+        flag, _, value = " ".join(unknown[:2]).replace("=", " ").partition(" ")
+        name = flag.lstrip("-").replace("-", "_")
+        set_by = f"--set {name}={value}" if name in STRUCTURE_NAMES else ""
+        near = set_by if "--set" in chosen.row.flags else ""
+        if not near and flag.startswith("--"):
+            near = closest(flag, [one for one in chosen.row.flags if one.startswith("--")])
+        meant = f"; did you mean {near}?" if near else ""
+        raise InputError(f"{flag}: no option of {command}{meant} ({command} --help lists them)")
+    return chosen
+
+
 def set_up_logging() -> None:
     """Send the library's log messages of level INFO and above to standard error."""
     logging.basicConfig(format="%(message)s")
@@ -110,7 +135,11 @@ def run_command(arguments: Sequence[str]) -> int:
     if store := sys.modules.get(STORE):  # of a command before, in this process
         store.STARTED.clear()
         store.FINISHED.clear()
-    chosen = make_parser(arguments).parse_args(join_negative_values(arguments))
+    try:
+        chosen = parse_arguments(arguments)
+    except InputError as error:
+        print_error(f"error: {error}")
+        return MISTAKE
     chosen.command_line = f"{program_name()} {shlex.join(arguments)}"
     try:
         with print_warnings_in_one_line():
@@ -134,21 +163,25 @@ def run_command(arguments: Sequence[str]) -> int:
 
 
 def with_option_names(message: str, chosen: argparse.Namespace) -> str:
-    """Return a message in which keywords without a value are options: ``--unit`` for ``unit=``.
+    """Return a message in which keywords are options: ``--unit`` for ``unit=`` without a value.
 
     Examples
     --------
     >>> chosen = argparse.Namespace(sample_rate=None, columns=None)
     >>> with_option_names("expected columns=, sample_rate= or e=, not columns=3", chosen)
     'expected --columns, --sample-rate or e=, not columns=3'
+    >>> with_option_names('polarity? columns="0,2,1"', chosen)
+    'polarity? --columns "0,2,1"'
     """
 
     def option(keyword: re.Match[str]) -> str:
         """Return the option's spelling of a matched keyword, if it is one."""
         name = keyword["name"]
-        return f"--{name.replace('_', '-')}" if name in vars(chosen) else keyword[0]
+        spelling = f"--{name.replace('_', '-')}{' ' if keyword['quoted'] else ''}"
+        return spelling if name in vars(chosen) else keyword[0]
 
-    return re.sub(r"(?<![\w-])(?P<name>[a-z_]\w*)=(?=[\s,;:.)]|$)", option, message)
+    pattern = r"(?<![\w-])(?P<name>[a-z_]\w*)=((?=[\s,;:.)]|$)|(?=(?P<quoted>\")))"
+    return re.sub(pattern, option, message)
 
 
 def report_interruption(ended: KeyboardInterrupt) -> int:

@@ -36,8 +36,7 @@ UNIT_OF_KEY = {  # of a structure's file
 }
 VARIED = ("eta", "frequency", "level", "values")
 OVERLAY = """
---overlay FILE ...  NetCDF file of a branch that is drawn over the picture, solid where stable,
-    dashed where not; may be repeated
+--overlay FILE,... +  NetCDF files of branches that are drawn over the picture
 """
 
 
@@ -123,9 +122,19 @@ def read_overlay(
     arguments: argparse.Namespace, structure: Structure, question: Mapping[str, Any]
 ) -> list[xr.Dataset]:
     """Return the branches of ``--overlay``; raise for one that does not fit the question."""
-    paths = getattr(arguments, "overlay", [])
+    texts = getattr(arguments, "overlay", [])
+    paths = [Path(name) for text in texts for name in text.split(",")]
     if not paths:
         return []
+    branches = [read_earlier_result("--overlay", path) for path in paths]
+    if arguments.command == "map":
+        from ..show.overlay import explain_border_mismatch
+
+        both = {name for name, value in question.items() if isinstance(value, tuple)}
+        for path, curve in zip(paths, branches, strict=True):
+            if why := explain_border_mismatch(curve, both, structure.parameters()):
+                raise InputError(f"--overlay {path}: {why}")
+        return branches
     if arguments.command == "resonance" and "level" in question:
         raise InputError(f"--overlay: with several levels, --g {arguments.g}; expected one")
     if not is_curve(question):
@@ -136,7 +145,6 @@ def read_overlay(
     parameters = structure.parameters()
     if arguments.command == "resonance":  # of both
         parameters.pop("bonded")
-    branches = [read_earlier_result("--overlay", path) for path in paths]
     for path, branch in zip(paths, branches, strict=True):
         if why := explain_mismatch(branch, over, parameters):
             raise InputError(f"--overlay {path}: {why}")

@@ -1,30 +1,49 @@
-"""Command ``diagnose``: decide from measured records whether beams are delaminated."""
+"""Commands ``diagnose``, whether beams are delaminated by their records, and ``plan``, a test."""
 
 from __future__ import annotations
 
 import argparse
 import hashlib
+import logging
+import math
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..constants import GRAVITY
 from ..errors import InputError
-from ..units import with_units
-from .options import read_structure_options
-from .output import Files, digest, read_record_units, read_running_options, result_groups, unit_note
-from .table import Command, Group
+from ..units import Units, range_text, text_of, with_readable_lengths, with_units
+from .grammar import parse_values
+from .options import read_structure_options, structure_group
+from .output import (
+    READING,
+    Files,
+    digest,
+    read_record_units,
+    read_running_options,
+    read_units,
+    result_groups,
+    result_name,
+    unit_note,
+)
+from .table import Command, Group, Question, values_of
+from .text import columns_of, parameter_column, table
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from ..model import Structure
 
+log = logging.getLogger(__name__)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
+    "wiring": "wiring",
     "reason": "decided by",
     "settle": "to settle it",
     "record_columns": "columns",
     "record_unit_note": "unit",
+    "record_converted": "converted",
+    "record_time_base": "times",
 }
 CHANNELS = {  # in the order of --columns, and what they are called towards the user
     "time": "time",
@@ -46,13 +65,15 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
     others = [read_one_record(arguments, path) for path in arguments.other]
     if others and len(arguments.records) > 1:
         raise InputError("--other: of one beam; expected one record with it")
+    log.info("reading %s", ", ".join(path.name for path in arguments.records))
     records, refused = read_all_records(arguments)
     names = {path: file_stem(path, guess, arguments) for path in records}
     verdicts = compute_verdicts(arguments, records, names, guess) if records else {}
     units = read_record_units(arguments)
     for path, verdict in verdicts.items():
-        for line in verdict_lines(path, with_units(verdict, units)):
+        for line in verdict_lines(path, with_units(verdict, units), arguments):
             print(line)
+        log.info("%s: signs, pictures and page", path.name)
         signs = orchestrate.signs(records[path], other=others, structure=guess)
         write_files(arguments, names[path], {"": verdict, "_signs": signs})
     if refused:
@@ -62,7 +83,7 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
 
 def file_stem(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
     """Return the name of a record's result files, unique for content, guess and reading options."""
-    read_as = [arguments.columns, arguments.unit, arguments.sample_rate, arguments.participation]
+    read_as = [arguments.columns, arguments.participation, *values_of(arguments, READING).items()]
     return f"diagnose_{path.stem}_{digest(file_checksum(path), guess.parameters(), read_as)}"
 
 
@@ -96,9 +117,7 @@ def read_one_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     from .. import read_record
 
     columns = parse_columns(arguments)
-    record = read_record(
-        path, columns=columns, unit=arguments.unit, sample_rate=arguments.sample_rate
-    )
+    record = read_record(path, columns=columns, **values_of(arguments, READING))
     if "acceleration1" not in record and "acceleration2" not in record:
         taken = record.attrs.get("columns", "no columns")
         text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"
@@ -168,6 +187,8 @@ def origin_attributes(
         "record_columns": record.attrs.get("columns", ""),
         "record_unit": record.attrs.get("unit", ""),
         "record_unit_note": unit_note(record.attrs),
+        "record_converted": record.attrs.get("converted", ""),
+        "record_time_base": record.attrs.get("time_base", ""),
         "sensors": record.attrs.get("sensors", ""),
         "guess_file": str(arguments.structure),
         "command": getattr(arguments, "command_line", ""),
@@ -194,15 +215,16 @@ def write_files(
     print(report(*answers.values(), output=page, notes=arguments.notes or "", units=units))
 
 
-def verdict_lines(path: Path, verdict: xr.Dataset) -> Iterator[str]:
+def verdict_lines(path: Path, verdict: xr.Dataset, arguments: argparse.Namespace) -> Iterator[str]:
     """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
     from ..show.verdict import make_verdict
+    from . import with_option_names
 
     shown = make_verdict(verdict)
     yield f"{path}: {shown.word} {shown.sentence}"
     for name, label in LINES.items():
         if verdict.attrs.get(name):
-            yield f"  {label}: {verdict.attrs[name]}"
+            yield f"  {label}: {with_option_names(verdict.attrs[name], arguments)}"
 
 
 DIAGNOSE = Command(
@@ -211,7 +233,8 @@ DIAGNOSE = Command(
     """  {program} diagnose record.csv --structure beam.toml
   {program} diagnose left.csv right.uff --structure beam.toml --set e=0.4 --jobs 2
   {program} diagnose up.csv --other down.csv --other louder.csv --structure beam.toml
-  {program} diagnose export.txt --columns 0,3,4 --unit g --sample-rate 2000 --structure beam.toml
+  {program} diagnose export.txt --columns 0,3,4 --unit g --structure beam.toml
+  {program} diagnose laser.csv --unit face=mm/s --sensitivity "base=100 mV/g" --structure beam.toml
 
 what it needs:
   a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
@@ -226,7 +249,9 @@ what it gives:
   undecided        this record does not tell; the report says which one would
   and for each record a report to read, print and sign (.html), the answers (.nc), a picture""",
     (
-        Group(options="records FILE +  measured: .csv, .txt, .uff, .unv, .mat, .nc; one beam each"),
+        Group(
+            options="records FILE +  .csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .nc; one beam each"
+        ),
         Group(
             "the guess",
             """
@@ -236,16 +261,17 @@ what it gives:
         ),
         Group(
             "records",
-            """
+            (
+                """
             --other FILE ...  record of the same beam at another level or in the other direction,
                 for the signs
-            --unit UNIT  m/s2, g ... (default: what the file says)
-            --columns A,B,...  of time, base, face 1 and face 2, by name or number from 0 (default:
-                by usual names)
-            --sample-rate HZ  where the file has no times; then --columns begins with the base
+            --columns A,B,...  of time, base, face 1 and face 2, by name or number from 0, without
+                time where --sample-rate is given (default: by usual names)
             --participation G,...  of the sensors on face 1 and face 2: the beam's mode there over
                 that of a mass on a spring, 1.57 at the tip of a cantilever (default: fitted)
             """,
+                READING,
+            ),
         ),
         Group("report", "--notes WORDS  below the title: which beam, who, when"),
         *result_groups(store=False),
@@ -253,4 +279,93 @@ what it gives:
     run_diagnose,
 )
 
-COMMANDS = (DIAGNOSE,)
+
+def ask_plan(arguments: argparse.Namespace) -> tuple[Structure, Question]:
+    """Return structure and keywords of ``plan_test``."""
+    from .. import Sensor
+
+    structure = read_structure_options(arguments)
+    hz, g = (
+        getattr(arguments, name) and parse_values(f"--{name}", getattr(arguments, name))[0]
+        for name in ("hz", "g")
+    )
+    question: Question = {"frequencies": hz, "g": g, **arguments.row.keywords(arguments)}
+    if arguments.noise is not None or arguments.range is not None:
+        from ..diagnosis.plan_test import USUAL_NOISE
+
+        question["sensor"] = Sensor(
+            bandwidth=40.0 * (hz[-1] if hz else 1.2 * max(structure.f1, structure.f2)),
+            noise=USUAL_NOISE if arguments.noise is None else arguments.noise,
+            range=GRAVITY * (math.inf if arguments.range is None else arguments.range),
+        )
+    return structure, question
+
+
+def run_plan(arguments: argparse.Namespace) -> None:
+    """Run ``plan``: compute a plan; print it; write result and picture."""
+    import orchestrate
+
+    from ..running.store import write_netcdf
+
+    structure, question = ask_plan(arguments)
+    name = result_name("plan", arguments.structure, structure, question)
+    files = Files.from_options(arguments, name, fresh=True)
+    plan = orchestrate.plan_test(structure, **question, **read_running_options(arguments))
+    units = read_units(arguments).with_defaults(Units("Hz", acceleration="g"))
+    described = plan.assign_attrs(structure.parameters())
+    (shown,) = with_readable_lengths(with_units(described, units))
+    print(*plan_lines(shown), sep="\n")
+    write_netcdf(plan, files.result)
+    files.write(shown, partial(orchestrate.plot, shown))
+
+
+def plan_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield the recommended sweep, whether it tells, and what each level shows."""
+    level = text_of(data, data.recommended_level, "m/s2", ".3g")
+    ends = range_text(data, float(data.recommended_first), float(data.recommended_last), "Hz")
+    yield f"sweep {ends} at {level}, up and down, {float(data.recommended_duration):.0f} s each way"
+    if not data.counts:
+        yield "orders 2 and 3 do not count at any of these levels: raise --g, or lower the --noise"
+    opens = data.opening_level.values
+    if (opens > 0.0).any():
+        at = int(opens.argmin())
+        where = text_of(data, data.frequency[at], "Hz", ".4g")
+        lowest = text_of(data, opens[at], "m/s2", ".3g")
+        yield f"pressed together: it opens from {lowest}, at {where}"
+    elif not data.attrs["clearance"]:
+        yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
+    best = data.distance_harmonics.max("frequency") / data.threshold
+    rows = parameter_column(data, "level", data.level.values, ".3g")
+    rows["orders 2 and 3 over what counts"] = [f"{value:.3g}" for value in best.values]
+    largest = data.opening.max("frequency", keep_attrs=True)
+    rows |= columns_of(largest.to_dataset().assign_attrs(data.attrs), "opening", form=".3g")
+    rows["sensor"] = ["overload" if flag else "" for flag in data.overload.values]
+    yield from table(rows)
+
+
+PLAN = Command(
+    "plan",
+    "plan a test: frequencies and levels of a sweep at which a delamination would show",
+    """  {program} plan --structure beam.toml
+  {program} plan --structure beam.toml --hz 30:60:0.5 --g 0.05,0.1,0.2,0.5 --noise 3e-4
+  {program} plan --structure beam.toml --set clearance=-20um --range 50""",
+    (
+        structure_group(),
+        Group(
+            "the test",
+            """
+            --hz VALUES  frequencies in Hz, FIRST:LAST:STEP (default: 0.8 times the lower to 1.2
+                times the higher natural frequency of the halves)
+            --g VALUES  levels, peak acceleration in g (default: nine from 0.01 to 1)
+            --noise X  density of the sensor's noise, (m/s2)/sqrt(Hz) (default: 1e-3)
+            --range X  of the sensor, g (default: none)
+            """,
+            declared="periods gain_error threshold",
+        ),
+        *result_groups(store=False),
+    ),
+    run_plan,
+    calls="plan_test",
+)
+
+COMMANDS = (DIAGNOSE, PLAN)

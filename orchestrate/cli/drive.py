@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
 from .grammar import parse_changes, parse_ends, parse_number_or_ends, parse_rate
 from .options import one_of, option_name, print_assumptions
@@ -17,8 +18,6 @@ from .output import Files, digest, print_units_note, read_running_options, read_
 from .table import Group
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Drive, Structure
     from ..weak_drive.controllers import Controller
     from ..weak_drive.schedule import Schedule

@@ -6,12 +6,14 @@ import argparse
 import ast
 import math
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..flags import flag_words
 from ..units import range_text, text_of, units_of, with_units
-from .answer import answer, is_curve, read_earlier_result
+from .answer import answer, answer_question, display_units, is_curve, read_earlier_result
+from .grammar import parse, plain_int
 from .options import (
     CONTINUED,
     START,
@@ -27,7 +29,7 @@ from .options import (
     structure_group,
     varied_arguments,
 )
-from .output import read_running_options, result_groups
+from .output import Files, read_running_options, result_groups, result_name
 from .stored import read_structure_and_question
 from .table import Command, Group, Question
 from .text import (
@@ -98,7 +100,7 @@ def lyapunov_summary(data: xr.Dataset) -> Iterator[str]:
     if needed > float(data.attrs["periods"]):
         yield (
             "neutral: quasi-periodic, or too few periods: exponents of these sizes take about "
-            f"--periods {math.ceil(needed)}"
+            f"--periods {float(f'{needed:.2g}'):.0f}"
         )
 
 
@@ -160,6 +162,7 @@ POINCARE = Command(
     poincare_summary,
 )
 
+IRREGULAR_PERIODS = 60  # that are drawn of an irregular attractor
 MAX_VALUES_IN_FULL = 5  # values up to which every attractor is printed
 
 
@@ -189,6 +192,30 @@ def attractors_summary(data: xr.Dataset) -> Iterator[str]:
     yield from table(columns)
 
 
+def draw_coexisting(data: xr.Dataset) -> Any:
+    """Draw attractors over a parameter; at one value their motions; return the figure."""
+    import orchestrate
+
+    from ..model import Structure
+    from ..show.planes import draw_motions
+
+    name = varied_parameter(data)
+    if data.sizes[name] > 1:
+        return orchestrate.plot(data)
+    at = data.isel({name: 0})
+    at = at.isel(attractor=at.multiplicity.notnull().values)
+    about = {str(key): value for key, value in data.attrs.items()}
+    structure = Structure.from_attributes(about)
+    if name not in ("eta", "frequency"):
+        structure = structure.replace(**{name: float(at[name])})
+    motions = []
+    for state, n in zip(at.state.values, at.multiplicity.values, strict=True):
+        periods = int(n) or IRREGULAR_PERIODS
+        box: Question = {"frequency": float(at.frequency), "amplitude": float(at.amplitude)}
+        motions.append(orchestrate.simulate(structure, **box, start=state, periods=periods))
+    return draw_motions(at, [with_units(motion, units_of(data)) for motion in motions])
+
+
 ATTRACTORS = Command(
     "attractors",
     "coexisting motions: how many, and how many random starts lead to each",
@@ -212,7 +239,7 @@ alone may miss one whose basin is small.""",
     answer,
     ask_along_parameter,
     attractors_summary,
-    has_picture=is_curve,
+    draw_coexisting,
 )
 
 FEWEST_STARTS = 32  # along a side, for entropies
@@ -489,6 +516,36 @@ def ask_border(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     return structure, {**both, **question}
 
 
+def parse_bifurcation(option: str, text: str) -> int | str:
+    """Parse the number of a bifurcation, or the word ``all``."""
+    return text if text == "all" else parse(option, text, "a number, or all", plain_int)
+
+
+def run_border(arguments: argparse.Namespace) -> None:
+    """Run ``border``: follow one bifurcation, or all of a branch into one picture."""
+    import orchestrate
+
+    structure, question = ask_border(arguments)
+    if question["bifurcation"] != "all":
+        answer_question(arguments, structure, question)
+        return
+    if arguments.store is not None:
+        raise InputError("--store: of one bifurcation; expected it without --bifurcation all")
+    curves = []
+    for number in range(question["start"].sizes.get("bifurcation", 0)):
+        one = {**question, "bifurcation": number}
+        try:
+            curves.append(answer_question(arguments, structure, one, picture=False))
+        except InputError as reason:
+            print(f"number {number} is not followed: {reason}")
+    if not curves:
+        raise InputError(f"--start {arguments.start}: no bifurcation that can be followed")
+    name = result_name("border_all", str(arguments.start), structure, question)
+    shown = [with_units(curve, display_units(arguments, question)) for curve in curves]
+    files = Files.from_options(arguments, name, fresh=True)
+    files.write_pictures(partial(orchestrate.plot, *shown))
+
+
 def border_summary(data: xr.Dataset) -> Iterator[str]:
     """Yield a bifurcation curve's extent, its codimension-two points, and why it ends."""
     names = [str(name) for name in data.attrs["over"]]
@@ -510,6 +567,7 @@ BORDER = Command(
     "follow a bifurcation of a branch over two parameters: where a window begins or ends",
     """  {program} border --start branch.nc --bifurcation 0 --over eta,e --limits 2.4:2.9,0.6:0.8
   {program} border --start beam.nc --over hz,e --limits 14:18,0.6:0.8
+  {program} border --start branch.nc --bifurcation all --limits 2.4:2.9,0.6:0.8
 --start is what the command branch has written, with the numbers of its bifurcations;
 structure and excitation are those of that branch.""",
     (
@@ -522,14 +580,14 @@ structure and excitation are those of that branch.""",
             """,
             """
             --start FILE  NetCDF file of a branch
-            --bifurcation N = 0  its number
+            --bifurcation N|all = 0  its number, or all of them in one picture
             """,
             "longest most",
-            readers={"start": read_earlier_result},
+            readers={"start": read_earlier_result, "bifurcation": parse_bifurcation},
         ),
         *result_groups(),
     ),
-    answer,
+    run_border,
     ask_border,
     border_summary,
 )

@@ -11,6 +11,7 @@ from decimal import Decimal, InvalidOperation
 from typing import TypeVar
 
 from ..errors import InputError
+from ..model.ranges import expected_one_of
 
 Parsed = TypeVar("Parsed")
 Reader = Callable[[str, str], Parsed]
@@ -19,11 +20,12 @@ MAX_VALUES = 10_000_000
 RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
 
 SET_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # of parameters in --set, over their own
-    ("clearance",): {"mm": "1e-3", "um": "1e-6", "µm": "1e-6", "m": "1"},
+    ("clearance", "preload"): {"mm": "1e-3", "um": "1e-6", "µm": "1e-6", "m": "1"},
     ("zeta1", "zeta2", "D", "D1", "D2"): {"%": "0.01"},
     ("f1", "f2"): {"Hz": "1"},
     ("m1", "m2"): {"kg": "1"},
 }
+SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 
 # -- numbers --------------------------------------------------------------------------------------
 
@@ -189,7 +191,8 @@ def parse_single_number(option: str, text: str) -> float:
     values, _ = parse_values(option, text)
     if len(values) != 1:
         raise InputError(
-            f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2"
+            f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2 (sweep and "
+            "resonance vary one parameter, map two)"
         )
     return values[0]
 
@@ -199,8 +202,18 @@ def parse_single_number(option: str, text: str) -> float:
 
 def parse_changes(texts: Iterable[str]) -> dict[str, float | bool]:
     """Parse the texts ``NAME=VALUE`` of ``--set`` into a dict from parameter to value."""
-    pairs = read_pairs("--set", texts, "NAME=VALUE such as e=0.3")
-    return {name: parse_changed_value(name, value) for name, value in pairs.items()}
+    changes: dict[str, float | bool] = {}
+    for name, text in read_pairs("--set", texts, "NAME=VALUE such as e=0.3").items():
+        names = SET_NAMES.get(name, (name,))
+        value = parse_changed_value(names[0], text)
+        if name == "preload":  # as a length: in N it depends on the springs
+            if text[-1:] != "m":
+                raise InputError(f"--set preload={text}: expected a length, such as preload=20um")
+            names, value = ("clearance",), -value
+        if twice := changes.keys() & set(names):
+            raise InputError(f"--set {name}={text}: {min(twice)} is set already; expected once")
+        changes |= dict.fromkeys(names, value)
+    return changes
 
 
 def parse_changed_value(name: str, value: str) -> float | bool:
@@ -216,7 +229,18 @@ def parse_changed_value(name: str, value: str) -> float | bool:
             return float(Decimal(number) * Decimal(known[unit]))  # what one would write without it
         return plain_float(value)
     except (ValueError, InvalidOperation):
+        check_name(name)  # before its unit
         words = f", with {' or '.join(known)} if you like" if known else ", or true or false"
         raise InputError(
             f"--set {name}={value}: {value} is not a number; expected one{words}"
         ) from None
+
+
+def check_name(name: str) -> None:
+    """Raise unless a name is that of a parameter of the structure or of a drive."""
+    from ..model.ranges import DRIVE
+    from ..model.structure import PARAMETERS
+
+    known = (*PARAMETERS, "bonded", "preload", *SET_NAMES)
+    if name not in (*known, *DRIVE):
+        raise InputError(f"--set {name}: no parameter; {expected_one_of(name, known)}")

@@ -25,6 +25,7 @@ from .options import (
 from .output import (
     FORMAT,
     OUTPUT,
+    READING,
     UNITS,
     Files,
     digest,
@@ -34,7 +35,7 @@ from .output import (
     result_groups,
     unit_note,
 )
-from .table import Command, Group, Question, parse_options
+from .table import Command, Group, Question, parse_options, values_of
 from .text import Columns, columns_of, extents, impact_lines, table
 
 if TYPE_CHECKING:
@@ -73,10 +74,13 @@ EXCITATION = """
 
 def ask_shake(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     """Return structure and keywords of ``shake``."""
-    structure = read_structure_options(arguments)
+    from .. import Shaker
+
+    structure, shaker = read_structure_options(arguments), arguments.shaker
     return structure, {
         "excitation": read_excitation(arguments),
         **arguments.row.keywords(arguments),
+        "shaker": None if shaker is None else Shaker.from_file(shaker),
     }
 
 
@@ -156,7 +160,11 @@ def read_level(arguments: argparse.Namespace) -> Any:
 def shake_summary(data: xr.Dataset) -> Iterator[str]:
     """Yield the ranges of accelerations and gap, the impacts, and how long a transient lasts."""
     yield from extents(data, "box_acceleration a1_abs a2_abs x_rel")
-    yield f"a linear transient decays within {float(data.transient_time):.3g} s"
+    if "transient_time" in data:
+        yield f"a linear transient decays within {float(data.transient_time):.3g} s"
+    elif data.control_aborted.notnull():
+        end = float(data.control_aborted)
+        yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
     yield from impact_lines(data)
 
 
@@ -167,11 +175,13 @@ SHAKE = Command(
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
   {program} shake --structure beam --stepped-sine 10:14:0.1 --settle-cycles 150 --g 0.02
   {program} shake --structure beam --random 5:0.1,100:0.1 --duration 30 --seed 1
+  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --shaker shaker_1kN
   {program} shake --structure beam --shock half-sine --length 0.011 --g 5
   {program} shake --structure beam --record base.csv --unit g""",
     (
         structure_group(),
         Group("the box's acceleration", EXCITATION, description="one of the first five"),
+        Group("what moves it", "--shaker FILE  its electrodynamic shaker, level controlled"),
         Group(
             "the record",
             BESIDE,
@@ -250,12 +260,9 @@ ANALYSES = {
     "shock": Analysis("shock_spectrum", ("damping",), "shock response spectrum"),
     "density": Analysis("probability_density", ("bins",), "probability density, skewness"),
 }
-READING = f"""
---unit UNIT  of accelerations: m/s2, g, mg ...
+COLUMNS = f"""
 --columns A=X,B=Y  columns by name or number from 0: CHANNEL=COLUMN,... with the channels time,
     {", ".join(MASSES)}
---sample-rate HZ  where there is no time
---scale X  m/s2 at the full scale of WAV files
 """
 SETTINGS = """
 --resolution HZ  distance of the lines, Hz, of frf, psd and spectrogram
@@ -268,12 +275,6 @@ SETTINGS = """
 --bins X  of density (default: 100)
 """
 SHOWN = ", ".join(f"{name} ({one.text})" for name, one in ANALYSES.items())
-
-
-def values_of(arguments: argparse.Namespace, options: str) -> dict[str, Any]:
-    """Return the values of those options that are given, by name."""
-    values = {one.name: one.value(arguments) for one in parse_options(options)}
-    return {name: value for name, value in values.items() if value is not None}
 
 
 def run_analyse(arguments: argparse.Namespace) -> None:
@@ -293,7 +294,7 @@ def run_analyse(arguments: argparse.Namespace) -> None:
     warn_without_sensor(arguments, records)
     units = read_record_units(arguments)
     reading = [getattr(arguments, name) for name in ("from", "to", "sensor")]
-    reading += values_of(arguments, READING).items()
+    reading += values_of(arguments, (COLUMNS, READING)).items()
     for name in names:
         results = {
             label: analyse(ANALYSES[name], record, paths[label], settings[name])
@@ -376,7 +377,7 @@ def read_record_file(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
         return stored if units <= {"m/s2"} else read_record(path)
     if not path.is_file():
         raise InputError(f"{path}: no such file; expected a record")
-    reading = values_of(arguments, READING)
+    reading = values_of(arguments, (COLUMNS, READING))
     if path.suffix.lower() != ".wav":  # the scale is of the others
         reading.pop("scale", None)
     return read_record(path, **reading)
@@ -416,8 +417,8 @@ ANALYSE = Command(
     (
         Group(
             options=f"""
-            record FILE  a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .wav,
-                .nc
+            record FILE  a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .lvm,
+                .tdms, .wav, .nc
             --show A,B,... = frf,psd  {SHOWN}
             """
         ),
@@ -433,7 +434,7 @@ ANALYSE = Command(
             --to S  time it ends at, s
             """,
         ),
-        Group("how to read records", READING, description="what files but NetCDF may not say"),
+        Group("how to read records", (COLUMNS, READING)),
         Group("settings", SETTINGS),
         UNITS,
         Group("files", FORMAT),

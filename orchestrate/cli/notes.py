@@ -10,11 +10,10 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..constants import TURN
+from ..lazy import xr
 from ..units import text_of
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Structure
 
 FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen

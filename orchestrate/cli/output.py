@@ -15,23 +15,32 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..lazy import xr
+from ..running.options import Running
+from .grammar import floats
 from .table import Group
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Structure
-    from ..running.options import Running
     from ..units import Units
 
 FORMATS = ("nc", "csv", "mat", "xlsx")
 PLOTS = ("png", "pdf", "svg")
+SIZE = floats("W:H such as 16:9", ":", (2,), positive=True)
 DIGITS = 6  # of the digest in a file's name
 PREPARE_AFTER = 1.0  # s: after so much computing, a picture is prepared beside it
 OWN_NAME = re.compile(rf"[a-z-]+_(.+)_[0-9a-f]{{{DIGITS}}}")  # of a result's file
 
 # -- options --------------------------------------------------------------------------------------
 
+READING = """
+--unit UNIT  g, mm/s ..., or by channel: base=V,face1=mm/s (default: what the file says)
+--sensitivity VALUE  of voltages: "100 mV/g", or by channel "base=100 mV/g,face1=50 mV/(mm/s)"
+--sample-rate HZ  where the file has no times
+--scale FACTOR  by channel, such as face1=-1; of WAV files m/s2 at the full scale
+--delay SECONDS  by which channels are late, such as face1=0.002
+--resample  make uneven times equal, by splines
+"""
 UNITS = Group(
     "units",
     """
@@ -46,6 +55,7 @@ STORE = """
 FORMAT = f"""
 --format A,B,... = nc  also as {", ".join(FORMATS[1:])}, a list; nc is always written (default: nc)
 --plot A,B,... = png  pictures: {", ".join(PLOTS)}, a list, or none (default: png)
+--size W:H  shape of the pictures for slides, such as 16:9, with larger letters
 """
 OUTPUT = "--output FOLDER = results  folder of the results (default: results)"
 
@@ -217,6 +227,7 @@ class Files:
     plots: tuple[str, ...]
     fresh: bool  # whether the result is to be computed: then what stands beside it is made anew too
     units: str = ""  # of `--units`: tables and pictures in these have them in their names
+    size: tuple[float, float] | None = None  # shape of the pictures
     over: str = ""  # suffix of the pictures' names, where other data lie over the result
 
     @classmethod
@@ -234,7 +245,11 @@ class Files:
         if fresh is None:
             fresh = arguments.force or not result.exists()
         units = str(read_units(arguments)).replace(", ", "-").replace("/", "_")
-        files = cls(result, formats, plots, fresh, units, over)
+        text = getattr(arguments, "size", None)
+        size = SIZE("--size", text) if text else None
+        files = cls(
+            result, formats, plots, fresh, units, (size[0], size[1]) if size else None, over
+        )
         others = [*files.table_paths(), *files.picture_paths()]
         existing = [path for path in others if existing_files(path)]
         if store is not None and existing and not result.exists():
@@ -255,7 +270,8 @@ class Files:
 
     def picture_paths(self, *endings: str) -> list[Path]:
         """Return the paths of a picture: its name has units and overlay."""
-        picture = self.beside(self.units, self.over, *endings)
+        size = f"{self.size[0]:g}-{self.size[1]:g}" if self.size else ""
+        picture = self.beside(self.units, self.over, *endings, size)
         return [picture.with_suffix(f".{ending}") for ending in self.plots]
 
     def lacks_pictures(self) -> bool:
@@ -279,9 +295,13 @@ class Files:
         paths = self.picture_paths(*endings)
         missing = [path for path in paths if self.fresh or not path.exists()]
         if missing:
-            from ..show.files import save
+            from ..show.files import for_slides, save
 
-            save(draw(), paths[0].with_suffix(""), [path.suffix[1:] for path in missing])
+            figure, dpi = draw(), {}
+            if self.size:
+                figure = for_slides(figure, self.size)
+                dpi = {"dpi": figure.dpi}
+            save(figure, paths[0].with_suffix(""), [path.suffix[1:] for path in missing], **dpi)
         for path in paths:
             print(path)
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError
+from ..lazy import xr
 from .answer import read_earlier_result
 from .grammar import parse_changes
 from .options import read_structure_options, structure_group
@@ -21,9 +22,6 @@ from .output import (
 )
 from .stored import print_difference, structure_of
 from .table import Command, Group
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def run_build(arguments: argparse.Namespace) -> None:
@@ -201,7 +199,7 @@ def run_paper(arguments: argparse.Namespace) -> None:
 
 
 def claim_lines(verdicts: Mapping[str, Any]) -> Iterator[str]:
-    """Yield each claim's verdict, and answers to further questions, a line each."""
+    """Yield the verdicts of claims and regions, a line each."""
     for row in verdicts["claims"]:
         text, printed = row["text"], row["printed"]
         verdict = f"{row['section']:4} {row['verdict']:7}"
@@ -210,7 +208,6 @@ def claim_lines(verdicts: Mapping[str, Any]) -> Iterator[str]:
         shares = f"chaotic {row['chaotic']:5} neutral {row['neutral']:5}"
         where = f"{row['case']:18} {row['region']:13} {row['verdict']:16}"
         yield f"{where} {shares} largest {row['largest']}"
-    yield from verdicts["answers"]
 
 
 PAPER = Command(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..flags import flag_words
-from ..units import text_of, with_units
+from ..units import is_in_ratios, text_of, with_units
 from .answer import OVERLAY, answer, answer_question, is_curve
 from .drive import DRIVE, drive_units, read_drive_options
 from .grammar import is_single_number, parse_changes, parse_values
@@ -35,6 +35,7 @@ from .output import Files, digest, read_running_options, result_groups
 from .table import Command, Group, Question
 from .text import (
     MOST_ROWS,
+    Columns,
     columns_of,
     extents,
     format_largest_gap,
@@ -95,14 +96,7 @@ def resonance_summary(data: xr.Dataset) -> Iterator[str]:
     """Yield peaks and jumps, or the largest responses at each level; and the threshold."""
     sizes = "x1_max x2_max a1_max a2_max x_rel_max"
     if "level" in data.dims:
-        parted = data.sel(structure="delaminated")
-        others = set(parted.x_rel_max.dims) - {"level"}
-        largest = parted.max(others, keep_attrs=True)
-        tops = [at.isel(at.x_rel_max.argmax(...)) for _, at in parted.groupby("level")]
-        rows = parameter_column(data, "level", data.level.values)
-        rows |= columns_of(largest, "x1_max x2_max x_rel_max")
-        rows["at"] = [format_parameter(data, "frequency", top.frequency) for top in tops]
-        yield from table(rows, data.sizes["level"])
+        yield from table(level_columns(data), data.sizes["level"])
     else:
         name = varied_parameter(data)
         if data.sizes[name] == 1:
@@ -117,14 +111,34 @@ def resonance_summary(data: xr.Dataset) -> Iterator[str]:
             rows = columns_of(part, "structure direction", f"{of}_")
             rows |= parameter_column(data, name, part[f"{of}_{name}"].values)
             yield "peaks" if of == "peak" else "jumps of the largest gap"
-            yield from table(rows | columns_of(part, columns, f"{of}_"))
+            yield from table(rows | columns_of(part, columns, f"{of}_", ".4g"))
         if irregular:
             yield f"peaks of irregular responses, left out: {irregular}"
     if "lowest_threshold" in data:
         event = data.lowest_threshold.attrs["event"]
-        level = format_parameter(data, "level", float(data.lowest_threshold))
-        where = format_parameter(data, "frequency", float(data.lowest_threshold_frequency))
+        level = format_parameter(data, "level", float(data.lowest_threshold), ".3g")
+        where = format_parameter(data, "frequency", data.lowest_threshold_frequency, ".4g")
         yield f"in this range it first {event} at {where}: {level}"
+
+
+def level_columns(data: xr.Dataset) -> Columns:
+    """Return the largest response at each level, bonded and delaminated, and where it opens."""
+    rows = parameter_column(data, "level", data.level.values, ".4g")
+    for structure in ("bonded", "delaminated"):
+        part = data.sel(structure=structure)
+        tops = [at.isel(at.x1_max.argmax(...)) for _, at in part.groupby("level")]
+        sizes = [text_of(data, top.x1_max, "m", ".4g") for top in tops]
+        at = [format_parameter(data, "frequency", top.frequency, ".4g") for top in tops]
+        rows[f"{structure} x1"] = [" at ".join(pair) for pair in zip(sizes, at, strict=True)]
+    gaps = data.x_rel_max.sel(structure="delaminated").transpose("level", ...)
+    rows["largest gap"] = [text_of(data, gap.max(), "m", ".4g") for gap in gaps]
+    if data.attrs["clearance"] < 0.0:
+        opens = (gaps > 0.0).any(set(gaps.dims) - {"level", "frequency"})
+        rows["opens at"] = [
+            format_ranges(data, "frequency", row.values, 2) if row.any() else "nowhere"
+            for row in opens
+        ]
+    return rows
 
 
 RESONANCE = Command(
@@ -250,7 +264,7 @@ def sweep_summary(data: xr.Dataset) -> Iterator[str]:
         return
     top = data.isel(data.xi_rel_max.argmax(...))
     yield f"largest gap: {format_largest_gap(top)} at {format_parameter(data, name, top[name])}"
-    for mass in (1, 2):
+    for mass in (1, 2) if not is_in_ratios(data) else ():
         displacement = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
         acceleration = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
         yield f"mass {mass}: largest displacement {displacement}, acceleration {acceleration}"
@@ -395,11 +409,12 @@ MAP = Command(
   {program} map --eta 1.2 --over e --values 0.1:0.9:0.1 --over D --values 0.005,0.02,0.05
   {program} map --structure beam --hz 8:20:0.25 --amplitude 1e-4 --over e --values 0.3,0.5,0.7
   {program} map --structure beam --set clearance=2e-5 --hz 8:20:0.25 --g 0.002:0.05:0.002
+  {program} map --eta 2.4:2.9:0.02 --over e --values 0.6:0.8:0.02 --overlay border.nc
 Each point starts from rest. The picture has impacts per period, multiplicity and largest gap.""",
     response_groups(
         Group(
             "question",
-            over_options(twice=True),
+            (over_options(twice=True), OVERLAY.replace("branches", "borders")),
             declared="exponent transient settle samples periods tolerance longest",
         )
     ),

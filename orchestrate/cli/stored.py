@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..lazy import xr
 from ..model.ranges import STRUCTURE
 from .grammar import parse_changes
 from .options import print_assumptions, read_structure_options
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Structure
 
 SAME = 1e-9  # relative: numbers that are nearer than this are one

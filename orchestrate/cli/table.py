@@ -95,6 +95,12 @@ def parse_options(lines: Lines) -> tuple[Option, ...]:
     return tuple(parse_option(entry) for block in blocks for entry in block)
 
 
+def values_of(chosen: argparse.Namespace, options: Lines) -> dict[str, Any]:
+    """Return the values of those options that are given, by name."""
+    values = {one.name: one.value(chosen) for one in parse_options(options)}
+    return {name: value for name, value in values.items() if value is not None}
+
+
 def parse_option(entry: str) -> Option:
     """Return the option that an entry describes."""
     match = ENTRY.fullmatch(entry)
@@ -163,21 +169,33 @@ class Command:
     summary: Callable[[Any], Iterable[str]] | None = None  # lines that are printed of the result
     draw: Callable[..., Any] | None = None  # by default the picture of the public function
     title: Callable[..., str] | None = None  # of the picture, on the weak drive
+    calls: str = ""  # the public function, where its name is another
     # whether a question has a picture: by default each has
     has_picture: Callable[[Question], bool] = lambda _: True
 
     @property
     def function(self) -> str:
         """Name of the command's public function."""
-        return self.name.replace("-", "_")
+        return self.calls or self.name.replace("-", "_")
+
+    @property
+    def flags(self) -> list[str]:
+        """Flags of all options."""
+        own = (one for group in self.groups for one in parse_options(group.options))
+        return [one.flag for one in (*own, *self.keyword_options())]
+
+    def keyword_options(self) -> Iterator[Option]:
+        """Yield the options that are arguments of the public function."""
+        for group in self.groups:
+            yield from group.keyword_options(self.function)
 
     def keywords(self, chosen: argparse.Namespace) -> Question:
         """Return the options that are arguments of the public function, as its keywords."""
-        options = (one for group in self.groups for one in group.keyword_options(self.function))
-        return {one.name: one.value(chosen) for one in options}
+        return {one.name: one.value(chosen) for one in self.keyword_options()}
 
     def add_parser(self, commands: Any, program: str, above: str, complete: bool) -> None:
         """Add the command's parser; with all of its options if it is to be ``complete``."""
+        above = above if complete and "--structure" in self.flags else ""
         parser = commands.add_parser(
             self.name,
             help=self.text,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..flags import flag_words
 from ..units import (
     as_shown,
+    is_in_ratios,
     length_of_ratio,
     omega_of,
     range_text,
@@ -22,6 +23,7 @@ from ..units import (
 if TYPE_CHECKING:
     import xarray as xr
 
+LENGTHS = ("m", "m/s", "m/s2")
 MOST_ROWS = 10  # of a table that is printed
 Columns = dict[str, list[str]]  # of a table: cells by title
 
@@ -46,7 +48,7 @@ def table(columns: Mapping[str, Iterable[str]], most: int = MOST_ROWS) -> Iterat
         yield f"  ... and {len(rows) - most} more"
 
 
-def columns_of(data: xr.Dataset, names: str, prefix: str = "") -> Columns:
+def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g") -> Columns:
     """Return columns of variables along one dimension, in display units."""
     columns: Columns = {}
     for name in names.split():
@@ -60,7 +62,7 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "") -> Columns:
         elif array.ndim > 1:
             columns[title] = [",".join(f"{number:.6g}" for number in row) for row in values]
         elif array.dtype.kind == "f":
-            columns[title] = [f"{value / factor:.6g}" for value in values]
+            columns[title] = [format(value / factor, form) for value in values]
         else:
             columns[title] = [str(value) for value in values]
     return columns
@@ -70,7 +72,7 @@ def parameter_column(data: xr.Dataset, name: str, values: Any, form: str = ".6g"
     """Return the column of a parameter's values in display units."""
     parts = [parameter_parts(data, name, float(value), form) for value in values]
     before, _, unit = parts[0] if parts else (name, "", "")
-    title = before or f"{'frequency' if name == 'eta' else name} {unit}"
+    title = f"{before or ('frequency' if name == 'eta' else name)} {unit}".rstrip()
     return {title: [number for _, number, _ in parts]}
 
 
@@ -82,7 +84,9 @@ def extents(data: xr.Dataset, names: str) -> Iterator[str]:
             low, high = float(array.min()), float(array.max())
             unit = str(array.attrs.get("units", "1"))
             meaning = str(array.attrs.get("long_name", name)).partition(",")[0]
-            yield f"{meaning}: {range_text(data, low, high, unit).removesuffix(' 1')}"
+            left_out = unit if unit in LENGTHS and is_in_ratios(data) else "1"
+            text = range_text(data, low, high, unit).removesuffix(f" {left_out}")
+            yield f"{meaning}: {text}"
 
 
 def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
@@ -103,7 +107,10 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
         return
     first = int(data.impact_velocity.values.argmax())
     speed = text_of(data, data.impact_velocity[first], "m/s", ".4g")
-    hardest = f"{float(data.impulse[first]):.4g} N s at {float(data.impact_time[first]):.4g} s"
+    impulse, time = (f"{float(data[name][first]):.4g}" for name in ("impulse", "impact_time"))
+    hardest = f"{impulse} N s at {time} s"
+    if is_in_ratios(data):
+        speed, hardest = speed.removesuffix(" m/s"), f"at tau = {time}"
     sticks = int(data.sticks.sum())
     yield f"{count} impacts, the fastest at {speed} ({hardest}); {sticks} begin permanent contact"
 
@@ -112,10 +119,11 @@ def attractor_table(data: xr.Dataset) -> Iterator[str]:
     """Yield a table of attractors: share, period, impacts, gap, how decided, a state."""
     data = data.isel(attractor=data.multiplicity.notnull().values)
     gaps = [format_largest_gap(data.isel(attractor=i)) for i in range(data.sizes["attractor"])]
-    names = "share multiplicity impacts_per_period decided_by state"
-    columns = columns_of(data, names)
-    state = columns.pop("state")
-    yield from table(columns | {"largest gap": gaps, "state at phase 0 (SI)": state})
+    names = "share multiplicity impacts_per_period decided_by"
+    columns = {"number": [str(number) for number in data.attractor.values]}
+    columns |= columns_of(data, names, form=".4g") | {"largest gap": gaps}
+    (state,) = columns_of(data, "state").values()
+    yield from table(columns | {"state at phase 0 (SI)": state})
 
 
 # -- parameters and ranges ------------------------------------------------------------------------
@@ -128,9 +136,11 @@ def varied_parameter(data: xr.Dataset) -> str:
     return name
 
 
-def format_parameter(data: xr.Dataset, name: str, value: float | xr.DataArray) -> str:
+def format_parameter(
+    data: xr.Dataset, name: str, value: float | xr.DataArray, form: str = ".6g"
+) -> str:
     """Format a parameter's value in display units: ``12.5 Hz``, ``e = 0.7``."""
-    before, number, unit = parameter_parts(data, name, float(value))
+    before, number, unit = parameter_parts(data, name, float(value), form)
     return f"{before} = {number} {unit}".rstrip() if before else f"{number} {unit}"
 
 
@@ -226,6 +236,6 @@ def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
     """
     ratio, length = float(data.xi_rel_max), length_of_ratio(data)
     parts = [f"xi_Rel = {ratio:{form}}"]
-    if length is not None and math.isfinite(float(length)):
+    if length is not None and math.isfinite(float(length)) and not is_in_ratios(data):
         parts.append(text_of(data, ratio * float(length), "m", ".4g"))
     return ", ".join(parts)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..lazy import xr
 from ..units import range_text, text_of, units_of, with_units
 from .answer import answer
 from .drive import (
@@ -42,11 +43,9 @@ from .grammar import parse_rates, plain_float, read_pairs
 from .options import START, read_over, read_structure_options, structure_group
 from .output import Files, digest, read_running_options, result_groups, user_fmus
 from .table import Command, Group, Question
-from .text import columns_of, extents, table
+from .text import Columns, columns_of, extents, parameter_column, table
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Drive, Structure
     from ..weak_drive.couple import CoupleJob
 
@@ -246,7 +245,6 @@ def draw_couple(
 ) -> Any:
     """Draw the runs: ramps with averaged theory and branches, others over time."""
     import numpy as np
-    import xarray as xr
 
     from ..show.passage import draw_run
     from ..show.weak_drive import draw
@@ -568,6 +566,8 @@ def ask_jump_voltages(arguments: argparse.Namespace) -> tuple[Structure, Drive, 
         "rates": [rate * unit for rate in parse_rates("--rate", arguments.rate or USUAL_LIST)],
         "back": not arguments.one_way,
     }
+    if (values := read_over(arguments)) is not None:
+        question |= {"over": arguments.over, "values": values[0]}
     return structure, drive, question | times_in_seconds(arguments, structure, "settle", "step")
 
 
@@ -581,7 +581,13 @@ def jump_voltages_title(_: Results, question: Question) -> str:
 def jump_voltage_lines(results: Results) -> Iterator[str]:
     """Yield a table of the jump voltages at rate 0, and advice if one is missing."""
     (data,) = results.values()
-    rows = {"jump at rate 0": [str(jump) for jump in data.jump.values]}
+    (over,) = {str(dim) for dim in data.jumps.dims} - {"structure", "jump"} or {""}
+    rows: Columns = {"jump at rate 0": [str(jump) for jump in data.jump.values]}
+    if over:
+        count, parts = data.sizes["jump"], data[over].values
+        rows = parameter_column(data, over, [v for v in parts for _ in range(count)])
+        rows["jump at rate 0"] = [str(jump) for _ in parts for jump in data.jump.values]
+        data = data.stack(row=(over, "jump"), create_index=False)
     for name in map(str, data.structure.values):
         at = data.sel(structure=name)
         cells = zip(at.jumps.values, at.standard_error.values, at.decided.values, strict=True)
@@ -593,7 +599,7 @@ def jump_voltage_lines(results: Results) -> Iterator[str]:
         ]
     changes = data.jumps.isel(structure=1) - data.jumps.isel(structure=0)
     rows["change V"] = ["" if math.isnan(change) else f"{change:.5f}" for change in changes.values]
-    yield from table(rows)
+    yield from table(rows, len(rows["change V"]))
     if (data.decided == "undecided").any():
         yield "undecided by constant voltages; drive-branch computes folds, where the speed jumps"
 
@@ -603,6 +609,7 @@ JUMP_VOLTAGES = Command(
     "voltages at which the speed jumps, at rate 0 and on ramps of several rates",
     f"""  {{program}} jump-voltages                                 quick, up and down
   {{program}} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
+  {{program}} jump-voltages --over clearance --values 0,1e-5,3e-5 --drive beam --one-way
   {{program}} jump-voltages --drive beam --eta0 1.33:1.57 --rate 4e-5,2e-5,1e-5 --one-way
 {ETA0}
 {RESUME}""",
@@ -616,6 +623,8 @@ JUMP_VOLTAGES = Command(
                 --rate A,B,...  change of eta0 in a time 1/omega, a list (default: {USUAL_LIST})
                 {SETTLE}
                 --one-way  do not come back: jumps up only
+                --over NAME  a parameter that the bonded structure ignores, such as clearance
+                --values VALUES  its values, FIRST:LAST:STEP or a list A,B,...
                 """,
                 STEP,
             ),
@@ -652,29 +661,12 @@ def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
 
 
 def drive_branch_lines(results: Results) -> Iterator[str]:
-    """Yield tables of the bifurcations, with what a slow ramp does there, and of the branches."""
-    from ..weak_drive.ramp_path import ramp_paths
-
+    """Yield tables of the bifurcations and of the branches."""
     (data,) = results.values()
-    count = data.sizes["bifurcation"]
-    effects = [""] * count
-    ends = []
-    for name in map(str, data.structure.values):
-        for direction, path in ramp_paths(data, name).items():
-            for number, fold in enumerate(path.jumps):
-                landing = path.landings[number : number + 1]
-                where = f" to {text_of(data, landing[0], 'rad/s', '.5g')}" if landing else ""
-                effects[fold] = f"jumps {direction}{where}"
-            for i in path.slow_losses:
-                effects[i] = f"continues {direction} to the fold, unless disturbed"
-            if path.end:
-                ends.append(f"{name}, a slow ramp {direction}: {path.end}")
-    if count:
-        rows = columns_of(data, "structure kind voltage speed", "bifurcation_")
-        yield from table({**rows, "a slow ramp": effects}, count)
+    if count := data.sizes["bifurcation"]:
+        yield from table(columns_of(data, "structure kind voltage speed", "bifurcation_"), count)
     else:
         yield "no bifurcations"
-    yield from ends
     legs = [data.sel(structure=name, leg=leg) for name in data.structure for leg in data.leg]
     legs = [leg for leg in legs if leg.voltage.notnull().any()]
     columns = {

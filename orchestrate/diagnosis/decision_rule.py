@@ -245,13 +245,11 @@ class Findings:
         if math.isfinite(self.bursts):
             power = f"{digits(self.bursts, 1.0)} times the power from which they count as impacts"
             sentences.append(f"Bursts once a period have {power}.")
-        misfit = (
-            f'The best sound model, "{self.sound}", has a misfit of {digits(self.sound_misfit)}'
-        )
+        misfit = f'The best sound model, "{self.sound}", has a misfit of {self.sound_misfit:.3g}'
         if self.is_opening_seen:
-            other = f'the model "{self.delaminated}" has {digits(self.delaminated_misfit)}'
+            other = f'the model "{self.delaminated}" has {self.delaminated_misfit:.3g}'
             enough = f"{self.deciding_ratio:g} times is enough to decide"
-            misfit += f", {other}: that is {self.ratio:.3g} times as large, where {enough}"
+            misfit += f", {other}: that is {self.ratio:.2g} times as large, where {enough}"
         sentences.append(f"{misfit}.")
         stops = [one.otherwise for one in self.stops]
         return " ".join([*sentences, MISFIT_MEANING, *stops, *self.imperfection()])

@@ -23,6 +23,7 @@ from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 from .search_job import SearchJob, cached_orders
 from .settings import Changes, checked_settings
+from .wiring import wiring_notes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -106,7 +107,8 @@ def detect(
         ``participation_error`` over ``channel`` (NaN but of the hypotheses that the verdict is
         about and that describe the record), ``misfit_at`` and the ``fitted`` orders over
         ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
-        ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
+        ``seen_up_to``, ``assumed``, ``direction`` of the sweep and ``wiring``, the doubts about the
+        channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`).
 
     Raises
     ------
@@ -178,6 +180,7 @@ class DetectJob(SearchJob):
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
             direction=sweep_direction(whole.windows.frequency),
+            wiring="; ".join(note.text for note in wiring_notes(whole.channels)),
         )
 
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import InputError
 from ..laboratory.pieces import Floats
-
-if TYPE_CHECKING:
-    import xarray as xr
+from ..lazy import xr
 
 REQUIRED_VARIABLES = ("time", "speed", "voltage", "motor")
 MIN_SPEEDS = 8  # speeds that both runs have

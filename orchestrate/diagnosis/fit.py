@@ -28,6 +28,7 @@ from .hypotheses import FREE, REPORTED, Hypothesis
 from .orders import channel_orders, checked_channels
 from .search_job import RecordData, SearchJob
 from .settings import SETTINGS, Changes, Settings, checked_settings
+from .wiring import wiring_notes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -181,7 +182,11 @@ def checked_data(
     """Check that a record's base moves as a sine, and return its channels for a job."""
     channels = checked_channels(record)
     factors = checked_participation(participation, [one for one in channels.names if one != BOX])
-    resonance = channel_orders(channels).resonance
+    try:
+        resonance = channel_orders(channels).resonance
+    except InputError as error:
+        notes = "".join(f"; {note.text}" for note in wiring_notes(channels))
+        raise InputError(f"{error}{notes}") from None
     if guess is not None:
         low, high = sorted((guess.f1, guess.f2))
         factor = factor_outside(resonance, low, high)

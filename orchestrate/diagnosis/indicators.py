@@ -108,7 +108,7 @@ INDICATORS = {
         "a warmer motor, another friction of the box, another rate of the voltage",
     ),
     "extra_power": Indicator(
-        "extra power",
+        "motor power above a sound beam's",
         "mean of P over mean of P', less 1, at the same speeds up to the jump; P': sound beam",
         PAPER,
         "a warmer motor, another damping of the box or of the clamp",

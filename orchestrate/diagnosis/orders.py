@@ -18,9 +18,9 @@ from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import EDGE, NYQUIST, Window, measured_phase, window
 from ..laboratory.pieces import Floats
 from ..laboratory.record import channel_label
+from ..lazy import xr
 
 if TYPE_CHECKING:
-    import xarray as xr
     from scipy.sparse import csr_array
 
 Complexes = NDArray[np.complex128]
@@ -191,7 +191,13 @@ def checked_channels(record: xr.Dataset) -> Channels:
 
 def channel_orders(channels: Channels) -> RecordOrders:
     """Compute the orders of channels and their floors; see :func:`record_orders`."""
-    windows, amplitude = windows_with_order_2(channels, *sine_windows(channels))
+    return assembled_orders(channels, *windows_with_order_2(channels, *sine_windows(channels)))
+
+
+def assembled_orders(
+    channels: Channels, windows: OrderWindows, amplitude: Complexes
+) -> RecordOrders:
+    """Return a record's orders in windows, with their floors."""
     whole, off = amplitude[:, : len(ORDERS)], amplitude[:, len(ORDERS) :]
     squares = np.nanmean(np.abs(off) ** 2, axis=1)
     floor = np.sqrt(np.stack([moving_average(row) for row in squares]))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..constants import GRAVITY
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels, attributes, checked_number
 from ..laboratory.analysis.orders import fit_windows
@@ -35,6 +36,9 @@ MAX_DURATION = 120.0  # s of a computed sweep; a lighter damping would ask for m
 LEVEL_MARGIN = 2.0  # of the threshold, that a recommended level has
 RANGE_MARGIN = 0.1  # of the recommended range, on both sides
 BOX = "box_acceleration"
+USUAL_NOISE = 1e-3  # (m/s2)/sqrt(Hz)
+USUAL_LEVELS = tuple(float(f"{level:.2g}") for level in np.geomspace(0.01, 1.0, 9))  # g
+FREQUENCIES = 61
 
 
 @dataclass(frozen=True)
@@ -81,9 +85,10 @@ class Noise:
 def plan_test(
     structure: Structure,
     *,
-    sensor: Sensor | dict[str, Sensor],
-    levels: ArrayLike,
-    frequencies: ArrayLike,
+    sensor: Sensor | dict[str, Sensor] | None = None,
+    levels: ArrayLike | None = None,
+    g: ArrayLike | None = None,
+    frequencies: ArrayLike | None = None,
     periods: float = 16.0,
     gain_error: float = 0.03,
     threshold: float = 5.0,
@@ -96,11 +101,15 @@ def plan_test(
     structure : Structure
         A guess of the delaminated beam; the sound one is its bonded form.
     sensor : Sensor or mapping of str to Sensor
-        As for :func:`orchestrate.measure`; its noise must be known.
+        As for :func:`orchestrate.measure`; its noise must be known. By default a noise of
+        1e-3 (m/s2)/sqrt(Hz), of usual accelerometers, up to 40 times the highest frequency.
     levels : array_like
-        Peak accelerations of the box, m/s2.
+        Peak accelerations of the box, m/s2; nine from 0.01 to 1 g by default.
+    g : array_like
+        The same in g.
     frequencies : array_like
-        Hz, ascending, two at least.
+        Hz, ascending, two at least; by default from 0.8 times the lower to 1.2 times the higher
+        natural frequency of the halves.
     periods : float
         Of the excitation, in a window of the orders.
     gain_error : float
@@ -142,18 +151,22 @@ def plan_test(
     --------
     >>> import orchestrate
     >>> beam = orchestrate.Structure.from_file("beam").replace(D=0.02)
-    >>> sensor = orchestrate.Sensor(bandwidth=500.0, noise=1e-3)
-    >>> plan = orchestrate.plan_test(
-    ...     beam, sensor=sensor, levels=[0.02, 0.2], frequencies=[10.0, 11.0, 12.0, 13.0, 14.0]
-    ... )
+    >>> plan = orchestrate.plan_test(beam, g=[0.002, 0.02], frequencies=[10, 11, 12, 13, 14])
     >>> float(plan.distance_harmonics.max("frequency").values.argmax()), bool(plan.counts)
     (1.0, True)
     """
     if structure.bonded:
         raise InputError("structure: bonded; expected a guess of the delaminated one")
+    if frequencies is None:
+        low, high = sorted((structure.f1, structure.f2))
+        frequencies = np.linspace(0.8 * low, 1.2 * high, FREQUENCIES)
     f = checked_frequencies(frequencies)
+    if levels is not None and g is not None:
+        raise InputError("levels and g: expected one of them")
+    if levels is None:
+        levels = GRAVITY * checked_positive("g", USUAL_LEVELS if g is None else g, "g")
     wanted = np.unique(checked_positive("levels", levels, "m/s2"))
-    sensors = sensor_by_channel(sensor)
+    sensors = sensor_by_channel(sensor or Sensor(bandwidth=40.0 * float(f[-1]), noise=USUAL_NOISE))
     limit = checked_number("threshold", threshold, 1e-3, 1e6)
     noise = checked_noise(sensors, checked_number("periods", periods, 2.0, 1e4), gain_error)
     if running.get("store") is not None:

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..laboratory.analysis.averaging import averaging
-from ..laboratory.analysis.channels import BOX, Channels
+from ..laboratory.analysis.channels import BOX, Channels, averaging
 from ..laboratory.analysis.frf import EXCITED
 from ..laboratory.analysis.orders import Window, fit_windows
 from ..laboratory.pieces import Floats

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels, attributes, checked_number
 from ..laboratory.pieces import Floats
+from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer
 from ..response.labels import flags, variable
@@ -26,9 +27,6 @@ from .response_signs import (
     sensor_differences,
 )
 from .undamaged import SoundStructure
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 EXCEED_FACTOR = 2.0  # times what noise and a sound structure show
 MEANINGS = {-1: "unknown", 0: "no", 1: "yes"}
@@ -142,8 +140,6 @@ def signs(
 
 def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Dataset]:
     """Return the records beside the first one as a list."""
-    import xarray as xr
-
     if other is None:
         return []
     return [other] if isinstance(other, xr.Dataset) else list(other)
@@ -212,8 +208,6 @@ def signs_dataset(
     described: dict[str, Any],
 ) -> xr.Dataset:
     """Assemble the dataset of the signs."""
-    import xarray as xr
-
     over = ("sign", "channel")
     value, floor = np.stack(list(values.values())), np.stack(list(floors.values()))
     highest = np.fmax.reduce(shown)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, REST, EventInstance, Instance, begin, sampled
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import (
     Numbers,
@@ -26,16 +26,11 @@ from ..model.arguments import (
 from ..model.outcomes import ABSENT, WORDS
 from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
 from ..response.questions import Point, SeriesQuestion, ask, require_delaminated
-from ..running.job import Table
+from ..running.job import Fmus, Table
+from ..running.options import Running
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
 from .global_continuation import MatchedAttractors, continue_attractors, instance_pair
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 ATTRACTOR = "attractor, the most frequent one first"
 OF_ATTRACTORS = {
@@ -50,8 +45,6 @@ DECIDED_BY = (
 )
 KEYWORDS = ("transient", "settle", "samples", "converged", "longest", "alike", "alike_irregular")
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
-SIZE_PERIODS, SAMPLES_PER_PERIOD = 8, 64  # of the response from rest, to measure its size
-AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: the second box
 
 
 def half_widths(name: str, value: ArrayLike | None) -> Numbers | None:
@@ -89,18 +82,16 @@ class AttractorsJob(SeriesQuestion):
             )
 
     def count(self) -> int:
-        """Return the number of items: all starts at all values, and one that groups them."""
         return self.starts * super().count() + 1
 
     def items(self) -> Sequence[tuple[int, int] | None]:
-        """Return the items: value and start by number, then None, which stands for grouping."""
         return [*itertools.product(range(len(self.series.points)), range(self.starts)), None]
 
     def progress_note(self, first: int) -> str:
         """Return a note for the progress bar while the last item gathers attractors, else none."""
         return "attractors at neighbours" if first == self.count() - 1 else ""
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
         """Run starts until they settle, a row each; at the last item group them to attractors."""
         with instance_pair(fmus[OSCILLATOR]) as instances:
             if previous is not None:
@@ -109,7 +100,7 @@ class AttractorsJob(SeriesQuestion):
             for index, group in itertools.groupby(items, lambda item: item[0]):
                 decider = MotionDecider(*instances, self.series.points[index], self.settings)
                 starts = self.draw_starts(decider, index)
-                rows += [settled_row(decider, starts[number]) for _, number in group]
+                rows += settled_rows(decider, starts[[number for _, number in group]])
             return settled_table(rows)
 
     def draw_starts(self, decider: MotionDecider, index: int) -> NDArray[np.float64]:
@@ -142,7 +133,6 @@ class AttractorsJob(SeriesQuestion):
         return np.argsort(self.series.values, kind="stable")
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset: the attractors at each value and the shares of starts they get."""
         along, shape = self.series.name, (len(self.series.values), self.starts)
         rows = table["features"].reshape(*shape, len(FEATURES))
         there = table["how"][0] != ABSENT
@@ -183,10 +173,10 @@ SettledRow = tuple[Sequence[float], NDArray[np.float64], int]  # features, a sta
 ABSENT_ROW: SettledRow = ([np.nan] * len(FEATURES), np.full(4, np.nan), ABSENT)  # masses overlap
 
 
-def settled_row(decider: MotionDecider, start: ArrayLike) -> SettledRow:
-    """Return a row of what a start settles to: features, a state at phase 0, how decided."""
-    motion, state = decider.decide(start)
-    return motion.features, state, motion.decided
+def settled_rows(decider: MotionDecider, starts: ArrayLike) -> list[SettledRow]:
+    """Return rows of what starts settle to: features, a state at phase 0, how decided."""
+    decided = decider.decide_all(starts)
+    return [(motion.features, state, motion.decided) for motion, state in decided]
 
 
 def settled_table(rows: Sequence[SettledRow]) -> Table:
@@ -256,10 +246,10 @@ class SizeFromRest(NamedTuple):
 
 def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings) -> SizeFromRest:
     """Run from rest until settled; return a state there, largest displacement and gap, m."""
-    response = run_until_settled(instance, point, REST, settings).response
+    response = run_until_settled(instance, point, REST, settings)[0].response
     begin(instance, *point, response.end)
-    span = SIZE_PERIODS * point.excitation.period
-    states = sampled(instance, 0.0, span, SIZE_PERIODS * SAMPLES_PER_PERIOD)
+    span = 8 * point.excitation.period
+    states = sampled(instance, 0.0, span, 512)
     displacement = float(np.abs(states[:, :2]).max())
     return SizeFromRest(np.array(response.end), displacement, response.x_rel_max)
 
@@ -271,7 +261,8 @@ def starts_in_both_boxes(
     states = random_starts(count, scale, seed, point.structure)
     draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (count, 4))
     frequency = point.excitation.frequency
-    around, gap = AROUND * size.displacement, BEYOND * (size.gap or point.length)
+    # of the largest displacement, and of the largest gap, of the response from rest
+    around, gap = 0.7 * size.displacement, 3.0 * (size.gap or point.length)
     x1 = size.state[0] + around * draws[:, 0]
     v1 = size.state[2] + frequency * around * draws[:, 2]
     x2 = x1 + gap * np.abs(draws[:, 1]) - point.structure.gap_offset
@@ -281,7 +272,7 @@ def starts_in_both_boxes(
 
 
 def attractor_settings(call: Mapping[str, Any]) -> AttractorSettings:
-    """Check a call's keywords on settling and clustering; return them as ``AttractorSettings``."""
+    """Return the ``AttractorSettings`` of a call, with its keywords, which are checked."""
     least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
     settings: dict[str, Any] = {
         name: checked_integer(name, call[name], least[name])
@@ -289,7 +280,7 @@ def attractor_settings(call: Mapping[str, Any]) -> AttractorSettings:
         else checked_positive(name, call[name])
         for name in KEYWORDS
     }
-    return AttractorSettings(**settings)
+    return replace(call["settings"] or AttractorSettings(), **settings)
 
 
 def attractors(
@@ -311,6 +302,7 @@ def attractors(
     longest: int = 20_000,
     alike: float = 0.02,
     alike_irregular: float = 0.25,
+    settings: AttractorSettings | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Find coexisting attractors from random starts, and the share of starts that each attracts.
@@ -351,6 +343,8 @@ def attractors(
         Newton's method finds no stable orbit.
     alike_irregular : float
         Relative difference within which irregular responses belong to one attractor.
+    settings : AttractorSettings, optional
+        Further thresholds of the rule that decides, of :mod:`orchestrate.dynamics.decision`.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
 
@@ -371,8 +365,7 @@ def attractors(
     Raises
     ------
     InputError
-        Where a required argument is missing, arguments contradict each other, or a number is out
-        of its range.
+        Where an argument is missing, contradicts another one, or is out of its range.
 
     Notes
     -----

@@ -3,54 +3,29 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..lazy import xr
 from ..model.arguments import checked_integer
 from ..response.labels import variable
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 LEAST_BOXES = 4  # along each side of the plane
-LEAST_SIZES = 3  # of boxes, through which a line is fitted
 Labels = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 
-class BoxEntropies(NamedTuple):
-    """Gibbs entropies of attractor shares in the square boxes that a plane is cut into."""
-
-    entropies: Floats  # `-sum p ln p` over the shares p of the attractors in each box
-
-    @property
-    def mean(self) -> float:
-        """Basin entropy: mean entropy over all boxes."""
-        return float(self.entropies.mean())
-
-    @property
-    def on_boundary(self) -> Floats:
-        """Return the entropies of those boxes whose starts lead to several attractors."""
-        return self.entropies[self.entropies > 0.0]
-
-    @property
-    def uncertain_fraction(self) -> float:
-        """Share of boxes whose starts lead to more than one attractor."""
-        return self.on_boundary.size / self.entropies.size
-
-
-def box_entropies(labels: Labels, size: int) -> BoxEntropies:
-    """Return the entropies of square boxes, ``size`` starts a side, without starts of label -1."""
+def box_entropies(labels: Labels, size: int) -> Floats:
+    """Return ``-sum p ln p`` over the attractors' shares p in square boxes of ``size`` starts."""
     rows, columns = (side // size for side in labels.shape)
     boxes = labels[: rows * size, : columns * size]
     boxes = boxes.reshape(rows, size, columns, size).swapaxes(1, 2).reshape(rows * columns, -1)
     boxes = boxes[(boxes >= 0).all(axis=1)]
     shares = np.stack([(boxes == label).mean(axis=1) for label in range(max(1, labels.max() + 1))])
     terms = np.where(shares > 0.0, -shares * np.log(np.where(shares > 0.0, shares, 1.0)), 0.0)
-    return BoxEntropies(np.asarray(terms.sum(axis=0)))
+    return np.asarray(terms.sum(axis=0))
 
 
 def uncertainty_exponent(sizes: Floats, fractions: Floats) -> tuple[float, float]:
@@ -58,7 +33,7 @@ def uncertainty_exponent(sizes: Floats, fractions: Floats) -> tuple[float, float
     from scipy.stats import linregress
 
     known = fractions > 0.0
-    if np.count_nonzero(known) < LEAST_SIZES:
+    if np.count_nonzero(known) < 3:  # of boxes, through which a line is fitted
         return math.nan, math.nan
     line = linregress(np.log(sizes[known]), np.log(fractions[known]))
     return float(line.slope), float(line.stderr)
@@ -104,26 +79,28 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     >>> float(found.boundary_basin_entropy.round(4)), float(found.uncertain_fraction[0])
     (0.6931, 0.0)
     """
-    import xarray as xr
-
     size = checked_integer("box", box, 2)
-    labels = attractor_labels(basins)
+    known = getattr(basins, "attractor_of", None)
+    if known is None or len(known.dims) != 2:
+        kind = type(basins).__name__
+        raise InputError(f"basins: {kind} is no answer of basin; expected one")
+    labels = np.asarray(known.values, dtype=np.int64)
     if min(labels.shape) < LEAST_BOXES * size:
         raise InputError(
             f"box = {size}: of a plane of {labels.shape[1]} x {labels.shape[0]} starts; expected "
             f"at most {min(labels.shape) // LEAST_BOXES}"
         )
     entropies = box_entropies(labels, size)
-    if not entropies.entropies.size:
+    if not entropies.size:
         raise InputError(f"box = {size}: the masses overlap in each box; expected a smaller one")
     longest = min(labels.shape) // LEAST_BOXES
     sizes = 2 ** np.arange(1, longest.bit_length())
-    fractions = np.array([box_entropies(labels, each).uncertain_fraction for each in sizes])
+    fractions = np.array([np.mean(box_entropies(labels, each) > 0.0) for each in sizes])
     exponent, error = uncertainty_exponent(sizes - 1.0, fractions)  # sides from start to start
     texts = {
-        "basin_entropy": (entropies.mean, "mean entropy of boxes of starts"),
+        "basin_entropy": (float(entropies.mean()), "mean entropy of boxes of starts"),
         "boundary_basin_entropy": (
-            float(inside.mean()) if (inside := entropies.on_boundary).size else math.nan,
+            float(inside.mean()) if (inside := entropies[entropies > 0.0]).size else math.nan,
             "mean entropy of boxes with more than one attractor",
         ),
         "uncertainty_exponent": (exponent, "exponent of the uncertain fraction over the box size"),
@@ -138,12 +115,3 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
         {"box_size": side},
         {"title": "Basin entropy", "box": size},
     )
-
-
-def attractor_labels(basins: object) -> Labels:
-    """Return a basin dataset's attractor numbers, shape (y, x); raise if it is no basin's."""
-    known = getattr(basins, "attractor_of", None)
-    if known is None or len(known.dims) != 2:
-        kind = type(basins).__name__
-        raise InputError(f"basins: {kind} is no answer of basin; expected one")
-    return np.asarray(known.values, dtype=np.int64)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..fmu import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, gap_between
+from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
 from ..model.arguments import checked_integer
 from ..model.outcomes import ABSENT
@@ -28,7 +28,8 @@ from ..response.questions import (
     require_delaminated,
 )
 from ..response.response_loop import stroboscopic_samples
-from ..running.job import Table
+from ..running.job import Fmus, Table
+from ..running.options import Running
 from .attractors import (
     ABSENT_ROW,
     ATTRACTOR,
@@ -38,18 +39,12 @@ from .attractors import (
     attractor_settings,
     attractor_variables,
     attractors,
-    settled_row,
+    settled_rows,
     settled_table,
 )
 from .clusters import AttractorSettings
 from .decision import MotionDecider
 from .global_continuation import continue_attractors, instance_pair
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 Floats = NDArray[np.float64]
 AXES = {  # coordinates of a plane of starts: units, long name
@@ -61,9 +56,7 @@ AXES = {  # coordinates of a plane of starts: units, long name
     "v_rel": ("m/s", "velocity of the gap at the start"),
     "phase": ("rad", "phase of the box at the start"),
 }
-SEARCH = 24  # random starts for the attractors that a default plane is laid around
 COUNT = 80  # values along its sides
-BEYOND = 2.0  # how far it goes, over the attractors' largest gap
 GAPS = {"x_rel": ("x1", "x2"), "v_rel": ("v1", "v2")}
 
 
@@ -150,25 +143,27 @@ class BasinJob(Question):
         return Plane(Point(self.structure, self.excitation), self.x, self.y, self.at)
 
     def count(self) -> int:
-        """Return the number of items: all starts of the plane, and one that groups them."""
         return self.x.number * self.y.number + 1
 
     def items(self) -> Sequence[tuple[State, float] | None]:
-        """Return the items: state and phase of each start, then None, which stands for grouping."""
         states, phases = self.plane().starts()
         return [*zip(map(tuple, states.tolist()), phases.tolist(), strict=True), None]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
         """Run starts until they settle (overlapping masses: absent), or group them at the end."""
         point = Point(self.structure, self.excitation.replace(phase=0.0))  # a start has its own
         with instance_pair(fmus[OSCILLATOR]) as instances:
             if previous is not None:
                 return self.gather_attractors(instances, point, previous)
-            decider, rows = MotionDecider(*instances, point, self.settings), []
-            for state, phase in items:
-                overlap = gap_between(np.array(state), self.structure.gap_offset) < 0.0
-                start = state if overlap else run_to_phase_zero(decider.plain, point, state, phase)
-                rows.append(ABSENT_ROW if overlap else settled_row(decider, start))
+            decider, rows = (
+                MotionDecider(*instances, point, self.settings),
+                [ABSENT_ROW] * len(items),
+            )
+            states = np.array([state for state, _ in items])
+            apart = np.flatnonzero(gap_between(states, self.structure.gap_offset) >= 0.0)
+            starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in apart.tolist()]
+            for i, row in zip(apart.tolist(), settled_rows(decider, starts), strict=True):
+                rows[i] = row
             return settled_table(rows)
 
     def gather_attractors(
@@ -184,7 +179,6 @@ class BasinJob(Question):
         return {**columns, "labels": labels}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset: the attractor number of each start, and the attractors."""
         plane = self.plane()
         text = "attractor that the start leads to; -1: the masses would overlap"
         sides = (plane.y, plane.x)
@@ -247,6 +241,7 @@ def basin(
     longest: int = 20_000,
     alike: float = 0.02,
     alike_irregular: float = 0.25,
+    settings: AttractorSettings | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Find basins of attraction: the attractor that each start of a plane leads to.
@@ -268,7 +263,7 @@ def basin(
         where neither side is given either, the mean of the attractors' states at phase 0.
     phase
         As in :func:`orchestrate.simulate`.
-    transient, settle, samples, converged, longest, alike, alike_irregular
+    transient, settle, samples, converged, longest, alike, alike_irregular, settings
         As in :func:`orchestrate.attractors`.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
@@ -285,8 +280,7 @@ def basin(
     Raises
     ------
     InputError
-        Where a required argument is missing, arguments contradict each other, or a number is out
-        of its range.
+        Where an argument is missing, contradicts another one, or is out of its range.
 
     Notes
     -----
@@ -332,7 +326,7 @@ class KnownAttractors(NamedTuple):
         """Return a default axis for gap or gap velocity, twice as wide as the attractors."""
         rates = np.abs(self.samples[:, 3] - self.samples[:, 2])
         largest = {"x_rel": self.gap, "v_rel": max(float(rates.max()), self.frequency * self.gap)}
-        high = float(f"{BEYOND * largest[name]:.1e}")
+        high = float(f"{2.0 * largest[name]:.1e}")
         return PlaneAxis(name, 0.0 if name == "x_rel" else -high, high, COUNT)
 
 
@@ -341,10 +335,10 @@ def find_known_attractors(
 ) -> KnownAttractors:
     """Find attractors from a few random starts, to lay the default plane around them."""
     structure, excitation = point
-    search: Any = {name: getattr(settings, name) for name in KEYWORDS}
+    search: Any = {name: getattr(settings, name) for name in KEYWORDS} | {"settings": settings}
     search |= {name: running[name] for name in running.keys() & {"fmu", "build_folder"}}
     search |= {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
-    known = attractors(structure, starts=SEARCH, **search, jobs=1, progress=False).isel(frequency=0)
+    known = attractors(structure, starts=24, **search, jobs=1, progress=False).isel(frequency=0)
     states, samples = tuple(map(tuple, known.state.values.tolist())), []
     with Instance(finder(running)(OSCILLATOR).path) as instance:
         for state, n in zip(states, known.multiplicity.values, strict=True):

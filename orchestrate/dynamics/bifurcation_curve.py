@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .bifurcations import EARLIER_RELEASE, FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
+from .bifurcations import KINDS, Kind
 from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root, leading_component
 from .families import Family, central_difference
-from .orbit_point import OrbitPoint
+from .orbit_tracer import OrbitPoint
 from .periodic_orbit import CLOSING, PeriodicOrbit
 from .tracer import BranchStep, BranchTracer, ContinuationSettings
 from .turning_points import (
@@ -32,13 +32,13 @@ from .turning_points import (
     weakest_force,
 )
 
-REAL_MULTIPLIERS: dict[int, float] = {FOLD: 1.0, FLIP: -1.0}  # that lie on the unit circle
-SMOOTH_KINDS = (FOLD, FLIP, TORUS)
-FOLLOWED = (*SMOOTH_KINDS, GRAZING, TOUCHING, EARLIER_RELEASE)
-STEP = 1e-6  # of an unknown, over its scale, for differences
+REAL_MULTIPLIERS: dict[int, float] = {
+    Kind.FOLD: 1.0,
+    Kind.FLIP: -1.0,
+}
+SMOOTH_KINDS = (Kind.FOLD, Kind.FLIP, Kind.TORUS)
+FOLLOWED = (*SMOOTH_KINDS, Kind.GRAZING, Kind.TOUCHING, Kind.EARLIER_RELEASE)
 OVERLAP = 1e-9  # over a eta^2: a gap, or a force, smaller by this than zero is no rounding
-FIRST_STEP = 1e-3  # in unknowns over their scale: short, as the curve is not known yet
-HALVINGS = 24  # of the last step: its end is known to 1e-7 of it
 
 
 @dataclass
@@ -62,16 +62,16 @@ class BifurcationCurve:
     def from_orbit(cls, family: Family, point: OrbitPoint, kind: int) -> BifurcationCurve:
         """Return the equations of the curve through a bifurcation found on a branch."""
         place, extra = -1, np.zeros(0)
-        if kind == TORUS:
+        if kind == Kind.TORUS:
             which = np.abs(np.abs(point.pairs) - 1.0).argmin()
             extra = np.array([np.angle(point.pairs[which])])
-        elif kind == GRAZING:
+        elif kind == Kind.GRAZING:
             released = point.orbit.sequence.releases
             place = int(np.where(released, np.inf, point.orbit.nodes[:, CLOSING]).argmin())
-        elif kind == TOUCHING:
+        elif kind == Kind.TOUCHING:
             _, place, phase = nearest_miss(point.orbit, turning_points(point.orbit))
             extra = np.array([phase])
-        elif kind == EARLIER_RELEASE:
+        elif kind == Kind.EARLIER_RELEASE:
             _, place, phase = weakest_force(point.orbit)
             extra = np.array([phase])
         elif kind not in SMOOTH_KINDS:
@@ -91,7 +91,7 @@ class BifurcationCurve:
 
     def multiplier(self, unknowns: Floats) -> complex:
         """Return the Floquet multiplier on the unit circle at this bifurcation."""
-        if self.kind == TORUS:
+        if self.kind == Kind.TORUS:
             return complex(np.exp(1j * unknowns[-1]))
         return REAL_MULTIPLIERS[self.kind]
 
@@ -115,13 +115,13 @@ class BifurcationCurve:
 
     def condition(self, unknowns: Floats) -> Floats:
         """Return the residual of the bifurcation condition alone, without the orbit's equations."""
-        if self.kind == GRAZING:
+        if self.kind == Kind.GRAZING:
             return self.orbit(unknowns).nodes[self.place, CLOSING : CLOSING + 1]
-        if self.kind == TOUCHING:
+        if self.kind == Kind.TOUCHING:
             which = np.array([self.place]), np.array([GAP])
             rate, _, gap = quantity_derivatives(self.orbit(unknowns), *which, unknowns[-1:])
             return np.append(gap, rate)
-        if self.kind == EARLIER_RELEASE:
+        if self.kind == Kind.EARLIER_RELEASE:
             force, rate, _ = pressing_force(
                 self.orbit(unknowns), np.array([self.place]), unknowns[-1:]
             )
@@ -131,7 +131,7 @@ class BifurcationCurve:
         bordered[:size, :size] = self.matrix(unknowns)
         bordered[:size, size], bordered[size, :size] = self.columns, self.rows.conj()
         defect = np.linalg.solve(bordered, np.eye(size + 1)[-1])[-1]
-        return np.array([defect.real, defect.imag] if self.kind == TORUS else [defect.real])
+        return np.array([defect.real, defect.imag] if self.kind == Kind.TORUS else [defect.real])
 
     def residual(self, unknowns: Floats) -> Floats:
         """Return the residual of the orbit's equations and of the bifurcation condition."""
@@ -145,7 +145,7 @@ class BifurcationCurve:
         spans = [(-np.inf, np.inf)] * self.family.size
         limits = [*spans, *self.family.setting.limits, *[(-np.inf, np.inf)] * len(self.extra)]
         own = [
-            central_difference(self.condition, unknowns, i, *limit, step=STEP * scale)
+            central_difference(self.condition, unknowns, i, *limit, step=1e-6 * scale)
             for i, (limit, scale) in enumerate(zip(limits, self.scale, strict=True))
         ]
         return np.vstack([np.hstack([orbit, blank]), np.array(own).T])
@@ -154,18 +154,18 @@ class BifurcationCurve:
         """Return why a root is no possible motion (a flight grazes ...); empty if it is."""
         orbit = self.orbit(unknowns)
         closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
-        if self.kind == GRAZING:
+        if self.kind == Kind.GRAZING:
             closing[self.place] = np.inf
         if (closing <= 0.0).any():
             return "another impact grazes"
         if (orbit.durations <= 0.0).any():
             return "impacts change their order"
         if nearest_miss(orbit, turning_points(orbit))[0] < -OVERLAP:
-            return "a flight grazes" if self.kind != TOUCHING else "another flight grazes"
+            return "a flight grazes" if self.kind != Kind.TOUCHING else "another flight grazes"
         if weakest_force(orbit)[0] < -OVERLAP:
-            earlier = self.kind == EARLIER_RELEASE
+            earlier = self.kind == Kind.EARLIER_RELEASE
             return "a still earlier release" if earlier else "an earlier release"
-        if self.kind == TORUS and not 0.0 < unknowns[-1] < np.pi:
+        if self.kind == Kind.TORUS and not 0.0 < unknowns[-1] < np.pi:
             return "a resonance 1:1 or 1:2"
         return ""
 
@@ -182,15 +182,14 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
     def __init__(
         self, curve: BifurcationCurve, start: Root, settings: ContinuationSettings
     ) -> None:
-        first, longest = min(FIRST_STEP, settings.max_step), settings.max_step
+        # short, as the curve is not known yet
+        first, longest = min(1e-3, settings.max_step), settings.max_step
         super().__init__(ArclengthStepper(curve, start, first, longest), settings.max_points)
 
     def point(self, root: Root) -> Root:
-        """Return the root unchanged: on this curve, points are roots."""
         return root
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return the index of the first parameter among unknowns, and both parameters' limits."""
         curve = self.stepper.curve
         return curve.first_parameter, curve.family.setting.limits
 
@@ -209,7 +208,7 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         """Bisect a step for its last root that is a possible motion; return it in a list, or []."""
         low, high = 0.0, step.length
         last: list[Root] = []
-        for _ in range(HALVINGS):
+        for _ in range(24):  # its end is known to 1e-7 of the step then
             middle = 0.5 * (low + high)
             try:
                 root = self.stepper.root_after(middle)

@@ -17,7 +17,7 @@ class NamedKind(IntEnum):
         return kind
 
 
-class BifurcationKind(NamedKind):
+class Kind(NamedKind):
     """Kinds of bifurcation on a branch of orbits."""
 
     FOLD = 0, "fold"
@@ -33,6 +33,4 @@ class BifurcationKind(NamedKind):
     HALVING = 8, "period halving"
 
 
-FOLD, FLIP, TORUS, GRAZING, TOUCHING, *_ = BifurcationKind
-*_, CONTACT_LOST, CONTACT_BEGUN, EARLIER_RELEASE, HALVING = BifurcationKind
-KINDS: dict[int, str] = {kind: kind.label for kind in BifurcationKind}
+KINDS: dict[int, str] = {kind: kind.label for kind in Kind}

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, checked_number, whole
 from ..response.labels import variable
 from ..response.questions import EXCITATION_PARAMETERS, Question, ask, require_delaminated
-from ..running.job import Table
+from ..running.job import Fmus, Table
+from ..running.options import Running
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
-from .bifurcations import KINDS, TORUS
+from .bifurcations import KINDS, Kind
 from .branches import (
     NODES,
     acceleration_at_start,
@@ -33,7 +34,6 @@ from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_points
 from .continuation import SOLVER_ERRORS, Root, newton_correct, unit_vector
 from .families import ACCELERATION, Family, Setting, check_parameters
-from .orbit_point import OrbitPoint
 from .orbit_records import (
     branch_dataset,
     located_table,
@@ -42,15 +42,9 @@ from .orbit_records import (
     orbit_table,
     split_located,
 )
+from .orbit_tracer import OrbitPoint
 from .orbits import FirstGuess, call_from_start, excitation_arguments
 from .tracer import BranchSegment, ContinuationSettings
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-
 
 POINT = "codimension_two"
 LEFT = "what is left of both conditions, of the multipliers' polynomial over its largest part"
@@ -71,13 +65,12 @@ class BorderJob(Question):
     asked: ClassVar[str] = "border"
 
     def call_text(self) -> str:
-        """Return Python source of a ``border(...)`` call that repeats this, orbit included."""
         keywords = {"over": self.setting.over, "limits": self.setting.limits}
         more = {"longest": self.longest, "most": self.most}
         values, kind = np.array(self.values), KINDS[self.kind]
         return call_from_start(self, values, bifurcation=kind, **keywords, **more)
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Trace the bifurcation curve over both parameters; return its points as a table."""
         curve, root = start_root(self)
         back, forth = (trace_curve(self, curve, start) for start in (root.reversed(), root))
@@ -86,7 +79,7 @@ class BorderJob(Question):
         with EventInstance(fmus[OSCILLATOR]) as instance:
             rows = [row_at(instance, curve, root.unknowns, root.residual) for root in roots]
             at = [row_at(instance, curve, each.unknowns, each.residual) for each in points]
-        angles = [root.unknowns[-1] if self.kind == TORUS else np.nan for root in roots]
+        angles = [root.unknowns[-1] if self.kind == Kind.TORUS else np.nan for root in roots]
         ends = np.array([back.end, forth.end])
         return {
             **orbit_table(rows),
@@ -96,7 +89,6 @@ class BorderJob(Question):
         }
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the curve and its points of codimension two."""
         setting, kind = self.setting, KINDS[self.kind]
         along, located = split_located(table, POINT)
         title = f"{kind} over {' and '.join(setting.over)}: {self.structure.label()}"

@@ -6,11 +6,11 @@ import numpy as np
 
 from ..constants import TURN
 from ..errors import InputError
-from .bifurcations import FLIP, GRAZING, KINDS, TOUCHING
+from .bifurcations import KINDS, Kind
 from .closed_form import Floats
 from .continuation import ArclengthStepper, Root, fix_sign, newton_correct, unit_vector
 from .families import Family
-from .orbit_point import OrbitPoint
+from .orbit_tracer import OrbitPoint
 from .periodic_orbit import CLOSING, PHASE, ImpactSequence
 from .turning_points import nearest_miss, turning_points
 
@@ -19,11 +19,11 @@ AWAY = 1e-3  # along the new branch, in unknowns over their scale: where its gap
 
 def leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
     """Return the first orbit and direction of the branch that leaves at a bifurcation's kind."""
-    if kind == FLIP:
+    if kind == Kind.FLIP:
         return double_period(point)
-    if kind == TOUCHING:
+    if kind == Kind.TOUCHING:
         return with_touching_impact(point)
-    if kind == GRAZING:
+    if kind == Kind.GRAZING:
         return without_grazing_impact(point)
     expected = "period doubling or grazing"
     raise InputError(

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,16 +13,17 @@ from numpy.typing import ArrayLike
 from ..constants import TURN
 from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, checked_integer, checked_number, whole
 from ..model.ranges import OF_LENGTH
 from ..response.questions import Question, ask, excitation_numbers, require_delaminated
-from ..running.job import Table
+from ..running.job import Fmus, Table
+from ..running.options import Running
 from .bifurcations import KINDS
 from .branch_switching import leaving_branch
 from .continuation import SOLVER_ERRORS
 from .families import ACCELERATION, Setting, check_parameters
-from .orbit_point import OrbitPoint
 from .orbit_records import (
     branch_dataset,
     located_table,
@@ -33,7 +33,7 @@ from .orbit_records import (
     split_located,
 )
 from .orbit_search import solve_orbit
-from .orbit_tracer import OrbitTracer
+from .orbit_tracer import OrbitPoint, OrbitTracer
 from .orbits import (
     NODE,
     FirstGuess,
@@ -43,12 +43,6 @@ from .orbits import (
     orbit,
 )
 from .tracer import Bifurcation, BranchSegment, ContinuationSettings
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 REPORTED = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual")
 NODES = ("node_kind", *NODE)
@@ -73,21 +67,37 @@ class BranchJob(Question):
     asked: ClassVar[str] = "branch"
 
     def call_text(self) -> str:
-        """Return Python source of a ``branch(...)`` call that repeats this, start included."""
         (over,), (limits,) = self.setting.over, self.setting.limits
         switch = {"switch": KINDS[self.switch]} if self.switch >= 0 else {}
         keywords = {**switch, "over": over, "limits": limits}
         more = {"longest": self.longest, "most": self.most}
         return call_from_start(self, np.array([self.value]), **keywords, **more)
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Continue the branch from its first orbit; return orbits and bifurcations as a table."""
-        segments = trace_branch(self)
+        guess = self.start.as_guess(self.period)
+        settings = ContinuationSettings(self.longest, self.most)
+        try:
+            start = OrbitPoint(*solve_orbit(self.setting, guess, np.array([self.value])))
+            starts = (
+                [start.reversed(), start]
+                if self.switch < 0
+                else [leaving_branch(self.switch, start)]
+            )
+        except SOLVER_ERRORS as reason:
+            expected = "expected an orbit of this structure"
+            raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
+        segments = [OrbitTracer(point, settings).trace(point) for point in starts]
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return branch_table(instance, segments)
+            points, bifurcations = join_segments(segments)
+            ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
+            every = [*points, *(each.point for each in bifurcations)]
+            rows = [orbit_row(instance, p.family, p.root.unknowns, p.root.residual) for p in every]
+            along, at = orbit_table(rows[: len(points)]), rows[len(points) :]
+            located = located_table(BIFURCATION, at, bifurcations)
+            return {**along, **located, "ends": np.array(ends)}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the branch: orbits, stability and bifurcations."""
         setting, (name,) = self.setting, self.setting.over
         along, located = split_located(table, BIFURCATION)
         periods = along["zero"].shape[1]
@@ -98,32 +108,6 @@ class BranchJob(Question):
         kinds = "kind of bifurcation", KINDS
         at = located_variables(setting, located, BIFURCATION, kinds, {name: "value"}, KEPT)
         return branch_dataset(setting, along, at, attributes)
-
-
-def trace_branch(job: BranchJob) -> list[OrbitSegment]:
-    """Continue the branch in both directions (one if it leaves another); return its segments."""
-    guess = job.start.as_guess(job.period)
-    settings = ContinuationSettings(job.longest, job.most)
-    try:
-        start = OrbitPoint(*solve_orbit(job.setting, guess, np.array([job.value])))
-        starts = (
-            [start.reversed(), start] if job.switch < 0 else [leaving_branch(job.switch, start)]
-        )
-    except SOLVER_ERRORS as reason:
-        expected = "expected an orbit of this structure"
-        raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
-    return [OrbitTracer(point, settings).trace(point) for point in starts]
-
-
-def branch_table(instance: EventInstance, segments: list[OrbitSegment]) -> Table:
-    """Return arrays of a branch's orbits and of its bifurcations, each checked by the FMU."""
-    points, bifurcations = join_segments(segments)
-    ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
-    every = [*points, *(each.point for each in bifurcations)]
-    rows = [orbit_row(instance, p.family, p.root.unknowns, p.root.residual) for p in every]
-    along, at = orbit_table(rows[: len(points)]), rows[len(points) :]
-    located = located_table(BIFURCATION, at, bifurcations)
-    return {**along, **located, "ends": np.array(ends)}
 
 
 def join_segments(

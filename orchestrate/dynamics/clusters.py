@@ -5,16 +5,17 @@ What a periodic response settles to is decided by its orbit: see :mod:`.decision
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..fmu import Instance
-from ..response.multiplicity import Repetition
 from ..response.questions import Point
-from ..response.respond import Response, respond
+from ..response.respond import Response, responses_from
+from ..response.response_loop import LoopSettings, response_loop
 
 FEATURES = ("multiplicity", "impacts_per_period", "xi_rel_max", "mean", "deviation")
 ABOUT = "; mean and deviation are those of the samples of the gap"
@@ -30,16 +31,25 @@ class AttractorSettings:
     settle: float = 300.0
     samples: int = 48
     converged: float = 1e-6
+    longest: int = 20_000
+    alike: float = 0.02
+    alike_irregular: float = 0.25
     # over `converged`: within so much a state nearly repeats; states differ by more after fewer
     # periods than those of the response
     apart: float = 1e3
-    longest: int = 20_000  # as in orchestrate.attractors
     irregular_samples: int = 400  # periods kept of an irregular response
-    # as in orchestrate.attractors
-    alike: float = 0.02
-    alike_irregular: float = 0.25
     # weight of the impacts per period of irregular responses, a mean over the samples
     count_weight: float = 0.2
+    residual: float = 1e-9  # of an orbit's equations in units of a eta^2, at most
+    max_nodes: int = 400  # of an orbit that Newton's method is tried on
+    margin: float = 1e-9  # by which the multipliers of a stable orbit are smaller than 1 at least
+    # distances over the motion's size: where the FMU is again after the periods of an orbit; from
+    # which a response may be coming to an orbit, and lies on it
+    returns: float = 1e-6
+    near: float = 0.1
+    same: float = 1e-5
+    # beyond which attractors of neighbouring values may be different ones, other things equal
+    neighbour: float = 0.2
 
 
 def transient_periods(transient: int, settle: float, eta: float) -> int:
@@ -55,30 +65,56 @@ class SettledResponse(NamedTuple):
 
 
 def run_until_settled(
-    instance: Instance, point: Point, start: ArrayLike, settings: AttractorSettings
-) -> SettledResponse:
-    """Simulate from a state at phase 0 until samples repeat or the limit; return the response."""
+    instance: Instance, point: Point, starts: ArrayLike, settings: AttractorSettings
+) -> list[SettledResponse]:
+    """Simulate from states at phase 0 until samples repeat or the limit; return the responses.
+
+    All starts are run together, then those that do not repeat yet as long again.
+    """
+    ends, converged = np.reshape(np.asarray(starts, dtype=float), (-1, 4)), settings.converged
+    loop, loose = response_loop(instance), settings.apart * converged
     dropped = transient_periods(
         settings.transient, settings.settle, point.excitation.eta(point.structure)
     )
-    done, before = 0, Repetition(0, np.inf)
-    while True:
-        response = respond(instance, *point, start, dropped, settings.samples, settings.converged)
-        done, start = done + dropped + settings.samples, response.end
-        nearly = response.repetition(settings.apart * settings.converged)
+    settled: dict[int, SettledResponse] = {}
+    done, left = 0, np.arange(len(ends))
+    before, deviation = np.zeros(len(ends), dtype=int), np.full(len(ends), np.inf)
+    while len(left):
+        rule = LoopSettings(
+            transient=dropped, samples=settings.samples, tolerance=converged, loose=loose
+        )
+        results = loop.respond([point] * len(left), ends, rule)
+        done += dropped + settings.samples
+        n, nearly = results.counts["multiplicity"], results.counts["nearly"]
         # a deviation that dies while it turns round is smaller after some periods than after one
-        if response.multiplicity and nearly.multiplicity == response.multiplicity:
-            return SettledResponse(response, done)
+        repeats = (n > 0) & (nearly == n)
+        dying = (nearly > 0) & (nearly == before) & (2.0 * results.deviations < deviation)
+        dying &= done >= settings.longest
+        for chosen, tolerance in ((repeats, converged), (dying & ~repeats, loose)):
+            rows = np.flatnonzero(chosen)
+            points = [point] * len(rows)
+            found = responses_from(results.rows(rows), points, tolerance, nearly[rows].tolist())
+            settled |= numbered(left[rows], found, done)
+        rest = np.flatnonzero(~(repeats | dying))
+        left, ends = left[rest], results.ends[rest]
+        before, deviation = nearly[rest], results.deviations[rest]
         if done >= settings.longest:
             break
-        before, dropped = nearly, min(done, settings.longest - done)
-    same = nearly.multiplicity == before.multiplicity
-    if nearly.multiplicity and same and 2.0 * nearly.deviation < before.deviation:
-        return SettledResponse(
-            replace(response, tolerance=settings.apart * settings.converged), done
-        )
-    response = respond(instance, *point, start, 0, settings.irregular_samples, settings.converged)
-    return SettledResponse(response, done + settings.irregular_samples)
+        dropped = min(done, settings.longest - done)
+    if len(left):
+        points, done = [point] * len(left), done + settings.irregular_samples
+        rule = LoopSettings(transient=0, samples=settings.irregular_samples)
+        irregular = responses_from(loop.respond(points, ends, rule), points, converged)
+        settled |= numbered(left, irregular, done)
+    return [settled[i] for i in range(len(settled))]
+
+
+def numbered(
+    numbers: NDArray[np.intp], responses: Iterable[Response], periods: int
+) -> dict[int, SettledResponse]:
+    """Return responses that so many periods have settled, by the numbers of their starts."""
+    pairs = zip(numbers.tolist(), responses, strict=True)
+    return {number: SettledResponse(response, periods) for number, response in pairs}
 
 
 def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[np.intp]:

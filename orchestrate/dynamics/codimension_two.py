@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from .bifurcation_curve import BifurcationCurve
-from .bifurcations import FLIP, FOLD, GRAZING, TORUS, TOUCHING, NamedKind
+from .bifurcations import Kind, NamedKind
 from .closed_form import Floats
 from .continuation import (
     SOLVER_ERRORS,
@@ -36,13 +36,8 @@ from .periodic_orbit import CLOSING, PeriodicOrbit
 from .turning_points import nearest_miss, turning_points
 
 DEGREE = 4  # of D: as many multipliers as states
-ON_CIRCLE = 1e-6  # of a pair of multipliers: how far its size may be from 1
 LOCATED = 1e-6  # a located point's test function, at most: what is above is no root of it
 TOLERANCE = {"xtol": 1e-14, "rtol": 1e-14}  # of Brent's method, in unknowns over their scale
-MAX_ITERATIONS = 20
-STEP = 1e-6  # of an unknown, over its scale, for differences
-CONVERGED = 1e-9  # a step of Newton's method, in unknowns over their scale
-FAR = 0.1  # a point at the end of a curve is not farther away from its last root
 
 
 class PointKind(NamedKind):
@@ -63,21 +58,21 @@ class PointKind(NamedKind):
 
 POINT_KINDS: dict[int, str] = {kind: kind.label for kind in PointKind}
 ON_CURVE: dict[int, tuple[PointKind, ...]] = {  # with a test function, by the curve's kind
-    FOLD: (PointKind.CUSP, PointKind.FOLD_FLIP, PointKind.RESONANCE_1, PointKind.FOLD_TORUS),
-    FLIP: (PointKind.FOLD_FLIP, PointKind.RESONANCE_2, PointKind.FLIP_TORUS),
-    TORUS: (
+    Kind.FOLD: (PointKind.CUSP, PointKind.FOLD_FLIP, PointKind.RESONANCE_1, PointKind.FOLD_TORUS),
+    Kind.FLIP: (PointKind.FOLD_FLIP, PointKind.RESONANCE_2, PointKind.FLIP_TORUS),
+    Kind.TORUS: (
         PointKind.RESONANCE_3,
         PointKind.RESONANCE_4,
         PointKind.FOLD_TORUS,
         PointKind.FLIP_TORUS,
     ),
-    GRAZING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
-    TOUCHING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
+    Kind.GRAZING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
+    Kind.TOUCHING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
 }
 GRAZES: dict[int, PointKind] = {
-    FOLD: PointKind.GRAZING_FOLD,
-    FLIP: PointKind.GRAZING_FLIP,
-    TORUS: PointKind.GRAZING_TORUS,
+    Kind.FOLD: PointKind.GRAZING_FOLD,
+    Kind.FLIP: PointKind.GRAZING_FLIP,
+    Kind.TORUS: PointKind.GRAZING_TORUS,
 }
 ANGLES = {PointKind.RESONANCE_3: 2.0 * np.pi / 3.0, PointKind.RESONANCE_4: 0.5 * np.pi}
 
@@ -209,10 +204,10 @@ def test_function_value(
         return polynomial.slope(1.0)
     if kind == PointKind.RESONANCE_2:
         return polynomial.slope(-1.0)
-    if kind in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) and curve.kind != TORUS:
+    if kind in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) and curve.kind != Kind.TORUS:
         return polynomial.pair_test(1.0 if kind == PointKind.FOLD_TORUS else -1.0)
     fold = kind in (PointKind.FOLD_TORUS, PointKind.GRAZING_FOLD)
-    fold = fold or kind == PointKind.FOLD_FLIP and curve.kind == FLIP
+    fold = fold or kind == PointKind.FOLD_FLIP and curve.kind == Kind.FLIP
     return polynomial(1.0 if fold else -1.0).real
 
 
@@ -235,12 +230,12 @@ def cusp_test(curve: BifurcationCurve, root: Root) -> float:
 def is_point_of_kind(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
     """Return whether a test function's zero is truly such a point (pair on the unit circle)."""
     # two real multipliers may have the product 1 too
-    if kind not in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) or curve.kind == TORUS:
+    if kind not in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) or curve.kind == Kind.TORUS:
         return True
     real = 1.0 if kind == PointKind.FOLD_TORUS else -1.0
     others = characteristic_polynomial(curve, root.unknowns).others(real)
     pair = others[others.imag > 0.0]
-    return bool((np.abs(np.abs(pair) - 1.0) < ON_CIRCLE).any())
+    return bool((np.abs(np.abs(pair) - 1.0) < 1e-6).any())
 
 
 # -- where a curve ends ----------------------------------------------------------------------------
@@ -251,7 +246,7 @@ def end_points(
 ) -> Iterator[CodimensionTwoPoint]:
     """Yield the codimension-two point at which a curve ends for a given reason, if it does."""
     grazes = reason in ("another impact grazes", "a flight grazes")
-    if curve.kind == TORUS and "resonance" in reason:
+    if curve.kind == Kind.TORUS and "resonance" in reason:
         first = root.unknowns[-1] < 0.5 * np.pi
         kind = PointKind.RESONANCE_1 if first else PointKind.RESONANCE_2
     elif curve.kind in GRAZES and grazes:
@@ -282,27 +277,27 @@ def solve_end(
 
     unknowns = root.unknowns[:size] if resonance else root.unknowns
     scale, first = curve.scale[: len(unknowns)], unknowns.copy()
-    for _ in range(MAX_ITERATIONS):
+    for _ in range(20):
         orbit = curve.family.jacobian(unknowns[:size])
         blank = np.zeros((len(orbit), len(unknowns) - size))
         free = (-np.inf, np.inf)
         rows = [
-            central_difference(conditions, unknowns, i, *free, step=STEP * float(scale[i]))
+            central_difference(conditions, unknowns, i, *free, step=1e-6 * float(scale[i]))
             for i in range(len(unknowns))
         ]
         matrix = np.vstack([np.hstack([orbit, blank]), np.array(rows).T]) * scale
         residual = np.append(curve.family.residual(unknowns[:size]), conditions(unknowns))
         step = solve_linear(matrix, residual)
         unknowns = unknowns - scale * step
-        if np.abs((unknowns - first) / scale).max() > FAR:
+        if np.abs((unknowns - first) / scale).max() > 0.1:
             raise NoConvergenceError("Newton's method went too far")
-        if np.abs(step).max() < CONVERGED:
+        if np.abs(step).max() < 1e-9:
             left = float(np.abs(conditions(unknowns)).max())
             orbit_left = float(np.abs(curve.family.residual(unknowns[:size])).max())
             if not (left <= LOCATED and orbit_left <= curve.accuracy):
                 raise NoConvergenceError(f"no root: the residuals are {orbit_left:.0e}, {left:.0e}")
             return CodimensionTwoPoint(kind, unknowns[:size], position, left)
-    raise NoConvergenceError(f"no root after {MAX_ITERATIONS} iterations")
+    raise NoConvergenceError("no root after 20 iterations")
 
 
 def grazing_test(curve: BifurcationCurve, unknowns: Floats, reason: str) -> float:

@@ -21,16 +21,6 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from .closed_form import Floats
 
-DENSE_LIMIT = 40  # equations: up to so many a dense solver is faster than a sparse one
-ROUNDING_STEP = 1e-6  # a Newton step below this that shrinks no more has reached rounding
-SLOW_SHRINKING = 0.05  # of the step before: a step that is not smaller shrinks no more
-POLISHING_STEPS = 2  # after convergence, with the derivative at the root itself
-ORTHOGONAL = 1e-6  # cosine below which a tangent has no side of the row that should orient it
-LARGE = 0.9  # of the largest component: the first one above it fixes a vector's sign
-SHORTENED_FAILED, SHORTENED_BENT = 0.35, 0.5  # of a step: after no root, after a sharp bend
-LENGTHENED = 1.6  # of a step that was easy: nearly straight, and few iterations
-EASY_COSINE, EASY_ITERATIONS = 0.993, 4
-
 
 class NoConvergenceError(Exception):
     """An iteration has not converged to a root near its start."""
@@ -96,23 +86,17 @@ def newton_correct(
     max_iterations: int = 8,
     max_distance: float = 0.5,
 ) -> Root:
-    """Solve by Newton's method for the root in the plane through ``guess`` with this normal.
-
-    Notes
-    -----
-    A short step alone does not make a root: with a wrong derivative steps are short anywhere. So
-    the derivative is made anew where the steps have become short, two more steps are taken with
-    it, and the root is accepted by its residual then, ``curve.accuracy`` at most. It is known to
-    rounding, and so is its tangent: nothing that is decided by them depends on how another
-    processor rounds.
-    """
+    """Solve by Newton's method for the root in the plane through ``guess`` with this normal."""
+    # with a wrong derivative steps are short anywhere: it is made anew there, two more steps are
+    # taken, and the residual decides; so nothing depends on how another processor rounds
     offset, size = np.zeros_like(guess), np.inf
     for iteration in range(1, max_iterations + 1):
         offset, step = newton_step(curve, guess, offset, normal)
         before, size = size, float(np.abs(step).max())
         if not size < np.inf or float(np.abs(offset).max()) > max_distance:
             raise NoConvergenceError("Newton's method went too far")
-        if size <= tolerance or before * SLOW_SHRINKING <= size <= before <= ROUNDING_STEP:
+        # a step below 1e-6 that hardly shrinks has reached rounding
+        if size <= tolerance or before * 0.05 <= size <= before <= 1e-6:
             return polish_root(curve, guess, offset, normal, iteration)
     raise NoConvergenceError(f"no root after {max_iterations} iterations")
 
@@ -138,7 +122,7 @@ def polish_root(
     """Refine a nearly converged root with an exact Jacobian; return it with its tangent."""
     try:
         jacobian = curve.jacobian(guess + curve.scale * offset, at_root=True)
-        for _ in range(POLISHING_STEPS):
+        for _ in range(2):  # known to rounding then
             offset, _ = newton_step(curve, guess, offset, normal, jacobian)
         unknowns = guess + curve.scale * offset
         residual = float(np.abs(curve.residual(unknowns)).max(initial=0.0))
@@ -152,7 +136,7 @@ def polish_root(
 
 def solve_linear(matrix: Floats, right: Floats) -> Floats:
     """Solve linear equations, by dense LU; large systems by sparse LU."""
-    if len(right) <= DENSE_LIMIT:
+    if len(right) <= 40:  # up to so many equations it is faster
         return np.asarray(np.linalg.solve(matrix, right), dtype=float)
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
@@ -174,7 +158,8 @@ def unit_tangent(matrix: Floats) -> Floats:
     except np.linalg.LinAlgError:
         vector = np.linalg.svd(matrix[:-1])[2][-1]
     tangent: Floats = vector / np.linalg.norm(vector)
-    return tangent if abs(float(matrix[-1] @ tangent)) > ORTHOGONAL else fix_sign(tangent)
+    # a tangent orthogonal to the last row has no side of it
+    return tangent if abs(float(matrix[-1] @ tangent)) > 1e-6 else fix_sign(tangent)
 
 
 def fix_sign(vector: Floats) -> Floats:
@@ -185,7 +170,7 @@ def fix_sign(vector: Floats) -> Floats:
 def leading_component(vector: NDArray[np.inexact]) -> int:
     """Return the index of the first component nearly as large as the largest in size."""
     size = np.abs(vector)
-    return int(np.argmax(size > LARGE * size.max()))
+    return int(np.argmax(size > 0.9 * size.max()))
 
 
 def unit_vector(size: int, component: int) -> Floats:
@@ -221,14 +206,14 @@ class ArclengthStepper(Generic[AnyCurve]):
             try:
                 root = self.root_after(length)
             except NoConvergenceError:
-                length *= SHORTENED_FAILED
+                length *= 0.35  # of a step without a root
                 continue
             cosine = float(root.tangent @ self.root.tangent)
             if cosine >= self.min_cosine and accepts(root):
-                easy = cosine > EASY_COSINE and root.iterations <= EASY_ITERATIONS
-                self.length = min(self.max_length, length * (LENGTHENED if easy else 1.0))
+                easy = cosine > 0.993 and root.iterations <= 4  # nearly straight
+                self.length = min(self.max_length, length * (1.6 if easy else 1.0))
                 return root, length
-            length *= SHORTENED_BENT
+            length *= 0.5  # after a sharp bend
         raise NoConvergenceError("no step is short enough")
 
     def step_within(
@@ -237,9 +222,7 @@ class ArclengthStepper(Generic[AnyCurve]):
         limits: Sequence[tuple[float, float]],
         accepts: Callable[[Root], bool] = lambda root: True,
     ) -> tuple[Root, float, bool]:
-        """Step, at most onto a limit; return the root, the step's length, and whether it is on
-        one.
-        """
+        """Step, at most onto a limit; return the root, the length, and whether it is on one."""
         limit = self.next_limit(first, limits)
         if limit is not None:
             with contextlib.suppress(NoConvergenceError):
@@ -247,7 +230,7 @@ class ArclengthStepper(Generic[AnyCurve]):
                 if root.tangent @ self.root.tangent >= self.min_cosine and accepts(root):
                     offset = (root.unknowns - self.root.unknowns) / self.curve.scale
                     return root, float(offset @ self.root.tangent), True
-            self.length *= SHORTENED_BENT
+            self.length *= 0.5
         return *self.step(accepts), False
 
     def next_limit(

@@ -25,14 +25,7 @@ import numpy as np
 
 from .closed_form import Floats
 
-FIRST_STEP, MAX_STEP = 0.05, 0.25  # of s
-AFTER_CHANGE = 1e-3  # of s: the first step behind a change, where no bend is known yet
-SHORTER, LONGER = 0.5, 1.5  # of a step: after one that was too long, and after an easy one
-EASY = 0.5  # of the allowed distance and angle
-SHARP = 0.01  # of the allowed distance: where points are nearer, the curve may bend as it will
-JUMP = 0.25  # power below which the curve is broken: half of that at a grazing impact
 STILL = 1e-12  # of the size: so near are points that rounding moves
-ARRIVED = 1e-7  # of the size: an image of the whole piece that is shorter has come to its end
 LENGTH, POINTS, CONVERGED = "length", "most points", "converges"
 
 
@@ -54,10 +47,6 @@ class ItineraryChange(NamedTuple):
     distance: float  # of both
     power: float  # of the distance of their numbers, with which that distance falls
 
-    def is_break(self, size: float) -> bool:
-        """Return whether the curve jumps here, rather than only changing its itinerary."""
-        return self.distance > STILL * size and self.power < JUMP
-
 
 @dataclass(frozen=True)
 class GrowthSettings:
@@ -68,7 +57,7 @@ class GrowthSettings:
     angle: float  # largest angle between successive chords, rad
     max_points: int
     size: float = 1.0  # what is small is so in comparison with it
-    max_step: float = MAX_STEP  # of s
+    max_step: float = 0.25  # of s
     resolution: float = 1e-14  # of s: what rounding leaves of it
 
 
@@ -112,12 +101,12 @@ class CurveGrower:
         """Grow the curve from parameter ``first`` to its end; return all its points."""
         settings, curve = self.settings, GrownCurve()
         curve.add(self.image(first), 0.0)
-        step, change_ahead = FIRST_STEP, None
+        step, change_ahead = 0.05, None
         while not curve.end:
             last = curve.points[-1]
             if change_ahead is not None and last.s >= change_ahead.low.s:
                 self.cross_change(curve, change_ahead)
-                change_ahead, step = None, min(step, AFTER_CHANGE)
+                change_ahead, step = None, min(step, 1e-3)  # no bend is known there yet
                 curve.end = self.end_reason(curve)
                 continue
             target = last.s + step
@@ -130,16 +119,16 @@ class CurveGrower:
                 change_ahead = self.bisect_change(last, point)
                 continue
             distance, angle = distance_between(last, point), self.angle_to(last, point)
-            sharp = distance <= SHARP * settings.spacing
+            sharp = distance <= 0.01 * settings.spacing  # the curve may bend there as it will
             if distance <= settings.spacing and (sharp or angle <= settings.angle):
                 curve.add(point, distance)
                 if distance > STILL * settings.size:
                     self.direction = (point.state - last.state) / distance
-                easy = distance <= EASY * settings.spacing and angle <= EASY * settings.angle
-                step = min(step * (LONGER if easy else 1.0), settings.max_step)
+                easy = distance <= 0.5 * settings.spacing and angle <= 0.5 * settings.angle
+                step = min(step * (1.5 if easy else 1.0), settings.max_step)
                 curve.end = self.end_reason(curve)
             elif point.s - last.s > settings.resolution * max(1.0, last.s):
-                step = SHORTER * (point.s - last.s)
+                step = 0.5 * (point.s - last.s)
             else:  # a jump without another itinerary
                 change_ahead = ItineraryChange(last, point, distance, 0.0)
         return curve
@@ -169,7 +158,8 @@ class CurveGrower:
 
     def cross_change(self, curve: GrownCurve, change: ItineraryChange) -> None:
         """Append the point beyond a change of itinerary: connected, or after a break."""
-        broken = change.is_break(self.settings.size)
+        # less than half of the power of a grazing impact is a jump
+        broken = change.distance > STILL * self.settings.size and change.power < 0.25
         if broken:
             curve.breaks[len(curve.points)] = change
         curve.add(change.high, 0.0 if broken else change.distance)
@@ -186,4 +176,4 @@ class CurveGrower:
         before = bisect_left(curve.points, last.s - window, key=lambda point: point.s)
         gained = curve.arclength[-1] - curve.arclength[max(before - 1, 0)]
         grown = curve.arclength[-1] > settings.spacing
-        return CONVERGED if grown and before and gained < ARRIVED * settings.size else ""
+        return CONVERGED if grown and before and gained < 1e-7 * settings.size else ""

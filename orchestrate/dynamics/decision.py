@@ -1,13 +1,13 @@
-"""Decide to which motion a response settles, by Newton's method where repetition is doubtful.
+"""Decide to which motion a response settles; thresholds are those of ``AttractorSettings``.
 
-A response is continued until its state repeats. Newton's method starts from the impacts in these
-periods, counted from a phase far from any impact. The response belongs to the resulting orbit if
-
-- the orbit's multipliers lie inside the unit circle,
-- it is a possible motion, which the FMU repeats with the same impacts, and
-- the response approaches it as the multipliers predict.
-
-Copies of a shorter orbit count as that orbit.
+- It is run on until its state repeats within `converged`, or within `apart` times that with a
+  deviation that dies, for at most `longest` periods.
+- It is on an *orbit* that Newton's method finds from its impacts over these periods: a possible
+  motion, stable by `margin`, to which the FMU `returns` with the same impacts, and to which the
+  response, if nearer than `near`, comes as the multipliers say, or lies within `same`.
+- Without such an orbit, states that repeat are *repeated*.
+- They are *undecided* near an unstable orbit, or before impacts that have to come at this level.
+- What does not repeat is *irregular*: a torus, or chaos.
 """
 
 from __future__ import annotations
@@ -28,21 +28,19 @@ from ..response.response_loop import stroboscopic_samples
 from .clusters import AttractorSettings, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting
-from .guesses import Guess, begin_at_state, guess_from_impacts
-from .orbit_search import least_periods, solve_orbit, why_no_motion
+from .orbit_search import (
+    Guess,
+    begin_at_state,
+    guess_from_impacts,
+    least_periods,
+    solve_orbit,
+    why_no_motion,
+)
 from .periodic_orbit import ImpactSequence, PeriodicOrbit
-from .settled_motion import ON_KNOWN_MOTION, Floats, SettledMotion
+from .settled_motion import Floats, SettledMotion
 from .turning_points import rotate_to_phase_zero
 
-RESIDUAL = 1e-9  # of an orbit's equations in units of a eta^2, at most
-MARGIN = 1e-9  # by which the multipliers of a stable orbit are smaller than 1 at least
-RETURNS = 1e-6  # of the motion's size: where the FMU is again after the periods of an orbit
-NEAR = 0.1  # distance over the motion's size from which a response may be coming to an orbit
-SHRUNK = 0.1  # a deviation is followed until it should have become so much of itself
-ROUNDING = 1e-9  # a deviation over the motion's size that is no more than rounding
-OTHER_PHASE = 2.4  # rad: where a response is sampled that does not repeat at phase 0
 PIECES = 64  # of a period, among which a stretch without impacts is sought
-MAX_NODES = 400  # of an orbit that Newton's method is tried on
 
 
 class MotionDecider:
@@ -66,7 +64,15 @@ class MotionDecider:
 
     def decide(self, state: ArrayLike) -> tuple[SettledMotion, Floats]:
         """Run from a state at phase 0 until its motion is known; return it and a state on it."""
-        response, done = run_until_settled(self.plain, self.point, state, self.settings)
+        return self.decide_all(np.asarray(state)[np.newaxis])[0]
+
+    def decide_all(self, states: ArrayLike) -> list[tuple[SettledMotion, Floats]]:
+        """Run from states at phase 0, as :meth:`decide` from one."""
+        settled = run_until_settled(self.plain, self.point, states, self.settings)
+        return [self.motion_of(*each) for each in settled]
+
+    def motion_of(self, response: Response, done: int) -> tuple[SettledMotion, Floats]:
+        """Run a settled response on until its motion is known; return it and a state on it."""
         unstable = False
         while True:
             motion, doubtful = self.periodic_motion(response)
@@ -101,9 +107,14 @@ class MotionDecider:
 
     def possible_periods(self, response: Response) -> list[int]:
         """Return candidate periods of a response, from its repetition at another phase."""
-        seen = sample_at_another_phase(
-            self.plain, self.point, response, self.settings.irregular_samples
+        begin(self.plain, *self.point, response.end)
+        self.plain.step(0.0, 2.4 / self.point.excitation.frequency)
+        there = self.plain.get(*STATE)
+        begin(self.plain, self.point.structure, self.point.excitation.replace(phase=2.4), there)
+        states, gap = stroboscopic_samples(
+            self.plain, self.point.excitation.period, 0, self.settings.irregular_samples
         )
+        seen = replace(response, samples=states, x_rel_max=gap)
         close, nearly = self.settings.converged, self.settings.apart * self.settings.converged
         counts = [seen.repetition(tolerance).multiplicity for tolerance in (close, nearly)]
         return [n for n in dict.fromkeys(counts) if n]
@@ -130,10 +141,10 @@ class MotionDecider:
         """Return the known motion of ``n`` periods that passes at a state; None if on none."""
         for motion in self.known:
             distance = motion.nearest(state)[1]
-            within = ON_KNOWN_MOTION if motion.decided == ORBIT else self.settings.alike
+            within = self.settings.same if motion.decided == ORBIT else self.settings.alike
             if distance < within and motion.multiplicity == n:
                 return motion
-            near = motion.decided == ORBIT and distance < NEAR
+            near = motion.decided == ORBIT and distance < self.settings.near
             if near and self.converges_to(state, motion):
                 return motion
         return None
@@ -141,14 +152,17 @@ class MotionDecider:
     def remember(self, motion: SettledMotion) -> SettledMotion:
         """Store a stable orbit; return it, or the equal one already stored."""
         for known in self.known:
-            if known.is_same_orbit_as(motion):
+            if known.is_same_orbit_as(motion, self.settings.same):
                 return known
         self.known.append(motion)
         return motion
 
     def stable_motion(self, orbit: PeriodicOrbit | None, free_phase: float) -> SettledMotion | None:
         """Return a stable orbit as a motion; None without one."""
-        if orbit is None or np.abs(orbit.multipliers()).max(initial=0.0) >= 1.0 - MARGIN:
+        if (
+            orbit is None
+            or np.abs(orbit.multipliers()).max(initial=0.0) >= 1.0 - self.settings.margin
+        ):
             return None
         return SettledMotion.from_orbit(self.point, orbit, free_phase)
 
@@ -165,16 +179,16 @@ class MotionDecider:
             self.plain.step(0.0, motion.free_phase / excitation.frequency)
         there, states = self.plain.get(*STATE), motion.free_states
         before = states.nearest(there)[1]
-        if before < ON_KNOWN_MOTION or not before < NEAR:
-            return before < ON_KNOWN_MOTION
+        if before < self.settings.same or not before < self.settings.near:
+            return before < self.settings.same
         rate = max(motion.multiplier, 1e-3)
-        turns = math.ceil(math.log(SHRUNK) / math.log(rate))
+        turns = math.ceil(math.log(0.1) / math.log(rate))  # until it should be a tenth
         turns = max(1, min(turns, self.settings.longest // periods))
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)
         after = states.nearest(self.plain.get(*STATE))[1]
-        return after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
+        return after <= max(0.5 * (1.0 + rate**turns) * before, 1e-9)  # rounding
 
     # -- orbits -----------------------------------------------------------------------------------
 
@@ -187,14 +201,14 @@ class MotionDecider:
 
     def solve(self, guess: Guess) -> PeriodicOrbit | None:
         """Solve for an orbit from a guess, over its least period; None if it is no motion."""
-        if len(guess[0].kinds) > MAX_NODES:
+        if len(guess[0].kinds) > self.settings.max_nodes:
             return None
         try:
             family, root = solve_orbit(self.system, guess, self.values)
         except SOLVER_ERRORS:
             return None
         orbit = family.orbit(root.unknowns)
-        if root.residual > RESIDUAL or why_no_motion(orbit):
+        if root.residual > self.settings.residual or why_no_motion(orbit):
             return None
         return without_copies(orbit)
 
@@ -226,7 +240,7 @@ class MotionDecider:
             return None
         state = continued.states[0]
         own = self.stable_orbit_at(state, continued.multiplicity)  # with the impacts of the FMU
-        return own if own is not None and own.nearest(state)[1] < ON_KNOWN_MOTION else None
+        return own if own is not None and own.nearest(state)[1] < self.settings.same else None
 
     def stays_on(self, motion: SettledMotion) -> bool:
         """Return whether the FMU, started on an orbit, is still on it after its period."""
@@ -237,7 +251,7 @@ class MotionDecider:
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
         self.plain.step(0.0, motion.multiplicity * excitation.period)
-        return motion.free_states.nearest(self.plain.get(*STATE))[1] < ON_KNOWN_MOTION
+        return motion.free_states.nearest(self.plain.get(*STATE))[1] < self.settings.same
 
     def repeats_in_fmu(self, motion: SettledMotion) -> bool:
         """Return whether the FMU, started on an orbit, has its impacts and comes back to it."""
@@ -255,7 +269,7 @@ class MotionDecider:
         first = states.nearest(instance.read(*STATE))[0]
         impacts = len(instance.impacts(begun, end).time)
         last, away = states.nearest(instance.read(*STATE))
-        return impacts == orbit.sequence.impacts and last == first and away < RETURNS
+        return impacts == orbit.sequence.impacts and last == first and away < self.settings.returns
 
 
 def without_copies(orbit: PeriodicOrbit) -> PeriodicOrbit:
@@ -276,18 +290,6 @@ def phase_far_from_impacts(orbit: PeriodicOrbit) -> float:
     longest = int(orbit.durations.argmax())
     middle = 0.5 * (orbit.begins[longest] + orbit.ends[longest])
     return float(middle % (TURN * orbit.sequence.periods))
-
-
-def sample_at_another_phase(
-    instance: Instance, point: Point, response: Response, samples: int
-) -> Response:
-    """Continue a response in the FMU, sampled at another phase than 0; return it."""
-    begin(instance, *point, response.end)
-    instance.step(0.0, OTHER_PHASE / point.excitation.frequency)
-    there = instance.get(*STATE)
-    begin(instance, point.structure, point.excitation.replace(phase=OTHER_PHASE), there)
-    states, gap = stroboscopic_samples(instance, point.excitation.period, 0, samples)
-    return replace(response, samples=states, x_rel_max=gap)
 
 
 def count_impacts_from_pause(

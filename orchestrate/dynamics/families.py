@@ -15,9 +15,7 @@ from .closed_form import ClosedForm, Floats
 from .periodic_orbit import POSITION, ImpactSequence, PeriodicOrbit
 
 ACCELERATION = "box_acceleration"
-SMALLEST = 1e-3  # scale of displacements and velocities over a eta^2: of a motion all but at rest
 SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
-RELATIVE_STEP = 1e-6  # of a parameter, for differences
 RESIDUAL = 1e-10  # of the motion's size: what a root may leave of the equations
 
 
@@ -96,7 +94,7 @@ class Family:
     @classmethod
     def from_nodes(cls, setting: Setting, sequence: ImpactSequence, nodes: Floats) -> Family:
         """Return the equations, scaled by the nodes of one of their orbits."""
-        size = max(float(np.abs(nodes[:, 1:]).max(initial=0.0)), SMALLEST)
+        size = max(float(np.abs(nodes[:, 1:]).max(initial=0.0)), 1e-3)  # all but at rest
         spans = [high - low for low, high in setting.limits]
         each = np.tile([1.0, size, size, size], len(nodes)) * np.sqrt(max(len(nodes), 1))
         return cls(setting, sequence, np.append(each, spans))
@@ -141,7 +139,7 @@ def central_difference(
 ) -> Floats:
     """Return a function's derivative by one unknown, by a central difference within limits."""
     value = unknowns[which]
-    step = step or RELATIVE_STEP * max(abs(value), 1e-3 * (high - low))
+    step = step or 1e-6 * max(abs(value), 1e-3 * (high - low))
     ends = []
     for place in (value - step, value + step):
         moved = unknowns.copy()

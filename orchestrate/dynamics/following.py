@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..fmu import OSCILLATOR, STATE, EventInstance, Impacts, Instance, begin
 from ..model.arguments import whole
 from ..response.questions import Point, SeriesQuestion, State
-from ..running.job import Table
+from ..running.job import Fmus, Table
 from .variational import nondimensional_impacts
 
 
@@ -40,14 +39,11 @@ class ImpactsQuestion(SeriesQuestion, ABC):
     periods: int = whole(1)
 
     def items(self) -> Sequence[FollowedResponse]:
-        """Return for each parameter value the response to follow, with its start state."""
         points = self.series.points
         starts = np.broadcast_to(np.reshape(self.start, (-1, 4)), (len(points), 4)).tolist()
         return [FollowedResponse(*each) for each in zip(points, map(tuple, starts), strict=True)]
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[FollowedResponse], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[FollowedResponse], previous: Table | None) -> Table:
         """Simulate responses past their transients, then record impacts; return a row for each."""
         rows = []
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:

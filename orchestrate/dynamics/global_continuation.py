@@ -27,8 +27,6 @@ from .clusters import AttractorSettings, irregular_clusters
 from .decision import MotionDecider
 from .settled_motion import Floats, SettledMotion
 
-# Distance over the motion's size beyond which attractors at neighbouring values may be different
-NEIGHBOUR_DISTANCE = 0.2
 BY_SIMULATION, BY_NEWTON = 1, 2  # how an attractor was continued to a neighbouring value
 
 
@@ -108,14 +106,16 @@ class AttractorsAtValue:
         """Continue a neighbour's attractor here; return its index here, and how."""
         state = self.decider.point.from_faces(motion.point.faces(motion.states[0]))
         reached, _ = self.decider.decide(state)
-        if motion.orbit is not None and may_be_different_branches(motion, reached):
+        if motion.orbit is not None and may_be_different_branches(
+            motion, reached, self.decider.settings.neighbour
+        ):
             followed = self.decider.continue_orbit(motion)
             if followed is not None:
                 return self.find_or_add(followed), BY_NEWTON
         return self.find_or_add(reached), BY_SIMULATION
 
 
-def may_be_different_branches(motion: SettledMotion, other: SettledMotion) -> bool:
+def may_be_different_branches(motion: SettledMotion, other: SettledMotion, distance: float) -> bool:
     """Return whether motions at neighbouring values differ enough to be of different branches."""
     if (motion.multiplicity, motion.impacts_per_period) != (
         other.multiplicity,
@@ -123,14 +123,12 @@ def may_be_different_branches(motion: SettledMotion, other: SettledMotion) -> bo
     ):
         return True
     state = other.point.from_faces(motion.point.faces(motion.states[0]))
-    return other.nearest(state)[1] > NEIGHBOUR_DISTANCE
+    return other.nearest(state)[1] > distance
 
 
 @dataclass(frozen=True)
 class MatchedAttractors:
-    """Attractors at all values of a parameter, with one number for the same attractor
-    everywhere.
-    """
+    """Attractors at all values of a parameter; the same attractor has one number everywhere."""
 
     motions: Sequence[Sequence[SettledMotion]]  # of each value
     # numbers of these along the parameter, the most frequent attractor first
@@ -157,7 +155,7 @@ def continue_attractors(
     for seed in seeds:
         values[0].find_or_add(values[0].decider.decide(seed)[0])
     links = continue_to_neighbours(values)
-    numbers = number_attractors(values, links)
+    numbers = number_attractors(values, links, settings.neighbour)
     labels = [
         np.array([row[label] for label in value.labels], dtype=np.intp)
         for value, row in zip(values, numbers, strict=True)
@@ -183,14 +181,16 @@ def continue_to_neighbours(values: Sequence[AttractorsAtValue]) -> Links:
     return links
 
 
-def number_attractors(values: Sequence[AttractorsAtValue], links: Links) -> list[list[int]]:
+def number_attractors(
+    values: Sequence[AttractorsAtValue], links: Links, distance: float = AttractorSettings.neighbour
+) -> list[list[int]]:
     """Return the attractors' numbers at each value: equal if matched, 0 for the largest share."""
     chains: list[list[int]] = []
     count = 0
     for j, value in enumerate(values):
         own = [-1] * len(value.motions)
         if j:
-            for a, b in match_neighbours(values[j - 1], value, j - 1, links):
+            for a, b in match_neighbours(values[j - 1], value, j - 1, links, distance):
                 own[b] = chains[j - 1][a]
         for b, number in enumerate(own):
             if number < 0:
@@ -206,7 +206,11 @@ def number_attractors(values: Sequence[AttractorsAtValue], links: Links) -> list
 
 
 def match_neighbours(
-    before: AttractorsAtValue, value: AttractorsAtValue, i: int, links: Links
+    before: AttractorsAtValue,
+    value: AttractorsAtValue,
+    i: int,
+    links: Links,
+    distance: float = AttractorSettings.neighbour,
 ) -> list[tuple[int, int]]:
     """Return index pairs of attractors at two neighbouring values that are the same attractor."""
     j = i + 1
@@ -215,11 +219,11 @@ def match_neighbours(
     candidates: list[tuple[int, int, int]] = []
     for a, (b, how) in enumerate(forth):
         mutual = back[b][0] == a
-        alike = not may_be_different_branches(before.motions[a], value.motions[b])
+        alike = not may_be_different_branches(before.motions[a], value.motions[b], distance)
         if mutual or how == BY_NEWTON or alike:
             candidates.append((0 if mutual else 1 if how == BY_NEWTON else 2, a, b))
     for b, (a, how) in enumerate(back):
-        alike = not may_be_different_branches(value.motions[b], before.motions[a])
+        alike = not may_be_different_branches(value.motions[b], before.motions[a], distance)
         if how == BY_NEWTON or alike:
             candidates.append((1 if how == BY_NEWTON else 2, a, b))
     taken: list[tuple[int, int]] = []

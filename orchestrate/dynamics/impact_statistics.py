@@ -5,25 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..fmu import Impacts
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..response.labels import column_variables, make_dataset
 from ..response.questions import ask
 from ..running.job import Table
+from ..running.options import Running
 from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov import exponent_of
 from .variational import contact_durations_after, period_in_tau
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 FIELDS = {
     "impacts": "impacts per excitation period",
@@ -55,7 +51,6 @@ class ImpactStatisticsJob(ImpactsQuestion):
         return [numbers[name] for name in FIELDS]
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of impact statistics over the parameter, a variable each."""
         along = self.series.name
         variables = column_variables(along, FIELDS, table["rows"].T)
         title = f"Responses along {along}, impact by impact: {self.structure.label()}"
@@ -67,24 +62,22 @@ def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) 
     structure, excitation = item.point
     span = period_in_tau(excitation.eta(structure))
     exponent = exponent_of(impacts, periods, item.point)
-    return {
-        **impact_counts(impacts, span, periods),
-        "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
-        **impact_extremes(impacts, span, periods),
-        "exponent": exponent.value,
-        "standard_error": exponent.error,
-    }
-
-
-def impact_counts(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
-    """Return impacts and contacts per period, fewest and most impacts in a period, by name."""
     which = np.minimum((impacts.time / span).astype(int), periods - 1)
     each = np.bincount(which, minlength=periods)
+    distances, closing = np.diff(impacts.time) / span, impacts.closing
     return {
         "impacts": len(impacts.time) / periods,
         "fewest": float(each.min()),
         "most": float(each.max()),
         "contacts": impacts.sticks.sum() / periods,
+        "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
+        "closing_max": closing.max() if len(closing) else math.nan,
+        "closing_min": closing.min() if len(closing) else math.nan,
+        "closing_sum": closing.sum() / periods,
+        "distance_min": distances.min() if len(distances) else math.nan,
+        "distance_max": distances.max() if len(distances) else math.nan,
+        "exponent": exponent.value,
+        "standard_error": exponent.error,
     }
 
 
@@ -103,18 +96,6 @@ def contact_time(impacts: Impacts, item: FollowedResponse, end: float) -> float:
         )
     ends = np.append(impacts.time[1:], end)
     return float(contact_durations_after(impacts, ends, item.point).sum())
-
-
-def impact_extremes(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
-    """Return extremes and sum of closing speeds, extremes of intervals; NaN without impacts."""
-    distances, closing = np.diff(impacts.time) / span, impacts.closing
-    return {
-        "closing_max": closing.max() if len(closing) else math.nan,
-        "closing_min": closing.min() if len(closing) else math.nan,
-        "closing_sum": closing.sum() / periods,
-        "distance_min": distances.min() if len(distances) else math.nan,
-        "distance_max": distances.max() if len(distances) else math.nan,
-    }
 
 
 def impact_statistics(
@@ -155,8 +136,7 @@ def impact_statistics(
     Raises
     ------
     InputError
-        Where a required argument is missing, arguments contradict each other, or a number is out
-        of its range.
+        Where an argument is missing, contradicts another one, or is out of its range.
 
     Notes
     -----

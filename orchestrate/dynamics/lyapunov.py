@@ -11,13 +11,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import Impacts
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, positive, whole
 from ..model.ranges import checked_flag
@@ -25,6 +26,7 @@ from ..response.labels import Variable, flags, make_dataset, variable
 from ..response.questions import Point, ask
 from ..response.threshold import exceeds_threshold
 from ..running.job import Table
+from ..running.options import Running
 from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov_spectrum import (
     STATES,
@@ -35,12 +37,6 @@ from .lyapunov_spectrum import (
     spectrum_without_impacts,
 )
 from .variational import impact_matrices, period_in_tau
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 PERIODIC, NEUTRAL, CHAOTIC = -1, 0, 1
 WORDS = {PERIODIC: "periodic", NEUTRAL: "neutral", CHAOTIC: "chaotic"}
@@ -175,7 +171,6 @@ class LyapunovJob(ImpactsQuestion):
             )
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset over the parameter: exponents, errors, verdicts, impact rates."""
         along, (exponent, error, impacts) = self.series.name, table["rows"].T[:3]
         spans = self.periods * np.array([period_in_tau(eta) for eta in self.series.etas])
         verdicts = classify_exponents(exponent, error, np.log(self.wander) / spans, self.sigmas)

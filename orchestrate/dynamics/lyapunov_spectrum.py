@@ -35,11 +35,6 @@ class Spectrum(NamedTuple):
     exponents: Floats
     errors: Floats
 
-    @property
-    def dimension(self) -> float:
-        """Kaplan-Yorke dimension of the attractor in the stroboscopic section."""
-        return kaplan_yorke_dimension(self.exponents)
-
 
 class BlockGrowth(NamedTuple):
     """Logarithmic growth of a vector over successive blocks of matrices, and their durations."""
@@ -98,13 +93,7 @@ def vector_log_growth(blocks: Floats, logs: Floats) -> Floats | None:
 
 
 def compound_matrices(matrices: Floats, order: int) -> Floats:
-    """Return compound matrices (all minors of an order), which map volume elements.
-
-    Examples
-    --------
-    >>> compound_matrices(np.array([np.diag([2.0, 3.0, 5.0])]), 2)[0].diagonal().round(12).tolist()
-    [6.0, 10.0, 15.0]
-    """
+    """Return compound matrices (all minors of an order), which map volume elements."""
     if order == 1:
         return matrices
     chosen = np.array(list(combinations(range(matrices.shape[-1]), order)))
@@ -142,18 +131,8 @@ def spectrum_without_impacts(structure: Structure) -> Spectrum:
 
 
 def kaplan_yorke_dimension(exponents: Floats) -> float:
-    """Return the Kaplan-Yorke (Lyapunov) dimension from exponents in descending order.
-
-    The number of exponents, the largest first, whose sum is not negative, and the part of the next
-    one that makes the sum zero (Kaplan and Yorke, in Lecture Notes in Mathematics 730, 1979).
-
-    Examples
-    --------
-    >>> kaplan_yorke_dimension(np.array([0.5, -1.0, -2.0]))
-    1.5
-    >>> kaplan_yorke_dimension(np.array([-0.1, -0.2]))
-    0.0
-    """
+    """Return the Kaplan-Yorke (Lyapunov) dimension from exponents in descending order."""
+    # Kaplan and Yorke, in Lecture Notes in Mathematics 730, 1979
     if np.isnan(exponents).any():
         return math.nan
     sums = np.cumsum(exponents)

@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, Instance, begin
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import positive, whole
 from ..response.labels import flags, make_dataset, nondimensional_state_coordinate, variable
 from ..response.questions import ask, require_delaminated
-from ..running.job import Table
+from ..running.job import Fmus, Table
+from ..running.options import Running
 from .branches import acceleration_at_start, complete_excitation, orbit_at, require_orbit_dataset
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS, fix_sign
 from .curve_growth import (
     CONVERGED,
     LENGTH,
-    MAX_STEP,
     POINTS,
     CurveGrower,
     CurvePoint,
@@ -44,18 +44,11 @@ from .orbits import (
 from .periodic_orbit import ON_CIRCLE, PHASE, PeriodicOrbit
 from .turning_points import stroboscopic_states
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-
 SIDES = ("+", "-")
 ENDS = {0: LENGTH, 1: POINTS, 2: CONVERGED}
 COUNTS = ("impact_count", "contact_count")
 ROUNDING = 16.0 * float(np.finfo(float).eps)  # of a state's largest number, with room
 ROUNDED = 2.0**-44, 2.0**-36  # to that a saddle's numbers are rounded, and its eigenvector
-MIN_GAP = 2.0  # starting distances: a gap at phase 0 that is smaller leaves no room for a start
 
 
 @dataclass(frozen=True)
@@ -139,7 +132,6 @@ class ManifoldJob(SingleOrbitQuestion):
         self.saddle()  # what is none is said before any work
 
     def call_text(self) -> str:
-        """Return Python source of a ``manifold(...)`` call that repeats this, saddle included."""
         names = ("length", "spacing", "angle", "distance", "most")
         keywords = {name: getattr(self, name) for name in names}
         return call_from_start(self, self.values, **keywords)
@@ -154,7 +146,7 @@ class ManifoldJob(SingleOrbitQuestion):
             raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
         saddle = Saddle.from_orbit(family.orbit(root.unknowns))
         gap = float(saddle.state[1] - saddle.state[0])
-        needed = MIN_GAP * self.distance * saddle.size
+        needed = 2.0 * self.distance * saddle.size  # a smaller gap leaves no room for a start
         moves = abs(saddle.direction[1] - saddle.direction[0]) > self.distance
         if moves and gap < needed:
             raise InputError(
@@ -163,11 +155,20 @@ class ManifoldJob(SingleOrbitQuestion):
             )
         return saddle
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Grow both sides of the manifold from the saddle; return their points as a table."""
         saddle = self.saddle()
         with Instance(fmus[OSCILLATOR]) as instance:
-            settings = self.growth_settings(saddle)
+            growth, largest = math.log(saddle.growth_factor), float(np.abs(saddle.state).max())
+            settings = GrowthSettings(
+                length=self.length * saddle.size,
+                spacing=self.spacing * saddle.size,
+                angle=self.angle,
+                max_points=self.most,
+                size=saddle.size,
+                max_step=GrowthSettings.max_step * max(1.0, math.log(2.0) / growth),
+                resolution=ROUNDING * largest / (self.distance * saddle.size * growth),
+            )
             curves = [
                 CurveGrower(self.point_function(instance, saddle, sign), settings).grow()
                 for sign in (1.0, -1.0)
@@ -202,21 +203,7 @@ class ManifoldJob(SingleOrbitQuestion):
 
         return image
 
-    def growth_settings(self, saddle: Saddle) -> GrowthSettings:
-        """Return settings for growing a side, in the saddle's units, four points a doubling."""
-        growth, largest = math.log(saddle.growth_factor), float(np.abs(saddle.state).max())
-        return GrowthSettings(
-            length=self.length * saddle.size,
-            spacing=self.spacing * saddle.size,
-            angle=self.angle,
-            max_points=self.most,
-            size=saddle.size,
-            max_step=MAX_STEP * max(1.0, math.log(2.0) / growth),
-            resolution=ROUNDING * largest / (self.distance * saddle.size * growth),
-        )
-
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of both sides of the manifold: points, breaks, why each side ends."""
         point = self.setting.point(self.values)
         title = f"Unstable manifold of an orbit of {self.period} periods: {self.structure.label()}"
         sides = variable("side", np.array(SIDES), "1", "on which the gap grows, or falls")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..fmu import EventInstance
+from ..lazy import xr
 from ..model.outcomes import UNDECIDED
 from ..response.labels import (
     Variable,
@@ -30,9 +31,6 @@ from .turning_points import (
     stroboscopic_states,
     turning_points,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 STABILITY = {0: "unstable", 1: "stable", UNDECIDED: "undecided"}
 KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
@@ -92,7 +90,7 @@ VARIABLES: dict[str, tuple[tuple[str, ...], str, str, Mapping[int, str]]] = {
 def orbit_row(instance: EventInstance, family: Family, unknowns: Floats, residual: float) -> Table:
     """Return all stored numbers of a root's orbit, checked by a run in the FMU."""
     orbit, values = family.orbit(unknowns), unknowns[family.size :]
-    check = check_orbit_in_fmu(instance, family.setting, values, orbit)
+    same, away = check_orbit_in_fmu(instance, family.setting, values, orbit)
     turns = turning_points(orbit)
     nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
     multipliers, amplitudes = orbit.multipliers(), Amplitudes.from_orbit(orbit, turns)
@@ -106,8 +104,8 @@ def orbit_row(instance: EventInstance, family: Family, unknowns: Floats, residua
         "amplitudes": (amplitudes.xi_1, amplitudes.xi_2, amplitudes.gap),
         "nearest_miss": nearest_miss(orbit, turns)[0],
         "residual": residual,
-        "same": check.same,
-        "away": check.away,
+        "same": same,
+        "away": away,
     }
     return {name: np.asarray(number) for name, number in row.items()}
 
@@ -230,8 +228,6 @@ def branch_dataset(
     setting: Setting, table: Table, more: Mapping[str, Variable], attributes: Mapping[str, Any]
 ) -> xr.Dataset:
     """Return the dataset of orbits along a branch, with more variables."""
-    import xarray as xr
-
     names = orbit_coordinates(setting, table, "point")
     data = {**orbit_variables(setting, table, "point"), **names, **more}
     return xr.Dataset(data, attrs=attributes).set_coords(list(names))

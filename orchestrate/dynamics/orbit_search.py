@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
-from ..fmu import EventInstance
-from .closed_form import ClosedForm, Floats
+from ..fmu import EventInstance, Impacts, begin
+from ..response.questions import Point
+from .closed_form import ClosedForm, Floats, contact_durations
 from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
-from .families import Family, Setting
-from .guesses import Guess, begin_at_state, guess_from_phases
+from .families import ACCELERATION, Family, Setting
 from .periodic_orbit import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 from .turning_points import (
     nearest_miss,
@@ -23,21 +22,89 @@ from .turning_points import (
     weakest_force,
 )
 
-SAME_PHASE = 1e-6  # rad: impacts of the FMU at these are the orbit's own
-# Of the largest closing speed: an impact below may come or stay away by rounding, where a flight or
-# an impact grazes; the square root of a gap's rounding is 1e-8
-GRAZES = 1e-6
-SAME_ORBIT = 1e-6  # of the nodes over their size: an orbit is as at its beginning again
-PHASES = 24  # at which a single impact is tried: every 15 degrees
+Guess = tuple[ImpactSequence, Floats]
 
 
-@dataclass(frozen=True)
-class FmuCheck:
-    """Result of running an orbit in the FMU: same impacts or not, and the error of its return."""
+def guess_from_state(
+    instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
+) -> Guess:
+    """Run the FMU some periods from a state at phase 0; return its impacts as an orbit guess."""
+    begin_at_state(instance, point, form, state)
+    impacts = instance.impacts(0.0, periods * point.excitation.period)
+    return guess_from_impacts(impacts, point, form, periods)
 
-    # whether it has the same impacts, contacts included, from the orbit's state at phase 0 on
-    same: bool
-    away: float  # how far from that state it is after the orbit's periods, over a eta^2
+
+def begin_at_state(instance: EventInstance, point: Point, form: ClosedForm, state: Floats) -> None:
+    """Initialise the FMU at a state at phase 0, with the constant box acceleration of ``form``."""
+    constant = -float(form.offset[0] * form.stiffness[0])
+    push = constant * point.excitation.amplitude * point.excitation.frequency**2
+    begin(
+        instance, point.structure, point.excitation, state, **({ACCELERATION: push} if push else {})
+    )
+
+
+def guess_from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
+    """Return an orbit guess (sequence, nodes) from recorded impacts; add the releases between."""
+    state, mu = point.faces(impacts.state), form.mu
+    phase = point.excitation.frequency * impacts.time
+    velocity = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
+    nodes = np.stack([phase, state[:, 0], velocity, impacts.closing / point.speed], axis=1)
+    following = np.append(phase[1:], phase[:1] + TURN * periods)
+    kinds: list[int] = []
+    rows: list[Floats] = []
+    for node, sticks, until in zip(nodes, impacts.sticks, following, strict=True):
+        released = release_node(form, node, float(until)) if sticks else None
+        kinds.append(IMPACT if released is None else STICK)
+        rows.append(node)
+        if released is not None:
+            kinds.append(RELEASE)
+            rows.append(released)
+    ordered, first = rotate_to_phase_zero(np.array(rows).reshape(-1, 4), periods)
+    return ImpactSequence(periods, tuple(kinds[first:] + kinds[:first])), ordered
+
+
+def release_node(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
+    """Return the node of the release (19) after a sticking impact; None if not before ``until``."""
+    phase, position, velocity = stick[PHASE:CLOSING, None]
+    span = (until - phase) / form.eta
+    duration = contact_durations(form, phase, position, velocity, span)
+    if not np.isfinite(duration).all():
+        return None
+    motion = form.common_motion(duration, phase, position, velocity)
+    return np.concatenate([phase + form.eta * duration, *motion, np.zeros(1)])
+
+
+def guess_from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats) -> Guess:
+    """Return an orbit guess with impacts at given phases, its other unknowns by least squares."""
+    nodes = np.zeros((len(phases), 4))
+    nodes[:, PHASE] = phases
+    orbit = PeriodicOrbit(sequence, form, nodes)
+    others = np.arange(4 * len(phases)) % 4 != PHASE
+    solution = np.linalg.lstsq(orbit.jacobian().real[:, others], -orbit.residual(), rcond=None)[0]
+    nodes[:, PHASE + 1 :] = solution.reshape(-1, CLOSING)
+    return sequence, nodes
+
+
+def close_returns(
+    instance: EventInstance,
+    point: Point,
+    form: ClosedForm,
+    periods: int,
+    transient: int,
+    max_periods: int,
+) -> Iterator[tuple[Floats, float]]:
+    """Yield stroboscopic states that nearly repeat after some periods, the closest return first."""
+    period = point.excitation.period
+    begin_at_state(instance, point, form, np.zeros(4))
+    instance.advance(0.0, transient * period)
+    states = np.empty((max_periods, 4))
+    for i, state in enumerate(states):
+        instance.advance((transient + i) * period, (transient + i + 1) * period)
+        state[:] = instance.read("x1", "x2", "v1", "v2")
+    scale = np.maximum(np.abs(states).max(axis=0), 1e-300)
+    distance = (np.abs(states[periods:] - states[:-periods]) / scale).max(axis=1)
+    for i in np.argsort(distance, kind="stable"):
+        yield states[i], float(distance[i])
 
 
 def solve_orbit(
@@ -72,7 +139,7 @@ def why_no_motion(orbit: PeriodicOrbit) -> str:
     return ""
 
 
-def least_periods(orbit: PeriodicOrbit, within: float = SAME_ORBIT) -> int:
+def least_periods(orbit: PeriodicOrbit, within: float = 1e-6) -> int:
     """Return the orbit's least period in excitation periods, by comparing shifted nodes."""
     periods, count = orbit.sequence.periods, orbit.count
     kinds, span = np.array(orbit.sequence.kinds), TURN * orbit.sequence.periods
@@ -93,7 +160,7 @@ def least_periods(orbit: PeriodicOrbit, within: float = SAME_ORBIT) -> int:
 
 def check_orbit_in_fmu(
     instance: EventInstance, setting: Setting, values: Floats, orbit: PeriodicOrbit
-) -> FmuCheck:
+) -> tuple[bool, float]:
     """Run the FMU through an orbit; return whether impacts agree, and the error of its return."""
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
@@ -111,14 +178,15 @@ def check_orbit_in_fmu(
         phases, sticks = phases[here], sticks[here]
         wanted, kinds = wanted[there], kinds[there]
     if len(phases) != len(wanted):
-        return FmuCheck(False, away)
-    near = np.abs(phases - wanted[:, PHASE]).max(initial=0.0) < SAME_PHASE
-    return FmuCheck(bool(near and (sticks == (kinds == STICK)).all()), away)
+        return False, away
+    near = np.abs(phases - wanted[:, PHASE]).max(initial=0.0) < 1e-6  # rad
+    return bool(near and (sticks == (kinds == STICK)).all()), away
 
 
 def not_grazing(closing: Floats) -> NDArray[np.bool_]:
     """Return, for each closing speed, whether the impact is well above grazing."""
-    return np.asarray(closing > GRAZES * closing.max(initial=0.0))
+    # the square root of a gap's rounding is 1e-8
+    return np.asarray(closing > 1e-6 * closing.max(initial=0.0))
 
 
 def first_possible_orbit(
@@ -148,5 +216,5 @@ def first_possible_orbit(
 def single_impact_guesses(form: ClosedForm, periods: int) -> Iterator[Guess]:
     """Yield orbit guesses with a single impact, at phases spaced around the circle."""
     sequence = ImpactSequence(periods, (IMPACT,))
-    for phase in np.arange(PHASES) * TURN / PHASES:
+    for phase in np.arange(24) * TURN / 24:
         yield guess_from_phases(form, sequence, np.array([phase]))

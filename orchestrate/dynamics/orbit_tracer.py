@@ -1,31 +1,29 @@
-"""Continuation of orbit branches: the tracer's steps, limits and tests for periodic orbits."""
+"""Branches of periodic orbits: their points with test functions, and how they are traced."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .bifurcations import (
-    CONTACT_BEGUN,
-    CONTACT_LOST,
-    EARLIER_RELEASE,
-    FLIP,
-    FOLD,
-    GRAZING,
-    HALVING,
-    KINDS,
-    TORUS,
-    TOUCHING,
-    BifurcationKind,
-)
-from .chattering import add_or_remove_impacts, change_one_impact
+from .bifurcations import KINDS, Kind
+from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root
 from .families import Family
-from .orbit_point import STICK_TOLERANCE, OrbitPoint
-from .orbit_search import least_periods
-from .periodic_orbit import POSITION
+from .orbit_search import least_periods, solve_orbit
+from .periodic_orbit import (
+    CLOSING,
+    IMPACT,
+    POSITION,
+    RELEASE,
+    STICK,
+    VELOCITY,
+    ImpactSequence,
+    PeriodicOrbit,
+)
 from .tracer import (
     NO_CONVERGENCE,
     BranchSegment,
@@ -34,41 +32,125 @@ from .tracer import (
     ContinuationSettings,
     LocatedBifurcation,
 )
+from .turning_points import nearest_miss, turning_points, weakest_force
 
-FIRST_STEP = 1e-3  # in unknowns over their scale: short, as the branch is not known yet
-AT_BEGIN = 1e-7  # of a step: a bifurcation nearer to its begin is the one that the branch leaves
-NO_CONTACT = 1e-6  # of a permanent contact, in units of tau: so little of it is none
-HALVED = 1e-4  # of an orbit's size: how far from itself after half its period at a halving
-SAME_SIZE = 0.5, 2.0  # size of the motion over the one that its unknowns are measured in
+CONTACT_KINDS = (Kind.CONTACT_LOST, Kind.CONTACT_BEGUN)
+STICK_TOLERANCE = 1e-10  # of (17), over a eta^2: an impact so near to sticking may do either
+
+
+@dataclass(frozen=True)
+class OrbitPoint:
+    """One point of an orbit branch: the root, its orbit, multipliers and test functions."""
+
+    family: Family  # whose equations it solves
+    root: Root
+
+    @cached_property
+    def orbit(self) -> PeriodicOrbit:
+        """Return the periodic orbit of this point of a branch."""
+        return self.family.orbit(self.root.unknowns)
+
+    @property
+    def values(self) -> Floats:
+        """Return the values of the continuation parameters at this point."""
+        return self.root.unknowns[self.family.size :]
+
+    @cached_property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Return the orbit's Floquet multipliers, the largest first."""
+        return self.orbit.multipliers()
+
+    @cached_property
+    def pairs(self) -> NDArray[np.complex128]:
+        """Return one multiplier of each complex-conjugate pair, the one with imaginary part > 0."""
+        return self.multipliers[self.multipliers.imag > 0.0]
+
+    @cached_property
+    def nearest_miss(self) -> float:
+        """Return the smallest gap minimum in flight without an impact: 0 at touching."""
+        return nearest_miss(self.orbit, turning_points(self.orbit))[0]
+
+    @cached_property
+    def sticking_margins(self) -> Floats:
+        """Return each impact's margin in the sticking condition (17): negative where it sticks."""
+        orbit, form = self.orbit, self.orbit.form
+        nodes = orbit.nodes
+        force = form.force(nodes[:, POSITION], nodes[:, VELOCITY])
+        margins = 2.0 * form.parting(nodes[:, CLOSING]) + form.gamma * force
+        return np.where(force < 0.0, margins, np.inf)
+
+    @property
+    def wrong_contact(self) -> bool:
+        """Return whether an impact sticks, or not, against the sticking condition (17)."""
+        # where (17) is all but met either will do: rounding must not say how an orbit goes on
+        if not self.orbit.count:
+            return False
+        return min(self.contact_margin(kind) for kind in CONTACT_KINDS) <= -STICK_TOLERANCE
+
+    def contact_margin(self, kind: Kind) -> float:
+        """Return the margin to losing or gaining a permanent contact: negative beyond it."""
+        orbit = self.orbit
+        margins = np.minimum(self.sticking_margins, 1.0)
+        if kind == Kind.CONTACT_LOST:
+            return float(np.minimum(-margins, orbit.durations)[orbit.contact].min(initial=1.0))
+        return float(margins[~(orbit.contact | orbit.sequence.releases)].min(initial=1.0))
+
+    def test(self, kind: Kind) -> float:
+        """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
+        # products are scaled: multipliers are infinite where an impact grazes
+        if kind == Kind.FOLD:
+            return float(self.root.tangent[self.family.size])
+        if kind == Kind.FLIP:
+            values = self.multipliers
+            return float(np.prod((1.0 + values) / (1.0 + np.abs(values))).real)
+        if kind == Kind.TORUS:
+            products = np.multiply.outer(self.multipliers, self.multipliers)[np.triu_indices(4, 1)]
+            return float(np.prod((1.0 - products) / (1.0 + np.abs(products))).real)
+        if kind == Kind.GRAZING:
+            closing = self.orbit.nodes[~self.orbit.sequence.releases, CLOSING]
+            return float(closing.min(initial=np.inf))
+        if kind == Kind.TOUCHING:
+            return self.nearest_miss
+        if kind == Kind.EARLIER_RELEASE:
+            return weakest_force(self.orbit)[0]
+        return self.contact_margin(kind)
+
+    def zero_is_bifurcation(self, kind: Kind) -> bool:
+        """Return whether this zero of a kind's test function is a true bifurcation."""
+        # the product of two real multipliers may be 1 as well as that of a pair on the unit circle
+        if kind != Kind.TORUS:
+            return True
+        return bool((np.abs(np.abs(self.pairs) - 1.0) < 1e-6).any())
+
+    def reversed(self) -> OrbitPoint:
+        """Return the same point with its tangent reversed, to continue the other way."""
+        return OrbitPoint(self.family, self.root.reversed())
 
 
 class OrbitTracer(BranchTracer[Family, OrbitPoint]):
-    """Traces a branch of periodic orbits by pseudo-arclength continuation, with its
-    bifurcations.
-    """
+    """Traces a branch of periodic orbits by pseudo-arclength, with its bifurcations."""
 
-    kinds = (FOLD, FLIP, TORUS, GRAZING, TOUCHING, EARLIER_RELEASE)
+    kinds = (Kind.FOLD, Kind.FLIP, Kind.TORUS, Kind.GRAZING, Kind.TOUCHING, Kind.EARLIER_RELEASE)
     ending_kinds = (
-        GRAZING,
-        TOUCHING,
-        EARLIER_RELEASE,
-        HALVING,
-        CONTACT_LOST,
-        CONTACT_BEGUN,
+        Kind.GRAZING,
+        Kind.TOUCHING,
+        Kind.EARLIER_RELEASE,
+        Kind.HALVING,
+        Kind.CONTACT_LOST,
+        Kind.CONTACT_BEGUN,
     )  # beyond are other impacts, or copies
     finds_pairs = True
 
     def __init__(self, start: OrbitPoint, settings: ContinuationSettings) -> None:
-        first, longest = min(FIRST_STEP, settings.max_step), settings.max_step
+        # short, as the branch is not known yet
+        first, longest = min(1e-3, settings.max_step), settings.max_step
         stepper = ArclengthStepper(start.family, start.root, first, longest)
         super().__init__(stepper, settings.max_points)
 
     def point(self, root: Root) -> OrbitPoint:
-        """Return the branch point of a solved root, with its orbit and test functions."""
         return OrbitPoint(self.stepper.curve, root)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return the index of the parameter among the unknowns, and its (low, high) in a list."""
         family = self.stepper.curve
         return family.size, family.setting.limits
 
@@ -77,20 +159,20 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         orbit = self.stepper.curve.orbit(root.unknowns)
         return bool((orbit.durations[~orbit.contact] > 0.0).all())
 
-    def test(self, point: OrbitPoint, kind: BifurcationKind) -> float:
+    def test(self, point: OrbitPoint, kind: Kind) -> float:
         """Return a point's test function of a bifurcation kind: it changes sign there."""
         return point.test(kind)
 
-    def confirms(self, kind: BifurcationKind, point: OrbitPoint, part: float) -> bool:
+    def confirms(self, kind: Kind, point: OrbitPoint, part: float) -> bool:
         """Return whether a located zero is a true bifurcation, and not the step's own start."""
-        return part > AT_BEGIN and point.zero_is_bifurcation(kind)
+        return part > 1e-7 and point.zero_is_bifurcation(kind)
 
     def locate(self, step: BranchStep[OrbitPoint]) -> list[LocatedBifurcation[OrbitPoint]]:
         """Locate the bifurcations in a step, up to where its orbit has half the period."""
         located = super().locate(step)
         for i, each in enumerate(located):
             if is_halved(each, step.before):
-                return [*located[:i], replace(each, kind=HALVING)]
+                return [*located[:i], replace(each, kind=Kind.HALVING)]
         return located
 
     def go_on_from(self, point: OrbitPoint) -> OrbitPoint:
@@ -98,16 +180,14 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         family, root = point.family, point.root
         nodes = root.unknowns[: family.size].reshape(-1, 4)
         scaled = Family.from_nodes(family.setting, family.sequence, nodes)
-        low, high = SAME_SIZE
+        low, high = 0.5, 2.0
         if len(nodes) and not low < scaled.scale[POSITION] / family.scale[POSITION] < high:
             tangent = root.tangent * family.scale / scaled.scale
             family, root = scaled, replace(root, tangent=tangent / np.linalg.norm(tangent))
         self.stepper.curve, self.stepper.root = family, root
         return point
 
-    def finish_step(
-        self, step: BranchStep[OrbitPoint]
-    ) -> tuple[OrbitPoint, BifurcationKind | None]:
+    def finish_step(self, step: BranchStep[OrbitPoint]) -> tuple[OrbitPoint, Kind | None]:
         """Return the step's last orbit, with impacts added or removed as chattering (17) needs."""
         # where permanent contact is lost or begins, infinitely many impacts would graze: an end
         after = step.after
@@ -116,8 +196,8 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         try:
             return add_or_remove_impacts(after), None
         except NoConvergenceError:  # too far on: go back to where the first impact comes or goes
-            lost = after.contact_margin(CONTACT_LOST) <= -STICK_TOLERANCE
-            kind = CONTACT_LOST if lost else CONTACT_BEGUN
+            lost = after.contact_margin(Kind.CONTACT_LOST) <= -STICK_TOLERANCE
+            kind = Kind.CONTACT_LOST if lost else Kind.CONTACT_BEGUN
             position, first = step.solve_for_level(kind, 0.0, step.length, -STICK_TOLERANCE)
         try:
             changed = add_or_remove_impacts(change_one_impact(first))
@@ -130,9 +210,9 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     def end_without_root(self, segment: BranchSegment[OrbitPoint]) -> None:
         """Set why a branch ends where Newton fails: contact lost, or no convergence."""
         last = segment.points[-1]
-        if last.orbit.contact.any() and last.contact_margin(CONTACT_LOST) < NO_CONTACT:
-            segment.add_bifurcation(CONTACT_LOST, last, 0.0)
-            segment.end = KINDS[CONTACT_LOST]
+        if last.orbit.contact.any() and last.contact_margin(Kind.CONTACT_LOST) < 1e-6:
+            segment.add_bifurcation(Kind.CONTACT_LOST, last, 0.0)
+            segment.end = KINDS[Kind.CONTACT_LOST]
         else:
             segment.end = NO_CONVERGENCE
 
@@ -140,6 +220,52 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
 def is_halved(located: LocatedBifurcation[OrbitPoint], before: OrbitPoint) -> bool:
     """Return whether an orbit has half the period at a fold, of several that had not before."""
     periods = before.orbit.sequence.periods
-    if located.kind != FOLD or least_periods(before.orbit) < periods:
+    if located.kind != Kind.FOLD or least_periods(before.orbit) < periods:
         return False
-    return least_periods(located.point.orbit, HALVED) < periods
+    return least_periods(located.point.orbit, 1e-4) < periods
+
+
+def add_or_remove_impacts(point: OrbitPoint) -> OrbitPoint:
+    """Add or remove chattering impacts one by one until (17) holds; return the orbit."""
+    for _ in range(10):  # more are no small change of an orbit
+        if not point.wrong_contact:
+            return point
+        point = change_one_impact(point)
+    raise NoConvergenceError("impacts of a chattering come and go")
+
+
+def change_one_impact(point: OrbitPoint) -> OrbitPoint:
+    """Return the orbit with one more chattering impact, or without those that (17) excludes."""
+    orbit, margins = point.orbit, point.sticking_margins
+    kinds, nodes = list(orbit.sequence.kinds), orbit.nodes
+    if point.contact_margin(Kind.CONTACT_BEGUN) < point.contact_margin(Kind.CONTACT_LOST):
+        impacts = ~(orbit.contact | orbit.sequence.releases)
+        sticking = int(np.where(impacts, margins, np.inf).argmin())
+        releases = [i for i in range(sticking + 1, len(kinds)) if kinds[i] == RELEASE]
+        if not releases:
+            raise NoConvergenceError("an impact sticks that is not of a chattering")
+        kept = [*range(sticking + 1), *range(releases[0], len(kinds))]
+        kinds, nodes = [STICK if i == sticking else kinds[i] for i in kept], nodes[kept]
+    else:
+        last = int(np.where(orbit.contact, margins, -np.inf).argmax())
+        kinds = [*kinds[:last], IMPACT, STICK, *kinds[last + 1 :]]
+        nodes = np.insert(nodes, last + 1, estimated_next_impact(orbit, last), axis=0)
+    sequence = ImpactSequence(orbit.sequence.periods, tuple(kinds))
+    guess, setting = (sequence, nodes), point.family.setting
+    changed = OrbitPoint(
+        *solve_orbit(setting, guess, point.values, max_iterations=12, max_distance=1.0)
+    )
+    if (changed.orbit.durations <= 0.0).any():
+        raise NoConvergenceError("no time is left for contact")
+    same_direction = point.root.tangent[-1] * changed.root.tangent[-1] >= 0.0
+    return changed if same_direction else changed.reversed()
+
+
+def estimated_next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
+    """Return the node of the impact after a short flight, estimated as a parabola."""
+    phase, position, velocity, closing = orbit.nodes[node]
+    parting = orbit.form.parting(closing)
+    time = 2.0 * parting / -float(orbit.form.force(position, velocity))
+    if not 0.0 < time < orbit.durations[node]:
+        raise NoConvergenceError("no time is left for another impact")
+    return np.array([phase + orbit.form.eta * time, position + velocity * time, velocity, parting])

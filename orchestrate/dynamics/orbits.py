@@ -6,8 +6,7 @@ from abc import ABC
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,27 +14,28 @@ from numpy.typing import ArrayLike
 from ..constants import TURN
 from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, checked_integer, checked_number, checked_numbers, whole
 from ..response.labels import make_dataset
 from ..response.questions import Question, ask, checked_point, checked_state, require_delaminated
-from ..running.job import Table
+from ..running.job import Fmus, Table
+from ..running.options import Running
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
 from .families import ACCELERATION, Setting
-from .guesses import Guess, close_returns, guess_from_phases, guess_from_state
 from .orbit_records import orbit_coordinates, orbit_row, orbit_table, orbit_variables
-from .orbit_search import first_possible_orbit, single_impact_guesses
+from .orbit_search import (
+    Guess,
+    close_returns,
+    first_possible_orbit,
+    guess_from_phases,
+    guess_from_state,
+    single_impact_guesses,
+)
 from .periodic_orbit import IMPACT, PHASE, RELEASE, ImpactSequence
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-
 MAX_PERIODS = 1000  # of an orbit that can be asked for
-SHIFTS = 12  # of all impact times in common, that are tried
 NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
 
 
@@ -102,7 +102,6 @@ class OrbitJob(SingleOrbitQuestion):
     asked: ClassVar[str] = "orbit"
 
     def call_text(self) -> str:
-        """Return Python source of an ``orbit(...)`` call that repeats this, guess included."""
         frequency = self.setting.point(self.values).excitation.frequency
         arguments = {**dict(self.excitation), "period": self.period}
         if self.box_acceleration:
@@ -114,13 +113,12 @@ class OrbitJob(SingleOrbitQuestion):
             parts.append(f"guess={self.guess.as_argument(frequency)}")
         return f"orbit({', '.join(parts)})"
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Solve for the orbit by Newton's method; return its record as a table of one row."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return orbit_table([find_orbit(instance, self)])
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the orbit: states, impacts, multipliers, check by the FMU."""
         setting = self.setting
         title = f"Periodic orbit of {self.period} periods: {self.structure.label()}"
         variables = orbit_variables(setting, table, "point")
@@ -156,7 +154,7 @@ def orbit_guesses(
             yield guess.as_guess(job.period)
             return
         sequence = ImpactSequence(job.period, guess.kinds)
-        for shift in np.arange(SHIFTS) * TURN / SHIFTS:
+        for shift in np.arange(12) * TURN / 12:
             yield guess_from_phases(form, sequence, phases[:, 0] + shift)
     else:
         returns = close_returns(instance, point, form, job.period, job.transient, job.search)

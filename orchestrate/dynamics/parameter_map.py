@@ -7,17 +7,17 @@ leads to.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from functools import lru_cache, partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from functools import lru_cache
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance, Instance
+from ..lazy import Unpack, xr
 from ..model import PARAMETERS, Structure
 from ..model.arguments import Numbers, checked, positive, whole
 from ..model.outcomes import UNDECIDED
@@ -36,17 +36,14 @@ from ..response.questions import (
     excitation_numbers,
     make_point,
 )
-from ..response.respond import Response, count_later_impacts, respond
+from ..response.respond import DecidedResponse, Response, decisions_from, responses_from
+from ..response.response_loop import LoopSettings, response_loop
 from ..response.sweep import HOW_DECIDED
-from ..running.job import Table, plain
+from ..running.job import Fmus, Table, plain
 from ..running.options import Running, RunOptions
 from .clusters import transient_periods
 from .following import follow_impacts
 from .lyapunov import exponent_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
 
 FIELDS = {
     "impacts_per_period": "impacts per excitation period",
@@ -103,20 +100,25 @@ class MapJob(Question):
         return {**{name: plain(value) for name, value in self.given}, **others}
 
     def items(self) -> Sequence[Point]:
-        """Return the items: structure and excitation of each grid point."""
         return self.points
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
         """Compute a chunk of the map's points by the FMU; return them as a table."""
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
-            rows = [self.row(plain, eventful, item) for item in items]
+            decided = zip(items, self.decided_responses(plain, items), strict=True)
+            rows = [self.row(eventful, item, *each) for item, each in decided]
         return {"rows": np.array(rows, dtype=float)}
 
-    def row(self, plain: Instance, eventful: EventInstance, item: Point) -> list[float]:
+    def row(
+        self,
+        eventful: EventInstance,
+        item: Point,
+        response: Response,
+        decision: Decision,
+        rate: float,
+    ) -> list[float]:
         """Return one point's results in the order of ``FIELDS``, and ``EXPONENT`` if asked for."""
-        response, (n, decided), rate = self.decided_response(plain, item)
+        n, decided = decision
         impacts = follow_impacts(eventful, item, response.end, self.samples // 2)
         impulse = impacts.impulse(item.structure, item.speed).max(initial=0.0) / item.structure.m1
         numbers = [rate, n, decided, response.x_rel_max / item.length, impulse]
@@ -125,22 +127,35 @@ class MapJob(Question):
             numbers += exponent_of(later, self.periods, item)
         return numbers
 
-    def decided_response(self, instance: Instance, item: Point) -> tuple[Response, Decision, float]:
-        """Run a point on until its multiplicity is decided; return response, decision, impacts."""
-        eta = item.excitation.eta(item.structure)
-        dropped, done, start = transient_periods(self.transient, self.settle, eta), 0, self.start
-        while True:
-            response = respond(instance, *item, start, dropped, self.samples, self.tolerance)
-            run = item.excitation.period, dropped + self.samples, response.impact_count
-            count_later = partial(count_later_impacts, instance, *run)
-            decision, rate = response.conclude(response.decision(self.tolerance), count_later)
-            done, start = done + dropped + self.samples, response.end
-            if decision.decided != UNDECIDED or done >= self.longest:
-                return response, decision, rate
-            dropped = min(done, self.longest - done)
+    def decided_responses(
+        self, instance: Instance, items: Sequence[Point]
+    ) -> list[DecidedResponse]:
+        """Run points on until their multiplicity is decided; return responses, impacts a period."""
+        loop, ends = response_loop(instance), np.tile(self.start, (len(items), 1))
+        etas = [item.excitation.eta(item.structure) for item in items]
+        dropped = np.array([transient_periods(self.transient, self.settle, eta) for eta in etas])
+        done, decided = np.zeros(len(items), dtype=int), {}
+        left = np.arange(len(items))
+        while len(left):
+            points = [items[i] for i in left.tolist()]
+            settings = LoopSettings(
+                transient=dropped[left].tolist(),
+                samples=self.samples,
+                tolerance=self.tolerance,
+                decides=True,
+            )
+            results = loop.respond(points, ends[left], settings)
+            done[left] += dropped[left] + self.samples
+            responses = responses_from(results, points, self.tolerance)
+            for i, row in zip(left.tolist(), decisions_from(results, responses), strict=True):
+                decided[i] = row
+            ends[left] = results.ends
+            undecided = np.array([decided[i][1].decided == UNDECIDED for i in left.tolist()])
+            left = left[undecided & (done[left] < self.longest)]
+            dropped = np.minimum(done, self.longest - done)
+        return [decided[i] for i in range(len(items))]
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the map: the variables of ``FIELDS`` over both parameters."""
         names, axes = tuple(self.axes), self.axes
         texts = {**FIELDS, **(EXPONENT if self.exponent else {})}
         shape = (-1, *(len(values) for values in axes.values()))
@@ -231,8 +246,7 @@ def map(
     Raises
     ------
     InputError
-        Where a required argument is missing, arguments contradict each other, or a number is out
-        of its range.
+        Where an argument is missing, contradicts another one, or is out of its range.
 
     Notes
     -----

@@ -3,31 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..fmu import OSCILLATOR, EventInstance, Impacts, Instance, begin
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, checked_number, checked_word, whole
 from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import OneMotionQuestion, Point, ask, checked_point, checked_state
 from ..response.simulate import IN_TIME
-from ..running.job import Table
+from ..running.job import Fmus, Table
+from ..running.options import Running
 from .following import FollowedResponse, state_after_transient
 from .variational import contact_durations_after, nondimensional_impacts
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 COLUMNS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel")
 SECTIONS = {  # what a section is, by its name
@@ -50,9 +45,7 @@ class PoincareJob(OneMotionQuestion):
     start: tuple[float, ...]  # x1, x2 in m, v1, v2 in m/s at phase 0
     asked: ClassVar[str] = "poincare"
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
         """Simulate the motion after its transient; return states and times of the section."""
         point, period = items[0], self.excitation.period
         with Instance(fmus[OSCILLATOR]) as plain:
@@ -70,10 +63,15 @@ class PoincareJob(OneMotionQuestion):
             if self.at == "releases":
                 times = release_times(impacts, point, self.periods * period)
                 return {"time": times, "rows": states_at_times(plain, point, start, times)}
-        return impact_table(impacts)
+        rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
+        return {
+            "time": impacts.time,
+            "rows": np.column_stack([impacts.state, np.zeros(len(rate)), rate]),
+            "impact_velocity": impacts.closing,
+            "sticks": impacts.sticks,
+        }
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the section's points: states, times, phases, impact speeds."""
         time, columns = table["time"], dict(zip(COLUMNS, table["rows"].T, strict=True))
         phase = np.mod(time * self.excitation.frequency, TURN)
         if self.at == "phase":
@@ -114,17 +112,6 @@ def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
     released = scaled.sticks & (lasting < ends - scaled.time)
     times: Floats = (scaled.time + lasting)[released] / omega
     return times
-
-
-def impact_table(impacts: Impacts) -> Table:
-    """Return impacts as a table: times, states just after them, closing speeds, sticking."""
-    rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
-    return {
-        "time": impacts.time,
-        "rows": np.column_stack([impacts.state, np.zeros(len(rate)), rate]),
-        "impact_velocity": impacts.closing,
-        "sticks": impacts.sticks,
-    }
 
 
 def poincare(
@@ -174,8 +161,7 @@ def poincare(
     Raises
     ------
     InputError
-        Where a required argument is missing, arguments contradict each other, or a number is out
-        of its range.
+        Where an argument is missing, contradicts another one, or is out of its range.
 
     Notes
     -----

@@ -17,11 +17,9 @@ from .periodic_orbit import PHASE, PeriodicOrbit
 from .turning_points import Amplitudes, stroboscopic_states, turning_points
 
 Floats = NDArray[np.float64]
-ON_KNOWN_MOTION = 1e-5  # over the motion's size: a state that is nearer lies on that motion
 LENGTHS = np.array(  # displacements, velocities, the gap and its rate, from a state
     [[1, 0, 0, 0, -1, 0], [0, 1, 0, 0, 1, 0], [0, 0, 1, 0, 0, -1], [0, 0, 0, 1, 0, 1]], dtype=float
 )
-SAME_NODES = 1e-6  # of the nodes of two orbits over their size, within which these are one orbit
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,14 +82,11 @@ class SettledMotion:
         states = self.point.from_faces(stroboscopic_states(self.orbit, self.free_phase))
         return ScaledStates.from_states(states, self.point.excitation.frequency, self.gap)
 
-    def is_same_orbit_as(self, other: SettledMotion) -> bool:
-        """Return whether both motions are the same orbit: same nodes, or same states."""
+    def is_same_orbit_as(self, other: SettledMotion, within: float) -> bool:
+        """Return whether both motions are the same orbit: same nodes, or states that are close."""
         if self.orbit is None or other.orbit is None or self.multiplicity != other.multiplicity:
             return False
-        return (
-            same_nodes(self.orbit, other.orbit)
-            or self.nearest(other.states[0])[1] < ON_KNOWN_MOTION
-        )
+        return same_nodes(self.orbit, other.orbit) or self.nearest(other.states[0])[1] < within
 
 
 @dataclass(frozen=True)
@@ -134,6 +129,6 @@ def same_nodes(first: PeriodicOrbit, second: PeriodicOrbit) -> bool:
         away = np.roll(second.nodes, -shift, axis=0) - first.nodes
         away[:, PHASE] -= TURN * np.round(away[:, PHASE] / TURN)
         away[:, 1:] /= size
-        if np.abs(away).max() < SAME_NODES:
+        if np.abs(away).max() < 1e-6:
             return True
     return False

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..flags import flag_words
-
-if TYPE_CHECKING:
-    import xarray as xr
+from ..lazy import xr
 
 
 class StableWindow(NamedTuple):
@@ -38,7 +36,7 @@ def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
     order = np.argsort(branch.bifurcation_place.values)
     places = [0.0, *branch.bifurcation_place.values[order], branch.sizes["point"] - 1.0]
     values = [over[0], *branch.bifurcation_value.values[order], over[-1]]
-    names = kind_names(branch)
+    names = flag_words(branch.bifurcation_kind.attrs)
     kinds = [names[kind] for kind in branch.bifurcation_kind.values[order].tolist()]
     reasons = [branch.attrs["first_end"], *kinds, branch.attrs["last_end"]]
     ends = list(zip(map(float, values), reasons, strict=True))
@@ -50,8 +48,3 @@ def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
             (low, below), (high, above) = sorted(ends[i : i + 2])
             windows.append(StableWindow(low, high, below, above))
     return windows
-
-
-def kind_names(branch: xr.Dataset) -> dict[int, str]:
-    """Return a dict from number to name of the bifurcation kinds in a branch dataset."""
-    return flag_words(branch.bifurcation_kind.attrs)

@@ -17,16 +17,11 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from .bifurcations import KINDS, BifurcationKind
+from .bifurcations import KINDS, Kind
 from .continuation import SOLVER_ERRORS, AnyCurve, ArclengthStepper, Root, solve_between
 
 LIMIT, NO_CONVERGENCE, MAX_POINTS = "limit", "no convergence", "most points"  # ends of branches
-SHORTENED = 0.3  # of a step in which a bifurcation could not be located
-BEFORE_END = 1.0 - 1e-6  # of a step to the branch's end: where the other test functions are defined
 ACCURACY = 1e-14  # of a position along the branch, in unknowns over their scale
-SLOPE_PART = 1e-3  # of a step, over which the slope of a test function is taken
-LOWEST_PART = 1e-6  # of a step: how exactly a test function's extremum is located
-SPEED_UP = 2.0  # how much faster than in the step before a test function is thought to change
 
 Point = TypeVar("Point")
 
@@ -45,7 +40,7 @@ class ContinuationSettings:
 class Bifurcation(Generic[Point]):
     """A bifurcation located on a branch: its kind, its point, and its position on the branch."""
 
-    kind: BifurcationKind
+    kind: Kind
     point: Point  # of the branch, there
     # among the branch's points: between two numbers where it lies between two points
     position: float
@@ -60,7 +55,7 @@ class BranchSegment(Generic[Point]):
     bifurcations: list[Bifurcation[Point]] = field(default_factory=list)
     end: str = ""  # why it ends
 
-    def add_bifurcation(self, kind: BifurcationKind, point: Point, beyond: float) -> None:
+    def add_bifurcation(self, kind: Kind, point: Point, beyond: float) -> None:
         """Append a bifurcation located ``beyond`` the last point, as a fraction of a step."""
         self.bifurcations.append(Bifurcation(kind, point, len(self.points) - 1 + beyond))
 
@@ -68,9 +63,9 @@ class BranchSegment(Generic[Point]):
 class BranchTracer(ABC, Generic[AnyCurve, Point]):
     """Base of tracers: the loop of continuation; subclasses supply points and test functions."""
 
-    kinds: ClassVar[tuple[BifurcationKind, ...]] = ()  # those with a test function
+    kinds: ClassVar[tuple[Kind, ...]] = ()  # those with a test function
     # those beyond which there are no points
-    ending_kinds: ClassVar[tuple[BifurcationKind, ...]] = ()
+    ending_kinds: ClassVar[tuple[Kind, ...]] = ()
     # whether two bifurcations of a kind in one step are sought: it takes further roots
     finds_pairs: ClassVar[bool] = False
 
@@ -91,11 +86,11 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         """Return whether a solved root may be the branch's next point; by default yes."""
         return True
 
-    def test(self, point: Point, kind: BifurcationKind) -> float:
+    def test(self, point: Point, kind: Kind) -> float:
         """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
         raise NotImplementedError
 
-    def confirms(self, kind: BifurcationKind, point: Point, part: float) -> bool:
+    def confirms(self, kind: Kind, point: Point, part: float) -> bool:
         """Return whether a test function's zero at a fraction of a step is a true bifurcation."""
         return True
 
@@ -107,7 +102,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         """Return why the branch ends within a step (empty if not), and its last points."""
         return "", ()
 
-    def finish_step(self, step: BranchStep[Point]) -> tuple[Point, BifurcationKind | None]:
+    def finish_step(self, step: BranchStep[Point]) -> tuple[Point, Kind | None]:
         """Return the point that a step appends, and the bifurcation there if it ends the branch."""
         return step.after, None
 
@@ -138,7 +133,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         return segment
 
     def next_step(
-        self, before: Point, rates: Mapping[BifurcationKind, float]
+        self, before: Point, rates: Mapping[Kind, float]
     ) -> tuple[BranchStep[Point], list[LocatedBifurcation[Point]]]:
         """Take a step, shortened until all in it can be solved for; return its bifurcations too."""
         stepper = self.stepper
@@ -157,7 +152,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                         located = [*located, LocatedBifurcation(kind, step.length, last)]
                 return step, located
             except SOLVER_ERRORS:
-                stepper.length = SHORTENED * length
+                stepper.length = 0.3 * length
                 if stepper.length < stepper.min_length:
                     raise
 
@@ -166,13 +161,13 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         tested = [kind for kind in self.kinds if kind in self.ending_kinds]
         ends = self.locate_kinds(step, tested)[:1]
         if ends:
-            length = ends[0].position * BEFORE_END
+            length = ends[0].position * (1.0 - 1e-6)  # where the other test functions are defined
             step = replace(step, after=step.point(length), length=length)
         others = [kind for kind in self.kinds if kind not in self.ending_kinds]
         return [*self.locate_kinds(step, others), *ends]
 
     def locate_kinds(
-        self, step: BranchStep[Point], kinds: Sequence[BifurcationKind]
+        self, step: BranchStep[Point], kinds: Sequence[Kind]
     ) -> list[LocatedBifurcation[Point]]:
         """Locate the confirmed bifurcations of given kinds in a step; return them in order."""
         crossings = [
@@ -210,7 +205,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
 class LocatedBifurcation(Generic[Point]):
     """A bifurcation located in a step: its kind, arclength from the step's start, and point."""
 
-    kind: BifurcationKind
+    kind: Kind
     position: float
     point: Point
 
@@ -226,7 +221,7 @@ class BranchStep(Generic[Point]):
     length: float
     at_limit: bool = False  # whether it ends at a limit of a parameter
     # how fast each test function changed in the step before; infinite where that is not known
-    rates: Mapping[BifurcationKind, float] = field(default_factory=dict)
+    rates: Mapping[Kind, float] = field(default_factory=dict)
     end: str = ""  # why the branch ends with this step; empty where it does not
     last_points: Iterable[Point] = ()  # to add to the branch
 
@@ -240,41 +235,51 @@ class BranchStep(Generic[Point]):
             self.known[position] = tracer.point(tracer.stepper.root_after(position))
         return self.known[position]
 
-    def test(self, position: float, kind: BifurcationKind) -> float:
+    def test(self, position: float, kind: Kind) -> float:
         """Return a kind's test function at an arclength into the step; 1 where not finite."""
         value = self.tracer.test(self.point(position), kind)
         return value if np.isfinite(value) else 1.0
 
-    def brackets(self, kind: BifurcationKind) -> list[tuple[float, float]]:
+    def brackets(self, kind: Kind) -> list[tuple[float, float]]:
         """Return intervals of the step in which a kind's test function changes sign."""
         before, after = (self.tracer.test(point, kind) for point in (self.before, self.after))
         if before * after < 0.0:
             return [(0.0, self.length)]
         if self.tracer.finds_pairs and self.may_cross_twice(kind):
-            middle = self.extremum_position(kind)
+            from scipy.optimize import minimize_scalar
+
+            sign = np.sign(self.tracer.test(self.before, kind))
+            minimum = minimize_scalar(
+                lambda position: sign * self.test(float(position), kind),
+                bounds=(0.0, self.length),
+                method="bounded",
+                options={"xatol": 1e-6 * self.length},
+            )
+            middle = float(minimum.x)
             if before * self.test(middle, kind) < 0.0:
                 return [(0.0, middle), (middle, self.length)]
         return []
 
-    def may_cross_twice(self, kind: BifurcationKind) -> bool:
+    def may_cross_twice(self, kind: Kind) -> bool:
         """Return whether a test function may cross zero twice: its size falls, then rises."""
         value = self.tracer.test(self.before, kind)
-        reach = SPEED_UP * abs(self.rates.get(kind, np.inf)) * self.length
+        # it may change twice as fast as in the step before
+        reach = 2.0 * abs(self.rates.get(kind, np.inf)) * self.length
         if self.length <= ACCURACY or not abs(value) < reach:
             return False
         sign = np.sign(value)
         falls, rises = (sign * self.slope(end, kind) for end in (0.0, self.length))
         return bool(falls < 0.0 < rises)
 
-    def mean_slope(self, kind: BifurcationKind) -> float:
+    def mean_slope(self, kind: Kind) -> float:
         """Return a test function's mean slope over the step; infinite where it is not finite."""
         after, before = (self.tracer.test(point, kind) for point in (self.after, self.before))
         change = after - before
         return change / self.length if np.isfinite(change) and self.length else np.inf
 
-    def slope(self, position: float, kind: BifurcationKind) -> float:
+    def slope(self, position: float, kind: Kind) -> float:
         """Return a test function's slope at either end of the step; 0 where not computable."""
-        near = position + (SLOPE_PART if position == 0.0 else -SLOPE_PART) * self.length
+        near = position + (1e-3 if position == 0.0 else -1e-3) * self.length
         tests = self.tracer.test
         try:
             change = tests(self.point(near), kind) - tests(self.point(position), kind)
@@ -282,21 +287,8 @@ class BranchStep(Generic[Point]):
             return 0.0
         return change / (near - position) if np.isfinite(change) else 0.0
 
-    def extremum_position(self, kind: BifurcationKind) -> float:
-        """Return the position where a test function is nearest to zero, or deepest beyond it."""
-        from scipy.optimize import minimize_scalar
-
-        sign = np.sign(self.tracer.test(self.before, kind))
-        minimum = minimize_scalar(
-            lambda position: sign * self.test(float(position), kind),
-            bounds=(0.0, self.length),
-            method="bounded",
-            options={"xatol": LOWEST_PART * self.length},
-        )
-        return float(minimum.x)
-
     def solve_for_level(
-        self, kind: BifurcationKind, low: float, high: float, level: float = 0.0
+        self, kind: Kind, low: float, high: float, level: float = 0.0
     ) -> tuple[float, Point]:
         """Solve by Brent's method for where a test has a level; return position, point."""
         position = solve_between(

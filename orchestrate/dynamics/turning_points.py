@@ -14,9 +14,6 @@ from .periodic_orbit import PHASE, PeriodicOrbit
 
 XI_1, XI_2, GAP = range(3)  # quantities that turn, as weights of the two masses
 WEIGHTS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]])
-SAMPLES_PER_PERIOD = 24  # of the fastest oscillation: extrema lie further apart
-MIN_SAMPLES = 8  # in a segment, however short
-REFINEMENTS = 6  # Newton steps: each doubles the digits of a bracketed extremum
 
 
 @dataclass(frozen=True)
@@ -33,8 +30,8 @@ class TurningPoints:
 
 def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
     """Return segment indices and phases of a fine sampling grid along an orbit."""
-    counts = MIN_SAMPLES + np.ceil(
-        SAMPLES_PER_PERIOD * np.abs(orbit.durations) * orbit.form.fastest / TURN
+    counts = 8 + np.ceil(  # of the fastest oscillation 24: extrema lie further apart
+        24 * np.abs(orbit.durations) * orbit.form.fastest / TURN
     ).astype(int)
     segment = np.repeat(np.arange(len(counts)), counts)
     number_in_segment = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -72,7 +69,7 @@ def refine_zeros(
     eta: float,
 ) -> Floats:
     """Refine phases, rad, of zeros of rates by Newton's method within their brackets."""
-    for _ in range(REFINEMENTS):
+    for _ in range(6):  # each doubles the digits
         rate, slope = rate_and_slope(phases)
         step = np.divide(rate, slope, out=np.zeros_like(rate), where=slope != 0.0)
         phases = np.clip(phases - eta * step, *brackets)
@@ -112,9 +109,7 @@ class Amplitudes:
 
 
 def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
-    """Return the smallest gap minimum of all flights, with its segment and phase; infinite if
-    none.
-    """
+    """Return the smallest gap minimum of all flights (infinite: none), its segment and phase."""
     which = np.flatnonzero((turns.quantity == GAP) & (turns.curvature > 0.0))
     if not len(which):
         return np.inf, -1, 0.0

@@ -17,10 +17,7 @@ import numpy as np
 
 from ..fmu import Impacts
 from ..response.questions import Point
-from .closed_form import ClosedForm, Floats
-from .release import contact_durations
-
-LEAST_SPEED = 1e-300  # a grazing impact has no closing speed: its matrix is very large instead
+from .closed_form import ClosedForm, Floats, contact_durations
 
 
 def period_in_tau(eta: float) -> float:
@@ -37,15 +34,19 @@ def saltation_matrices(impacts: Impacts, point: Point) -> Floats:
     restitution[3, 2:] += np.array([part, -part])
     exchange = np.zeros((4, 4))  # R is linear in the coefficient: its derivative by that
     exchange[2:, 2:] = np.array([[-form.mu, form.mu], [1.0, -1.0]]) / (1.0 + form.mu)
-    slower = (form.parting_rate(impacts.closing) - form.e)[:, None]
     phase = form.eta * impacts.time
     after = form.field(impacts.state, phase)
     before = form.field(impacts.before(point.structure), phase)
-    jump = after - before @ restitution.T - slower * (before @ exchange.T)
-    normal = np.array([-1.0, 1.0, 0.0, 0.0])
-    speed = np.maximum(impacts.closing, LEAST_SPEED)[:, None, None]
-    derivative = restitution + slower[:, :, None] * exchange
-    matrices: Floats = derivative - jump[:, :, None] * normal / speed
+    jump = after - before @ restitution.T
+    matrices: Floats = np.broadcast_to(restitution, (len(jump), 4, 4)).copy()
+    if form.e_slope:
+        slower = (form.parting_rate(impacts.closing) - form.e)[:, None]
+        jump -= slower * (before @ exchange.T)
+        matrices += slower[:, :, None] * exchange
+    # a grazing impact has no closing speed: its matrix is very large instead
+    jump /= np.maximum(impacts.closing, 1e-300)[:, None]
+    matrices[:, :, 0] += jump  # times the normal (-1, 1, 0, 0)
+    matrices[:, :, 1] -= jump
     matrices[impacts.sticks] = form.centre()
     return matrices
 

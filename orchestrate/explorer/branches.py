@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..flags import flag_words
+from ..lazy import xr
 from .sweep_data import READING
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def branch_json(found: xr.Dataset | None) -> dict[str, Any]:

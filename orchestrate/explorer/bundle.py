@@ -15,24 +15,7 @@ EXPORT = re.compile(r"^export ((?:async )?(?:function\*?|class|const|let)) (\w+)
 
 
 def bundle(sources: Mapping[str, str], entry: str) -> str:
-    """Join JavaScript modules into one script that ends with the entry module.
-
-    Examples
-    --------
-    >>> taken = 'import { one } from "./a.js";' + chr(10)
-    >>> print(bundle({"a": "export const one = 1;", "b": taken + "f(one);"}, "b"))
-    "use strict";
-    const module_a = (() => {
-    const one = 1;
-    return { one };
-    })();
-    const module_b = (() => {
-    const { one } = module_a;
-    f(one);
-    return {  };
-    })();
-    <BLANKLINE>
-    """
+    """Join JavaScript modules into one script that ends with the entry module."""
     order: list[str] = []
     append_with_imports(sources, entry, order)
     return '"use strict";\n' + "".join(wrap_module(name, sources[name]) for name in order)

@@ -8,7 +8,7 @@ import hashlib
 import zlib
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jinja2
 from markupsafe import Markup
@@ -17,24 +17,20 @@ from ..errors import InputError
 from ..files import open_folder, write_whole
 from ..fmu import OSCILLATOR, SHAKER
 from ..fmu.webassembly import WebKernel, web_kernel
+from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.ranges import STRUCTURE
 from ..units import Units, units_of
 from ..version import __version__
 from .branches import branch_json
 from .bundle import bundle
-from .figure6 import first_diagram
-from .sweep_data import SweepData, check_units, read_sweep, shown_in
+from .sweep_data import SweepData, check_units, first_diagram, read_sweep, shown_in
 from .tour import TOUR, tour_in
 from .words import WORDS
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 SOURCES = Path(__file__).parent / "page"
 HEAD = b"<title>Explorer of a vibro-impacting structure</title>"  # by which a page is known
 FLAG = {"bonded": [0.0, 1.0]}  # a range too
-READ = 4096  # bytes of a file that are read for it
 
 
 def explore(
@@ -89,7 +85,7 @@ def first_bytes(path: Path) -> bytes:
     if not path.is_file():
         return b""
     with path.open("rb") as file:
-        return file.read(READ)
+        return file.read(4096)
 
 
 def render_page(

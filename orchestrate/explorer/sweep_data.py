@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import GRAVITY
 from ..errors import InputError
+from ..fmu import OSCILLATOR
+from ..fmu.webassembly import kernel_digest
+from ..lazy import xr
 from ..model import Excitation, Structure
+from ..running.store import load
 from ..units import Units
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 EXPECTED = "expected a result of orchestrate.sweep along eta or frequency"
 SWEPT = ("eta", "frequency")
 RATIO = ("", "eta")
 SETTINGS = ("transient", "samples", "tolerance")
 READING = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)  # of a file
-MOST_PERIODS = 1_000_000  # of a response that a page computes within seconds
 OWN = Units("Hz", "mm", "g")  # of a beam of one's own, where nothing else is asked for
-PAPER = (0.1, 8.0)  # frequency ratios of Figure 6
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def empty_sweep(structure: Structure, units: Units) -> SweepData:
     """Return data without a sweep: the page then computes its first diagram itself."""
     settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
     level = ("paper", 1.0) if in_ratios(structure, units) else ("g", 1.0)
-    return SweepData(structure, ("up",), settings, np.empty(0), 0, *PAPER, level, "")
+    return SweepData(structure, ("up",), settings, np.empty(0), 0, 0.1, 8.0, level, "")
 
 
 def read_sweep(data: xr.Dataset) -> SweepData:
@@ -72,7 +73,9 @@ def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     directions = ("up", "down") if direction == "both" else (direction,)
     (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
     data = data.sortby(parameter)
-    scale = state_scales(data, structure)
+    pairs = zip(data.frequency.values, data.amplitude.values, strict=True)
+    lengths = np.array([Excitation(frequency=f, amplitude=a).length(structure) for f, a in pairs])
+    scale = lengths[:, None] * np.array([1.0, 1.0, structure.omega, structure.omega])
     rows = [np.stack([data[name].values for name in ("eta", "frequency", "amplitude")])]
     for one_way in directions:
         part = data.sel(direction=one_way) if "direction" in data.dims else data
@@ -140,7 +143,8 @@ def sweep_settings(data: xr.Dataset) -> dict[str, float]:
     transient, samples, tolerance = settings.values()
     if not (transient.is_integer() and samples.is_integer() and transient >= 0 and samples >= 1):
         raise ValueError(f"transient = {transient}, samples = {samples}")
-    if not (0.0 < tolerance < math.inf and transient + samples <= MOST_PERIODS):
+    # what a page computes within seconds
+    if not (0.0 < tolerance < math.inf and transient + samples <= 1_000_000):
         raise ValueError(f"tolerance = {tolerance}, {transient + samples} periods")
     return settings
 
@@ -171,13 +175,6 @@ def parse_state(text: Any) -> NDArray[np.float64]:
     return state
 
 
-def state_scales(data: xr.Dataset, structure: Structure) -> NDArray[np.float64]:
-    """Return the SI units of the non-dimensional states' coordinates, shape (n, 4)."""
-    pairs = zip(data.frequency.values, data.amplitude.values, strict=True)
-    lengths = np.array([Excitation(frequency=f, amplitude=a).length(structure) for f, a in pairs])
-    return lengths[:, None] * np.array([1.0, 1.0, structure.omega, structure.omega])
-
-
 def start_states(
     ends: NDArray[np.float64], start: NDArray[np.float64], direction: str
 ) -> NDArray[np.float64]:
@@ -185,3 +182,26 @@ def start_states(
     if direction == "up":
         return np.concatenate([start[None], ends[:-1]])
     return np.concatenate([ends[1:], start[None]])
+
+
+FILE = Path(__file__).with_name("figure6.nc")  # written by tools/figure6_states.py
+STAMP = "kernel"  # attribute: digest of the kernel that computed it
+
+log = logging.getLogger(__name__)
+
+
+def first_diagram(structure: Structure, units: Units | None = None) -> SweepData:
+    """Return the page's first diagram: Figure 6 for the paper's structure, else an empty one."""
+    units = units or Units()
+    if structure != Structure() or not in_ratios(structure, units):
+        return empty_sweep(structure, units)
+    data = load(FILE)
+    if not is_current(data):
+        log.warning("Figure 6 was computed by another kernel: the page computes its own")
+        return empty_sweep(structure, units)
+    return read_sweep(data)
+
+
+def is_current(data: xr.Dataset) -> bool:
+    """Return whether the present kernel computed a stored Figure 6."""
+    return bool(data.attrs.get(STAMP) == kernel_digest(OSCILLATOR))

@@ -109,7 +109,7 @@ STEPS = (
         "Nothing is random here, and yet it never repeats: a cloud of dots in the diagram. Two "
         "motions that begin almost alike soon have nothing in common; the exponent, above zero, "
         "says how soon. Listen: no rhythm stays.",
-        (View("chaos", "", 2.9),),
+        (View("chaos", "", 2.86),),
     ),
     Step(
         "Pressed shut",
@@ -159,15 +159,10 @@ def in_units(text: str, shown: Mapping[str, str]) -> str:
         sizes = FACTORS[KINDS[unit]]
         word = shown[KINDS[unit]]
         scale = sizes[unit] / (OMEGA if word == "eta" else sizes[word])
-        value = plain_number(float(number) * scale)
+        value = format(Decimal(f"{float(number) * scale:.4g}"), "f")  # without an exponent
         return f"η = {value}" if word == "eta" else f"{value} {SPELLED.get(word, word)}"
 
     return QUANTITY.sub(convert, text)
-
-
-def plain_number(value: float) -> str:
-    """Return a number with four digits, without an exponent."""
-    return format(Decimal(f"{value:.4g}"), "f")
 
 
 def tour_in(shown: Mapping[str, str]) -> tuple[Step, ...]:

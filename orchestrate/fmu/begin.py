@@ -30,7 +30,9 @@ def begin(
     instance.reset()
     instance.initialize(**{**start_values, **values})
     if instance.EVENTS:
-        instance.call("enterStepMode")
+        enter = instance.cache.get("enterStepMode") or instance.prepared("fmi3EnterStepMode")
+        instance.cache["enterStepMode"] = enter
+        enter()
 
 
 def from_rest(structure: Structure, state: list[float]) -> list[float]:

@@ -16,7 +16,7 @@ from .instance import Instance, function_addresses
 
 
 class Pointers(NamedTuple):
-    """Addresses that compiled code needs to call an FMI 3.0 instance directly."""
+    """Addresses that compiled code needs to call an instance directly."""
 
     instance: int
     # addresses of `fmi3SetFloat64`, `fmi3GetFloat64`, `fmi3GetInt32`, `fmi3DoStep`,
@@ -89,8 +89,10 @@ class Channel:
             raise self.failure(getattr(function, "__name__", "a call of the FMU"), status)
 
     def pointers(self) -> Pointers:
-        """Return C addresses of an FMI 3.0 instance, its functions and its saved state."""
-        names = ("SetFloat64", "GetFloat64", "GetInt32", "DoStep", "GetFMUState", "SetFMUState")
+        """Return C addresses of an instance, its functions and its saved state."""
+        names = ("SetReal", "GetReal", "GetInteger", "DoStep", "GetFMUstate", "SetFMUstate")
+        if self.instance.is_fmi3:
+            names = ("SetFloat64", "GetFloat64", "GetInt32", "DoStep", "GetFMUState", "SetFMUState")
         instance, *addresses = function_addresses(self.instance, names)
         saved_state = self._states.setdefault(0, c_void_p())
         inputs, outputs = self._puts[-1][1], self._gets[1]

@@ -43,9 +43,7 @@ class Description:
         return self.fmi_version.startswith("3")
 
     def variable(self, name: str) -> Any:
-        """Return FMPy's description of the variable with a name; raise ``InputError`` if
-        unknown.
-        """
+        """Return FMPy's description of a variable; raise ``InputError`` if it is unknown."""
         try:
             return self.variables[name]
         except KeyError:
@@ -61,9 +59,9 @@ def describe(path: str | PathLike[str], model: str | None = None) -> Description
     try:
         description = read_description(path)
     except Exception as error:
-        reason = (str(error).splitlines() or [type(error).__name__])[0]
+        reason = " ".join(str(error).split("\n")[:2]) or type(error).__name__
         text = f"FMU {path}: not readable as an FMU ({reason})"
-        raise InputError(f"{text}; expected one that `vibroimpact build` writes") from None
+        raise InputError(f"{text}; expected a valid FMU of FMI 2.0 or 3.0") from None
     if not description.identifier or (model and description.name != model):
         expected = f"{model or 'a model'} for co-simulation"
         raise InputError(f"FMU {path}: model {description.name}; expected {expected}")

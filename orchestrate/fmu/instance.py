@@ -24,9 +24,9 @@ Prepared = Callable[[], None]
 
 
 def function_addresses(instance: Instance, names: Sequence[str]) -> tuple[int, ...]:
-    """Return the addresses of an FMI 3.0 instance and of functions of FMI, for compiled code."""
-    dll = instance._fmu.dll
-    functions = (cast(dll[f"fmi3{name}"], c_void_p).value or 0 for name in names)
+    """Return the addresses of an instance and of functions of FMI, for compiled code."""
+    dll, prefix = instance._fmu.dll, "fmi3" if instance.is_fmi3 else "fmi2"
+    functions = (cast(dll[f"{prefix}{name}"], c_void_p).value or 0 for name in names)
     return (instance._fmu.component, *functions)
 
 

@@ -18,9 +18,12 @@ module                    idea
 :mod:`.record_checks`     saturated, dead and identical channels, lost samples
 :mod:`.run_up`            the run of a weak drive as a record
 :mod:`.columns`           which columns of a file are its channels, and their units
+:mod:`.conversion`        velocities, displacements and voltages made accelerations
+:mod:`.time_base`         rounded and uneven times made equal
 :mod:`.record_csv`        columns of numbers as text
 :mod:`.record_uff`        universal files
 :mod:`.record_mat`        MATLAB's files, read in a process of its own
+:mod:`.record_labview`    LabVIEW's files
 :mod:`.record_files`      records read and written, of any kind of file
 :mod:`.resonance_curve`   a measured resonance curve: amplitudes of faces over the frequency
 :mod:`.curve_files`       resonance curves read from files

@@ -146,10 +146,7 @@ def recurrence_up(z: Complexes, count: int) -> Complexes:
 
 
 def recurrence_down(z: Complexes, count: int, largest: float) -> Complexes:
-    """Compute ``phi_k(z)`` from ``phi_(k+1)``, the last one by its Taylor series: for small z.
-
-    The series begins so high that its terms fall from the first on.
-    """
+    """Compute ``phi_k(z)`` from ``phi_(k+1)``, the last one by its Taylor series: for small z."""
     top = max(count, math.ceil(largest))
     terms = [1.0 / math.factorial(top)]
     while terms[-1] * largest ** (len(terms) - 1) > 1e-18 * terms[0]:
@@ -178,10 +175,7 @@ def low_pass(kind: str, order: int, bandwidth: float) -> tuple[Complexes, Comple
 
 
 def anti_aliasing(sample_rate: float) -> tuple[Complexes, Complexes]:
-    """Return zeros and poles of an elliptic anti-aliasing filter for a sampling rate, Hz.
-
-    Flat to 0.01 dB up to ``sample_rate/2.56``; 80 dB down from where it would come back there.
-    """
+    """Return zeros and poles of an elliptic anti-aliasing filter for a sampling rate, Hz."""
     from scipy.signal import ellip, ellipord
 
     edge = TURN * sample_rate / 2.56

@@ -10,29 +10,23 @@ from typing import Any
 
 import numpy as np
 
-from ..constants import GRAVITY, TURN
+from ..constants import TURN
 from ..errors import InputError
+from .conversion import (
+    ACCELERATIONS,
+    LENGTHS,
+    SPEEDS,
+    VOLTAGES,
+    ByChannel,
+    by_channel,
+    plain_unit,
+    unit_factor,
+)
 from .pieces import Floats
 from .record import CHANNELS, SHORT_NAMES
 from .record_checks import ascends, first_hole
 
-INCH = 0.0254
 MOST_NAMES = 12  # of columns in a message
-ACCELERATIONS = {  # in m/s2
-    **dict.fromkeys(("m/s2", "m/s/s", "ms-2", "m/sec2", "ms2"), 1.0),
-    **dict.fromkeys(("g", "gn", "g0", "gs", "gpk", "gpeak"), GRAVITY),
-    "mg": 1e-3 * GRAVITY,
-    "mm/s2": 1e-3,
-    "cm/s2": 1e-2,
-    "gal": 1e-2,
-    "in/s2": INCH,
-    "ft/s2": 12.0 * INCH,
-}
-SPEEDS = {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "in/s": INCH}  # in m/s
-LENGTHS = {  # in m
-    **{"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": INCH, "mil": 1e-3 * INCH, "nm": 1e-9},
-    **dict.fromkeys(("um", "\u00b5m", "\u03bcm", "micron"), 1e-6),
-}
 FREQUENCIES = {  # in Hz
     **{"hz": 1.0, "1/s": 1.0, "khz": 1e3, "rad/s": 1.0 / TURN},
     **dict.fromkeys(("rpm", "1/min"), 1.0 / 60.0),
@@ -49,14 +43,24 @@ TIMES = {  # in s
     "min": 60.0,
 }
 # What files call a quantity, as patterns of names in small letters and digits alone
-SENSOR = "(?:a|acc|accel|acceleration|accelerometer|beschleunigung|sensor|aufnehmer)?"
-BASE = "(?:base|basis|box|table|tisch|schwingtisch|shaker|shakertable|erreger|aufnahme)"
+SENSOR = (
+    "(?:a|acc|accel|acceleration|accelerometer|beschleunigung|sensor|aufnehmer|capteur|"
+    "accélération|acelerometro|acelerómetro|accelerometro|geber|ch|channel|kanal)?"
+)
+BASE = (
+    "(?:base|basis|box|table|tisch|schwingtisch|shaker|shakertable|erreger|aufnahme|fixture|clamp|"
+    "einspannung|fuß|fuss|socle|embase|mesa|tavola|slip|sliptable|excitation|reference|referenz)"
+)
 FACE = "(?:face|mass|masse|fläche)"
+BEAM = (
+    "(?:beam|balken|face|tip|spitze|response|antwort|poutre|viga|trave|specimen|probe|prüfling|"
+    "laser|vibrometer|ldv)"
+)
 NUMBERED = f"(?:a|acc|accel|acceleration|beschleunigung|{SENSOR}{FACE})"
 NAMES = {
-    "time": "time|t|zeit|temps",
+    "time": "time|t|zeit|temps|tiempo|tempo|timestamp|xvalue|zeitachse",
     "box_acceleration": f"{SENSOR}{BASE}{SENSOR}[xyz]?",
-    "acceleration1": f"{NUMBERED}1{SENSOR}[xyz]?|{SENSOR}(?:beam|balken|face){SENSOR}[xyz]?",
+    "acceleration1": f"{NUMBERED}1{SENSOR}[xyz]?|{SENSOR}{BEAM}{SENSOR}[xyz]?",
     "acceleration2": f"{NUMBERED}2{SENSOR}[xyz]?",
 }
 MOTION = "(?:amplitude|acceleration|acc|a|face|mass|velocity|v|displacement|x)"
@@ -99,6 +103,7 @@ class Column:
     unit: str  # as it stands there; empty where there is none
     values: Floats  # NaN in a column of texts
     text: str = ""  # the first one of such a column
+    sensitivity: str = ""  # of a voltage, as it stands there: 100 mV/g
 
 
 @dataclass(frozen=True)
@@ -133,44 +138,40 @@ def describe_text(text: str) -> str:
     return ", ".join([repr(text[:40]), *kinds[:1]])
 
 
-def plain_unit(text: str) -> str:
-    """Return a unit in the spelling of the tables of units.
-
-    Examples
-    --------
-    >>> plain_unit("m/s\u00b2"), plain_unit("M/S^2"), plain_unit("m/s**2"), plain_unit(" G ")
-    ('m/s2', 'm/s2', 'm/s2', 'g')
-    """
-    plain = text.strip().lower().replace("\u00b2", "2").replace("\u207b", "-")
-    return plain.translate(str.maketrans("", "", "^*_. \u00b7[]()"))
-
-
 def is_unit(text: str) -> bool:
     """Return whether a text is a unit that columns of records or resonance curves may have."""
-    known = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, FREQUENCIES, ANGLES, RATIOS)
+    known = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, VOLTAGES, FREQUENCIES, ANGLES, RATIOS)
     return any(plain_unit(text) in units for units in known)
 
 
 def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
     """Return the factor that converts a unit to SI."""
     if plain_unit(unit) not in known:
-        usual = ("g", "mg", "ms", "rad/s", "deg")
+        usual = ("ms", "rad/s", "deg")
         names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
         text = f"unit = {unit!r}" if unit else "no unit"
-        remedy = "give it by unit=" if known is ACCELERATIONS else "mend it in the file"
-        raise InputError(f"{label}: {text}; expected one such as {names}: {remedy}")
+        raise InputError(f"{label}: {text}; expected one such as {names}: mend it in the file")
     return known[plain_unit(unit)]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Hold a channel in SI, and how many derivatives make its acceleration."""
+
+    values: Floats
+    derivatives: int = 0
 
 
 def converted_channels(
     table: Columns,
     columns: Mapping[str, str | int] | Sequence[str | int] | None,
-    unit: str | None,
-) -> tuple[Floats | None, dict[str, Floats], dict[str, str]]:
-    """Convert a file's columns: return times in s or None, channels in m/s2, how they were read.
+    unit: ByChannel = None,
+    sensitivity: ByChannel = None,
+) -> tuple[Floats | None, dict[str, Channel], dict[str, str]]:
+    """Convert a file's columns to SI: return times in s or None, channels, how they were read.
 
     How they were read are attributes of a record: ``columns``, which column was taken for what;
-    ``unit`` of the accelerations; and ``unit_in_file``, where ``unit`` was taken in its place.
+    ``unit`` of the channels; and ``unit_in_file``, where ``unit`` was taken in its place.
     """
     known = channels_by_name(table) if columns is None else {}
     places = known or channel_places(table, columns)
@@ -189,26 +190,33 @@ def converted_channels(
             raise InputError(f"{label}, row {table.first_row}: {text}")
     if not places:
         raise InputError(f"{table.path}: no channel; expected one of {', '.join(CHANNELS)}")
-    values = {}
+    units = by_channel("unit", unit, list(places))
+    stated = by_channel("sensitivity", sensitivity, list(places))
+    channels = {}
     for name, place in places.items():
         column = table.columns[place]
-        own = column.unit if unit is None else unit
-        values[name] = scaled_values(
-            table, column, si_factor(column_label(table, column), own, ACCELERATIONS)
-        )
-    channels = [table.columns[place] for place in places.values()]
-    return time, values, read_as | unit_attributes(channels, unit)
+        own = units.get(name, column.unit)
+        sensor = stated.get(name, column.sensitivity)
+        factor, derivatives = unit_factor(column_label(table, column), own, sensor)
+        if name in stated and plain_unit(own or "V") not in VOLTAGES:
+            expected = f"expected volts: a sensitivity does not act on a column in {own}"
+            raise InputError(f"{column_label(table, column)}: sensitivity {sensor}; {expected}")
+        channels[name] = Channel(scaled_values(table, column, factor), derivatives)
+    used = {name: table.columns[place] for name, place in places.items()}
+    return time, channels, read_as | unit_attributes(used, unit, units)
 
 
-def unit_attributes(channels: Sequence[Column], unit: str | None) -> dict[str, str]:
-    """Return a record's attributes on its unit: the one used, and the file's own if it differs."""
-    own = ", ".join(dict.fromkeys(column.unit for column in channels if column.unit))
-    if unit is None:
-        return {"unit": own}
+def unit_attributes(
+    channels: Mapping[str, Column], unit: ByChannel, units: Mapping[str, str]
+) -> dict[str, str]:
+    """Return a record's attributes on its units: those used, and the file's own if they differ."""
+    own = ", ".join(dict.fromkeys(one.unit for one in channels.values() if one.unit))
+    used = ", ".join(dict.fromkeys(units.get(name, one.unit) for name, one in channels.items()))
     differs = any(
-        column.unit and plain_unit(column.unit) != plain_unit(unit) for column in channels
+        channels[name].unit and plain_unit(channels[name].unit) != plain_unit(one)
+        for name, one in units.items()
     )
-    return {"unit": unit, "unit_in_file": own} if differs else {"unit": unit}
+    return {"unit": used, "unit_in_file": own} if differs else {"unit": used}
 
 
 def taken_text(table: Columns, places: Mapping[str, int]) -> str:
@@ -301,16 +309,22 @@ def check_counters(table: Columns, places: Mapping[str, int]) -> None:
 
 
 def warn_of_unread(table: Columns, places: Mapping[str, int]) -> None:
-    """Warn of columns by no usual name that may be accelerations, by their unit or without one."""
-    unread = [
-        f'"{one.name}"'
-        for i, one in enumerate(table.columns)
-        if not (i in places.values() or one.text or ascends(one.values))
-        and (not one.unit or plain_unit(one.unit) in ACCELERATIONS)
-    ]
+    """Warn of columns by no usual name that may be channels, by their unit or without one."""
+    unread = [f'"{table.columns[i].name}"' for i in unread_columns(table, places)]
     if unread:
         text = f"not read: {', '.join(unread)}; columns= says which column is which"
         warnings.warn(f"{table.path}: {text}", UserWarning, stacklevel=4)
+
+
+def unread_columns(table: Columns, places: Mapping[str, int]) -> list[int]:
+    """Return the indices of columns that may be channels, by their unit or without one."""
+    units = {"", *ACCELERATIONS, *SPEEDS, *LENGTHS, *VOLTAGES}
+    return [
+        i
+        for i, one in enumerate(table.columns)
+        if not (i in places.values() or one.text or ascends(one.values))
+        and plain_unit(one.unit) in units
+    ]
 
 
 def column_names(table: Columns) -> str:
@@ -347,6 +361,12 @@ def channels_by_name(table: Columns) -> dict[str, int]:
             text = f"{kind} over the frequency in the columns {column_names(table)}"
             expected = "expected accelerations over time; read_curve reads resonance curves"
             raise InputError(f"{table.path}: {text}; {expected}")
+    missing = {"box_acceleration", "acceleration1"} - set(known)
+    rest = unread_columns(table, known)
+    channels = (*rest, *(i for name, i in known.items() if name != "time"))
+    with_unit = {bool(table.columns[i].unit) for i in channels}
+    if len(missing) == len(rest) == 1 and len(with_unit) == 1:
+        known |= {missing.pop(): rest[0]}  # of base and face the one whose name is not known
     return known if set(known) & set(CHANNELS) else {}
 
 

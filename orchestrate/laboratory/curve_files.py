@@ -21,11 +21,11 @@ from .columns import (
     column_names,
     places_asked_for,
     places_by_name,
-    plain_unit,
     si_factor,
     taken_text,
     warn_of_unread,
 )
+from .conversion import plain_unit
 from .pieces import Floats
 from .record_csv import read_csv
 from .record_files import check_file, file_kind

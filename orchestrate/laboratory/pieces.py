@@ -76,7 +76,6 @@ class Pieces:
         return np.where(over, 0.0, np.array(shifted)).T
 
     def __add__(self, other: Pieces) -> Pieces:
-        """Return the sum of both signals, over the longer of the two."""
         nodes = np.union1d(self.nodes, other.nodes)
         starts = nodes[:-1]
         total = self.taylor(starts) + other.taylor(starts)

@@ -76,7 +76,6 @@ class Random(ExcitationSignal):
 
     @property
     def usual_rate(self) -> float:
-        """Default sampling rate, Hz: ten samples in the shortest period."""
         return 10.0 * self.psd[-1][0]
 
     @property

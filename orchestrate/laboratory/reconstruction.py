@@ -9,17 +9,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..lazy import xr
 from ..model import Structure
 from .analog_filter import Cells
 from .pieces import Floats, Pieces
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Flags = NDArray[np.bool_]
 SHORT = 0.1  # of a cell times the highest natural frequency, rad
@@ -153,10 +150,7 @@ def taylor(series: Floats, lengths: Floats) -> Floats:
 
 
 def first_fall(derivatives: Floats, scale: float, length: float) -> float | None:
-    """Return the first time in [0, length] at which a Taylor series falls below 0, or None.
-
-    Rounding errors of numbers of the size ``scale`` are not below 0.
-    """
+    """Return the first time in [0, length] at which a Taylor series falls below 0, or None."""
     from scipy.optimize import brentq
 
     factors = derivatives / np.array([math.factorial(n) for n in range(len(derivatives))])
@@ -205,10 +199,7 @@ def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
 
 
 def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, Flags, float]:
-    """Integrate from sample to sample; return states, contact, and the distance to the samples.
-
-    All intervals between samples at once: first their first cells, then their second ones.
-    """
+    """Integrate from sample to sample; return states, contact, and the distance to the samples."""
     count = len(nodes) - 1
     interval = np.searchsorted(motion.times, nodes[:-1], side="right") - 1
     first = np.searchsorted(interval, np.arange(len(motion.times)))

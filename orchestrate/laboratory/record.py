@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,9 +12,11 @@ from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..response.labels import variable
+from .conversion import MOTIONS, differentiated
 from .pieces import Floats
 from .record_checks import doubtful_channels
 from .signals import HERTZ, checked
+from .time_base import checked_times, interpolated
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,8 +28,6 @@ CHANNELS = {  # long names
 }
 SHORT_NAMES = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
 FEWEST = 4
-UNEVEN = 0.05  # largest distance of a time from equal steps, parts of a step
-LAST_TIMES = 20  # which show to how many digits times are rounded: the late ones have fewest
 
 
 def record(
@@ -94,34 +95,66 @@ def checked_record(
     channels: Mapping[str, ArrayLike],
     sample_rate: float | None,
     attributes: Mapping[str, Any],
-    first_row: int = 0,
+    reading: Reading | None = None,
 ) -> xr.Dataset:
-    """Make a record as :func:`record` does, with rows in messages counted from ``first_row``."""
+    """Make a record as :func:`record` does, of channels that are read as stated."""
     import xarray as xr
 
-    values = {name: checked_numbers(name, one, first_row) for name, one in channels.items()}
-    if not values:
+    reading = reading or Reading()
+    raw = {name: checked_numbers(name, one, reading.first_row) for name, one in channels.items()}
+    if not raw:
         raise InputError(f"record: no channel given; expected one of {', '.join(CHANNELS)}")
     rate = None if sample_rate is None else checked(HERTZ, "sample_rate", sample_rate)
     if time is not None:
-        times = checked_numbers("time", time, first_row)
+        times = checked_numbers("time", time, reading.first_row)
     elif rate is not None:
-        times = np.arange(len(next(iter(values.values())))) / rate
+        times = np.arange(len(next(iter(raw.values())))) / rate
     else:
         raise InputError("record: neither time nor sample_rate given; expected one of them")
-    for name, one in values.items():
+    for name, one in raw.items():
         if len(one) != len(times):
             raise InputError(f"{name}: {len(one)} values; expected {len(times)}, as the times")
-    times, rate = checked_times(times, rate, first_row)
+    even, rate, time_base = checked_times(times, rate, reading.first_row, reading.resample)
+    if "resampled" in time_base:
+        raw = {name: interpolated(times, one, even) for name, one in raw.items()}
+    values = {name: reading.acceleration(name, one, rate) for name, one in raw.items()}
     if attributes.get("source") != "simulated":
-        for name, what, advice in doubtful_channels(times, values):
+        for name, what, advice in doubtful_channels(even, values, raw):
             text = f"{what}{'' if what.endswith('?') else ';'} {advice}"
             warnings.warn(f"{channel_label(name)}: {text}", UserWarning, stacklevel=4)
+    words = {"sensors": "", **attributes, "sample_rate": rate, **reading.words(time_base)}
     return xr.Dataset(
         {name: variable("time", one, "m/s2", CHANNELS[name]) for name, one in values.items()},
-        {"time": variable("time", times, "s", "time")},
-        {"sensors": "", **attributes, "sample_rate": rate},
+        {"time": variable("time", even, "s", "time")},
+        words,
     )
+
+
+@dataclass(frozen=True)
+class Reading:
+    """State how the channels of a record are read."""
+
+    first_row: int = 0  # from which rows in messages are counted
+    resample: bool = False  # uneven times are made equal
+    derivatives: Mapping[str, int] = field(default_factory=dict)  # that make accelerations
+    scale: Mapping[str, float] = field(default_factory=dict)  # factors
+    delay: Mapping[str, float] = field(default_factory=dict)  # s by which channels are late
+
+    def acceleration(self, name: str, values: Floats, rate: float) -> Floats:
+        """Return a channel's acceleration."""
+        lateness = self.delay.get(name, 0.0)
+        made = differentiated(values, rate, self.derivatives.get(name, 0), lateness)
+        return made if name not in self.scale else self.scale[name] * made
+
+    def words(self, time_base: str) -> dict[str, str]:
+        """Return what was done as attributes of the record, without what was not."""
+        converted = [
+            f"{SHORT_NAMES[name]}: {MOTIONS[count]}, differentiated by its spectrum"
+            for name, count in self.derivatives.items()
+            if count
+        ]
+        words = {"time_base": time_base, "converted": ", ".join(converted)}
+        return {name: text for name, text in words.items() if text}
 
 
 def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
@@ -139,59 +172,6 @@ def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
         text = f"{name}, row {wrong[0] + first_row}: {values[wrong[0]]}{more}"
         raise InputError(f"{text}; expected finite numbers")
     return values
-
-
-def checked_times(times: Floats, rate: float | None, first_row: int = 0) -> tuple[Floats, float]:
-    """Return equally spaced times and their rate, Hz; a stated rate corrects rounded times."""
-    count, resolution = np.arange(len(times)), time_resolution(times)
-    if rate is not None:
-        spread = float(np.ptp(times - count / rate))
-        if spread <= UNEVEN / rate:
-            return times, rate
-        if spread <= rounding_error(resolution, 1.0 / rate):
-            return times[0] + count / rate, rate
-    step = float(times[-1] - times[0]) / (len(times) - 1)
-    off = float(np.abs(times - times[0] - step * count).max())
-    is_rounded = off <= rounding_error(resolution, step)
-    if rate is not None and (is_rounded or off <= UNEVEN * step):
-        raise InputError(f"sample_rate = {rate!r} Hz: expected {1.0 / step:.6g}, as the times have")
-    if off <= UNEVEN * step:
-        return times, float(f"{1.0 / step:.10g}")  # the digits of the times are not those of it
-    steps = np.diff(times)
-    usual = float(np.median(steps))
-    falling = np.flatnonzero(steps <= 0.0)
-    away = falling if len(falling) else np.flatnonzero(np.abs(steps - usual) > 2.0 * UNEVEN * usual)
-    row = int(away[0]) + 1 if len(away) else 1
-    if len(falling):
-        text = f"{times[row]:.9g} s after {times[row - 1]:.9g} s; expected ascending times"
-    else:
-        text = f"a step of {steps[row - 1]:.6g} s where others are {usual:.6g} s"
-        text += "; expected equal steps"
-    if is_rounded:
-        text += f": they are rounded to {resolution:g} s, give sample_rate="
-    raise InputError(f"time, row {row + first_row}: {text}")
-
-
-def rounding_error(resolution: float, step: float) -> float:
-    """Return the range of the errors of rounded times, s: 0 where the step needs no rounding."""
-    whole = resolution and abs(step / resolution - round(step / resolution)) < 1e-6
-    return 0.0 if whole else resolution * (1.0 + 1e-6)
-
-
-def time_resolution(times: Floats) -> float:
-    """Return the power of ten that the last times are multiples of, s; 0 if there is none.
-
-    Examples
-    --------
-    >>> time_resolution(np.array([9.9998, 10.001, 10.002])), time_resolution(np.arange(4) / 3.0)
-    (0.001, 0.0)
-    """
-    last = times[-min(LAST_TIMES, len(times) // 2 + 1) :]
-    for digits in range(10):
-        scaled = last * 10.0**digits
-        if np.abs(scaled - np.round(scaled)).max() < 1e-4:
-            return float(10.0**-digits)
-    return 0.0
 
 
 def channel_label(name: str) -> str:

@@ -20,12 +20,17 @@ BAND = 1e-3  # of the peak-to-peak value: readings so close to an extreme are at
 PLATEAU = 3  # samples in a row at an extreme that no sine has
 
 
-def doubtful_channels(time: Floats, channels: Mapping[str, Floats]) -> list[tuple[str, str, str]]:
-    """Return what makes channels, the base first, doubtful: (channel, what it is, what to do)."""
+def doubtful_channels(
+    time: Floats, accelerations: Mapping[str, Floats], channels: Mapping[str, Floats]
+) -> list[tuple[str, str, str]]:
+    """Return what makes channels, the base first, doubtful: (channel, what it is, what to do).
+
+    Channels are as they were read, which saturate; accelerations are what they were made.
+    """
     doubts = []
     for name, values in channels.items():
         other = next((one for key, one in channels.items() if key != name), values)
-        wrong_unit, share = implausible_unit(values), clipped_share(values)
+        wrong_unit, share = implausible_unit(accelerations[name]), clipped_share(values)
         constant = constant_part(values, other)
         if wrong_unit:
             doubts.append((name, wrong_unit, "expected m/s2"))

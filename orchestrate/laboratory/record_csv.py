@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from .columns import TEXTS, Column, Columns, describe_text, is_unit, split_heading
+from .conversion import SENSITIVITY
 
 MOST_HEADING = 200  # lines
 SEPARATORS = (";", "\t", ",", " ")
@@ -64,8 +65,9 @@ def read_csv(path: Path, gaps: bool = False) -> Columns:
     names = column_headings(lines[: dialect.first], dialect, columns)
     values = parse_numbers(path, text, dialect, [name for name, _ in names])
     first = dialect.fields(lines[dialect.first])
+    sensors = column_sensitivities(lines[: dialect.first], dialect, columns)
     made = [
-        Column(*heading, column, first[i].strip() if i in dialect.texts else "")
+        Column(*heading, column, first[i].strip() if i in dialect.texts else "", sensors[i])
         for i, (heading, column) in enumerate(zip(names, values.T, strict=True))
     ]
     return Columns(str(path), made, first_row=dialect.first + 1)
@@ -136,6 +138,7 @@ def column_headings(lines: list[str], dialect: Dialect, count: int) -> list[tupl
     """Return names and units of columns from the lines above the numbers."""
     rows = [dialect.fields(line.lstrip("#%").strip(" ")) for line in lines]
     fitting = [[field.strip() for field in row] for row in rows if len(row) == count]
+    fitting = [row for row in fitting if not any(map(SENSITIVITY.fullmatch, row))]
     if not fitting:
         return [(f"column {number}", "") for number in range(count)]
     units = [text.strip("[]() ") for text in fitting[-1]]
@@ -144,6 +147,14 @@ def column_headings(lines: list[str], dialect: Dialect, count: int) -> list[tupl
         names = [split_heading(text)[0] for text in fitting[-2]]
         return list(zip(names, units, strict=True))
     return [split_heading(text) for text in fitting[-1]]
+
+
+def column_sensitivities(lines: list[str], dialect: Dialect, count: int) -> list[str]:
+    """Return the sensitivities of columns from a line above the numbers, empty without one."""
+    rows = ([field.strip() for field in dialect.fields(line)] for line in lines)
+    fitting = (row for row in rows if len(row) == count and any(map(SENSITIVITY.fullmatch, row)))
+    row = next(fitting, [""] * count)
+    return [field if SENSITIVITY.fullmatch(field) else "" for field in row]
 
 
 def fill_gaps(text: str, dialect: Dialect, columns: int) -> str:

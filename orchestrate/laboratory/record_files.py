@@ -1,4 +1,4 @@
-"""Records as files: CSV, universal files, MAT, NetCDF, WAV."""
+"""Records as files: CSV, universal files, MAT, LabVIEW's, NetCDF, WAV."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ import numpy as np
 
 from ..errors import InputError
 from ..files import check_path_encoding, write_whole
-from ..model.ranges import Quantity
 from .columns import Column, Columns, converted_channels
-from .record import CHANNELS, checked_record
+from .conversion import ByChannel, number_by_channel
+from .record import CHANNELS, Reading, checked_record
 from .record_csv import read_csv, write_csv
+from .record_labview import read_lvm, read_tdms, unreadable
 from .record_mat import read_mat, write_mat
 from .record_uff import read_uff, write_uff
 
@@ -28,7 +29,7 @@ MOST_BYTES = 1 << 30  # a file is read into the memory as a whole
 ENDINGS = {
     **dict.fromkeys((".csv", ".txt", ".tsv", ".asc", ".dat"), "csv"),
     **dict.fromkeys((".uff", ".unv", ".uf", ".58"), "uff"),
-    **{".mat": "mat", ".nc": "netcdf", ".wav": "wav"},
+    **{".mat": "mat", ".nc": "netcdf", ".wav": "wav", ".lvm": "lvm", ".tdms": "tdms"},
 }
 
 
@@ -36,9 +37,12 @@ def read_record(
     path: str | os.PathLike[str],
     *,
     columns: Mapping[str, str | int] | Sequence[str | int] | None = None,
-    unit: str | None = None,
+    unit: ByChannel = None,
+    sensitivity: ByChannel = None,
     sample_rate: float | None = None,
-    scale: float | None = None,
+    scale: ByChannel = None,
+    delay: ByChannel = None,
+    resample: bool = False,
 ) -> xr.Dataset:
     r"""Read a measurement from a file.
 
@@ -47,19 +51,27 @@ def read_record(
     path : path-like
         Its ending says what it is: ``.csv``, ``.txt``, ``.tsv``, ``.asc``, ``.dat`` (text),
         ``.uff``, ``.unv`` (universal files, datasets 58 and 58b), ``.mat`` (MATLAB's up to
-        version 7.2), ``.nc`` (NetCDF), ``.wav``.
+        version 7.2, structures too), ``.lvm`` and ``.tdms`` (LabVIEW), ``.nc`` (NetCDF), ``.wav``.
     columns : mapping or sequence, optional
         Which column ``time``, ``box_acceleration``, ``acceleration1`` and ``acceleration2`` are
         in, by name or by number from 0; a sequence has them in that order. By default columns
         with these names or others that are usual, else the first ones in that order. A time that
         is not named is in the column of that name, else in the first.
-    unit : str, optional
-        Of the accelerations: ``"m/s2"``, ``"g"``, ``"mg"``, ``"mm/s2"`` and others; by default
-        what stands in the file, which must be there.
+    unit : str or mapping of str to str, optional
+        Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face1=mm/s"``; ``base``,
+        ``face1`` and ``face2`` stand for the names above): of an acceleration, velocity,
+        displacement or voltage. By default what stands in the file, which must be there.
+    sensitivity : str or mapping of str to str, optional
+        Of voltages, such as ``"100 mV/g"`` or ``"base=100 mV/g,face1=50 mV/(mm/s)"``.
     sample_rate : float, optional
         Hz; where there is no column of times, or its times are rounded.
-    scale : float, optional
-        m/s2 at the full scale of a WAV file, which must be given there.
+    scale : float or mapping of str to float, optional
+        Factor, such as ``{"face1": -1}`` where a sensor is the wrong way up. Of a WAV file, which
+        must have it: m/s2 at the full scale.
+    delay : float or mapping of str to float, optional
+        s by which a channel is late.
+    resample : bool
+        Whether uneven times become equal, by the cubic spline through the samples.
 
     Returns
     -------
@@ -76,6 +88,9 @@ def read_record(
 
     Notes
     -----
+    A velocity or a displacement is differentiated by its spectrum, up to half the sampling rate;
+    the attribute ``converted`` says so. Times rounded to ten steps or less are recognised and
+    become equal; ``time_base`` says what was done, and the jitter of resampled ones.
     MAT files are read in a process of its own, which a damaged file may end. NetCDF files are read
     by a library in C (HDF5) that a forged file may end together with the process: read those that
     you trust.
@@ -91,25 +106,27 @@ def read_record(
     path = Path(path)
     kind = file_kind(path)
     check_file(path)
-    if (scale is not None) != (kind == "wav"):
-        text = "expected for a WAV file, and there always: m/s2 at its full scale"
-        raise InputError(f"{path}: scale = {scale!r}; {text}")
-    if kind == "wav":
-        bounds = Quantity("scale", "m/s2", "", 1e-9, 1e12)
-        table = read_wav(path, bounds.check(scale))
-    else:
-        readers = {"csv": read_csv, "uff": read_uff, "mat": read_mat, "netcdf": read_netcdf}
-        table = readers[kind](path)
+    if scale is None and kind == "wav":
+        raise InputError(f"{path}: scale = None; expected for a WAV file: m/s2 at its full scale")
+    table = READERS[kind](path)
     if sample_rate is not None:
         table = replace(table, sample_rate=sample_rate)
-    time, values, read_as = converted_channels(table, columns, unit)
+    time, channels, read_as = converted_channels(table, columns, unit, sensitivity)
     if time is None and table.sample_rate is None:
         raise InputError(f"{path}: no column of times; expected one, or sample_rate=")
     words = {"title": f"Record {path.name}", "source": path.name, **table.attributes}
     if kind != "netcdf" or unit is not None:  # it says how it was read the first time
         words |= read_as
+    reading = Reading(
+        table.first_row,
+        resample,
+        {name: one.derivatives for name, one in channels.items()},
+        number_by_channel("scale", scale, list(channels)),
+        number_by_channel("delay", delay, list(channels)),
+    )
+    values = {name: one.values for name, one in channels.items()}
     try:
-        return checked_record(time, values, table.sample_rate, words, first_row=table.first_row)
+        return checked_record(time, values, table.sample_rate, words, reading)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
@@ -122,8 +139,8 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     data : xarray.Dataset
         As :func:`orchestrate.record` makes it.
     path : path-like
-        Its ending says what it is to be, as for :func:`read_record`; WAV is not written. CSV, MAT,
-        NetCDF and universal files with ``binary`` have all digits; without, 13 of them.
+        Its ending says what it is to be, as for :func:`read_record`; WAV and LabVIEW's are not
+        written. CSV, MAT, NetCDF and universal files with ``binary`` have all digits; without, 13.
     binary : bool
         Of universal files: datasets 58b.
 
@@ -153,8 +170,8 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     columns = [Column("time", "s", data.time.values)]
     columns += [Column(name, "m/s2", data[name].values) for name in channels]
     rate = float(data.attrs["sample_rate"])
-    if kind == "wav":
-        raise InputError(f"{path}: WAV is only read; expected .csv, .uff, .mat or .nc")
+    if kind in ("wav", "lvm", "tdms"):
+        raise InputError(f"{path}: {kind.upper()} is only read; expected .csv, .uff, .mat or .nc")
     if kind == "csv":
         return write_whole(path, lambda place: write_csv(place, columns))
     if kind == "uff":
@@ -184,12 +201,6 @@ def check_file(path: Path) -> None:
         raise InputError(f"{path}: {status.st_size} bytes; {text}")
 
 
-def damaged(path: Path, error: Exception, kind: str) -> InputError:
-    """Return the error of a file that its reader refuses, in one line."""
-    text = (str(error).splitlines() or [type(error).__name__])[0][:120]
-    return InputError(f"{path}: {text}; expected a {kind} file that is whole")
-
-
 def read_netcdf(path: Path) -> Columns:
     """Read the variables over ``time`` of a NetCDF file, with their units."""
     import xarray as xr
@@ -197,7 +208,7 @@ def read_netcdf(path: Path) -> Columns:
     try:
         data = xr.load_dataset(path, engine="netcdf4", decode_times=False)
     except Exception as error:  # of the HDF5 library too
-        raise damaged(path, error, "NetCDF") from None
+        raise unreadable(path, error, "NetCDF") from None
     if "time" not in data.variables or data.time.dims != ("time",):
         raise InputError(f"{path}: no variable time over itself; expected a record")
     columns = [
@@ -211,7 +222,7 @@ def read_netcdf(path: Path) -> Columns:
     return Columns(str(path), columns, rate, attributes=attributes)
 
 
-def read_wav(path: Path, scale: float) -> Columns:
+def read_wav(path: Path) -> Columns:
     """Read the channels of a WAV file; whole numbers become parts of the full scale."""
     from scipy.io import wavfile
 
@@ -220,7 +231,7 @@ def read_wav(path: Path, scale: float) -> Columns:
             warnings.filterwarnings("error", message="Reached EOF prematurely")
             rate, data = wavfile.read(path)
     except Exception as error:
-        raise damaged(path, error, "WAV") from None
+        raise unreadable(path, error, "WAV") from None
     values = np.asarray(data, float)
     if not values.size:
         raise InputError(f"{path}: no samples; expected some")
@@ -229,5 +240,11 @@ def read_wav(path: Path, scale: float) -> Columns:
     elif data.dtype.kind == "i":
         values = values / -float(np.iinfo(data.dtype).min)
     channels = values.reshape(len(values), -1).T
-    made = [Column(f"channel {i}", "m/s2", scale * one) for i, one in enumerate(channels)]
+    made = [Column(f"channel {i}", "m/s2", one) for i, one in enumerate(channels)]
     return Columns(str(path), made, float(rate))
+
+
+READERS = {
+    **{"csv": read_csv, "uff": read_uff, "mat": read_mat, "netcdf": read_netcdf},
+    **{"wav": read_wav, "lvm": read_lvm, "tdms": read_tdms},
+}

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -18,8 +19,11 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from .columns import Column, Columns
+from .pieces import Floats
 
-RATES = ("sample_rate", "samplerate", "fs")  # what a MAT file calls it
+RATES = ("sample_rate", "samplerate", "fs", "samplefrequency")  # what a MAT file calls it
+STEPS = ("increment", "delta_x", "dt", "xdelta")  # and the step of its times
+FREQUENCIES = ("frequency", "freq", "f", "freqs", "frequencies")  # in place of times
 READER = """
 import io, json, sys
 sys.path[:] = json.loads(sys.argv[2])
@@ -33,8 +37,22 @@ except BaseException as error:  # what damaged files raise is not said
     text = (str(error).splitlines() or [type(error).__name__])[0][:120]
     answer = f"{text}; expected a MAT file that is whole".encode()
 else:
-    whole = {name: np.asarray(one) for name, one in found.items() if not name.startswith("__")}
-    kept = {"of " + name: one for name, one in whole.items() if one.dtype.kind in "iufU"}
+    kept = {}
+    def keep(name, one, depth=0):
+        one = np.asarray(one)
+        if one.dtype.names and one.size <= 64 and depth < 9:
+            for i, part in enumerate(one.ravel()):
+                number = f"[{i}]" if one.size > 1 else ""
+                for field in one.dtype.names:
+                    keep(f"{name}{number}.{field}", part[field], depth + 1)
+        elif one.dtype.kind == "O" and one.size <= 64 and depth < 9:
+            for i, part in enumerate(one.ravel()):
+                keep(f"{name}[{i}]" if one.size > 1 else name, part, depth + 1)
+        elif one.dtype.kind in "iufcU":
+            kept["of " + name] = one
+    for name, one in found.items():
+        if not name.startswith("__"):
+            keep(name, one)
     stream = io.BytesIO()
     np.savez(stream, **kept)
     answer = stream.getvalue()
@@ -56,27 +74,73 @@ def load_arrays(path: Path) -> dict[str, NDArray[Any]]:
 
 
 def read_mat(path: Path) -> Columns:
-    """Read vectors of a MAT file, and columns of matrices as ``name[0]``, ``name[1]`` ..."""
+    """Read vectors of a MAT file, and columns of matrices as ``name[0]``, ``name[1]`` ...
+
+    Fields of structures are named ``structure.field``. Where a structure states the start and the
+    increment of its abscissa, or a rate, these are the times; a unit, a name and a sensitivity
+    stand beside the vector, in its structure or in one above it.
+    """
     arrays = load_arrays(path)
-    units = {name.lower(): one for name, one in arrays.items()}.get("units", np.array([""]))
-    unit = str(units.ravel()[0]) if units.dtype.kind == "U" and units.size else ""
+    texts = {
+        name.lower(): str(one.ravel()[0]).strip()
+        for name, one in arrays.items()
+        if one.dtype.kind == "U" and one.size
+    }
+    numbers = {name: one for name, one in arrays.items() if one.dtype.kind in "iuf"}
+    refuse_spectra(path, arrays, texts)
     rate, columns = None, []
-    for name, one in arrays.items():
-        if one.dtype.kind not in "iuf":
-            continue
-        if one.size == 1 and name.lower() in RATES:
-            rate = float(one.ravel()[0])
+    for name, one in numbers.items():
+        last = name.lower().rpartition(".")[2]
+        if one.size == 1 and (last in RATES or last in STEPS):
+            value = float(one.ravel()[0])
+            rate = value if last in RATES else 1.0 / value if value > 0.0 else rate
         elif one.ndim == 2 and min(one.shape) == 1 and one.size > 1:
             columns.append((name, one.ravel()))
         elif one.ndim == 2 and one.shape[0] > one.shape[1]:
             columns += [(f"{name}[{i}]", column) for i, column in enumerate(one.T)]
+    longest = max((len(values) for _, values in columns), default=0)
     made = [
-        Column(name, "" if name in ("time", "t") else unit, np.asarray(values, float))
+        mat_column(name, np.asarray(values, float), texts)
         for name, values in columns
+        if len(values) == longest
     ]
     if not made:
         raise InputError(f"{path}: no vectors of numbers; expected some")
     return Columns(str(path), made, rate)
+
+
+def mat_column(name: str, values: Floats, texts: dict[str, str]) -> Column:
+    """Return a vector as a column, with the name, unit and sensitivity that stand nearest to it."""
+
+    def nearest(*words: str) -> str:
+        """Return the text of a field with one of these names, from the vector's structure up."""
+        parents = name.lower().split(".")
+        for depth in range(len(parents) - 1, -1, -1):
+            above = ".".join([*parents[:depth], ""]) if depth else ""
+            for key, text in texts.items():
+                inside = key.removeprefix(above).split(".")
+                is_own = key.startswith(above) and inside[-1] in words and len(inside) <= 3
+                if text and is_own and (depth or len(inside) == 1):
+                    return text
+        return ""
+
+    short = name.rpartition(".")[2]
+    is_time = short.lower() in ("time", "t")
+    label = "" if is_time or "." not in name else nearest("name", "label", "channelname")
+    unit = "" if is_time else nearest("units", "unit", "y_unit", "unitlabel")
+    return Column(label or short, unit, values, sensitivity=nearest("sensitivity"))
+
+
+def refuse_spectra(path: Path, arrays: dict[str, NDArray[Any]], texts: dict[str, str]) -> None:
+    """Raise where the arrays are spectra: complex numbers, or a function over the frequency."""
+    complexes = [name for name, one in arrays.items() if one.dtype.kind == "c" and one.size > 1]
+    over = [name for name in arrays if name.lower().rpartition(".")[2] in FREQUENCIES]
+    psd = [text for text in texts.values() if re.search(r"/\s*hz", text, re.I)]
+    if complexes or over or psd:
+        kind = f"a spectral density in {psd[0]}" if psd else "a frequency response or a spectrum"
+        what = (complexes or over or [""])[0]
+        text = f"{kind} ({what})" if what else kind
+        raise InputError(f"{path}: {text}; expected accelerations over time")
 
 
 def write_mat(path: Path, columns: list[Column], sample_rate: float) -> None:

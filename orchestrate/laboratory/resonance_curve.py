@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import variable
-from .columns import ACCELERATIONS, LENGTHS, RATIOS, SPEEDS, plain_unit
+from .columns import RATIOS
+from .conversion import ACCELERATIONS, LENGTHS, SPEEDS, plain_unit
 from .pieces import Floats
 
 if TYPE_CHECKING:

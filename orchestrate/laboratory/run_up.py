@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..errors import InputError
+from ..lazy import xr
 from ..response.equations import absolute_accelerations
 from .record import record
 from .sensors import structure_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 STATE = ("x1", "x2", "v1", "v2")
 NEEDED = ("time", *STATE, "box_acceleration", "angle")

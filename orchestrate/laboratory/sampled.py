@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import InputError
+from ..lazy import xr
 from .pieces import Pieces
 from .signals import HERTZ, MOST_PIECES, ExcitationSignal, checked
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +90,6 @@ class Sampled(ExcitationSignal):
 
     @property
     def usual_rate(self) -> float:
-        """Default sampling rate, Hz: the record's own."""
         return self.sample_rate
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:

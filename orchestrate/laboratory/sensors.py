@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import InputError
+from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer, checked_word
 from ..model.ranges import ADDED, STRUCTURE, Quantity, plain
@@ -19,9 +19,6 @@ from .reconstruction import Motion, SmoothParts, smooth_parts
 from .record import CHANNELS, record
 from .sampled import Sampled
 from .signals import HERTZ, ExcitationSignal, check_fields
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FILTERS = ("butterworth", "bessel")
 PARTICIPATION = Quantity("participation", "1", "", -10.0, 10.0)  # of a sensor's place

@@ -14,13 +14,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, PLAYED, Player
-from ..model import Structure
+from ..model import Shaker, Structure
 from ..model.arguments import checked_positive
 from ..response.equations import absolute_accelerations
 from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import Question, ask, checked_state, checked_structure
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Table
+from .level_control import LevelControl, shake_on
 from .pieces import Pieces
 from .signals import ExcitationSignal
 
@@ -135,9 +136,10 @@ def transient_time(structure: Structure) -> float:
 
 def shake(
     structure: Structure,
-    excitation: ExcitationSignal,
+    excitation: ExcitationSignal | LevelControl,
     *,
     sample_rate: float | None = None,
+    shaker: Shaker | None = None,
     start: ArrayLike | None = None,
     accuracy: float = 1e-6,
     **running: Unpack[Running],
@@ -152,6 +154,10 @@ def shake(
         The box's acceleration; ``one + other`` is both together.
     sample_rate : float, optional
         Of the record, Hz; by default what the excitation needs. The motion does not depend on it.
+    shaker : Shaker, optional
+        What moves the box. Its table has the level of a swept or stepped sine by a
+        :class:`orchestrate.LevelControl`, which may be given as ``excitation``, and the shaker's
+        faults: harmonics from impacts, drops, limits.
     start : array_like of 4 floats, optional
         x1, x2 in m, v1, v2 in m/s at time 0, relative to the box; at rest by default.
     accuracy : float
@@ -168,7 +174,8 @@ def shake(
         relative to the box; ``contact_force`` in N and ``in_contact``. Over ``impact``:
         ``impact_time``, ``impact_velocity``, ``impulse`` in N s and ``sticks``. Scalars:
         ``excitation_error`` in m/s2 and ``transient_time`` in s, after which the start is
-        forgotten where the motion is linear.
+        forgotten where the motion is linear. On a shaker ``current`` in A, ``voltage``, ``power``
+        in W and ``control_aborted`` in s, in place of both scalars.
 
     Raises
     ------
@@ -190,6 +197,8 @@ def shake(
     >>> history.sizes["time"], history.sizes["impact"]
     (2001, 94)
     """
+    if shaker is not None:
+        return shake_on(structure, excitation, shaker, sample_rate, start, running)
     if not isinstance(excitation, ExcitationSignal):
         kinds = "expected a SweptSine, SteppedSine, Random, Shock or Sampled, or a sum"
         raise InputError(f"excitation = {excitation!r}: {kinds}")

@@ -65,7 +65,6 @@ class Shock(ExcitationSignal):
 
     @property
     def usual_rate(self) -> float:
-        """Default sampling rate, Hz: a hundred samples in the pulse."""
         return 100.0 / self.length
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:

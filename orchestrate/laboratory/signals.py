@@ -151,6 +151,10 @@ class Sine(ExcitationSignal):
         return f"{self.label} at {format_level(self.acceleration)}"
 
     @abstractmethod
+    def frequency(self, time: ArrayLike) -> Floats:
+        """Return the frequency at a time, Hz."""
+
+    @abstractmethod
     def phase(self, time: ArrayLike) -> Floats:
         """Return the phase at a time, rad."""
 

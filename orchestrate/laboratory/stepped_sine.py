@@ -83,7 +83,6 @@ class SteppedSine(Sine):
 
     @property
     def usual_rate(self) -> float:
-        """Default sampling rate, Hz: twenty samples in the shortest period."""
         return 20.0 * max(self.frequencies)
 
     def measured_times(self) -> Floats:

@@ -95,7 +95,6 @@ class SweptSine(Sine):
 
     @property
     def usual_rate(self) -> float:
-        """Default sampling rate, Hz: twenty samples in the shortest period."""
         return 20.0 * max(self.first, self.last)
 
     @property

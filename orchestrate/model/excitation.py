@@ -10,12 +10,19 @@ import dataclasses
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from os import PathLike
 
 from ..errors import InputError
 from .described import Described
 from .ranges import EXCITATION, RATIO_QUANTITIES, construct_or_explain, exact_inverse
 from .structure import Structure
+
+
+@lru_cache(maxsize=4096)
+def frequency_ratio(frequency: float, omega: float) -> float:
+    """Return frequency over omega, which times omega is the frequency again."""
+    return exact_inverse(frequency / omega, lambda eta: eta * omega, frequency)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,8 +93,7 @@ class Excitation(Described):
 
     def eta(self, structure: Structure) -> float:
         """Return the frequency ratio Omega/omega (6)."""
-        omega = structure.omega
-        return exact_inverse(self.frequency / omega, lambda eta: eta * omega, self.frequency)
+        return frequency_ratio(self.frequency, structure.omega)
 
     def length(self, structure: Structure) -> float:
         """Return the unit of length of xi (3), a eta^2, m; 1 where only rounding differs."""

@@ -65,13 +65,7 @@ SECTIONS = ("structure", "excitation", "motor", "box", "shaker")
 
 
 def resolve(source: str | PathLike[str]) -> Path:
-    """Return the TOML file's path for a shipped set's name or a user's path; raise if missing.
-
-    Examples
-    --------
-    >>> resolve("beam").name
-    'beam.toml'
-    """
+    """Return the TOML file's path for a shipped set's name or a user's path; raise if missing."""
     known = {**SETS, **SHAKERS}
     if str(source) in known:
         return known[str(source)]
@@ -86,14 +80,7 @@ def resolve(source: str | PathLike[str]) -> Path:
 
 
 def read(source: str | PathLike[str], structure: Structure | None = None) -> dict[str, Described]:
-    """Read a TOML file; return its structure, excitation, drive and shaker in a dict, those
-    present.
-
-    Examples
-    --------
-    >>> sorted(read("quick"))
-    ['drive', 'structure']
-    """
+    """Read a TOML file; return its structure, excitation, drive and shaker, if any, by name."""
     path = resolve(source)
     tables = parse(path)
     for name, values in tables.items():

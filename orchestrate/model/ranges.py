@@ -174,9 +174,17 @@ RATIO_QUANTITIES = {
 def expected_one_of(name: str, known: Iterable[str]) -> str:
     """Return error text "expected one of ..." with the known names and the closest match."""
     names = list(known)
-    near = [candidate for candidate in names if candidate.lower() == name.lower()]
-    near = near or difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    return f"expected one of {', '.join(names)}" + (f" (did you mean {near[0]}?)" if near else "")
+    near = closest(name, names)
+    return f"expected one of {', '.join(names)}" + (f" (did you mean {near}?)" if near else "")
+
+
+def closest(name: str, names: Iterable[str]) -> str:
+    """Return the name that begins so, whatever its case, or is most alike; empty if none is."""
+    known = {one.lstrip("-"): one for one in sorted(names, key=len)}
+    plain = name.lstrip("-")
+    near = [one for one in known if plain and one.lower().startswith(plain.lower())]
+    near = near or difflib.get_close_matches(plain, known, n=1, cutoff=0.5)
+    return known[near[0]] if near else ""
 
 
 def construct_or_explain(
@@ -191,18 +199,8 @@ def construct_or_explain(
 
 
 def exact_inverse(guess: float, forward: Callable[[float], float], target: float) -> float:
-    """Return the float near ``guess`` for which ``forward`` gives ``target`` exactly, if any.
-
-    Division does not undo a multiplication exactly. Of the few numbers about ``guess`` that give
-    the target, the one with the fewest digits is taken: it is the one that somebody wrote down.
-
-    Examples
-    --------
-    >>> 0.05 * 0.7 / 0.7
-    0.049999999999999996
-    >>> exact_inverse(0.05 * 0.7 / 0.7, lambda number: number * 0.7, 0.05 * 0.7)
-    0.05
-    """
+    """Return the float near ``guess`` for which ``forward`` gives ``target`` exactly, if any."""
+    # of the few numbers that do, the one with the fewest digits: the one that somebody wrote down
     near = [guess]
     for _ in range(3):
         near = [math.nextafter(near[0], -math.inf), *near, math.nextafter(near[-1], math.inf)]

@@ -177,6 +177,25 @@ class Shaker(Described):
         """Natural frequency of the table on its suspension with the coil open, Hz."""
         return math.sqrt(self.suspension_stiffness / self.table_mass) / TURN
 
+    def command_for(self, acceleration: float, frequency: float, load: float = 0.0) -> float:
+        """Return the command's amplitude, V or A, for a sine of the table under a rigid load.
+
+        Parameters
+        ----------
+        acceleration, frequency : float
+            Amplitude in m/s2, and Hz.
+        load : float
+            Mass that moves with the table, kg.
+        """
+        rate = 1j * TURN * frequency
+        mechanical = self.suspension_stiffness + rate * self.suspension_damping
+        force = mechanical + rate**2 * (self.table_mass + load)
+        command = force / self.force_factor
+        if not self.current_control:
+            coil = self.coil_resistance + rate * self.coil_inductance
+            command = command * coil + rate * self.force_factor
+        return abs(command) * acceleration / abs(rate) ** 2
+
     def replace(self, **changes: float | bool) -> Shaker:
         """Return a copy of the shaker with some values changed, given as keywords."""
         return dataclasses.replace(self, **changes)  # type: ignore[arg-type]

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
 from ..errors import InputError
+from ..lazy import Unpack
 from .described import Described
-from .plausible import warn_of_per_cent
 from .ranges import (
     ADDED,
     OF_LENGTH,
@@ -26,7 +27,6 @@ from .ranges import (
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
-    from typing_extensions import Unpack
 
 Values = TypeVar("Values", float, "NDArray[np.float64]")
 SI = tuple(STRUCTURE)
@@ -82,6 +82,17 @@ def checked_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]
         text = "expected two numbers > 0, of layers 1 and 2"
         raise InputError(f"thicknesses = {thicknesses!r}: {text}")
     return h1, h2
+
+
+def warn_of_per_cent(ratios: Mapping[str, float]) -> None:
+    """Warn about damping ratios, by name, so large that per cent was probably meant."""
+    for name, ratio in ratios.items():
+        if ratio > 0.3:  # damping ratio above which a half of a beam would hardly ring
+            warnings.warn(
+                f"{name} = {ratio:g} is {100.0 * ratio:.4g} % of critical damping: a ratio is "
+                f"meant, {ratio:g} % is {0.01 * ratio:g}",
+                stacklevel=3,
+            )
 
 
 def format_short(value: float) -> str:
@@ -641,10 +652,36 @@ class Structure(Described):
         first, second = (format_short(self.get(f"{letter}{half}")) for half in (1, 2))
         return f"{letter}{first}-{second}"
 
-    def _is_by_halves(self) -> bool:
-        """Return whether f1, f2, zeta1 and zeta2 reproduce the SI values to the last bit."""
-        numbers = {name: self.get(name) for name in HALVES}
-        return all(getattr(self, name) == value for name, value in self._by_halves(numbers).items())
+    def _described(self) -> dict[str, str]:
+        """Return texts of the halves' masses, frequencies and damping, of e, and of what is set."""
+        halves = {
+            "masses": ("m", " kg"),
+            "natural frequencies": ("f", " Hz"),
+            "damping": ("zeta", " %"),
+        }
+        texts = {}
+        for words, (letter, unit) in halves.items():
+            scale = 100.0 if letter == "zeta" else 1.0
+            pair = [f"{scale * float(getattr(self, f'{letter}{half}')):.4g}" for half in "12"]
+            texts[words] = " and ".join(pair) + unit
+        texts["e"] = f"{self.e:g}"
+        added = {name: getattr(self, name) for name in ADDED if getattr(self, name)}
+        return texts | {name: f"{value:g} {STRUCTURE[name].unit}" for name, value in added.items()}
+
+    def __str__(self) -> str:
+        """Return the structure in a line, frequencies in Hz and damping ratios in per cent."""
+        kind = "bonded" if self.bonded else "delaminated"
+        return f"{kind}: " + ", ".join(f"{name} {text}" for name, text in self._described().items())
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        """Print the line of ``str`` in IPython."""
+        printer.text(f"Structure({self})")
+
+    def _repr_html_(self) -> str:
+        """Return a table for notebooks."""
+        rows = {"structure": "bonded" if self.bonded else "delaminated", **self._described()}
+        cells = (f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in rows.items())
+        return f"<table>{''.join(cells)}</table>"
 
     def label(self) -> str:
         """Return a short text of the parameters for file names and titles, unique per structure."""
@@ -656,7 +693,9 @@ class Structure(Described):
         else:
             masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
             halves = [self._pair(letter) for letter in ("f", "zeta")]
-            shorter = self._is_by_halves() and len("".join(halves)) < len("".join(si))
+            numbers = self._by_halves({name: self.get(name) for name in HALVES})
+            exact = all(getattr(self, name) == value for name, value in numbers.items())
+            shorter = exact and len("".join(halves)) < len("".join(si))
             parts = [f"e{format_short(self.e)}", masses, *(halves if shorter else si)]
             names = ("gamma", *ADDED)
         for name in names:

@@ -19,13 +19,11 @@ GAMMAS = (1e-5, 1e-4, 1e-3, 1e-2, 5e-2)  # ends of chattering (17)
 CONTACT_RANGES = {"elastic": (0.400, 0.445), "damped": (0.450, 0.500), "plastic": (0.930, 0.985)}
 RESTITUTIONS = (0.01, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 0.99, 1.0)  # of sequences (16)
 STICKING_GAMMAS = (1e-3, 1e-5, 1e-7, 1e-9)
-FIRST_REGION = (0.45, 0.49, 0.59, 0.63, 0.70, 0.80, 0.88, 1.047, 1.08, 1.13, 1.24, 1.31)
-SECOND_REGION = (2.60, 2.65, 2.69, 2.737, 2.83, 2.92, 3.05, 3.17, 3.30, 3.49, 3.56, 3.70)
 PANELS: dict[str, tuple[tuple[float, ...], int, int]] = {  # eta, periods (0: many), points a period
     "5": ((0.4,), 1, 4000),
     "7": ((), 20, 200),  # at the relative peaks
-    "8": (FIRST_REGION, 0, 150),
-    "9": (SECOND_REGION, 0, 60),
+    "8": ((0.45, 0.49, 0.59, 0.63, 0.70, 0.80, 0.88, 1.047, 1.08, 1.13, 1.24, 1.31), 0, 150),
+    "9": ((2.60, 2.65, 2.69, 2.737, 2.83, 2.92, 3.05, 3.17, 3.30, 3.49, 3.56, 3.70), 0, 60),
     "12": ((), 1, 2000),  # at the main peaks
 }
 Branch = tuple[float, int, tuple[float, float]]  # eta on it, periods, limits of eta

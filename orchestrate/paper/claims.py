@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib import resources
@@ -73,3 +74,21 @@ def judge(parts: Iterable[bool], decides: bool = True) -> str:
     if not parts or not decides:
         return UNDECIDED
     return YES if all(parts) else PARTLY if any(parts) else NO
+
+
+SIGNS = {"+-": "±", "<=": "≤", ">=": "≥"}
+MEANT = {"nan": "not found", "True": "yes", "False": "no", "inf": "without bound"}
+
+
+def plain(text: str) -> str:
+    """Return a sentence with nan, True, inf and +- replaced by words and signs.
+
+    Examples
+    --------
+    >>> plain("none: True; width nan +- 0.1")
+    'none: yes; width not found ± 0.1'
+    """
+    text = re.sub(rf"\b({'|'.join(MEANT)})\b", lambda match: MEANT[match[0]], text)
+    for sign, better in SIGNS.items():
+        text = text.replace(sign, better)
+    return text

@@ -152,10 +152,7 @@ class Datasets:
         return [one for one in listed if between(self.settled(case), *one[:2]).sizes["eta"] > 1]
 
     def shares(self, case: str, low: float, high: float) -> tuple[float, float]:
-        """Return the shares of responses between two frequencies that are chaotic, and neutral.
-
-        One whose state repeats is periodic, whatever the sign of its exponent in a finite time.
-        """
+        """Return the shares of responses between two frequencies that are chaotic, and neutral."""
         verdicts = between(self.exponent(case), low, high).verdict.values
         repeats = between(self.settled(case), low, high).multiplicity.values > 0
         chaotic, neutral = (np.mean((verdicts == kind) & ~repeats) for kind in (CHAOTIC, NEUTRAL))
@@ -176,11 +173,7 @@ class Datasets:
     # -- single motions ----------------------------------------------------------------------------
 
     def chattering(self) -> xr.Dataset:
-        """Return what follows one kick of masses that lie together, for each e and gamma (16).
-
-        Slow excitation near its crest presses the masses together; the parting velocity is over
-        1 - e, so that all sequences take about as long. Each ends when the masses stick.
-        """
+        """Return what follows one kick of masses that lie together, for each e and gamma (16)."""
         if "chattering" not in self.known:
             rows = [
                 self.sequence(ELASTIC.replace(e=e, gamma=gamma))
@@ -212,11 +205,7 @@ class Datasets:
         return [len(times), sticks.any(), away]
 
     def slow_impacts(self) -> xr.Dataset:
-        """Return counts of impacts from rest: all, sticking, slower than gamma, pulled of these.
-
-        Pulled are those at which the contact force (18) would pull. Of Figure 6's structure at 51
-        frequencies, and of halves that are alike or nearly so.
-        """
+        """Return counts of impacts from rest: all, sticking, slower than gamma, pulled of these."""
         if "slow_impacts" not in self.known:
             alike = [(ELASTIC.replace(mu=mu, kappa=kappa), 1.3) for mu, kappa in ALIKE]
             etas = np.round(np.arange(0.45, 8.0, 0.15), 3).tolist()
@@ -302,14 +291,6 @@ class Datasets:
         more = {"transient": size.map_settle, "samples": size.map_keep}
         return self.get(f"map_{parameter}", orchestrate.map, ELASTIC, **axes, **more)
 
-    def map_peak(self, parameter: str) -> xr.Dataset:
-        """Return a longer run at a map's largest impulse, which depends on the time followed."""
-        impulses = self.map(parameter).impulse_max
-        best = impulses.where(impulses == impulses.max(), drop=True)
-        structure = ELASTIC.replace(**{parameter: float(best[parameter][0])})
-        more = {"eta": [float(best.eta[0])], "transient": 3000, "periods": self.size.part}
-        return self.get(f"peak_{parameter}", orchestrate.impact_statistics, structure, **more)
-
     def spectra(self) -> xr.Dataset:
         """Return spectra at the up-sweep's peak and at two other frequencies."""
         etas = float(self.up("elastic").xi_rel_max.idxmax()), 0.4, 1.13
@@ -331,10 +312,7 @@ ALIKE = ((1, 1), (2, 2), (2, 2.2))  # mu, kappa
 
 
 def most_even(data: xr.Dataset, apart: float = 0.2) -> int:
-    """Return the index of the eta at which two periodic attractors share starts most evenly.
-
-    Their impacts per period differ by ``apart`` at least where there are such.
-    """
+    """Return the index of the eta at which two periodic attractors share starts most evenly."""
     frequent = np.argsort(-data.share.values, axis=1, kind="stable")[:, :2]
     names = "share", "impacts_per_period", "multiplicity"
     share, impacts, n = (np.take_along_axis(data[x].values, frequent, axis=1) for x in names)

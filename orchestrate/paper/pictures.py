@@ -114,7 +114,7 @@ PARTS = {
         "and saltation matrices at them; chattering's end projects the deviation on the common "
         "motion. Validated in the tests against differences of neighbouring runs of the FMU, and "
         "against -D without impacts. The standard error is that of batches; the largest of "
-        "many is chosen for its error too: those in the table come from long runs of their own.",
+        "many is biased by its error: those in the table come from long runs of their own.",
         lines.draw_lyapunov,
         lambda data: [data.exponent(case) for case in CASES],
         tuple(f"exponent_{structure.label()}" for structure in CASES.values()),

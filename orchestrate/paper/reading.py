@@ -57,17 +57,8 @@ def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
     return edges_of_run(data, longest)
 
 
-def parse_orbit(orbit: str) -> tuple[int, int]:
-    """Return m and k of an orbit named mT/k: its periods and impacts."""
-    periods, impacts = orbit.split("T/")
-    return int(periods or 1), int(impacts)
-
-
 def impacts_in_response(data: xr.Dataset) -> np.ndarray:
-    """Return each response's impacts in its own period; 0 if it does not repeat.
-
-    The mean over the samples, of a response whose period is a guess, may miss them a little.
-    """
+    """Return each response's impacts in its own period; 0 if it does not repeat."""
     n = data.multiplicity.values
     count = n * data.impacts_per_period.values
     slack = 1.5 * n / data.sizes.get("sample", 201)
@@ -77,8 +68,8 @@ def impacts_in_response(data: xr.Dataset) -> np.ndarray:
 
 def is_orbit(data: xr.Dataset, orbit: str) -> np.ndarray:
     """Return a Boolean array: responses on the orbit mT/k, k impacts in m periods."""
-    n, impacts = parse_orbit(orbit)
-    return (data.multiplicity.values == n) & (impacts_in_response(data) == impacts)
+    n, impacts = orbit.split("T/")
+    return (data.multiplicity.values == int(n or 1)) & (impacts_in_response(data) == int(impacts))
 
 
 class ImpactRun(NamedTuple):
@@ -152,12 +143,6 @@ class Region(NamedTuple):
     def is_window(self) -> bool:
         """Whether one orbit is stable in the whole region."""
         return " to " not in self.name
-
-    @property
-    def adds_a_period(self) -> bool:
-        """Whether the region lies between windows nT and (n+1)T, each with one impact."""
-        before, _, after = self.name.partition(" to ")
-        return before.endswith("T/1") and after.endswith("T/1")
 
 
 def list_regions(window: Callable[[str, float], StableWindow]) -> list[Region]:

@@ -52,7 +52,7 @@ def write_report(
     size: Resolution,
     fmu: Any,
 ) -> Path:
-    """Write ``report.html`` with claims, regions, answers and pictures; return its path."""
+    """Write ``report.html`` with claims, regions and pictures; return its path."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("orchestrate.paper"),
         autoescape=True,

@@ -12,10 +12,10 @@ from ..errors import InputError
 from ..files import open_folder, write_whole
 from ..fmu import OSCILLATOR, finder
 from ..show.files import save
-from .answers import answer_sentences, region_rows
 from .claims import read_table
 from .datasets import Datasets
 from .measures import check_claims
+from .measures.influence import region_rows
 from .pictures import PARTS, picture_name
 from .report import write_report
 from .resolution import Resolution
@@ -25,10 +25,9 @@ CLAIMS = "claims"  # the part that is no picture
 
 @dataclass(frozen=True)
 class Reproduction:
-    """Claims with verdicts, regions and answers; paths of the pictures and of the report."""
+    """Claims with verdicts, and regions; paths of the pictures and of the report."""
 
-    # `claims` and `regions`, lists of texts by name, and `answers`, sentences; empty where they
-    # were not asked for
+    # `claims` and `regions`, lists of texts by name; empty where they were not asked for
     found: Mapping[str, Any]
     pictures: Mapping[str, Path]  # PNG files by the names of their parts
     report: Path
@@ -45,7 +44,7 @@ def reproduce(
     fmu = finder(running)(OSCILLATOR)
     open_folder(output)
     data = Datasets(output, resolution, running)
-    found = write_claims(data) if CLAIMS in parts else {"claims": [], "regions": [], "answers": []}
+    found = write_claims(data) if CLAIMS in parts else {"claims": [], "regions": []}
     shown = {name: PARTS[name].results(data) for name in parts if name != CLAIMS}
     pictures = draw_all(shown, output)
     return Reproduction(found, pictures, write_report(output, pictures, found, resolution, fmu))
@@ -62,12 +61,8 @@ def choose_parts(names: Sequence[str] | None) -> list[str]:
 
 
 def write_claims(data: Datasets) -> dict[str, Any]:
-    """Check the claims; write them with regions and answers as JSON, and return them."""
-    checked = {
-        "claims": check_claims(read_table(), data),
-        "regions": region_rows(data),
-        "answers": answer_sentences(data),
-    }
+    """Check the claims; write them with regions as JSON, and return them."""
+    checked = {"claims": check_claims(read_table(), data), "regions": region_rows(data)}
     text = json.dumps(checked, indent=1, ensure_ascii=False) + "\n"
     write_whole(data.folder / "claims.json", lambda path: path.write_text(text, encoding="utf-8"))
     return checked

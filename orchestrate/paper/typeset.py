@@ -1,6 +1,6 @@
 r"""Convert formulas in plain sentences to MathML, which browsers show without a script.
 
-What the paper's letters are called in plain text, in claims, captions and answers, becomes a
+What the paper's letters are called in plain text, in claims and captions, becomes a
 formula: ``xi_Rel``, ``eta``, ``e = 0.7``, ``1e-4``; so does what stands between dollars, in LaTeX.
 """
 
@@ -12,7 +12,7 @@ import re
 from docutils.utils.math.latex2mathml import tex2mathml
 from markupsafe import Markup, escape
 
-from .readable import plain
+from .claims import plain
 
 LETTERS = ("eta", "kappa", "lambda", "omega", "gamma", "tau", "mu", "nu", "xi", "pi")
 WORDS = {  # regular expressions and what they become, the longest first
@@ -51,13 +51,7 @@ def match_to_latex(match: re.Match[str]) -> str:
 
 
 def typeset(text: str) -> Markup:
-    r"""Return a sentence as HTML with its formulas as MathML.
-
-    Examples
-    --------
-    >>> print(typeset("x < 2 at eta"))
-    x &lt; 2 at <math xmlns="http://www.w3.org/1998/Math/MathML">  <mi>η</mi></math>
-    """
+    r"""Return a sentence as HTML with its formulas as MathML."""
     parts, end, text = [], 0, plain(text)
     for match in FORMULA.finditer(text):
         parts += [escape(text[end : match.start()]), mathml(match_to_latex(match))]

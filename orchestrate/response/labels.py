@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ..lazy import xr
 from ..model.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, STRUCTURE
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Dims = str | tuple[str, ...]
 Variable = tuple[Dims, Any, dict[str, Any]]

@@ -11,7 +11,7 @@ died, or decay. The rule is :func:`fmu_src.kernels.repetition.decide`, for Pytho
 from __future__ import annotations
 
 import functools
-from ctypes import c_void_p
+from ctypes import c_size_t, c_void_p
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,7 +34,7 @@ def library() -> Any:
     """Return the compiled loop and rule of responses as ctypes has it, or None."""
     loaded = loaded_library(Path(__file__).with_name("response_loop.c"))
     if loaded is not None:
-        loaded.run.argtypes = [c_void_p, c_void_p]
+        loaded.run.argtypes = [c_void_p, c_void_p, c_size_t, c_size_t]
         loaded.decide_multiplicity.argtypes = loaded.find_repetition.argtypes = [c_void_p]
     return loaded
 

@@ -195,10 +195,7 @@ def taylor_step(motion: Motion, time: Floats) -> Floats:
 
 
 def first_contact_time(cut: ImpactIntervals, iterations: int = 20) -> Floats:
-    """Return when the gap first closes in each interval (Newton, bisection); NaN if never.
-
-    Newton's method, and halving where it would leave what is known to hold the root.
-    """
+    """Return when the gap first closes in each interval (Newton, bisection); NaN if never."""
     taylor = (cut.left.value[:2], cut.left.slope[:2], cut.left.bend[:2], cut.left.bend[2:])
     g = [part[1] - part[0] for part in taylor]
     g[0] = np.where(cut.gap_offset == 0.0, g[0], g[0] + cut.gap_offset)

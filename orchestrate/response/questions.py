@@ -11,22 +11,20 @@ from abc import ABC
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import REST, finder, gap_between
+from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
 from ..model.arguments import Numbers, checked, checked_numbers
 from ..model.ranges import COMPLETE, EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from ..running.job import Job, brief
 from ..running.runner import answer
 from .labels import Variable, parameter_variable, variable
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 State = tuple[float, ...]
 Kind = TypeVar("Kind", bound="Question")
@@ -333,7 +331,6 @@ class Question(Job, ABC):
         return cls(**values | own)
 
     def call_text(self) -> str:
-        """Return Python source of the public function's call that repeats this job."""
         arguments: dict[str, Any] = {}
         for name, value in self.parameters().items():
             inside = isinstance(value, dict) and "sha256" not in value and name != "structure"
@@ -366,7 +363,6 @@ class OneMotionQuestion(Question, ABC):
     excitation: Excitation
 
     def items(self) -> Sequence[Point]:
-        """Return the items: a list with the structure under its excitation."""
         return [Point(self.structure, self.excitation)]
 
 
@@ -398,9 +394,7 @@ class SeriesQuestion(Question, ABC):
         )
 
     def count(self) -> int:
-        """Return the number of parameter values."""
         return len(self.series.values)
 
     def items(self) -> Sequence[Any]:
-        """Return the operating points."""
         return self.series.points

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +33,7 @@ class Response:
     gap_offset: float = 0.0  # the gap between unloaded springs, m
     # whether no response without impacts exists: the linear one would open or touch
     has_to_impact: bool = False
+    known_multiplicity: int | None = None  # within the tolerance, where it has been found
 
     @cached_property
     def multiplicity(self) -> int:
@@ -39,6 +41,8 @@ class Response:
 
         Within the tolerance; :meth:`decision` says how reliable it is.
         """
+        if self.known_multiplicity is not None:
+            return self.known_multiplicity
         return self.repetition(self.tolerance).multiplicity
 
     def repetition(self, tolerance: float) -> Repetition:
@@ -49,10 +53,10 @@ class Response:
         """Return the multiplicity as decided by how deviations decay, and how it was decided."""
         return decide_multiplicity(self.samples, self.frequency, self.x_rel_max, tolerance)
 
-    def conclude(self, decision: Decision, count: Callable[[int], int]) -> tuple[Decision, float]:
+    def conclude(self, decision: Decision, impacts: int) -> tuple[Decision, float]:
         """Return a decision, undecided where impacts contradict it, and impacts per period.
 
-        ``count`` gives the impacts of the next n periods. A repeated response is undecided if
+        ``impacts`` are those of the next n periods. A repeated response is undecided if
 
         - the samples do not have that number of impacts per n periods, up to one at either end, or
         - there are none though n > 1 or no motion without impacts exists.
@@ -62,7 +66,6 @@ class Response:
         (n, decided), mean = decision, self.impacts_per_period
         if decided != REPEATED:
             return decision, mean
-        impacts = count(n)
         if self.lacks_impacts(impacts, n) or not self.repeats(impacts, n):
             decided = UNDECIDED
         return Decision(n, decided), impacts / n
@@ -89,7 +92,7 @@ class Response:
         """Return the gap at the samples, m."""
         return gap_between(self.samples, self.gap_offset)
 
-    @property
+    @cached_property
     def end(self) -> tuple[float, ...]:
         """Return the rounded state at the last sample, from which the next response starts."""
         return round_state(self.samples[-1], self.gap_offset)
@@ -112,13 +115,19 @@ def respond(
 
 
 def responses_from(
-    results: Responses, points: Sequence[Point], tolerance: float
+    results: Responses,
+    points: Sequence[Point],
+    tolerance: float,
+    multiplicity: Sequence[int] | None = None,
 ) -> Iterator[Response]:
-    """Yield the responses of a loop's rows."""
+    """Yield the responses of a loop's rows, with their multiplicity where it has been found."""
     count = results.states.shape[1]
     columns = zip(*(results.counts[name].tolist() for name in COUNTS), strict=True)
+    exceeding: dict[int, bool] = {}  # by point: a basin's responses have one in common
     for i, (point, numbers) in enumerate(zip(points, columns, strict=True)):
         before, contacts_before, touching, after, contacts_after, *_ = numbers
+        if id(point) not in exceeding:
+            exceeding[id(point)] = exceeds_threshold(*point)
         yield Response(
             samples=results.states[i],
             x_rel_max=float(results.x_rel_max[i]),
@@ -128,14 +137,24 @@ def responses_from(
             frequency=point.excitation.frequency,
             tolerance=tolerance,
             gap_offset=point.structure.gap_offset,
-            has_to_impact=exceeds_threshold(*point),
+            has_to_impact=exceeding[id(point)],
+            known_multiplicity=None if multiplicity is None else multiplicity[i],
         )
 
 
-def count_later_impacts(
-    instance: Instance, period: float, done: int, before: int, periods: int
-) -> int:
-    """Run the FMU on for some periods after those done; return the impacts since a count."""
-    instance.step(done * period, (done + periods) * period)
-    count: int = instance.get("impact_count")[0]
-    return count - before
+class DecidedResponse(NamedTuple):
+    """A response, how its multiplicity was decided, and its impacts per period."""
+
+    response: Response
+    decision: Decision
+    impacts_per_period: float
+
+
+def decisions_from(results: Responses, responses: Iterable[Response]) -> Iterator[DecidedResponse]:
+    """Yield the responses of a loop that decides, with their decisions as impacts leave them."""
+    columns = (
+        results.counts[name].tolist() for name in ("multiplicity", "decided", "later_impacts")
+    )
+    for response, n, decided, later in zip(responses, *columns, strict=True):
+        decision = Decision(n, decided)
+        yield DecidedResponse(response, *response.conclude(decision, later - response.impact_count))

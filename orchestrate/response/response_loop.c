@@ -44,21 +44,22 @@ typedef struct {
 } Calls;
 
 typedef struct {  /* what there is to do: a row a response */
-    size_t count, transient, samples, peak_periods, points;  /* points: states over the periods looked at for peaks, or 0 */
-    double tolerance;
-    bool is_chain, has_gap;  /* whether each starts from the end of the one before; whether the gap that the first start belongs to is known */
+    size_t count, samples, peak_periods, points;  /* points: states over the periods looked at for peaks, or 0 */
+    double tolerance, loose;  /* loose, unless 0: a wider tolerance; repetitions within both are found */
+    bool decides, is_chain, has_gap;  /* the multiplicity is decided; each starts from the end of the one before; the gap that the first start belongs to is known */
     double gap;
+    const uint64_t *transients;  /* periods dropped of each */
     const double *reals;
     const bool *booleans;
     const double *periods, *frequencies, *rests;  /* of each, rests: gap between unloaded springs, places of rest */
     const double *starts;  /* of each, or of the first of a chain */
     double *memory;  /* of the rule */
-    double *states, *ends, *largest, *orbits;  /* results */
+    double *states, *ends, *largest, *deviations, *orbits;  /* results */
     int32_t *counts;
     double *series;  /* the samples of a step */
 } Task;
 
-enum { BEFORE, CONTACTS_BEFORE, TOUCHES, AFTER, CONTACTS_AFTER, PERIODS, HOW, LATER_IMPACTS, COUNTS };  /* of each response */
+enum { BEFORE, CONTACTS_BEFORE, TOUCHES, AFTER, CONTACTS_AFTER, PERIODS, HOW, LATER_IMPACTS, NEARLY, COUNTS };  /* of each response */
 
 EXPORT const unsigned sizes[] = {sizeof(Calls), sizeof(Task)};  /* response_loop.py has to have the same */
 
@@ -155,10 +156,10 @@ static bool sample(Calls *calls, const Task *task, double time, double target, s
 }
 
 /* respond.py: stroboscopic_samples. */
-static bool sample_periods(Calls *calls, const Task *task, double period, double *states, double *largest) {
+static bool sample_periods(Calls *calls, const Task *task, double period, size_t transient, double *states, double *largest) {
     *largest = 0.0;
     for (size_t done = 0; done < task->samples; done += calls->capacity) {
-        size_t count = task->samples - done < calls->capacity ? task->samples - done : calls->capacity, first = task->transient + done;
+        size_t count = task->samples - done < calls->capacity ? task->samples - done : calls->capacity, first = transient + done;
         double peak;
         if (!set_flag(calls, calls->x_rel_max_on, true)) return false;
         if (!sample(calls, task, (double)first * period, (double)(first + count) * period, count, states + STATES * done)) return false;
@@ -179,23 +180,23 @@ static bool sample_evenly(Calls *calls, const Task *task, double time, double ta
     return true;
 }
 
-static void apply_rule(const Task *task, double frequency, const double *states, double largest, int32_t *counts) {
+/* multiplicity.py: apply_rule. */
+static int32_t apply_rule(const Task *task, size_t i, double tolerance, int (*rule)(double *, double)) {
     double *memory = task->memory;
     memory[COUNT] = (double)task->samples;
-    memory[FREQUENCY] = frequency;
-    memory[GAP] = largest;
-    memory[TOLERANCE] = task->tolerance;
-    for (size_t k = 0; k < STATES * task->samples; k++) memory[HEAD + k] = states[k];
-    kernel_decide(memory, 0.0);
-    counts[PERIODS] = (int32_t)memory[MULTIPLICITY];
-    counts[HOW] = (int32_t)memory[DECIDED];
+    memory[FREQUENCY] = task->frequencies[i];
+    memory[GAP] = task->largest[i];
+    memory[TOLERANCE] = tolerance;
+    for (size_t k = 0; k < STATES * task->samples; k++) memory[HEAD + k] = task->states[STATES * task->samples * i + k];
+    rule(memory, 0.0);
+    return (int32_t)memory[MULTIPLICITY];
 }
 
 /* sweep.py: the states for peaks, and the impacts of a response that has repeated. */
-static bool look_at_periods(Calls *calls, const Task *task, double period, const double *last, double *orbit, int32_t *counts) {
-    size_t most = task->peak_periods, n = (size_t)counts[PERIODS], span = n < most ? n : most, first = task->transient + task->samples;
+static bool look_at_periods(Calls *calls, const Task *task, double period, size_t first, const double *last, double *orbit, int32_t *counts) {
+    size_t most = task->peak_periods, n = (size_t)counts[PERIODS], span = n < most ? n : most;
     if (!span) span = (most + 1) / 2;
-    for (int j = 0; j < STATES; j++) orbit[j] = last[j];
+    if (task->points) for (int j = 0; j < STATES; j++) orbit[j] = last[j];
     double done = (double)(first + span) * period, end = (double)(first + n) * period;
     if (!sample_evenly(calls, task, (double)first * period, done, orbit + STATES)) return false;
     if (counts[HOW] != REPEATED) return true;
@@ -204,33 +205,37 @@ static bool look_at_periods(Calls *calls, const Task *task, double period, const
 }
 
 static bool respond(Calls *calls, const Task *task, size_t i, const double *start) {
+    size_t transient = (size_t)task->transients[i];
     double period = task->periods[i], *states = task->states + STATES * task->samples * i, *last = states + STATES * (task->samples - 1);
     int32_t *counts = task->counts + COUNTS * i;
     bool touches;
-    if (!initialize(calls, task, i, start) || (task->transient && !step(calls, 0.0, (double)task->transient * period))) return false;
+    if (!initialize(calls, task, i, start) || (transient && !step(calls, 0.0, (double)transient * period))) return false;
     if (!get_integer(calls, calls->impact_count, &counts[BEFORE]) || !get_integer(calls, calls->contact_count, &counts[CONTACTS_BEFORE])) return false;
     if (!answered(calls, "fmi3GetBoolean", calls->get_boolean(calls->instance, &calls->in_contact, 1, &touches, 1))) return false;
     counts[TOUCHES] = touches;
-    if (!sample_periods(calls, task, period, states, task->largest + i)) return false;
+    if (!sample_periods(calls, task, period, transient, states, task->largest + i)) return false;
     if (!get_integer(calls, calls->impact_count, &counts[AFTER]) || !get_integer(calls, calls->contact_count, &counts[CONTACTS_AFTER])) return false;
     round_state(last, task->rests[3 * i], task->ends + STATES * i);
-    if (!task->points) return true;
-    apply_rule(task, task->frequencies[i], states, task->largest[i], counts);
-    return look_at_periods(calls, task, period, last, task->orbits + STATES * (task->points + 1) * i, counts);
+    if (task->loose != 0.0) {
+        counts[NEARLY] = apply_rule(task, i, task->loose, kernel_repeat);
+        task->deviations[i] = task->memory[DEVIATION];
+        counts[PERIODS] = apply_rule(task, i, task->tolerance, kernel_repeat);
+    }
+    if (!task->decides) return true;
+    counts[PERIODS] = apply_rule(task, i, task->tolerance, kernel_decide);
+    counts[HOW] = (int32_t)task->memory[DECIDED];
+    return look_at_periods(calls, task, period, transient + task->samples, last, task->orbits + STATES * (task->points + 1) * i, counts);
 }
 
-/* Compute responses from the first one given; returns DONE, or FAILED. */
-EXPORT int run(Calls *calls, const Task *task) {
-    double start[STATES], gap = task->gap;
-    bool has_gap = task->has_gap;
-    for (size_t i = 0; i < task->count; i++) {
+/* Compute the responses from number first up to, not including, last; returns DONE, or FAILED. */
+EXPORT int run(Calls *calls, const Task *task, size_t first, size_t last) {
+    for (size_t i = first; i < last; i++) {
         const double *given = task->is_chain && i ? task->ends + STATES * (i - 1) : task->starts + (task->is_chain ? 0 : STATES * i);
-        double offset = task->rests[3 * i];
+        double start[STATES], offset = task->rests[3 * i], gap = i ? task->rests[3 * (i - 1)] : task->gap;
+        bool has_gap = i || task->has_gap;
         for (int j = 0; j < STATES; j++) start[j] = given[j];
         if (task->is_chain && has_gap && gap != offset && is_any(start)) for (int j = 0; j < STATES; j++) start[j] += j == X2 ? gap - offset : 0.0;
         if (!respond(calls, task, i, start)) return FAILED;
-        has_gap = true;
-        gap = offset;
     }
     return DONE;
 }

@@ -30,7 +30,7 @@ from ..fmu import (
     samples_per_step,
 )
 from ..model.outcomes import REPEATED
-from .multiplicity import decide_multiplicity, library, memory_size
+from .multiplicity import decide_multiplicity, find_repetition, library, memory_size
 from .questions import Point
 
 FUNCTIONS = (  # as Calls of the C source has them
@@ -39,9 +39,10 @@ FUNCTIONS = (  # as Calls of the C source has them
 )
 READ = ("sample_count", "x_rel_max", "x_rel_max_on", "impact_count", "contact_count", "in_contact")
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
-COUNTS = (*COUNTED, "multiplicity", "decided", "later_impacts")
+COUNTS = (*COUNTED, "multiplicity", "decided", "later_impacts", "nearly")
 NOT_FINITE = -1  # a status that FMI does not have
 MIN_EXPONENT = -970  # of two: smaller numbers are not rounded
+MAX_PERIODS = 200_000  # of one call, a second's work: between two calls an interrupt is heard
 MAX_REALS = 64  # numbers set before a start, for which the C source has room
 Floats = NDArray[np.float64]
 
@@ -63,11 +64,14 @@ class Task(ctypes.Structure):
     """C struct of what there is to do: sizes and settings, then addresses of rows."""
 
     _fields_ = [
-        *((name, c_size_t) for name in ("count", "transient", "samples", "peak_periods", "points")),
-        *(("tolerance", c_double), ("is_chain", c_bool), ("has_gap", c_bool), ("gap", c_double)),
-        *((name, c_void_p) for name in ("reals", "booleans", "periods", "frequencies", "rests")),
-        *((name, c_void_p) for name in ("starts", "memory", "states", "ends", "largest")),
-        *((name, c_void_p) for name in ("orbits", "counts", "series")),
+        *((name, c_size_t) for name in ("count", "samples", "peak_periods", "points")),
+        *((name, c_double) for name in ("tolerance", "loose")),
+        *((name, c_bool) for name in ("decides", "is_chain", "has_gap")),
+        ("gap", c_double),
+        *((name, c_void_p) for name in ("transients", "reals", "booleans", "periods")),
+        *((name, c_void_p) for name in ("frequencies", "rests", "starts", "memory", "states")),
+        *((name, c_void_p) for name in ("ends", "largest", "deviations", "orbits", "counts")),
+        ("series", c_void_p),
     ]
 
 
@@ -75,15 +79,16 @@ class Task(ctypes.Structure):
 class LoopSettings:
     """What is computed of each response, and where it starts."""
 
-    transient: int  # periods dropped
+    transient: int | Sequence[int]  # periods dropped, of all or of each
     samples: int  # periods kept after them
     tolerance: float = 0.0  # within which states repeat, over the motion's size
+    decides: bool = False  # whether the multiplicity is decided, and its periods' impacts counted
+    loose: float = 0.0  # a wider tolerance, unless 0: repetitions within both are found
     is_chain: bool = False  # whether each response starts from the end state of the one before
     # gap between unloaded springs that the first start of a chain belongs to, m, where it is known
     chain_gap: float | None = None
     peak_periods: int = 0  # periods looked at for peaks, at most
-    # states over these periods; 0: none, and the multiplicity is not decided
-    peak_points: int = 0
+    peak_points: int = 0  # states over these periods
 
 
 class Responses(NamedTuple):
@@ -93,6 +98,8 @@ class Responses(NamedTuple):
     ends: Floats  # the last ones, rounded, from which the next responses start
     x_rel_max: Floats  # largest gap over the samples, m
     counts: dict[str, NDArray[np.int32]]  # by `COUNTS`
+    # largest deviation of states from those `nearly` periods before, within the loose tolerance
+    deviations: Floats
     orbits: Floats  # states over the periods looked at for peaks, (n, points + 1, 4)
 
     @classmethod
@@ -105,7 +112,18 @@ class Responses(NamedTuple):
             ends=np.empty((count, 4)),
             x_rel_max=np.empty(count),
             counts=dict(zip(COUNTS, counts, strict=True)),
+            deviations=np.zeros(count),
             orbits=np.empty((count, points + 1, 4) if points else (0, 1, 4)),
+        )
+
+    def rows(self, chosen: NDArray[np.intp]) -> Responses:
+        """Return the results of chosen responses, without their orbits."""
+        return self._replace(
+            states=self.states[chosen],
+            ends=self.ends[chosen],
+            x_rel_max=self.x_rel_max[chosen],
+            counts={name: numbers[chosen] for name, numbers in self.counts.items()},
+            deviations=self.deviations[chosen],
         )
 
 
@@ -133,6 +151,7 @@ class ResponseLoop:
         """Compute responses from their starts, or from the first of a chain."""
         results = Responses.empty(len(points), settings)
         given, gap = np.atleast_2d(np.asarray(starts, dtype=float)), settings.chain_gap
+        transients = np.broadcast_to(settings.transient, len(points)).tolist()
         for i, point in enumerate(points):
             start = given[0 if settings.is_chain else i]
             if settings.is_chain:
@@ -142,36 +161,53 @@ class ResponseLoop:
                     start = np.add(start, (0.0, gap - offset, 0.0, 0.0))
                 gap = offset
             begin(self.instance, *point, start)
-            self.sample(point, settings, results, i)
-            if settings.peak_points:
-                self.decide(point, settings, results, i)
+            self.sample(point, transients[i], settings.samples, results, i)
+            self.apply_rules(point, settings, results, i)
+            if settings.decides:
+                self.run_on(point, transients[i] + settings.samples, settings, results, i)
         return results
 
-    def sample(self, point: Point, settings: LoopSettings, results: Responses, i: int) -> None:
+    def sample(
+        self, point: Point, transient: int, samples: int, results: Responses, i: int
+    ) -> None:
         """Run through transient and samples; store states, largest gap, impacts and contacts."""
-        instance, period, transient = self.instance, point.excitation.period, settings.transient
+        instance, period = self.instance, point.excitation.period
         if transient:
             instance.step(0.0, transient * period)
         counts = instance.get("impact_count", "contact_count", "in_contact")
-        states, peak = stroboscopic_samples(instance, period, transient, settings.samples)
+        states, peak = stroboscopic_samples(instance, period, transient, samples)
         counts += instance.get("impact_count", "contact_count")
         for name, count in zip(COUNTED, counts, strict=True):
             results.counts[name][i] = count
         results.states[i], results.x_rel_max[i] = states, peak
         results.ends[i] = round_state(states[-1], point.structure.gap_offset)
 
-    def decide(self, point: Point, settings: LoopSettings, results: Responses, i: int) -> None:
-        """Decide the multiplicity; store it, states for peaks, and impacts after its periods."""
-        states, counts, excitation = results.states[i], results.counts, point.excitation
-        size = excitation.frequency, float(results.x_rel_max[i])
-        n, decided = decide_multiplicity(states, *size, settings.tolerance)
-        counts["multiplicity"][i], counts["decided"][i] = n, decided
-        span, first = periods_to_sample(n, settings.peak_periods), len(states) + settings.transient
-        begun, done, end = ((first + count) * excitation.period for count in (0, span, n))
+    def apply_rules(self, point: Point, settings: LoopSettings, results: Responses, i: int) -> None:
+        """Find repetitions within both tolerances, decide the multiplicity, as the settings say."""
+        states, counts = results.states[i], results.counts
+        size = point.excitation.frequency, float(results.x_rel_max[i])
+        if settings.loose:
+            within = (
+                find_repetition(states, *size, each)
+                for each in (settings.tolerance, settings.loose)
+            )
+            (counts["multiplicity"][i], _), (counts["nearly"][i], results.deviations[i]) = within
+        if settings.decides:
+            decision = decide_multiplicity(states, *size, settings.tolerance)
+            counts["multiplicity"][i], counts["decided"][i] = decision
+
+    def run_on(
+        self, point: Point, first: int, settings: LoopSettings, results: Responses, i: int
+    ) -> None:
+        """Store states for peaks, and the impacts after the periods of what repeats."""
+        counts, n = results.counts, int(results.counts["multiplicity"][i])
+        span = periods_to_sample(n, settings.peak_periods)
+        begun, done, end = ((first + count) * point.excitation.period for count in (0, span, n))
         self.instance.set(x_rel_max_on=False)
-        results.orbits[i, 0] = states[-1]
-        results.orbits[i, 1:] = sampled(self.instance, begun, done, settings.peak_points)
-        if decided == REPEATED:
+        if settings.peak_points:
+            results.orbits[i, 0] = results.states[i, -1]
+            results.orbits[i, 1:] = sampled(self.instance, begun, done, settings.peak_points)
+        if counts["decided"][i] == REPEATED:
             if n > span:
                 self.instance.step(done, end)
             counts["later_impacts"][i] = self.instance.get("impact_count")[0]
@@ -216,24 +252,31 @@ class CompiledResponseLoop(ResponseLoop):
         results, chosen = Responses.empty(len(points), settings), settings
         counts = np.zeros((len(points), len(COUNTS)), np.int32)
         series, memory = np.empty(4 * self.capacity), np.empty(memory_size(chosen.samples))
-        inputs = (*self.rows(points), np.ascontiguousarray(starts, dtype=float), memory)
-        outputs = (results.states, results.ends, results.x_rel_max, results.orbits, counts, series)
+        transients = np.full(len(points), chosen.transient, dtype=np.uint64)
+        inputs = (transients, *self.rows(points), np.ascontiguousarray(starts, dtype=float), memory)
+        outputs = (*results[:3], results.deviations, results.orbits, counts, series)
         task = Task(
-            *(len(points), chosen.transient, chosen.samples),
-            *(chosen.peak_periods, chosen.peak_points, chosen.tolerance),
+            *(len(points), chosen.samples, chosen.peak_periods, chosen.peak_points),
+            *(chosen.tolerance, chosen.loose, chosen.decides),
             *(chosen.is_chain, chosen.chain_gap is not None, chosen.chain_gap or 0.0),
             *(table.ctypes.data for table in (*inputs, *outputs)),
         )
         self.instance._messages.clear()
-        if self.run(byref(self.calls), byref(task)):
-            raise self.error(series)
+        pointers, count = (byref(self.calls), byref(task)), len(points)
+        step = max(1, int(MAX_PERIODS // (float(transients.max(initial=0)) + chosen.samples)))
+        for first in range(0, count, step):
+            if self.run(*pointers, first, min(first + step, count)):
+                raise self.error(series)
         return results._replace(counts=dict(zip(COUNTS, counts.T, strict=True)))
 
     def rows(self, points: Sequence[Point]) -> tuple[NDArray[Any], ...]:
         """Return what is set before each start, and of each the period, frequency and rest."""
-        if points == self.last_points:  # as of a basin, start by start
+        if points == self.last_points:
             return self.last_rows
         reals, booleans = self.names
+        different = {id(point): point for point in points}  # as of a basin: one for all starts
+        index = {key: i for i, key in enumerate(different)}
+        chosen = np.array([index[id(point)] for point in points])
         values = [
             {
                 **dict.fromkeys(START_PARAMETERS, 0.0),
@@ -241,16 +284,17 @@ class CompiledResponseLoop(ResponseLoop):
                 **point.excitation.inputs(),
                 "x_rel_max_on": False,
             }
-            for point in points
+            for point in different.values()
         ]
-        self.last_points = list(points)
-        self.last_rows = (
+        tables = (
             np.array([[row[name] for name in reals] for row in values], dtype=float),
             np.array([[row[name] for name in booleans] for row in values], dtype=bool),
-            np.array([point.excitation.period for point in points]),
-            np.array([point.excitation.frequency for point in points]),
-            np.array([rest_of(point) for point in points]),
+            np.array([point.excitation.period for point in different.values()]),
+            np.array([point.excitation.frequency for point in different.values()]),
+            np.array([rest_of(point) for point in different.values()]),
         )
+        self.last_points = list(points)
+        self.last_rows = tuple(np.ascontiguousarray(table[chosen]) for table in tables)
         return self.last_rows
 
     def error(self, series: Floats) -> FmuError:

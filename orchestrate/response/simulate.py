@@ -5,24 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..fmu import NO_INPUT, OSCILLATOR, EventInstance, Impacts, begin
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import whole
 from ..running.job import Table
+from ..running.options import Running
 from .equations import absolute_accelerations
 from .labels import Variable, make_dataset, variable, yes_or_no
 from .questions import OneMotionQuestion, Point, ask, checked_point, checked_state
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 OUTPUTS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force", "phase")
 AS_MEASURED = "as an accelerometer on it reads it between impacts"
@@ -88,7 +84,6 @@ class SimulateJob(OneMotionQuestion):
         }
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the motion: variables over time, and its impacts."""
         contact = "whether the masses are in permanent contact"
         variables = {
             **{name: variable("time", table[name], *IN_TIME[name]) for name in IN_TIME},

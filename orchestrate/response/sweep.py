@@ -26,10 +26,10 @@ from .labels import (
     variable,
     yes_or_no,
 )
-from .multiplicity import DECIDED, Decision
+from .multiplicity import DECIDED
 from .peaks import POINTS, peaks
 from .questions import Point, SeriesQuestion, answer_question
-from .respond import Response, responses_from
+from .respond import DecidedResponse, decisions_from, responses_from
 from .response_loop import LoopSettings, periods_to_sample, response_loop
 
 if TYPE_CHECKING:
@@ -53,7 +53,6 @@ RESPONSE_QUANTITIES = {  # one a response: units, long name
     "a1_max": ("m/s2", "largest absolute acceleration of mass 1 between impacts"),
     "a2_max": ("m/s2", "largest absolute acceleration of mass 2 between impacts"),
 }
-DECISION = ("multiplicity", "decided", "later_impacts")
 END = "state at the last sample, from which the next value starts"
 MULTIPLICITY = "least n such that the state repeats after n periods; 0: none"
 HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a guess"
@@ -120,6 +119,7 @@ class SweepJob(SeriesQuestion):
             transient=self.transient,
             samples=self.samples,
             tolerance=self.tolerance,
+            decides=True,
             peak_periods=self.peak_periods,
             peak_points=POINTS,
             **chain,
@@ -127,16 +127,15 @@ class SweepJob(SeriesQuestion):
         with Instance(fmus[OSCILLATOR]) as instance:
             results = response_loop(instance).respond(points, starts, settings)
         responses = responses_from(results, points, self.tolerance)
-        found = zip(responses, *(results.counts[name].tolist() for name in DECISION), strict=True)
-        rows = [self.row(response, Decision(n, how), later) for response, n, how, later in found]
+        rows = [self.row(each) for each in decisions_from(results, responses)]
         table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
         table["end"] = results.ends
         spans = [periods_to_sample(n, self.peak_periods) for n in results.counts["multiplicity"]]
         return {**table, **peaks(points, spans, results.orbits)}
 
-    def row(self, response: Response, decision: Decision, later: int) -> dict[str, Any]:
-        """Return one response's numbers by column name; ``later``: impacts after its periods."""
-        found, impacts = response.conclude(decision, lambda n: later - response.impact_count)
+    def row(self, decided: DecidedResponse) -> dict[str, Any]:
+        """Return one response's numbers by column name."""
+        response, found, impacts = decided
         return {
             "gap": response.gap,
             "gap_offset": response.gap_offset,

@@ -9,19 +9,17 @@ threshold.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from ..lazy import xr
 from ..model import Excitation, Structure
 from ..running.job import brief
 from .labels import Variable, make_dataset, parameter_variable, variable
 from .questions import excitation_numbers, require_delaminated
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Floats = NDArray[np.float64]
 GRID = 400  # frequencies between which minima of the threshold are bracketed
@@ -54,10 +52,7 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
 
 
 def exceeds_threshold(structure: Structure, excitation: Excitation) -> bool:
-    """Return whether the linear response opens or touches, so that no response can stay linear.
-
-    With a clearance only: without one the halves open at any level, unless they move alike.
-    """
+    """Return whether the linear response opens or touches, so that no response can stay linear."""
     if structure.gap_offset == 0.0:
         return False
     (level,) = threshold_amplitudes(structure, np.array([excitation.frequency])).tolist()

@@ -48,11 +48,15 @@ def progress_bar(label: str, shown: bool, *, total: int, initial: int, unit: str
     return tqdm(file=LogLines(), ncols=LOG_WIDTH, **every, **options)
 
 
-def relabel(bar: Any, label: str) -> None:
-    """Change a bar's label; it is shown from now on, or tqdm would not end its line."""
-    if not bar.disable and bar.desc != f"{shortened(label)}: ":
-        bar.delay = 0.0
+def refresh(bar: Any, label: str) -> None:
+    """Show a bar's label, time and time left as they are now; in a log a new label alone."""
+    if bar.disable:
+        return
+    bar.delay = 0.0  # it is shown from now on, or tqdm would not end its line
+    if bar.desc != f"{shortened(label)}: ":
         bar.set_description(shortened(label))
+    elif not isinstance(bar.fp.__dict__.get("_wrapped", bar.fp), LogLines):
+        bar.refresh()
 
 
 def shortened(label: str) -> str:

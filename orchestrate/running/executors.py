@@ -138,10 +138,7 @@ def threads(count: int) -> Iterator[Workers]:
 
 @contextmanager
 def processes(count: int) -> Iterator[Workers]:
-    """Provide loky's processes, which stay for the next question; on an error they are killed.
-
-    They start without running the caller's script again, so a script needs no ``__main__`` guard.
-    """
+    """Provide loky's processes, which stay for the next question; on an error they are killed."""
     import loky
 
     with sigint_blocked():

@@ -24,11 +24,11 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..files import write_whole
 from ..flags import flag_words
+from ..lazy import xr
 from ..units import as_shown
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray as xr
 
 MAX_SHEET_ROWS = 1_048_575  # Excel's limit, less the header
 MAX_SHEET_NAME = 31  # letters, Excel's limit
@@ -63,7 +63,7 @@ def write(data: xr.Dataset, path: Path) -> list[Path]:
 
 def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
     """Return a dataset as pandas tables, one per set of dimensions; units in the headers."""
-    data = as_shown(data)
+    data = without_repetition(data)
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, array in data.data_vars.items():
         groups.setdefault(tuple(map(str, array.dims)), []).append(str(name))
@@ -76,6 +76,23 @@ def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
             scalars = [name for name, array in part.coords.items() if not array.dims]
             frames["_".join(dims)] = make_table(part.drop_vars(scalars))
     return frames
+
+
+def without_repetition(data: xr.Dataset) -> xr.Dataset:
+    """Return a dataset as it is shown: each frequency once, converted numbers to 13 digits."""
+    shown = as_shown(data)
+    twice = [
+        name
+        for name in map(str, shown.variables)
+        if name.endswith("hertz")
+        and getattr(shown.get(name[:-5] + "frequency"), "attrs", {}).get("units") == "Hz"
+    ]
+    converted = {
+        name: (array.dims, [float(f"{value:.13g}") for value in array.values], array.attrs)
+        for name, array in shown.coords.items()
+        if array.ndim == 1 and array.attrs.get("units") != data[name].attrs.get("units")
+    }
+    return shown.assign_coords(converted).drop_vars(twice)
 
 
 def make_table(data: xr.Dataset) -> pd.DataFrame:

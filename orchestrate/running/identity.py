@@ -142,7 +142,7 @@ def read_source(path: Path, module: str) -> tuple[str, tuple[str, ...]]:
 
 def imported_names(tree: ast.AST, package: str) -> Iterator[str]:
     """Yield the absolute names that a module imports anywhere, and of the packages around them."""
-    for node in ast.walk(tree):
+    for node in statements(tree):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield from prefixes(alias.name)
@@ -152,6 +152,16 @@ def imported_names(tree: ast.AST, package: str) -> Iterator[str]:
             prefix = ".".join([*base, *([node.module] if node.module else [])])
             for alias in node.names:
                 yield from prefixes(f"{prefix}.{alias.name}")
+
+
+def statements(tree: ast.AST) -> Iterator[ast.AST]:
+    """Yield a module's statements, nested ones too: quicker than all nodes with expressions."""
+    waiting = [tree]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        for block in ("body", "orelse", "finalbody", "handlers", "cases"):
+            waiting.extend(getattr(node, block, ()))
 
 
 def prefixes(name: str) -> Iterator[str]:

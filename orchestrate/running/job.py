@@ -11,15 +11,14 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from ..lazy import xr
 from ..model.arguments import CHECK
 
-if TYPE_CHECKING:
-    import xarray as xr
-
+Fmus = Mapping[str, Path]  # FMU files by model
 Table = dict[str, np.ndarray]  # arrays by name, one entry an item along the first axis
 MAX_LISTED = 4  # a longer list of numbers is summarized by its ends, count and digest
 
@@ -68,7 +67,7 @@ class Job(ABC):
         return [0]
 
     @abstractmethod
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
         """Compute a chunk's items by the FMUs, in a worker; return arrays, one row per item."""
 
     def progress_note(self, first: int) -> str:

@@ -24,9 +24,7 @@ MIN_GAP = 3  # chunks in a row not begun: from here on, guessing the middle one 
 
 @dataclass(frozen=True)
 class Task:
-    """A chunk to be computed: its items, its start state or warm-up items, whether it is a
-    guess.
-    """
+    """A chunk to be computed: its items, its start or warm-up items, whether it is a guess."""
 
     chunk: Chunk
     items: Sequence[Any]
@@ -146,10 +144,7 @@ class Progress:
         return chunk.after in self.done_chunks
 
     def continuing_tasks(self) -> Iterator[Task]:
-        """Yield tasks that continue guessed chunks, also instead of guesses with another start.
-
-        A run of chunks is more likely to be right as a whole.
-        """
+        """Yield tasks that continue guessed chunks, also instead of guesses with another start."""
         for index in sorted(self.guesses):
             following = index + 1
             if following < len(self.chunks) and self.chunks[following].after == index:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ..lazy import xr
 from ..version import __version__
 from .identity import Fmu, Identity
 from .job import Job, brief
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def with_provenance(

@@ -16,21 +16,19 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..files import open_folder
-from .bar import DELAY, progress_bar, relabel
+from ..lazy import xr
+from .bar import DELAY, progress_bar, refresh
 from .executors import Workers, compute, in_this_process, processes, threads
 from .identity import Fmu, identity_of
 from .job import Job, Table
 from .options import RunOptions
 from .progress import Progress, Task
 from .store import open_store
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 log = logging.getLogger(__name__)
 FmuFinder = Callable[[str], Fmu]  # from a model's name to its FMU
@@ -164,6 +162,11 @@ class Runner:
             if not self.futures:
                 assert self.finished() or not go_on(), "nothing is under way, nothing is ready"
                 continue
+            if time.perf_counter() - self.start_time > DELAY:
+                notes = (
+                    state.job.progress_note(t.chunk.start) for state, t in self.futures.values()
+                )
+                refresh(bar, next(filter(None, notes), self.title()))
             finished, _ = wait(self.futures, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
             for future in finished:
                 state, task = self.futures.pop(future)
@@ -187,8 +190,6 @@ class Runner:
                     break
                 chosen = {model: fmus[model] for model in state.job.models}
                 state.under_way.add(task.chunk.index)
-                if time.perf_counter() - self.start_time > DELAY:
-                    relabel(bar, state.job.progress_note(task.chunk.start) or self.title())
                 code = state.identity["code"] if workers.remote else None
                 future = workers.executor.submit(
                     compute, state.job, chosen, task.items, task.previous, task.warmup_items, code
@@ -207,8 +208,6 @@ class Runner:
 def import_xarray() -> None:
     """Import xarray and what datasets need early, as it takes most of a second."""
     with suppress(Exception):  # a process that ends lets nobody import; it comes again where used
-        import xarray as xr
-
         xr.Dataset({"number": ("place", np.zeros(1))})
 
 

@@ -9,20 +9,18 @@ import re
 import time
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..errors import InputError, StaleError, StoreError
 from ..files import check_path_encoding, open_folder, write_whole
+from ..lazy import xr
 from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
 from .journal import ANEW, Journal, Lock, discard, journal_path
 from .options import RunOptions
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 log = logging.getLogger(__name__)
 MIN_COMPRESSED = 10_000  # values from which a variable is worth compressing
@@ -210,12 +208,7 @@ def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
 
 
 def load(path: Path) -> xr.Dataset:
-    """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum).
-
-    A result without one, of a version that wrote none or of another tool, is taken as it is.
-    """
-    import xarray as xr
-
+    """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum)."""
     check_path_encoding(path)
     try:
         data = xr.load_dataset(path, engine="netcdf4")

@@ -6,22 +6,17 @@ import hashlib
 import platform
 from collections.abc import Iterable, Sequence
 from importlib.metadata import PackageNotFoundError, version
-from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from ..lazy import xr
 from ..model.ranges import EXCITATION, STRUCTURE
 from ..units import OVER_OMEGA, as_shown, scale_of
 from .labels import plain_title
 from .page import Section, Table, format_number
 from .plot import function_name, plot
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 WORDS = {-1: "not in this record", 0: "no", 1: "yes"}
 MOST_ROWS = 60
-MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
-MOVED += "{0.moved_by.values}."
 MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
 MOVED += "{0.moved_by.values}."
 PACKAGES = ("numpy", "scipy", "xarray", "fmpy", "lmfit", "matplotlib")

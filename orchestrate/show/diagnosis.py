@@ -86,9 +86,11 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
     else:
         draw_distances(plane, data)
     unit = typeset_array_unit(data.level)
-    for number, level in enumerate(data.level.values):
-        force, colour = data.closing_force.isel(level=number), COLOURS[number % len(COLOURS)]
-        draw_line(below, data.frequency, force, "-", colour, 1.1, f"at {level:.3g} {unit}")
+    recommended = int(abs(data.level - data.recommended_level).argmin())
+    shown = data.isel(level=sorted({0, recommended, data.sizes["level"] - 1}))
+    for (_, at), colour in zip(shown.groupby("level"), COLOURS, strict=False):
+        words = f"at {float(at.level.item()):.3g} {unit}"
+        draw_line(below, data.frequency, at.closing_force.squeeze(), "-", colour, 1.1, words)
     below.set_yscale("log")
     across = label_with_unit("frequency of the box", data.frequency)
     below.set(xlabel=across, ylabel="preload that keeps\nit shut, in N")
@@ -192,8 +194,8 @@ def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
         one = data.sel(hypothesis=name)
         words = f"{name}: {float(one.misfit):.3g}"
         draw_line(axes, one.frequency, one.misfit_at, "-", FITS[number % len(FITS)], 1.0, words)
-    axes.set_yscale("log")
     axes.axhline(1.0, color=GREY, linewidth=0.8)
+    use_plain_log(axes)
     across = label_with_unit("frequency of the excitation", data.frequency)
     axes.set(xlabel=across, ylabel="misfit over its usual size")
     legend_below(figure, [axes], 2)

@@ -10,8 +10,9 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ..files import write_whole
-from .style import XI_REL, make_panels, style_context
+from .style import XI_REL, make_panels, set_title, style_context
 
+SLIDE_HEIGHT, SLIDE_PART, SLIDE_PIXELS = 4.2, 0.75, 1920.0  # inches at least, of its own; across
 UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, today and tomorrow
     "pdf": {"CreationDate": None},
     "png": {"Software": None},
@@ -39,6 +40,16 @@ def png_size(png: bytes) -> dict[str, int]:
     """Return width and height of a PNG picture in pixels, read from its header."""
     width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))
     return {"width": width, "height": height}
+
+
+def for_slides(figure: Figure, shape: tuple[float, float]) -> Figure:
+    """Give a figure the shape of a slide, so small that its letters are large on it."""
+    height = max(SLIDE_HEIGHT, SLIDE_PART * figure.get_figheight())
+    width = height * shape[0] / shape[1]
+    figure.set_size_inches(width, height)
+    set_title(figure, figure.get_suptitle().replace("\n", " "))
+    figure.set_dpi(SLIDE_PIXELS / width)
+    return figure
 
 
 def save(

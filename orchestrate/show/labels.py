@@ -11,7 +11,7 @@ import xarray as xr
 
 from ..constants import GRAVITY, TURN
 from ..model.ranges import ADDED, STRUCTURE
-from ..units import has_own_frequency, is_finite_number, omega_of, scale_of, units_of
+from ..units import has_own_frequency, is_finite_number, is_in_ratios, omega_of, scale_of, units_of
 
 UNITS = {"m": "kg", "k": "N/m", "d": "N s/m", "x": "m", "f": "Hz"}  # of both masses' quantities
 SYMBOLS = {
@@ -164,7 +164,7 @@ def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str,
         texts["frequency"] = format_frequency(data, known["frequency"])
     if "amplitude" in known and units.acceleration and "frequency" in known:
         texts["amplitude"] = format_level(data, known["amplitude"] * known["frequency"] ** 2)
-    elif "amplitude" in known:
+    elif "amplitude" in known and not is_papers_amplitude(data, known):
         texts["amplitude"] = f"$a$ = {format_length(data, known['amplitude'])}"
     elif "level" in known:
         texts["level"] = format_level(data, known["level"])
@@ -173,6 +173,12 @@ def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str,
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
             texts["amplitude"] = format_level(data, level.max())
     return texts
+
+
+def is_papers_amplitude(data: xr.Dataset, known: Mapping[str, float]) -> bool:
+    """Return whether the amplitude is 1/eta^2 m, so that displacements are the paper's ratios."""
+    eta = known.get("eta", known.get("frequency", math.nan) / omega_of(data))
+    return is_in_ratios(data) and math.isclose(known["amplitude"] * eta**2, 1.0, rel_tol=1e-9)
 
 
 def format_level(data: xr.Dataset, level: float) -> str:

@@ -128,7 +128,7 @@ def draw_sweep(
         part = {"direction": direction} if both else {}
         samples = shown.sel(part).transpose(parameter, "sample").values
         marks = usual if branches else MARKS.get(direction, usual)
-        draw_samples(top, x, samples, marks, "" if branches else direction)
+        draw_samples(top, x, samples, marks, "the sweep" if branches else direction)
         impacts = data.impacts_per_period.sel(part).values
         width = {"up": 2.6, "down": 1.0}.get(direction, 0.8)
         draw_steps(bottom, x, impacts, MARKS.get(direction, MarkStyle(BLACK)).colour, width)
@@ -307,9 +307,28 @@ def draw_attractor(
         panel.plot(x, marked, marker, color=colours[word], markersize=3.5, markeredgewidth=0.0)
 
 
+def draw_jumps_over(data: xr.Dataset, over: str, title: str) -> Figure:
+    """Draw the jump voltages at rate 0 over a parameter, one panel per direction."""
+    known = data.jumps.notnull().any(["structure", over])
+    jumps = [str(jump) for jump in data.jump.values if known.sel(jump=jump)] or ["up"]
+    figure, axes = make_panels(1, len(jumps), (6.0 * len(jumps), 4.5), title)
+    factor, label = parameter_scale(data, over)
+    for panel, jump in zip(axes, jumps, strict=True):
+        for structure in map(str, data.structure.values):
+            at = data.sel(jump=jump, structure=structure)
+            bars: Any = {"yerr": at.standard_error, "color": STRUCTURES[structure], "capsize": 3.0}
+            panel.errorbar(data[over] / factor, at.jumps, fmt="o-", label=structure, **bars)
+        panel.set(xlabel=label, ylabel="voltage at rate 0 in V")
+        panel.set_title(f"jump {jump}")
+    legend_below(figure, axes)
+    return figure
+
+
 @styled
 def draw_jump_voltages(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw jump voltages over the ramp rate, one panel per direction; return the figure."""
+    """Draw jump voltages over the ramp rate, or at rate 0 over a parameter; return the figure."""
+    if others := {str(dim) for dim in data.jumps.dims} - {"structure", "jump"}:
+        return draw_jumps_over(data, others.pop(), title)
     known = np.isfinite(data.voltage).any(["rate", "structure"])
     jumps = [str(jump) for jump in data.jump.values if known.sel(jump=jump)] or ["up"]
     figure, axes = make_panels(1, len(jumps), (6.0 * len(jumps), 4.5), title)

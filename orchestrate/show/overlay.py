@@ -44,8 +44,31 @@ def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any
         return f"a branch along {name}; expected one along {over}"
     if branch.attrs.get("box_acceleration", 0.0) or "box_acceleration" in branch.coords:
         return "a branch with a constant acceleration of the box; expected one without"
+    return explain_other_structure(branch, {name}, parameters)
+
+
+def explain_border_mismatch(
+    curve: xr.Dataset, over: set[str], parameters: Mapping[str, Any]
+) -> str:
+    """Return a text on why a dataset is no border of a map over two parameters; else ""."""
+    question = str(curve.attrs.get("call", "")).partition("(")[0] or "nothing"
+    if question != "border":
+        return f"an answer of {question}; expected one of border"
+    names = set(map(str, curve.attrs["over"]))
+    if names != over or not over & ALIKE[0]:
+        return (
+            f"a border over {' and '.join(names)}; expected {' and '.join(over)}, one a frequency"
+        )
+    return explain_other_structure(curve, names, parameters)
+
+
+def explain_other_structure(
+    branch: xr.Dataset, varied: set[str], parameters: Mapping[str, Any]
+) -> str:
+    """Return a text on how a result's structure differs in what does not vary; else ""."""
+    moved = set().union(*(MOVED.get(name, {name}) for name in varied))
     for key in SI:
-        if key in MOVED.get(name, {name}) or key not in parameters:
+        if key in moved or key not in parameters:
             continue
         own, other = float(branch.attrs.get(key, 0.0)), float(parameters[key])
         if not math.isclose(own, other, rel_tol=SAME):
@@ -54,10 +77,7 @@ def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any
 
 
 def explain_other_excitation(branch: xr.Dataset, data: xr.Dataset, over: str) -> str:
-    """Return a text on why a branch has another excitation than the responses; else "".
-
-    The box's amplitude does not matter where everything grows with it, as without a clearance.
-    """
+    """Return a text on why a branch has another excitation than the responses; else ""."""
     at = branch.frequency.values
     if over not in ALIKE[0]:
         same = [differ(branch[key].values, data[key].values) for key in ("eta", "frequency")]
@@ -81,10 +101,7 @@ def differ(some: np.ndarray, others: np.ndarray) -> bool:
 
 
 def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:
-    """Return the box's amplitude, m, interpolated to frequencies between the responses'.
-
-    Where the level is held, exactly that; else linear between the responses.
-    """
+    """Return the box's amplitude, m, interpolated to frequencies between the responses'."""
     order = np.argsort(data.frequency.values, kind="stable")
     own = data.frequency.values[order]
     amplitude = np.broadcast_to(data.amplitude.values, own.shape)[order]

@@ -168,10 +168,7 @@ def mean_powers(revolutions: xr.Dataset) -> dict[str, np.ndarray]:
 
 
 def mean_rate(data: xr.Dataset, total: np.ndarray, count: int, times: int = 1) -> np.ndarray:
-    """Return the rate of a total, averaged over ``count`` revolutions; NaN at the ends.
-
-    Powers are averaged twice: single means would jump when an impact enters a little late.
-    """
+    """Return the rate of a total, averaged over ``count`` revolutions; NaN at the ends."""
     from scipy.integrate import cumulative_trapezoid
 
     angle, time, half = np.abs(data.angle.values), data.time.values, 0.5 * count * TURN

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -46,8 +47,8 @@ STATES = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent co
 
 
 @styled
-def draw_map(*maps: xr.Dataset, title: str = "") -> Figure:
-    """Draw maps over two parameters, one row per dataset; return the figure."""
+def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
+    """Draw maps over two parameters, one row per dataset, under borders; return the figure."""
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
     size = (max(3.1 * len(columns), 4.5), 0.4 + 2.8 * len(maps))
     words = title or (title_from_attributes(maps[0]) if len(maps) == 1 else "")
@@ -63,6 +64,18 @@ def draw_map(*maps: xr.Dataset, title: str = "") -> Figure:
             words = "" if column or title or len(maps) == 1 else title_from_attributes(data)
             plane.set_title("\n".join(filter(None, [words, label])))
             plane.set(ylabel="" if column else y.label, xlabel=x.label)
+            limits = plane.axis()
+            for curve in overlay:
+                scales = (parameter_scale(data, name)[0] for name in (right, up))
+                across, along = (
+                    curve[n] / scale for n, scale in zip((right, up), scales, strict=True)
+                )
+                kind = str(curve.attrs["kind"])
+                draw_line(plane, across, along, "-", "white", 2.6)
+                draw_line(plane, across, along, "-", BORDERS[kind], 1.3, kind)
+            plane.axis(limits)
+    if overlay:
+        legend_below(figure, axes)
     return figure
 
 
@@ -144,6 +157,19 @@ def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", 
     return figure
 
 
+@styled
+def draw_motions(data: xr.Dataset, motions: Sequence[xr.Dataset], title: str = "") -> Figure:
+    """Draw the motion on each attractor in the plane of gap and its velocity."""
+    figure, (plane,) = make_panels(1, 1, (6.4, 5.6), title or title_from_attributes(motions[0]))
+    (right, x_label), (up, y_label) = (coordinate_scale(motions[0], n) for n in ("x_rel", "v_rel"))
+    label_attractors(plane, data)
+    for motion, colour in zip(motions, (*BASINS, *[OTHER] * len(motions)), strict=False):
+        plane.plot(motion.x_rel / right, (motion.v2 - motion.v1) / up, color=colour, linewidth=1.2)
+    plane.set(xlabel=x_label, ylabel=y_label)
+    figure.legend(loc="outside lower left")
+    return figure
+
+
 def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
     """Return the divisor to display units and the axis label of a coordinate of the plane."""
     if name == "phase":
@@ -177,13 +203,14 @@ def label_attractors(plane: Axes, data: xr.Dataset) -> None:
         part = data.isel(attractor=index)
         n, impacts = float(part.multiplicity), float(part.impacts_per_period)
         kind = labels.orbit_label(n, impacts) or f"not periodic, {impacts:.2f} impacts per T"
-        text = f"{float(part.share):.1%}: {kind}, largest {gap_text(data, float(part.xi_rel_max))}"
+        gap = gap_text(data, float(part.xi_rel_max))
+        text = f"{index}, {float(part.share):.1%}: {kind}, largest {gap}"
         plane.plot([], [], "s", color=colour, label=text)
     rest = data.share.values[len(BASINS) :].sum()
     if rest:
         words = f"{rest:.1%}: {data.sizes['attractor'] - len(BASINS)} others"
         plane.plot([], [], "s", color=OTHER, label=words)
-    if (data.attractor_of.values < 0).any():  # in no share
+    if "start" not in data.dims and (data.attractor_of.values < 0).any():  # in no share
         words = "no states: the gap would be below 0"
         plane.plot([], [], "s", color="white", markeredgecolor=OTHER, label=words)
 

@@ -52,10 +52,11 @@ TOGETHER = {  # what belongs into one picture with a result of this function
     **dict.fromkeys(("shake", "simulate"), "the bonded structure's"),
     **dict.fromkeys(("capture", "couple"), "the other structure's"),
 }
+OVER_OTHERS = ("border", "branch", "drive_branch")
 EXPECTED = (
     f"expected results of one of {', '.join(sorted(DRAW))}; several of one of border, branch, "
-    "lyapunov, map; a sweep or resonance with branches over it; simulate or shake with the bonded "
-    "structure's; couple with drive_branch"
+    "lyapunov, map; a sweep or resonance with branches over it, a map with borders; simulate or "
+    "shake with the bonded structure's; couple with drive_branch"
 )
 
 
@@ -66,9 +67,10 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Uni
     ----------
     *answers : xarray.Dataset
         One answer, or several that belong into one picture: branches, borders, maps or exponents; a
-        sweep or resonance curves, and branches over them; a motion of the delaminated and of the
-        bonded structure; runs of :func:`orchestrate.couple` or :func:`orchestrate.capture` of both
-        structures, with the branches of :func:`orchestrate.drive_branch`.
+        sweep or resonance curves, and branches over them; a map and borders over it; a motion of
+        the delaminated and of the bonded structure; runs of :func:`orchestrate.couple` or
+        :func:`orchestrate.capture` of both structures, with the branches of
+        :func:`orchestrate.drive_branch`.
     title : str
         Above the picture; by default structure and excitation.
     part : str
@@ -120,7 +122,7 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Uni
 
 def choose_picture(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] | None:
     """Return what draws these results in one picture, with the results; None if there is none."""
-    kind, *more = sorted(shown, key=lambda kind: kind in ("branch", "drive_branch")) or [""]
+    kind, *more = sorted(shown, key=lambda kind: kind in OVER_OTHERS) or [""]
     if kind not in DRAW:
         return None
     (first, *others), beside = shown[kind], TOGETHER.get(kind)
@@ -134,6 +136,8 @@ def choose_picture(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] 
         return partial(DRAW[kind], runs, **{"branches": branches[0]} if branches else {})
     if not more and (not others or beside == "more of them"):
         return partial(DRAW[kind], first, *others)
+    if more == ["border"] and not others and kind == "map":
+        return partial(DRAW[kind], first, overlay=shown["border"])
     if more == ["branch"] and not others and beside == "branches":
         return partial(DRAW[kind], first, overlay=shown["branch"])
     if not more and len(others) == 1 and len(runs) == 2 and beside == "the bonded structure's":

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..files import write_whole
+from ..lazy import xr
 from ..units import Units, with_units
 from .answers import answer_section, origin_section, signs_section, title_of
 from .page import Page, Section
 from .plot import function_name
 from .verdict import make_verdict, verdict_sections
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def report(

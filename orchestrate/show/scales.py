@@ -109,10 +109,7 @@ def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
 
 
 def gap_scale(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
-    """Return the unit of an axis of gaps, m (0: gaps are shown over a eta^2), and its label.
-
-    It is in m for a structure in SI, or where a unit of length is asked for.
-    """
+    """Return the unit of an axis of gaps, m (0: gaps are shown over a eta^2), and its label."""
     asked = has_frequency_unit(data) or units_of(data).length
     if not (asked and {"amplitude", "eta"} <= set(data.coords)):
         return 0.0, XI_REL

@@ -39,10 +39,7 @@ def draw_stems(
 def acceleration_spectrum(
     displacement: np.ndarray, interval: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return frequencies, Hz, and acceleration amplitudes from displacements (Hann window).
-
-    An impulse is a kink of the displacement, so it is in them.
-    """
+    """Return frequencies, Hz, and acceleration amplitudes from displacements (Hann window)."""
     from scipy.signal import periodogram
 
     frequency, power = periodogram(displacement, 1.0 / interval, "hann", scaling="spectrum")

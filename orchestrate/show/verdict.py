@@ -190,6 +190,7 @@ def fits_section(answer: xr.Dataset) -> Section | None:
     if "measured" not in answer or "fitted" not in answer:
         return None
     picture = draw_detect(answer.assign_attrs(title=""))
+    picture.set_size_inches(max(9.0, picture.get_figwidth()), 5.6)  # wide, as the page is
     words = "What was measured, and what the best structures of each kind do, order by order."
     return Section("The measurement over the fits", picture=picture, caption=words, place="front")
 
@@ -222,7 +223,7 @@ def hypothesis_table(answer: xr.Dataset) -> Table:
         rows.append((str(one.hypothesis.values), misfit, minima, computed))
     parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
     deciding = [i for i, row in enumerate(rows) if row[0].startswith(PARTED) == parted][:1]
-    columns = ("structure", "misfit", "minima found", "motions computed")
+    columns = ("structure", "misfit", "distinct fits", "motions computed")
     return Table(columns, rows, frozenset(deciding))
 
 

@@ -27,10 +27,8 @@ module                  idea
 :mod:`.averaged`        the averaged theory of the bonded structure
 :mod:`.own_resonance`   the delaminated structure's resonance and its dividing speed
 :mod:`.shooting`        stationary motions of structure and motor, by shooting
-:mod:`.grazing`         how near a stationary motion is to grazing
 :mod:`.drive_tracer`    one branch of stationary motions, by arclength continuation
 :mod:`.drive_branch`    branches of stationary motions, stable and unstable
-:mod:`.ramp_path`       the folds and jumps that a slow ramp meets on these branches
 :mod:`.drive_spectra`   spectra at the resonance (Figure 3)
 :mod:`.ssp`             the coupled system as a package for other tools
 ======================  ============================================================

@@ -27,8 +27,7 @@ from ..dynamics import bifurcations
 from ..model.drive import Drive
 from ..model.structure import Structure
 
-FOLD, TORUS = bifurcations.FOLD.label, bifurcations.TORUS.label
-LOWEST = 0.1  # of the structure's resonance: a slower one of the box is far away
+FOLD, TORUS = bifurcations.Kind.FOLD.label, bifurcations.Kind.TORUS.label
 
 
 class BifurcationPoint(NamedTuple):
@@ -99,7 +98,8 @@ def calm_speed(structure: Structure, drive: Drive) -> float:
     # least torque between both: folds below are of the box's own resonance, folds above are not
     frequencies = np.abs(free_vibration_roots(structure, drive))
     high = float(frequencies.max())
-    speeds = np.linspace(max(float(frequencies.min()), LOWEST * high), high, 2001)
+    # a slower resonance of the box is far away
+    speeds = np.linspace(max(float(frequencies.min()), 0.1 * high), high, 2001)
     return float(speeds[np.argmin(no_load_speed(structure, drive, speeds) - speeds)])
 
 
@@ -142,9 +142,7 @@ def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, P
 
 
 def smallest_slope(structure: Structure, drive: Drive, count: int = 10_001) -> float:
-    """Return the smallest slope d eta0 / d Omega at the structure's resonance; negative with
-    folds.
-    """
+    """Return the smallest slope d eta0 / d Omega at the resonance; negative with folds."""
     numerator, denominator = slope_polynomials(structure, drive)
     low, peak = calm_speed(structure, drive), resonance(structure, drive)
     near = peak + resonance_half_width(structure, drive) * np.linspace(-20.0, 20.0, count)

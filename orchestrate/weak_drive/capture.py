@@ -9,11 +9,10 @@ has not after a generous time, the start is undecided, and the border's interval
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,12 +20,14 @@ from numpy.typing import ArrayLike
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.ranges import DRIVE
 from ..model.structure import Structure
-from ..response.labels import Variable, parameter_variable, variable, yes_or_no
-from ..running.job import Job, Table
+from ..response.labels import parameter_variable, variable, yes_or_no
+from ..running.job import Fmus, Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from . import averaged
 from .controllers import Controller
@@ -43,14 +44,7 @@ from .settling import (
     usual_limit,
 )
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-
 DRIVE_NAMES = tuple(field.name for field in fields(Drive))
-THEORY = 2e-4  # over K omega: the averaged theory's own error of a fold, with room
 
 
 class System(NamedTuple):
@@ -79,11 +73,10 @@ class CaptureJob(Job):
     item: ClassVar[str] = "value"
 
     def items(self) -> Sequence[System]:
-        """Return one pair of structure and drive for each parameter value."""
         system = System(self.structure, self.drive)
         return [replace_parameter(system, self.over, value) for value in self.values] or [system]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[System], previous: Any) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[System], previous: Any) -> Table:
         """Simulate starts at all voltages and bisect for the threshold voltage."""
         rows, borders = [], []
         for system in items:
@@ -94,7 +87,7 @@ class CaptureJob(Job):
             borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
-    def run_from_rest(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
+    def run_from_rest(self, fmus: Fmus, system: System, voltage: float) -> Outcome:
         """Simulate one start from rest at a voltage until the speed has settled."""
         test = settling_test(*system, self.stay, self.distance(system))
         if voltage <= system.drive.motor_constant * test.threshold:
@@ -113,9 +106,6 @@ class CaptureJob(Job):
         return self.tolerance / system.drive.volts(system.structure)
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of outcomes over voltage and of the threshold voltages."""
-        import xarray as xr
-
         kept = (slice(None),) if self.over else (0,)
         along = (self.over,) if self.over else ()
         decisions, passes, times, speeds = np.moveaxis(table["outcomes"][kept], -1, 0)
@@ -127,7 +117,8 @@ class CaptureJob(Job):
         folds = np.array([self.highest_fold(system) for system in self.items()])[kept]
         known = "voltage above which no motion below the resonance exists, by the averaged theory"
         volts = np.array([drive.volts(structure) for structure, drive in self.items()])
-        above = low - folds > THEORY * volts[kept]
+        # the averaged theory's own error of a fold, with room
+        above = low - folds > 2e-4 * volts[kept]
         variables = {
             "passes": yes_or_no(over, passes > 0, "whether the motor passes the resonance"),
             "decision": (over, np.vectorize(DECISIONS.get)(decisions), {"long_name": how}),
@@ -143,8 +134,11 @@ class CaptureJob(Job):
         }
         tried = variable("voltage", np.array(self.voltages), "V", "voltage switched on from rest")
         coordinates = {"voltage": tried}
-        if self.over:
-            coordinates[self.over] = parameter_coordinate(self.over, self.values)
+        if self.over in DRIVE:
+            of = DRIVE[self.over]
+            coordinates[of.name] = variable(of.name, np.array(self.values), of.unit, of.description)
+        elif self.over:
+            coordinates[self.over] = parameter_variable(self.over, self.over, self.values)
         state = "bonded" if self.structure.bonded else "delaminated"
         title = f"Capture at the resonance from rest, {state} structure"
         return xr.Dataset(variables, coordinates, {"title": title})
@@ -220,27 +214,6 @@ def replace_parameter(system: System, over: str, value: float) -> System:
     if over in DRIVE_NAMES:
         return system._replace(drive=system.drive.replace(**{over: value}))
     return system._replace(structure=system.structure.replace(**{over: value}))
-
-
-def parameter_coordinate(over: str, values: ArrayLike) -> Variable:
-    """Build the dataset's coordinate for the varied parameter, with its unit."""
-    if over in DRIVE:
-        numbers = np.asarray(values, dtype=float)
-        return variable(over, numbers, DRIVE[over].unit, DRIVE[over].description)
-    return parameter_variable(over, over, values)
-
-
-def voltage_grid(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
-    """Return equally spaced voltages between the two given ends, V."""
-    try:
-        low, high = (float(value) for value in voltage)
-    except (TypeError, ValueError):
-        raise InputError(f"voltage = {voltage!r}: expected (lowest, highest) in V") from None
-    check("voltage", low, "V", low=0.0)
-    check("voltage", high, "V", low=0.0)
-    if not low < high:
-        raise InputError(f"voltage = ({low:g}, {high:g}) V: expected (lowest, highest)")
-    return tuple(np.linspace(low, high, checked_integer("count", count, 2)).tolist())
 
 
 def check_parameter_values(
@@ -350,7 +323,15 @@ def capture(
     require_motor(drive)
     system = System(structure, drive)
     parameter_values = check_parameter_values(over, values, system)
-    voltages = voltage_grid(voltage, count)
+    try:
+        low, high = (float(value) for value in voltage)
+    except (TypeError, ValueError):
+        raise InputError(f"voltage = {voltage!r}: expected (lowest, highest) in V") from None
+    check("voltage", low, "V", low=0.0)
+    check("voltage", high, "V", low=0.0)
+    if not low < high:
+        raise InputError(f"voltage = ({low:g}, {high:g}) V: expected (lowest, highest)")
+    voltages = tuple(np.linspace(low, high, checked_integer("count", count, 2)).tolist())
     check("tolerance", tolerance, "V", low=0.0, exclusive=True)
     if time is not None:
         check("time", time, "s", low=0.0, exclusive=True)

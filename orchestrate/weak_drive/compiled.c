@@ -1,4 +1,4 @@
-/* The master's communication steps between two FMI 3.0 instances, compiled.
+/* The master's communication steps between two native instances, compiled.
  *
  * master.py and polynomials.py say what is done and why; here is the same, operation by operation,
  * so the bits are the same. compiled.py has the same structures for ctypes. No library is needed,
@@ -22,28 +22,46 @@ typedef double Cubic[4];
 enum {  /* places in a row; after the motion of the box the drive's other outputs, and its inputs */
     TIME, H, LEVEL, THEN, IMPACTS = THEN + 4,
     MOTION, FORCE = MOTION + 4, IMPULSE, MOMENT,
-    POSITION = MOTION + 10, VELOCITY, ACCELERATION, WORK, ENERGY
+    POSITION = MOTION + 10, VELOCITY, ACCELERATION, WORK, ENERGY,
+    NOT_FINITE = -1, LARGEST = 16  /* a status of our own; inputs of the drive, at most */
 };
+
+typedef int (*Set3)(void *, const unsigned *references, size_t count, const double *values, size_t value_count);
+typedef int (*Get3)(void *, const unsigned *references, size_t count, double *values, size_t value_count);
+typedef int (*Step3)(void *, double time, double h, bool, bool *, bool *, bool *, double *);
+typedef int (*Set2)(void *, const unsigned *references, size_t count, const double *values);
+typedef int (*Get2)(void *, const unsigned *references, size_t count, double *values);
+typedef int (*Step2)(void *, double time, double h, int);
+typedef void Function(void);
 
 typedef struct {
     void *instance;
-    int (*set)(void *, const unsigned *references, size_t count, const double *values, size_t value_count);
-    int (*get)(void *, const unsigned *references, size_t count, double *values, size_t value_count);
+    Function *set, *get;  /* of FMI 2.0 or 3.0 */
     int (*count)(void *, const unsigned *references, size_t count, int *values, size_t value_count);
-    int (*step)(void *, double time, double h, bool, bool *, bool *, bool *, double *);
+    Function *step;
     int (*save)(void *, void **state);
     int (*restore)(void *, void *state);
     const unsigned *inputs, *outputs, *impacts;
     size_t input_count, output_count;
     void **kept;  /* its state at the step's beginning */
     const char *failed;  /* the function that did not answer OK */
-    int status;
+    int status, is_fmi3;
 } Side;
+
+typedef struct {  /* places of our variables in what is set or read of the drive, what is one in SI */
+    int count, places[4];
+    double scales[4];
+} Links;
 
 typedef struct {
     Side oscillator, drive;
     double tolerance, easy;
     int halvings, first_passes;
+    Links force, motion;
+    int cubic;  /* place among the drive's other inputs of one with its derivatives, or -1 */
+    const unsigned *recorded;
+    size_t recorded_count;
+    double *table;  /* of what is recorded, a row an interval */
 } Pair;
 
 EXPORT const unsigned sizes[] = {sizeof(Pair), MOTION, POSITION};  /* compiled.py has to have the same */
@@ -58,26 +76,38 @@ static bool answered(Side *side, const char *function, int status) {
 }
 
 static bool put(Side *s, const double *values) {
-    return answered(s, "fmi3SetFloat64", s->set(s->instance, s->inputs, s->input_count, values, s->input_count));
+    size_t n = s->input_count;
+    int status = s->is_fmi3 ? ((Set3)s->set)(s->instance, s->inputs, n, values, n) : ((Set2)s->set)(s->instance, s->inputs, n, values);
+    return answered(s, "setting inputs", status);
+}
+
+static bool read(Side *s, const unsigned *names, size_t n, double *values) {
+    int status = s->is_fmi3 ? ((Get3)s->get)(s->instance, names, n, values, n) : ((Get2)s->get)(s->instance, names, n, values);
+    return answered(s, "reading outputs", status);
 }
 
 static bool get(Side *s, double *values) {
-    return answered(s, "fmi3GetFloat64", s->get(s->instance, s->outputs, s->output_count, values, s->output_count));
+    double sum = 0.0;
+    if (!read(s, s->outputs, s->output_count, values)) return false;
+    for (size_t i = 0; i < s->output_count; i++) sum += values[i];
+    return answered(s, "reading outputs", sum - sum == 0.0 ? 0 : NOT_FINITE);
 }
 
 static bool advance(Side *s, double time, double h) {
     bool event, terminate, early;
     double last;
-    return answered(s, "fmi3DoStep", s->step(s->instance, time, h, false, &event, &terminate, &early, &last));
+    int status = s->is_fmi3 ? ((Step3)s->step)(s->instance, time, h, false, &event, &terminate, &early, &last)
+                            : ((Step2)s->step)(s->instance, time, h, 0);
+    return answered(s, "the step", status);
 }
 
-static bool save(Side *s) { return answered(s, "fmi3GetFMUState", s->save(s->instance, s->kept)); }
+static bool save(Side *s) { return answered(s, "saving the state", s->save(s->instance, s->kept)); }
 
-static bool restore(Side *s) { return answered(s, "fmi3SetFMUState", s->restore(s->instance, *s->kept)); }
+static bool restore(Side *s) { return answered(s, "restoring the state", s->restore(s->instance, *s->kept)); }
 
 static bool count_impacts(Side *s, double *impacts) {
     int count = 0;
-    if (!answered(s, "fmi3GetInt32", s->count(s->instance, s->impacts, 1, &count, 1))) return false;
+    if (!answered(s, "counting impacts", s->count(s->instance, s->impacts, 1, &count, 1))) return false;
     *impacts = count;
     return true;
 }
@@ -106,14 +136,26 @@ static double work(const Cubic force, double velocity, const Cubic a, double h) 
 
 /* -- master.py: what each side assumes of the other -- */
 
-static void force_over(Cubic f, const double *now, const double *next, double h) {
-    matched_cubic(f, now[FORCE], next[FORCE], next[IMPULSE] / h, next[MOMENT] / (h * h), h);
+static void force_over(const Pair *p, Cubic f, const double *now, const double *next, double h) {
+    if (p->force.count == 4) matched_cubic(f, now[FORCE], next[FORCE], next[IMPULSE] / h, next[MOMENT] / (h * h), h);
+    else set_cubic(f, next[IMPULSE] / h, 0.0, 0.0, 0.0);
 }
 
 static void acceleration_over(Cubic f, const double *now, const double *next, double h) {
-    double mean = (next[VELOCITY] - now[VELOCITY]) / h;
-    double moment = mean - ((next[POSITION] - now[POSITION]) / h - now[VELOCITY]) / h;
-    matched_cubic(f, now[ACCELERATION], next[ACCELERATION], mean, moment, h);
+    double first = now[ACCELERATION], last = next[ACCELERATION];
+    bool knows_velocity = now[VELOCITY] == now[VELOCITY];
+    double mean = knows_velocity ? (next[VELOCITY] - now[VELOCITY]) / h : 0.5 * (first + last);
+    if (!knows_velocity || now[POSITION] != now[POSITION]) {
+        double bend = 3.0 * (first + last) - 6.0 * mean;
+        set_cubic(f, first, (last - first - bend) / h, 2.0 * bend / (h * h), 0.0);
+    } else {
+        double moment = mean - ((next[POSITION] - now[POSITION]) / h - now[VELOCITY]) / h;
+        matched_cubic(f, first, last, mean, moment, h);
+    }
+}
+
+static void end_derivatives(Cubic end, const double *f, double h) {
+    set_cubic(end, f[0] + h * (f[1] + 0.5 * h * (f[2] + h * f[3] / 3.0)), f[1] + h * (f[2] + 0.5 * h * f[3]), f[2] + h * f[3], f[3]);
 }
 
 static void run_on(Cubic f, const double *now) {
@@ -124,18 +166,32 @@ static void run_on(Cubic f, const double *now) {
 
 /* -- master.py: a step -- */
 
-/* A step of the drive's inputs: a force, and the inputs that the row has. */
-static bool put_force(Pair *p, const double *row, const Cubic force) {
-    double values[8] = {force[0], force[1], force[2], force[3]};
-    for (size_t i = 4; i < p->drive.input_count; i++) values[i] = row[POSITION + p->drive.output_count + i - 4];
+/* A force, and the drive's other inputs. */
+static bool put_force(Pair *p, const double *inputs, const Cubic force) {
+    double values[LARGEST];
+    int n = p->force.count;
+    for (int i = 0; i < n; i++) values[i] = force[p->force.places[i]] / p->force.scales[i];
+    for (size_t i = n; i < p->drive.input_count; i++) values[i] = inputs[i - n];
     return put(&p->drive, values);
 }
 
-/* The drive's outputs under the force at a row's end. */
-static bool look(Pair *p, double *row) {
-    Cubic force = {row[FORCE], 0.0, 0.0, 0.0};
-    return put_force(p, row, force) && get(&p->drive, row + POSITION);
+/* The drive's outputs under the force at a row's end, a time h after its inputs were set. */
+static bool look(Pair *p, double *row, const double *inputs, double h) {
+    int known = p->motion.count;
+    double force[4] = {row[FORCE]}, box[3], later[LARGEST], *read = row + POSITION + 3 - known;
+    if (p->cubic >= 0 && h != 0.0) {
+        for (size_t i = 0; i < p->drive.input_count - p->force.count; i++) later[i] = inputs[i];
+        end_derivatives(later + p->cubic, inputs + p->cubic, h);
+        inputs = later;
+    }
+    if (!put_force(p, inputs, force) || !get(&p->drive, read)) return false;
+    for (int i = 0; i < known; i++) box[i] = read[i];
+    for (int i = 0; i < 3; i++) row[POSITION + i] = __builtin_nan("");
+    for (int i = 0; i < known; i++) row[POSITION + p->motion.places[i]] = p->motion.scales[i] * box[i];
+    return true;
 }
+
+static size_t inputs_at(const Pair *p) { return ACCELERATION + 1 + p->drive.output_count - p->motion.count; }
 
 static bool oscillate(Pair *p, const double *now, double *next, const Cubic acceleration, double h) {
     return put(&p->oscillator, acceleration) && advance(&p->oscillator, now[TIME], h) && get(&p->oscillator, next + MOTION);
@@ -143,9 +199,9 @@ static bool oscillate(Pair *p, const double *now, double *next, const Cubic acce
 
 static bool restore_both(Pair *p) { return restore(&p->oscillator) && restore(&p->drive); }
 
-static double relative_defect(const double *now, const double *next, const Cubic acceleration, double h) {
+static double relative_defect(const Pair *p, const double *now, const double *next, const Cubic acceleration, double h) {
     Cubic force;
-    force_over(force, now, next, h);
+    force_over(p, force, now, next, h);
     double taken = next[WORK] - now[WORK], given = next[ENERGY] - now[ENERGY];
     double exchanged = size_of(taken) + size_of(given);
     return exchanged != 0.0 ? size_of(taken - work(force, now[VELOCITY], acceleration, h)) / exchanged : 0.0;
@@ -154,18 +210,19 @@ static double relative_defect(const double *now, const double *next, const Cubic
 /* A step from `now` to `next`; where it is refused for its defect, both sides have gone back. */
 static bool attempt(Pair *p, const double *now, double *next, double h, bool may_refuse, double *defect, bool *refused) {
     int passes = now[H] == 0.0 ? p->first_passes : 1;
+    const double *inputs = now + inputs_at(p);
     Cubic acceleration, force;
     if (!save(&p->oscillator) || ((may_refuse || passes > 1) && !save(&p->drive))) return false;
     run_on(acceleration, now);
     for (int i = 0; i < passes; i++) {
         if (i && !restore_both(p)) return false;
         if (!oscillate(p, now, next, acceleration, h)) return false;
-        force_over(force, now, next, h);
-        if (!put_force(p, now, force) || !advance(&p->drive, now[TIME], h) || !look(p, next)) return false;
+        force_over(p, force, now, next, h);
+        if (!put_force(p, inputs, force) || !advance(&p->drive, now[TIME], h) || !look(p, next, inputs, h)) return false;
         acceleration_over(acceleration, now, next, h);
     }
-    if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h) || !look(p, next)) return false;
-    *defect = p->tolerance != 0.0 ? relative_defect(now, next, acceleration, h) : 0.0;
+    if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h) || !look(p, next, inputs, h)) return false;
+    *defect = p->tolerance != 0.0 ? relative_defect(p, now, next, acceleration, h) : 0.0;
     *refused = may_refuse && *defect > p->tolerance;
     if (*refused) return restore_both(p);
     next[TIME] = now[TIME] + h, next[H] = h, next[LEVEL] = now[LEVEL];
@@ -175,13 +232,13 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
 
 /* An interval in steps, the row after each of them: `*at` is the last that there is. */
 static bool interval(Pair *p, double *now, double **at, size_t width, const double *inputs, double h) {
-    size_t first = POSITION + p->drive.output_count;
+    size_t first = inputs_at(p);
     int halvings = p->tolerance != 0.0 ? p->halvings : 0, level = (int)now[LEVEL], done = 0;
     double end = now[TIME] + h, defect;
-    bool known = true, refused;
+    bool known = p->cubic < 0, refused;
     for (size_t i = first; i < width; i++) known = known && now[i] == inputs[i - first];
     for (size_t i = first; i < width; i++) now[i] = inputs[i - first];
-    if (!known && !look(p, now)) return false;
+    if (!known && !look(p, now, inputs, 0.0)) return false;
     while (done < 1 << halvings) {
         int size = (1 << halvings) >> level;
         double *next = *at + width;
@@ -201,14 +258,28 @@ static bool interval(Pair *p, double *now, double **at, size_t width, const doub
     return true;
 }
 
+/* What is recorded of the drive at a row's end, under the force and the inputs there. */
+static bool record(Pair *p, const double *row, const double *inputs) {
+    double force[4] = {row[FORCE]};
+    if (!put_force(p, inputs, force) || !read(&p->drive, p->recorded, p->recorded_count, p->table)) return false;
+    p->table += p->recorded_count;
+    return true;
+}
+
 /* Intervals from the state `now` on, which becomes that at the end: a row for each step after the
- * first row, and the row at which each interval ends. False after a failure. */
+ * first row, and the row at which each interval ends. False after a failure. The inputs of an
+ * interval are followed by those at its end, where something is recorded. */
 EXPORT int run(Pair *p, double *now, double *rows, int *ends, const double *inputs, int count, double h) {
-    size_t width = POSITION + p->drive.output_count + p->drive.input_count - 4;
+    size_t own = p->drive.input_count - p->force.count, width = inputs_at(p) + own;
     double *at = rows;
     p->oscillator.status = p->drive.status = 0;
     for (int i = 0; i < count; i++) {
-        if (!interval(p, now, &at, width, inputs + i * (width - POSITION - p->drive.output_count), h)) return 0;
+        if (!interval(p, now, &at, width, inputs, h)) return 0;
+        inputs += own;
+        if (p->recorded_count) {
+            if (!record(p, now, inputs)) return 0;
+            inputs += own;
+        }
         ends[i] = (int)((size_t)(at - rows) / width);
     }
     return 1;

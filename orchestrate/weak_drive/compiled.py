@@ -1,8 +1,8 @@
 """Run the master's communication steps in compiled C code, with bit-identical results.
 
-``compiled.c`` calls the FMUs' functions itself, past Python: where two FMI 3.0 instances are native
-and the library can be had, :func:`create_master` makes a master that steps so. Structures are those
-of the C source.
+``compiled.c`` calls the FMUs' functions itself, past Python: where both instances are native, the
+drive's acceleration is connected and the library can be had, :func:`create_master` makes a master
+that steps so. Structures are those of the C source.
 """
 
 from __future__ import annotations
@@ -21,13 +21,14 @@ from numpy.typing import ArrayLike
 from ..errors import FmuError
 from ..fmu.c_library import loaded_function
 from ..fmu.channel import Channel
-from ..fmu.instance import Instance
-from .connection import FORCE, MOTOR, Connection
+from ..fmu.instance import REAL_TYPES, Instance
+from .connection import MOTOR, Connection, Link
 from .master import Master, Scheme
 from .record import BOX, Record
 
 SOURCE = Path(__file__).with_suffix(".c")
-MOST_INPUTS = 4  # of the drive, besides the force
+NOT_FINITE = -1  # a status that FMI does not have
+MOST_INPUTS = 16  # of the drive, with the force and its derivatives
 
 
 class FmuSide(ctypes.Structure):
@@ -40,8 +41,20 @@ class FmuSide(ctypes.Structure):
         *((name, c_size_t) for name in ("input_count", "output_count")),
         ("kept", POINTER(c_void_p)),
         ("failed", c_char_p),
-        ("status", c_int),
+        *((name, c_int) for name in ("status", "is_fmi3")),
     ]
+
+
+class Links(ctypes.Structure):
+    """Describe to the C library which of our variables are connected, and their units in SI."""
+
+    _fields_ = [("count", c_int), ("places", c_int * 4), ("scales", c_double * 4)]
+
+    @classmethod
+    def of(cls, links: Sequence[tuple[int, Link]]) -> Links:
+        """Describe the connections of one direction."""
+        places, scales = (c_int * 4)(*(i for i, _ in links)), (one.scale for _, one in links)
+        return cls(len(links), places, (c_double * 4)(*scales))
 
 
 class Pair(ctypes.Structure):
@@ -51,6 +64,11 @@ class Pair(ctypes.Structure):
         *((name, FmuSide) for name in ("oscillator", "drive")),
         *((name, c_double) for name in ("tolerance", "easy")),
         *((name, c_int) for name in ("halvings", "first_passes")),
+        *((name, Links) for name in ("force", "motion")),
+        ("cubic", c_int),
+        ("recorded", POINTER(c_uint)),
+        ("recorded_count", c_size_t),
+        ("table", c_void_p),
     ]
 
 
@@ -72,10 +90,10 @@ def create_master(
     start_time: float = 0.0,
 ) -> Master:
     """Create the master for two FMU instances, a compiled one where that is possible."""
-    native = all(one.is_fmi3 and not one.description.needs_tool for one in (oscillator, drive))
-    whole = {*BOX, *FORCE} == set(connection.links) and len(connection.inputs) <= MOST_INPUTS
-    plain = all(link.scale == 1.0 for link in connection.links.values())
-    can = native and whole and plain and drive.description.has_states
+    native = not any(one.description.needs_tool for one in (oscillator, drive))
+    few = len(connection.links) + len(connection.inputs) <= MOST_INPUTS
+    read = (drive.variable(name).type in REAL_TYPES for name in connection.recorded)
+    can = native and few and BOX[2] in connection.links and all(read)
     kind = CompiledMaster if can and load_step_function() else Master
     return kind(oscillator, drive, scheme, connection, start_time)
 
@@ -85,7 +103,7 @@ class CompiledMaster(Master):
 
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
         """Run an interval for each row of the drive's inputs, held constant; return the record."""
-        values = np.ascontiguousarray(inputs, dtype=float)
+        values = np.ascontiguousarray(inputs, dtype=float).reshape(len(inputs), self.width)
         return self._run_pieces(iter([array("d", values.tobytes())]), len(values), len(values), h)
 
     def run_controlled(
@@ -101,8 +119,10 @@ class CompiledMaster(Master):
         now, width = array("d", self.row), len(self.row)
         rows = np.empty((1 + self.scheme.most_rows(count), width))
         rows[0], ends, at = self.row, np.zeros(count, dtype=np.intc), 0
+        recorded = np.empty((count, len(self.connection.recorded)))
         addresses, pair = (rows.ctypes.data, ends.ctypes.data), self._pair
         run, h = load_step_function(), h or self.scheme.h
+        pair.table = recorded.ctypes.data
         for i, values in enumerate(pieces):
             first, end = i * size, (i + 1) * size
             self.oscillator.begin()
@@ -114,7 +134,7 @@ class CompiledMaster(Master):
             ends[first:end] += at
             at = int(ends[end - 1]) if size else 0
             self.row = now.tolist()
-        return Record.of_rows(self.names, rows[: at + 1], ends)
+        return Record.of_rows(self.names, rows[: at + 1], ends, recorded)
 
     @functools.cached_property
     def _pair(self) -> Pair:
@@ -124,6 +144,12 @@ class CompiledMaster(Master):
         pair.oscillator.impacts = pointer(c_uint(impacts))
         for name in ("tolerance", "easy", "halvings", "first_passes"):
             setattr(pair, name, getattr(self.scheme, name))
+        pair.first_passes = self.scheme.first_passes if self.goes_back else 1
+        pair.force, pair.motion = Links.of(self.drive.forces), Links.of(self.drive.motions)
+        recorded, instance = self.connection.recorded, self.drive.instance
+        names = [instance.variable(name).valueReference for name in recorded]
+        pair.cubic, pair.recorded = self.connection.cubic, (c_uint * len(names))(*names)
+        pair.recorded_count = len(names)
         return pair
 
     def _failure(self, pair: Pair) -> FmuError:
@@ -132,6 +158,8 @@ class CompiledMaster(Master):
             (self.oscillator, pair.oscillator),
             (self.drive.channel, pair.drive),
         ):
+            if side.status == NOT_FINITE:
+                channel.get()  # it raises
             if side.status:
                 return channel.failure(side.failed.decode(), side.status)
         raise AssertionError("a step failed, but neither FMU reported an error")
@@ -140,7 +168,9 @@ class CompiledMaster(Master):
 def fill_fmu_side(channel: Channel) -> FmuSide:
     """Fill the C structure of one FMU instance; keep its channel alive while it is used."""
     pointers = channel.pointers()
+    is_fmi3 = channel.instance.is_fmi3
     return FmuSide(
         *(pointers.instance, *pointers.functions, pointers.inputs, pointers.outputs, None),
         *(len(pointers.inputs), len(pointers.outputs), pointer(pointers.saved_state)),
+        *(None, 0, is_fmi3),
     )

@@ -44,6 +44,8 @@ class Connection:
     links: Mapping[str, Link]  # by our names
     inputs: tuple[str, ...] = ()  # its others, by its names
     outputs: tuple[str, ...] = ()
+    recorded: tuple[str, ...] = ()  # what is read at the end of each interval
+    cubic: int = -1  # place among its inputs of one with its three derivatives; -1: all are held
 
 
 MOTOR = Connection(  # the first two outputs are what the step control needs
@@ -70,6 +72,8 @@ def checked_links(connect: Mapping[str, str], drive: Description) -> dict[str, L
         sign, name = (-1.0, theirs[1:]) if theirs.startswith("-") else (1.0, theirs)
         causality = "input" if ours in FORCE else "output"
         checked_variable(drive, name, causality)
+        if name in (link.theirs for link in links.values()):
+            raise InputError(f"connect: {name} is connected twice; expected it once")
         links[ours] = Link(name, sign * factor_to_si(drive, ours, name))
     return links
 

@@ -13,6 +13,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from .polynomials import Cubic
 from .schedule import check
 
 ControllerState = tuple[float, ...]
@@ -46,6 +47,24 @@ class Controller(ABC):
         text = "Controller.act is called update now; the old name goes with the next release"
         warnings.warn(text, DeprecationWarning, stacklevel=2)
         return self.update(measured, state)
+
+
+class InputControl(ABC):
+    """Define the interface of a control law for an input of a drive, see ``cosimulate``."""
+
+    @abstractmethod
+    def begin(self) -> ControllerState:
+        """Return the controller's initial state."""
+
+    @abstractmethod
+    def update(
+        self, time: float, h: float, acceleration: float, state: ControllerState
+    ) -> tuple[Cubic, ControllerState]:
+        """Return the input over a step as a cubic, from the box's acceleration at its beginning."""
+
+    @abstractmethod
+    def aborted(self, state: ControllerState) -> float:
+        """Return the time at which the controller gave up, s; NaN if it did not."""
 
 
 def limit_voltage(voltage: float, available: float) -> float:
@@ -91,7 +110,6 @@ class SpeedControl(Controller):
     rise: float = math.inf
 
     def __post_init__(self) -> None:
-        """Check the settings of the controller."""
         check("speed", self.speed, "rad/s")
         check("gain", self.gain, "V.s/rad", low=0.0, exclusive=True)
         for name, unit in (("reset_time", "s"), ("rise", "rad/s2")):
@@ -99,7 +117,6 @@ class SpeedControl(Controller):
                 check(name, getattr(self, name), unit, low=0.0, exclusive=True)
 
     def begin(self, speed: float) -> ControllerState:
-        """Return the initial state: the first set speed and a zero integral."""
         return (self.speed if self.rise == math.inf else speed), 0.0
 
     def update(
@@ -160,13 +177,11 @@ class SpeedGradient(Controller):
     low: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the settings of the controller."""
         check("filter_time", self.filter_time, "s", low=0.0, exclusive=True)
         check("passed", self.passed, "rad/s", low=0.0, exclusive=True)
         check("low", self.low, "of the voltage", low=0.0, high=1.0)
 
     def begin(self, speed: float) -> ControllerState:
-        """Return the initial state: the running mean starts at the present speed."""
         return (speed,)
 
     def update(

@@ -26,7 +26,7 @@ from ..fmu.instance import REAL_TYPES, Instance
 from ..fmu.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
 from ..fmu.play import PLAYED, Player
 from ..model import Excitation
-from ..model.arguments import checked_integer
+from ..model.arguments import checked, checked_integer, positive
 from ..model.drive import Drive
 from ..model.shaker import Shaker
 from ..model.structure import Structure
@@ -37,7 +37,9 @@ from ..running.job import Chunk, Table, brief, plain
 from ..running.runner import answer
 from .compiled import create_master
 from .connection import OURS, Connection, checked_links, checked_variable
+from .controllers import InputControl
 from .energy_balance import given_work
+from .inputs import Input, Inputs, check_inputs
 from .master import Scheme
 from .polynomials import end_value
 from .record import Floats, Record, joined
@@ -70,53 +72,51 @@ class Coupling:
         self, job: CosimulateJob, oscillator: Instance, drive: Instance, parts: int
     ) -> None:
         self.job, self.parts, self.oscillator, self.drive = job, parts, oscillator, drive
-        self.inputs, links = dict(job.inputs), checked_links(dict(job.connect), drive.description)
+        links = checked_links(dict(job.connect), drive.description)
+        self.inputs = Inputs(job.inputs, drive.description)
         still = Excitation(frequency=job.structure.omega, amplitude=0.0)
         begin(oscillator, job.structure, still, job.start)
-        drive.initialize(**dict(job.start_values), **self.inputs_at(0.0))
-        connection = Connection(links, tuple(self.inputs))
+        (values,) = self.inputs.at(np.zeros(1)).tolist()
+        known = dict(zip(self.inputs.names, values, strict=True))
+        drive.initialize(**dict(job.start_values), **known)
+        recorded = job.record if parts == 1 else ()
+        connection = Connection(
+            links, tuple(self.inputs.names), recorded=recorded, cubic=self.inputs.cubic
+        )
         self.h = job.step / parts
         self.master = create_master(oscillator, drive, Scheme(self.h), connection)
         knows = "box_acceleration" in links
         self.divides_first = not knows and not drive.description.has_fixed_step
 
-    def inputs_at(self, time: float) -> dict[str, float]:
-        """Return the drive's other inputs at a time."""
-        return {name: course.voltage(time) for name, course in self.inputs.items()}
-
     def advance(self, items: Sequence[int]) -> Table:
         """Do the steps of some items; return nodes, cubics, work, and what is recorded."""
         steps = range(items[0] * self.parts, (items[-1] + 1) * self.parts)
-        stops = self.job.record if self.parts == 1 else ()
-        recorded = [] if steps.start or not stops else [self.recorded()]
-        records = []
-        for piece in [range(i, i + 1) for i in steps] if stops else [steps]:
-            records.append(self.run(piece))
-            recorded += [self.recorded()] if stops else []
-        record = joined(records)
+        recorded = []
+        if self.master.connection.recorded and not steps.start:
+            recorded = [np.array([self.master.recorded(self.inputs.at(np.zeros(1))[0])])]
+        record = self.run(steps)
         nodes = record["time"].copy()
         nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 : steps.stop + 1]
         after = record.after
         table = {"nodes": nodes[1:], "cubics": np.transpose(after.acceleration())}
         table |= {"work": given_work(record)}
+        if self.inputs.control:
+            table["control"] = np.array([self.inputs.state])
         table = {f"{name} {self.parts}": values for name, values in table.items()}
-        return {**table, "recorded": np.array(recorded, dtype=float)} if stops else table
+        if self.master.connection.recorded:
+            table["recorded"] = np.concatenate([*recorded, record.recorded])
+        return table
 
     def run(self, steps: range) -> Record:
-        """Run both FMUs over some steps, with the drive's inputs in the middle of each."""
-        inputs = [[*self.inputs_at((i + 0.5) * self.h).values()] for i in steps]
-        records = []
-        if steps.start == 0 and self.divides_first:  # nothing is known of the acceleration
-            short = self.h / sum(BEGINNING)
-            pieces = joined([self.master.run(inputs[:1], part * short) for part in BEGINNING])
-            records, inputs = [replace(pieces, ends=pieces.ends[-1:])], inputs[1:]
-        return joined([*records, self.master.run(inputs)])
-
-    def recorded(self) -> list[float]:
-        """Return what is recorded of the drive, in its own units, under its inputs at the time."""
-        force = (self.master["box_force"], 0.0, 0.0, 0.0)
-        self.master.drive.put(force, [*self.inputs_at(self.master.time).values()])
-        return [float(value) for value in self.drive.get(*self.job.record)]
+        """Run both FMUs over some steps."""
+        if steps.start or not self.divides_first:
+            return self.inputs.run(self.master, steps, self.h)
+        short = self.h / sum(BEGINNING)  # nothing is known of the acceleration
+        first = self.inputs.at(np.array([0.5, 1.0]) * self.h).reshape(1, -1)
+        first = first[:, : self.master.width]
+        pieces = joined([self.master.run(first, part * short) for part in BEGINNING])
+        begun = replace(pieces, ends=pieces.ends[-1:], recorded=pieces.recorded[-1:])
+        return joined([begun, self.inputs.run(self.master, steps[1:], self.h)])
 
     def get_state(self) -> Table:
         """Return the state of both FMUs and of the master, a row of each."""
@@ -130,6 +130,8 @@ class Coupling:
         self.oscillator.restore_state(oscillator)
         self.drive.restore_state(drive)
         self.master.set_state(table[f"memory {self.parts}"][-1].tolist())
+        if self.inputs.control:
+            self.inputs.state = tuple(table[f"control {self.parts}"][-1].tolist())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,14 +142,14 @@ class CosimulateJob(Question):
     drive_sha256: str
     connect: tuple[tuple[str, str], ...]
     start_values: Values = ()
-    inputs: tuple[tuple[str, Course], ...] = ()
-    duration: float
+    inputs: tuple[tuple[str, Input], ...] = ()
+    duration: float = positive()
     step: float
     record: tuple[str, ...] = ()
     start: tuple[float, ...] = REST
-    estimate: bool = True
+    estimate: bool = checked(lambda _, value: bool(value), True)
     asked: ClassVar[str] = "cosimulate"
-    chunk_size: ClassVar[int] = 1_000
+    chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "step"
@@ -225,6 +227,10 @@ class CosimulateJob(Question):
         at_times = nodes.searchsorted(times)
         columns["box_acceleration"] = np.append(cubics[at_times[:-1], 0], last)
         columns["box_work"] = np.append(0.0, np.cumsum(steps["work 1"]))[at_times]
+        for _, one in self.inputs:
+            if isinstance(one, InputControl):
+                end = one.aborted(tuple(steps["control 1"][-1].tolist()))
+                columns["control_aborted"] = np.array([end])
         return {**columns, **impact_columns(impacts, self.structure)}
 
     def dataset(self, table: Table) -> xr.Dataset:
@@ -241,12 +247,17 @@ class CosimulateJob(Question):
         knows_velocity = any(ours == "box_velocity" for ours, _ in self.connect)
         shown = [n for n in names if n in table and (n != "box_work" or knows_velocity)]
         contact = "whether the masses are in permanent contact"
+        aborted = {}
+        if "control_aborted" in table:
+            text = "time at which the control gave up, NaN if it did not"
+            aborted["control_aborted"] = variable((), table["control_aborted"][-1], "s", text)
         return xr.Dataset(
             {
                 **{name: variable("time", table[name], *names[name]) for name in shown},
                 "in_contact": yes_or_no("time", table["in_contact"], contact),
                 **theirs,
                 **impact_variables(table),
+                **aborted,
             },
             {"time": variable("time", table["time"], "s", "communication points")},
             {
@@ -264,7 +275,7 @@ def cosimulate(
     *,
     connect: Mapping[str, str] | None = None,
     parameters: Mapping[str, float | bool] | None = None,
-    inputs: Mapping[str, float | Course | tuple[ArrayLike, ArrayLike]] | None = None,
+    inputs: Mapping[str, float | Input | tuple[ArrayLike, ArrayLike]] | None = None,
     duration: float,
     step: float,
     record: Sequence[str] | None = None,
@@ -291,7 +302,8 @@ def cosimulate(
     parameters : mapping of str to float, optional
         Start values of the drive, by its names.
     inputs : mapping, optional
-        Its other inputs: a number, times in s with values, or a :class:`orchestrate.Course`.
+        Its other inputs: a number, times in s with values, a :class:`orchestrate.Course`, or one
+        :class:`orchestrate.LevelControl`, which holds the level of the box's acceleration.
     duration, step : float
         Of the run, and the communication step, s: the longest, where the duration is no multiple.
     record : sequence of str, optional
@@ -309,7 +321,8 @@ def cosimulate(
         Over ``time``, the communication points in s: ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``,
         ``v_rel``, ``contact_force``, ``in_contact``, ``box_force``, ``impact_energy``,
         ``box_acceleration``, what is recorded of the drive by its names, ``box_work`` where a
-        velocity is connected, and ``coupling_error``, the larger error of ``x1`` and ``x2`` in m.
+        velocity is connected, ``coupling_error``, the larger error of ``x1`` and ``x2`` in m, and
+        of a control the time ``control_aborted``.
         Over ``impact``: ``impact_time``, ``impact_velocity``, ``impulse`` and ``sticks``.
 
     Raises
@@ -351,24 +364,23 @@ def cosimulate(
         connect, drive = connect or OURS, finder(running)(model).path
     path = Path(drive).resolve()
     description = describe(path)
-    checked_links(connect or {}, description)
+    links = checked_links(connect or {}, description)
     for name, value in (("duration", duration), ("step", step)):
         check(name, value, "s", low=0.0, exclusive=True)
     count = checked_step_count(duration, step, description)
-    job = CosimulateJob(
-        name=f"cosimulate_{checked_structure(structure).label()}_{path.stem}",
-        structure=structure,
+    job = CosimulateJob.from_call(
+        locals(),
+        f"_{path.stem}",
         drive=str(path),
         drive_sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
         connect=tuple((connect or {}).items()),
         start_values=checked_parameters(parameters or {}, description),
         inputs=checked_inputs(inputs or {}, description, duration),
-        duration=float(duration),
         step=float(duration) / count,
         record=checked_record(record or (), description),
-        start=checked_state("start", start, structure),
-        estimate=bool(estimate),
+        start=checked_state("start", start, checked_structure(structure)),
     )
+    check_inputs(job.inputs, links)
     return answer(job, running, finder(running), foreign)
 
 
@@ -387,7 +399,8 @@ def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Val
     """Return start values of the drive by its names; raise ``InputError`` for what it has not."""
     checked: list[tuple[str, float | bool]] = []
     for name, value in parameters.items():
-        checked_variable(drive, name, "", any_type=True)
+        if checked_variable(drive, name, "", any_type=True).initial == "calculated":
+            raise InputError(f"parameters: {name} of the FMU {drive.name} has no start value")
         if isinstance(value, (bool, np.bool_)):
             checked.append((name, bool(value)))
             continue
@@ -400,12 +413,12 @@ def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Val
 
 def checked_inputs(
     inputs: Mapping[str, Any], drive: Description, duration: float
-) -> tuple[tuple[str, Course], ...]:
-    """Return the drive's other inputs as courses over time."""
-    courses = []
+) -> tuple[tuple[str, Input], ...]:
+    """Return the drive's other inputs as courses over time, or controlled."""
+    courses: list[tuple[str, Input]] = []
     for name, value in inputs.items():
         checked_variable(drive, name, "input")
-        if not isinstance(value, Course):
+        if not isinstance(value, (Course, InputControl)):
             times, values = value if isinstance(value, tuple) else ((0.0, duration), (value, value))
             try:
                 value = Course(tuple(np.ravel(times)), tuple(np.ravel(values)))

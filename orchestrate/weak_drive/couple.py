@@ -9,18 +9,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from ..errors import InputError
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
-from ..running.job import Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from . import averaged, own_resonance
 from .controllers import Controller
@@ -31,19 +31,12 @@ from .revolutions import COLUMNS
 from .run import CoupledRun, Run, begin_run
 from .schedule import Constant, Ramp, Schedule, check
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
-TOLERANCE = 1e-7  # of the step control: errors of the displacements are about half as large
-LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 DIRECTIONS = ("up", "down")
 MIRRORED = {  # where the motor turns backward
     *("jumps", "jump_low", "jump_high", "ramp_voltage", "jump_lag", "averaged_jumps"),
     *("jump_speed", "jump_speed_before", "jump_speed_after", "jump_rate"),
 }
-HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
 
 @dataclass(frozen=True)
@@ -58,14 +51,12 @@ class CoupleJob(CoupledRun):
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
-        """Return the number of items: all communication steps and one hysteresis loop."""
         return self.steps() + 1
 
     def items(self) -> Sequence[int]:
-        """Return the item indices: all communication steps, then the hysteresis loop."""
         return range(self.count())
 
-    def run_here(self, fmus: Mapping[str, Path]) -> Table:
+    def run_here(self, fmus: Fmus) -> Table:
         """Run all chunks one after the other in this process and join their tables."""
         *chunks, _ = self.chunks()
         tables: list[Table] = []
@@ -75,13 +66,13 @@ class CoupleJob(CoupledRun):
         table = {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
         return {**table, **self.decide_jumps(fmus, table, self.chunk_size)}
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Compute one chunk of communication steps, or the hysteresis loop at the end."""
         return self.work_on(fmus, items, previous, self.chunk_size, lambda run: run.revolve(items))
 
     def work_on(
         self,
-        fmus: Mapping[str, Path],
+        fmus: Fmus,
         items: Sequence[int],
         previous: Table | None,
         every: int,
@@ -100,7 +91,7 @@ class CoupleJob(CoupledRun):
         """Return the progress bar's note for the chunk of the hysteresis loop."""
         return "voltages held at jumps" if first == self.steps() else ""
 
-    def decide_jumps(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
+    def decide_jumps(self, fmus: Fmus, table: Table, every: int) -> Table:
         """Hold voltages where the ramp's record suggests jumps; return those, in rows."""
         slots = self.hysteresis.slots
         rows = np.full((1, len(DIRECTIONS), slots, len(Jump._fields) + 2), math.nan)
@@ -125,9 +116,6 @@ class CoupleJob(CoupledRun):
         return {"jump_rows": rows}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of all revolutions, of the jumps and of their verdicts."""
-        import xarray as xr
-
         if not len(table["time"]):
             raise InputError(
                 f"the motor completed no revolution in {self.schedule.duration:g} s: "
@@ -301,9 +289,10 @@ def scheme_from_arguments(
     """Choose communication step and tolerance from :func:`couple` arguments."""
     omega = structure.omega
     if tolerance is None:
-        tolerance = TOLERANCE if step is None else 0.0
+        # of the displacements errors are about half as large
+        tolerance = 1e-7 if step is None else 0.0
     if step is None:
-        step = (LONGEST if tolerance and not sampled else FIXED) / omega
+        step = (0.4 if tolerance and not sampled else 0.1) / omega
     rounding = 1.0 + 1e-12
     if not 1e-4 / rounding <= step * omega <= rounding:
         raise InputError(f"step = {step} s: expected {1e-4 / omega:g} <= step <= {1.0 / omega:g}")
@@ -330,7 +319,7 @@ def couple_job(
     name = "bonded" if structure.bonded else "delaminated"
     start = float(speed_start)
     if hold is None:
-        hold = (HOLD + HOLD_OF_ROTOR / drive.b(structure)) / structure.omega
+        hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
     check("hold", hold, "s", low=0.0)
     run = (structure, drive, schedule, scheme, start, float(hold), control)
     job = CoupleJob(f"couple_{name}", *run, hysteresis or Settings())

@@ -10,15 +10,16 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import InputError
 from ..fmu.exported import finder
+from ..lazy import Unpack, xr
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
+from ..running.options import Running
 from ..running.runner import gather
 from . import averaged, own_resonance
 from .couple import (
@@ -29,14 +30,7 @@ from .couple import (
     scheme_from_arguments,
 )
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-
 KINDS = ("bonded", "delaminated")
-BELOW, BEYOND, PAST = 0.97, 1.05, 0.05  # speeds over the resonance; voltage past the fold, over K w
 System = tuple[Structure, Drive]
 
 
@@ -45,10 +39,10 @@ def voltage_range(structure: Structure, drive: Drive) -> tuple[float, float]:
     low, high = own_resonance.resonances(structure, drive)
     first, last = (
         float(averaged.no_load_speed(structure, drive, speed))
-        for speed in (BELOW * low, BEYOND * high)
+        for speed in (0.97 * low, 1.05 * high)
     )
     folds = averaged.folds(structure, drive)
-    return first, max([last, *(fold.eta0 + PAST for fold in folds)])
+    return first, max([last, *(fold.eta0 + 0.05 for fold in folds)])
 
 
 def couple_job_from_numbers(
@@ -125,8 +119,6 @@ def couple_all(
     >>> found.rate.values.tolist(), bool((found.jumps.sel(jump="up") > 7.0).any())
     ([0.0004, 0.0008], False)
     """
-    import xarray as xr
-
     if not systems:
         raise InputError("systems: expected one structure with its drive, or more")
     for kind in kinds:

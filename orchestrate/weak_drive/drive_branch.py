@@ -9,25 +9,26 @@ the unit circle before (Neimark-Sacker).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from ..dynamics.bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
+from ..dynamics.bifurcations import KINDS, Kind
 from ..dynamics.continuation import SOLVER_ERRORS
 from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
 from .couple import require_motor
@@ -36,27 +37,24 @@ from .drive_tracer import (
     HALVED,
     NO_START,
     NOT_BEGUN,
+    DriveTracer,
     Motion,
     double_period,
     motion_near,
-    trace_branch,
 )
 from .schedule import check
 from .shooting import Shooter
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-
 STRUCTURES = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
-BIFURCATIONS = (FOLD, FLIP, TORUS, TOUCHING, GRAZING)  # that are located on these branches
-REPEATS = 1e-6  # of the unit: change of a motion in a part of its period, after which it repeats
-ON_CIRCLE = 1e-7  # to which multipliers are known: on the unit circle no motion is called stable
+BIFURCATIONS = (
+    Kind.FOLD,
+    Kind.FLIP,
+    Kind.TORUS,
+    Kind.TOUCHING,
+    Kind.GRAZING,
+)  # located
 MULTIPLIERS = 4  # the largest ones, that are kept
-GRID = 2001  # speeds at which the averaged theory's largest amplitude is sought
 COLUMNS: dict[str, tuple[str, str]] = {  # numbers of a motion, with units
     "speed": ("rad/s", "mean speed"),
     "voltage": ("V", "voltage that holds the speed"),
@@ -84,12 +82,9 @@ class DriveBranchJob(Job):
     item: ClassVar[str] = "branch"
 
     def items(self) -> Sequence[Structure]:
-        """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Structure], previous: Table | None) -> Table:
         """Trace all legs of each structure and return them as arrays padded with NaN."""
         rows = []
         for structure in items:
@@ -120,7 +115,7 @@ class DriveBranchJob(Job):
         """Trace the branch from the lowest speed, and from the highest if needed."""
         omega, drive = structure.omega, self.drive
         low, high = (speed / omega for speed in self.speeds)
-        sizes = averaged.amplitude(structure, drive, np.linspace(low, high, GRID))
+        sizes = averaged.amplitude(structure, drive, np.linspace(low, high, 2001))
         length = float(sizes.max()) * drive.length
         turns = self.max_turns(structure)
         shooter = Shooter(fmus, structure, drive, turns, self.steps, length)
@@ -136,7 +131,7 @@ class DriveBranchJob(Job):
 
     def needs_doubled_leg(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
         """Return whether a period doubling starts a leg that is not traced yet."""
-        if flip.kind != FLIP or 2 * flip.point.period.revolutions > turns:
+        if flip.kind != Kind.FLIP or 2 * flip.point.period.revolutions > turns:
             return False
         ends = [leg.points[-1].coordinates for leg in legs if leg.end == HALVED]
         return not any(
@@ -146,7 +141,8 @@ class DriveBranchJob(Job):
     def trace_doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
         """Trace the leg of twice the period from a period doubling."""
         try:
-            return trace_branch(shooter, double_period(shooter, flip), speeds, self.settings)
+            start = double_period(shooter, flip)
+            return DriveTracer(shooter, start, speeds, self.settings).trace(start)
         except SOLVER_ERRORS:
             return Leg(end=NO_START)
 
@@ -162,13 +158,13 @@ class DriveBranchJob(Job):
             shooter.repeat_after(turns)
             start = motion_near(shooter, guess, up)
             for part in (part for part in range(1, turns) if turns % part == 0):
-                if np.abs(shooter.change_in(start.root.unknowns, part)).max() < REPEATS:
+                if np.abs(shooter.change_in(start.root.unknowns, part)).max() < 1e-6:
                     shooter.repeat_after(part)
                     start = motion_near(shooter, start.root.unknowns, up)
                     break
         except SOLVER_ERRORS:
             return Leg(end=NO_START)
-        return trace_branch(shooter, start, speeds, self.settings)
+        return DriveTracer(shooter, start, speeds, self.settings).trace(start)
 
     def motion_table(self, motions: Sequence[Motion]) -> np.ndarray:
         """Convert motions to a table of speed, voltage, amplitude and multipliers."""
@@ -189,16 +185,14 @@ class DriveBranchJob(Job):
         return numbers
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of both branches and of their bifurcations."""
-        import xarray as xr
-
         points = table["points"]
         points = points[:, :, : max(1, int(np.isfinite(points[..., 0]).sum(axis=2).max()))]
         along = ("structure", "leg", "point")
         variables = motion_variables(along, points)
         largest = np.nan_to_num(np.abs(points[..., len(COLUMNS)]), nan=np.inf)
         text = "whether the motion is stable"
-        variables["stable"] = variable(along, largest < 1.0 - ON_CIRCLE, "1", text)
+        # multipliers are known to 1e-7
+        variables["stable"] = variable(along, largest < 1.0 - 1e-7, "1", text)
         ends = np.array(ENDS)[table["ends"]]
         variables["end"] = variable(along[:2], ends, "1", "why the branch ends")
         kinds = table["kinds"]

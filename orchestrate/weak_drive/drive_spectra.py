@@ -8,10 +8,9 @@ impact is a kink of the displacement, and so is not missed between samples.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,26 +18,21 @@ from ..constants import TURN
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
 from .couple import couple_job, scheme_from_arguments
 from .run import Run, begin_run
 from .schedule import Ramp, check
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-
 KINDS = ("bonded", "delaminated")
-SHARES = (0.6, 0.45, 0.3, 0.15)  # of the way from the jump down to the jump up: voltages tried
 
 
 @dataclass(frozen=True)
@@ -57,7 +51,6 @@ class DriveSpectraJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
 
     def items(self) -> Sequence[Structure]:
-        """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def orders(self) -> np.ndarray:
@@ -65,9 +58,7 @@ class DriveSpectraJob(Job):
         orders = np.arange(self.revolutions * self.points // 2 + 1) / self.revolutions
         return np.asarray(orders[orders <= self.highest])
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Structure], previous: Table | None) -> Table:
         """Compute both masses' acceleration spectra and the mean motor speed."""
         records = [self.record_displacements(fmus, structure) for structure in items]
         lines = len(self.orders())
@@ -78,9 +69,7 @@ class DriveSpectraJob(Job):
             speeds.append(speed)
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
-    def record_displacements(
-        self, fmus: Mapping[str, Path], structure: Structure
-    ) -> tuple[np.ndarray, float]:
+    def record_displacements(self, fmus: Fmus, structure: Structure) -> tuple[np.ndarray, float]:
         """Hold the voltage; return displacements (2, samples), m, and speed, rad/s."""
         scheme = scheme_from_arguments(structure, self.step, 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
@@ -103,16 +92,13 @@ class DriveSpectraJob(Job):
         box = found["box_position"]
         return np.array([found["x1"] - rest_1 + box, found["x2"] - rest_2 + box])
 
-    def hangs_at_resonance(self, fmus: Mapping[str, Path]) -> bool:
+    def hangs_at_resonance(self, fmus: Fmus) -> bool:
         """Return whether the delaminated structure still hangs at the resonance."""
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         threshold = own_resonance.dividing_speed(structure, self.drive) * structure.omega
         return short.record_displacements(fmus, structure)[1] < threshold
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of acceleration amplitudes over spectral lines."""
-        import xarray as xr
-
         orders, speeds = self.orders(), table["speed"]
         text, along = "amplitude of the absolute acceleration", ("kind", "mass", "order")
         lines = np.outer(speeds, orders)
@@ -215,7 +201,7 @@ def drive_spectra(
     step = scheme_from_arguments(structure, step, 0.0).h
     record = (revolutions, points, float(highest))
     tried = (
-        [voltage_at_resonance(structure, drive, share) for share in SHARES]
+        [voltage_at_resonance(structure, drive, share) for share in (0.6, 0.45, 0.3, 0.15)]
         if voltage is None
         else [float(voltage)]
     )

@@ -2,12 +2,13 @@
 
 A fold is where the voltage turns back along the branch; elsewhere a multiplier leaves the unit
 circle at -1, or a pair of them does. Where an impact or a flight grazes, the branch ends: see
-:mod:`.grazing`.
+:mod:`.drive_tracer`.
 """
 
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import combinations
@@ -15,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..dynamics.bifurcations import CONTACT_LOST, FLIP, FOLD, KINDS, TORUS, BifurcationKind
+from ..dynamics.bifurcations import KINDS, Kind
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import (
     ArclengthStepper,
@@ -34,24 +35,79 @@ from ..dynamics.tracer import (
     BranchTracer,
     ContinuationSettings,
 )
-from .grazing import FLIGHT, IMPACT, next_grazing
+from ..model.structure import Structure
+from .record import OscillatorOutputs
 from .shooting import Period, Shooter
+
+IMPACT, FLIGHT = KINDS[Kind.GRAZING], KINDS[Kind.TOUCHING]
+BACK = 3  # motions over which the slope of a margin is taken
+
+
+class Margins(NamedTuple):
+    """Store how far a motion's gaps and impacts are from grazing, non-dimensional."""
+
+    flight: float  # smallest gap at which the masses turn away from each other without an impact
+    impact: float  # smallest closing speed of an impact, over omega
+
+
+def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
+    """Simulate one period and return its smallest gap and smallest closing speed."""
+    shooter.angle = angle
+    master, voltage = shooter.begin_period(unknowns)
+    gaps, closing = [math.inf], [math.inf]
+    for _ in range(shooter.count):
+        before = master.motion
+        master.step(voltage)
+        if master.motion.impact_time != before.impact_time:
+            closing.append(float(shooter.fmus[0].get("impact_velocity")[0]))
+        elif before.v2 < before.v1 and master.motion.v2 >= master.motion.v1:
+            gaps.append(turning_gap(shooter.structure, before, master.motion, master.scheme.h))
+    master.close()
+    length = float(shooter.units[0])
+    return Margins(min(gaps) / length, min(closing) / length / shooter.structure.omega)
+
+
+def turning_gap(
+    structure: Structure, before: OscillatorOutputs, after: OscillatorOutputs, h: float
+) -> float:
+    """Return the smallest gap within a step without an impact, m."""
+    from scipy.interpolate import BPoly, PPoly
+
+    ends = []
+    for outputs in (before, after):
+        first = (structure.k1 * outputs.x1 + structure.d1 * outputs.v1) / structure.m1
+        second = (structure.k2 * outputs.x2 + structure.d2 * outputs.v2) / structure.m2
+        ends.append([outputs.x_rel, outputs.v2 - outputs.v1, first - second])
+    gap = PPoly.from_bernstein_basis(BPoly.from_derivatives([0.0, h], ends))
+    return float(gap(gap.derivative().roots(extrapolate=False)).min())
+
+
+def next_grazing(
+    shooter: Shooter, motions: Sequence[tuple[Floats, float]]
+) -> tuple[Kind | None, float]:
+    """Extrapolate which grazing comes next along a branch, and how far away it is."""
+    last_motions = motions[-2 * BACK :]
+    falling = np.array([grazing_margins(shooter, *motion) for motion in last_motions])
+    places = np.array([unknowns[-2:] for unknowns, _ in last_motions])
+    kind, distance = None, math.inf
+    for last in range(BACK, len(last_motions)):
+        first = last - BACK
+        distance_back = float(np.linalg.norm(places[last] - places[first]))
+        for i, each in enumerate((Kind.TOUCHING, Kind.GRAZING)):
+            before, now = float(falling[first, i]), float(falling[last, i])
+            ahead = distance_back * now / (before - now) if now < before < math.inf else math.inf
+            if ahead < min(distance, 5e-3):  # further on, no fall is extrapolated
+                kind, distance = each, ahead
+    return kind, distance
+
 
 NO_START = "no motion at the start"
 NOT_BEGUN = "not begun: the other leg has gone all the way"
 HALVED = "meets the motion of half its period"
-UNFINISHED = KINDS[CONTACT_LOST]  # of a chattering that no longer comes to its end
+UNFINISHED = KINDS[Kind.CONTACT_LOST]  # of a chattering that no longer comes to its end
 ENDS = (LIMIT, NO_CONVERGENCE, MAX_POINTS, NO_START, NOT_BEGUN, HALVED, FLIGHT, IMPACT, UNFINISHED)
 AT_GRAZING = 1e-4  # of voltage over K omega and speed over omega: so near, a grazing is located
-AWAY = (3e-3, 1e-3, 3e-4)  # of the unit: how far from a doubling twice the period is begun
-ON_CIRCLE = 1e-4  # of a located pair of multipliers: how far its size may be from 1
-COMPLEX = 1e-6  # imaginary part from which multipliers are a pair
-NARROW = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere;
 # or of the largest force in contact
-STUCK = 12  # motions before an end: had one a contact phase, it is that which is lost
-TOLERANCE = 1e-5  # of a step by secants, from which on the derivative at the root is worth its cost
-ACCURACY = 1e-6  # of a step: how exactly a bifurcation is located
-SHORTEST = 1e-5  # of the longest step: round a fold whose radius is 1e-4 of the amplitude too
 ITERATIONS = 12  # of Newton's method from a guess that is not of the branch itself
 
 
@@ -94,7 +150,7 @@ class ShooterStepper(ArclengthStepper[Shooter]):
 class DriveTracer(BranchTracer[Shooter, Motion]):
     """Trace a branch of stationary motions within a range of speeds; locate bifurcations."""
 
-    kinds = (FOLD, FLIP, TORUS)
+    kinds = (Kind.FOLD, Kind.FLIP, Kind.TORUS)
     stepper: ShooterStepper
 
     def __init__(
@@ -104,7 +160,6 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         speeds: tuple[float, float],
         settings: ContinuationSettings,
     ) -> None:
-        """Create the arclength stepper that starts from the first motion."""
         self.shooter, self.speeds = shooter, speeds
         longest = settings.max_step
         stepper = ShooterStepper(
@@ -112,17 +167,15 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
             start.root,
             longest,
             longest,
-            min_length=SHORTEST * longest,
-            tolerance=TOLERANCE,
+            min_length=1e-5 * longest,  # round a fold whose radius is 1e-4 of the amplitude too
+            tolerance=1e-5,  # from which on the derivative at the root is worth its cost
         )
         super().__init__(stepper, settings.max_points)
 
     def point(self, root: Root) -> Motion:
-        """Compute the motion, with its multipliers, of a root just solved for."""
         return motion_at(self.shooter, root, self.stepper.root.tangent)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return the index of the speed among the unknowns, and the range of speeds."""
         return self.shooter.size + 1, [self.speeds]
 
     def go_on_from(self, point: Motion) -> Motion:
@@ -137,23 +190,22 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         """Return whether a new motion has as many impacts as the one before."""
         return self.shooter.shoot(root.unknowns).is_connected_to(self.shot)
 
-    def test(self, point: Motion, kind: BifurcationKind) -> float:
+    def test(self, point: Motion, kind: Kind) -> float:
         """Evaluate the test function of a bifurcation, which is zero there."""
         values = point.multipliers
-        if kind == FOLD:
+        if kind == Kind.FOLD:
             return float(point.root.tangent[-2])
-        if kind == FLIP:
+        if kind == Kind.FLIP:
             return float(np.prod(1.0 + values).real)
         return float(np.prod([1.0 - a * b for a, b in combinations(values, 2)]).real)
 
-    def confirms(self, kind: BifurcationKind, point: Motion, part: float) -> bool:
+    def confirms(self, kind: Kind, point: Motion, part: float) -> bool:
         """Return whether a Neimark-Sacker point has a complex pair on the unit circle."""
-        pairs = point.multipliers[np.abs(point.multipliers.imag) > COMPLEX]
-        return kind != TORUS or bool((np.abs(np.abs(pairs) - 1.0) < ON_CIRCLE).any())
+        pairs = point.multipliers[np.abs(point.multipliers.imag) > 1e-6]
+        return kind != Kind.TORUS or bool((np.abs(np.abs(pairs) - 1.0) < 1e-4).any())
 
     def location_tolerances(self, length: float) -> dict[str, float]:
-        """Return how exactly a bifurcation is located, given the step length."""
-        return {"xtol": ACCURACY * length}
+        return {"xtol": 1e-6 * length}
 
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
         """Return why the leg ends if it has reached half the period; else empty text."""
@@ -163,7 +215,8 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
 
     def end_without_root(self, segment: BranchSegment[Motion]) -> None:
         """Set why a leg ends where Newton's method fails, such as at a grazing."""
-        if any(motion.period.sticks for motion in segment.points[-STUCK:]):
+        # had a late motion a contact phase, it is that which is lost
+        if any(motion.period.sticks for motion in segment.points[-12:]):
             segment.end = UNFINISHED
             return
         motions = [each for each in segment.points if each.together == segment.points[-1].together]
@@ -176,13 +229,6 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         segment.points = [*kept, last]
         if kind is not None and distance < AT_GRAZING:
             segment.add_bifurcation(kind, last, 0.0)
-
-
-def trace_branch(
-    shooter: Shooter, start: Motion, speeds: tuple[float, float], settings: ContinuationSettings
-) -> BranchSegment[Motion]:
-    """Trace a branch from a motion until it leaves the speed range or Newton's method fails."""
-    return DriveTracer(shooter, start, speeds, settings).trace(start)
 
 
 def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
@@ -203,7 +249,7 @@ def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
 
 def double_period(shooter: Shooter, flip: Motion) -> Motion:
     """Solve for a motion of twice the period near a period doubling."""
-    for distance in AWAY:
+    for distance in (3e-3, 1e-3, 3e-4):
         shooter.begin_together(flip.together)
         shooter.repeat_after(flip.period.revolutions)
         shooter.angle, shooter.matrix = flip.angle, flip.matrix
@@ -220,7 +266,7 @@ def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
     """Move the start of a motion's period to where the gap is widest."""
     # a motion that begins with an impact has no derivative
     period, together = motion.period, motion.period.together
-    if period.share > NARROW and together == motion.together:
+    if period.share > 0.3 and together == motion.together:
         return motion
     root = motion.root
     unknowns = shooter.begin_later(root.unknowns, period.clear, together)

@@ -16,7 +16,6 @@ import numpy as np
 
 from ..model.structure import Structure
 from .polynomials import (
-    Cubic,
     end_value,
     integrate_product,
     integrate_work,
@@ -49,7 +48,6 @@ class EnergyBalance:
     """Sum up the energies of a coupled run, record after record."""
 
     def __init__(self, structure: Structure) -> None:
-        """Begin with nothing lost; the energies at the start are those of the first record."""
         self.structure = structure
         self.sums = np.zeros(3)  # lost by the structure, defects, and their sizes
         self.start = np.full(ENDS, np.nan)
@@ -59,7 +57,12 @@ class EnergyBalance:
         steps = np.stack([self.lost(record), defects(record)])
         steps = np.vstack([steps, np.abs(steps[1])])
         sums = np.cumsum(np.hstack([self.sums[:, np.newaxis], steps]), axis=1)
-        accounts = self._accounts(record, sums[0])
+        motion, velocity, s = record.motion(), record["box_velocity"], self.structure
+        momentum = s.m1 * motion.v1 + s.m2 * motion.v2 + 0.5 * (s.m1 + s.m2) * velocity
+        stored = record["stored_energy"] + self.relative_energy(motion) + velocity * momentum
+        loss = np.asarray(motion.impact_energy)
+        motor, damper = record["motor_energy"], record["box_damper_energy"]
+        accounts = np.stack([motor, damper, loss, stored, sums[0] - loss])
         if np.isnan(self.start[0]):
             self.start = accounts[:, 0].copy()
         self.sums = sums[:, -1].copy()
@@ -71,7 +74,14 @@ class EnergyBalance:
         """Return the energy that the structure loses in each step, in dampers and impacts."""
         before, after = record.before.motion(), record.after.motion()
         h, acceleration = record.after["h"], record.after.acceleration()
-        momentum = self._momentum(before, after, acceleration, h)
+        # the relative momentum over a step is a quartic in t/h
+        m1, m2 = self.structure.m1, self.structure.m2
+        mass = m1 + m2
+        ends = (m1 * before.v1 + m2 * before.v2, m1 * after.v1 + m2 * after.v2)
+        first = -h * (before.box_force + mass * acceleration[0])
+        last = -h * (after.box_force + mass * end_value(acceleration, h))
+        mean = (m1 * (after.x1 - before.x1) + m2 * (after.x2 - before.x2)) / h
+        momentum = matched_quartic(ends, (first, last), mean)
         work = h * integrate_product(momentum, normalized_coefficients(acceleration, h))
         return np.asarray(self.relative_energy(before) - self.relative_energy(after) - work)
 
@@ -82,27 +92,6 @@ class EnergyBalance:
         x1, x2, v1, v2 = motion.x1 - rest_1, motion.x2 - rest_2, motion.v1, motion.v2
         own = 0.5 * (s.m1 * v1 * v1 + s.m2 * v2 * v2 + s.k1 * x1 * x1 + s.k2 * x2 * x2)
         return own + s.preload * motion.x_rel
-
-    def _momentum(
-        self, before: OscillatorOutputs, after: OscillatorOutputs, acceleration: Cubic, h: Any
-    ) -> tuple[Any, ...]:
-        """Return the masses' relative momentum over a step as a quartic in t/h."""
-        m1, m2 = self.structure.m1, self.structure.m2
-        mass = m1 + m2
-        ends = (m1 * before.v1 + m2 * before.v2, m1 * after.v1 + m2 * after.v2)
-        first = -h * (before.box_force + mass * acceleration[0])
-        last = -h * (after.box_force + mass * end_value(acceleration, h))
-        mean = (m1 * (after.x1 - before.x1) + m2 * (after.x2 - before.x2)) / h
-        return matched_quartic(ends, (first, last), mean)
-
-    def _accounts(self, record: Record, lost: Floats) -> Floats:
-        """Return motor work, box damping, impact loss, stored energy, mass damping at all rows."""
-        motion, velocity, s = record.motion(), record["box_velocity"], self.structure
-        momentum = s.m1 * motion.v1 + s.m2 * motion.v2 + 0.5 * (s.m1 + s.m2) * velocity
-        stored = record["stored_energy"] + self.relative_energy(motion) + velocity * momentum
-        loss = np.asarray(motion.impact_energy)
-        motor, damper = record["motor_energy"], record["box_damper_energy"]
-        return np.stack([motor, damper, loss, stored, lost - loss])
 
     def get_state(self) -> list[float]:
         """Return the sums as a list of floats, to be restored later."""

@@ -17,8 +17,6 @@ from ..model.structure import Structure
 from .polynomials import Cubic, end_derivatives
 from .record import Floats, OscillatorOutputs, Record
 
-TERMS = 8  # derivatives of the series: a step of 0.2/omega leaves 1e-11 of the amplitude
-
 
 class Range(NamedTuple):
     """Store the lowest and the highest position over each step, m."""
@@ -55,7 +53,7 @@ def taylor_coefficients(
     # in contact the springs balance elsewhere
     balance = np.where(contact, s.gap_offset * s.k2 / (s.k1 + s.k2), 0.0)
     series = [motion.x1 - balance, motion.v1]
-    for order in range(TERMS - 1):
+    for order in range(7):  # a step of 0.2/omega leaves 1e-11 of the amplitude
         pull = (damping * series[-1] + stiffness * series[-2]) / mass
         series.append(-pull - (acceleration[order] if order < len(acceleration) else 0.0))
     return [motion.x1, *series[1:]]

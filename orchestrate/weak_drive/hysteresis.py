@@ -105,7 +105,6 @@ class VoltageHolder:
         longest: float,
         settings: Settings | None = None,
     ) -> None:
-        """Store how runs begin, the ramp's schedule, the units (s, rad/s, V) and the settings."""
         # `volts` is negative where the motor turns backward; `longest` is the longest hold, s
         self.begin, self.schedule, self.step = begin, schedule, step
         self.omega, self.volts, self.longest = omega, volts, longest
@@ -169,9 +168,12 @@ class VoltageHolder:
                 speed, error = settled_speed(speeds, settings)
                 if math.isfinite(speed):
                     break
-                if ends and has_left(speeds[-settings.block :], *ends, settings.left):
-                    speed = ends[1]
-                    break
+                late = speeds[-settings.block :]
+                if ends and late.size:
+                    to_go = abs(float(late.mean()) - ends[1])
+                    if to_go < settings.left * abs(ends[0] - ends[1]):
+                        speed = ends[1]
+                        break
             return HeldPoint(voltage, speed, error, run.get_state())
         finally:
             run.master.close()
@@ -357,11 +359,6 @@ class HysteresisLoop(VoltageHolder):
         """Return whether two points have settled at the same speed."""
         distance = abs(point.speed - other.speed) - difference_error(point, other)
         return distance <= self.settings.same
-
-
-def has_left(speeds: np.ndarray, first: float, second: float, rest: float) -> bool:
-    """Return whether the last speeds have come all but a part of the way between two speeds."""
-    return speeds.size > 0 and abs(float(speeds.mean()) - second) < rest * abs(first - second)
 
 
 def merge_overlapping(jumps: list[Jump], sign: float) -> list[Jump]:

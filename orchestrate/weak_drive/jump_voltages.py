@@ -6,38 +6,33 @@ ramp shows its jump late, about as rate^(2/3).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.drive import Drive
+from ..model.ranges import STRUCTURE
 from ..model.structure import Structure
 from ..response.labels import variable
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
 from .hysteresis import Settings
 from .master import Scheme
-from .schedule import Ramp, Schedule
+from .schedule import Ramp
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-
+IGNORED = ("clearance", "e", "e_slope", "gamma")  # by the bonded structure
 KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
-USUAL_RATES = (1e-4, 5e-5, 2.5e-5)  # of eta0 in a time 1/omega
 COLUMNS = ("jumps", "jump_low", "jump_high")
 SLOTS = Settings().slots
-EARLY = 1e-3  # of the voltage at rate 0: a ramp shows its jump no earlier
 SHOWN = ("ramp_voltage", "jump_speed_before")
 
 
@@ -49,18 +44,19 @@ class JumpVoltagesJob(Job):
     drive: Drive
     schedules: tuple[Ramp, ...]  # one for each rate, slowest first
     scheme: Scheme
+    over: str = ""  # a parameter that the bonded structure ignores
+    values: tuple[float, ...] = ()
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     item: ClassVar[str] = "ramp"
 
     def items(self) -> Sequence[tuple[Structure, Ramp]]:
-        """Return the structure and the schedule of each ramp, the slowest first."""
-        both = (self.structure.as_bonded(), self.structure.as_delaminated())
-        return [(structure, schedule) for schedule in self.schedules for structure in both]
+        parted = self.structure.as_delaminated()
+        varied = [parted.replace(**{self.over: value}) for value in self.values] or [parted]
+        structures = (self.structure.as_bonded(), *varied)
+        return [(structure, schedule) for schedule in self.schedules for structure in structures]
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[tuple[Structure, Ramp]], previous: Any
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[tuple[Structure, Ramp]], previous: Any) -> Table:
         """Run some ramps; return their jumps, and of faster ones what their records show."""
         rows, shown, decided = [], [], []
         for structure, schedule in items:
@@ -74,13 +70,19 @@ class JumpVoltagesJob(Job):
         return {"jumps": np.array(rows), "decided": np.array(decided), "shown": np.array(shown)}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of jump voltages over the rate and at rate 0."""
-        import xarray as xr
-
         rates = np.array([schedule.rate for schedule in self.schedules])
-        shape = len(rates), len(KINDS), len(COLUMNS), len(DIRECTIONS)
-        jumps, low, high = np.moveaxis(table["jumps"].reshape(shape), 2, 0)
-        every, each = ("rate", "structure", "jump"), ("structure", "jump")
+        count = 1 + max(1, len(self.values))  # of structures
+        at: Any = np.arange(len(KINDS))  # of both kinds among them; the bonded one at each value
+        each: tuple[str, ...] = ("structure", "jump")
+        if self.over:
+            at = np.stack([np.zeros(count - 1, dtype=int), np.arange(1, count)])
+            each = ("structure", self.over, "jump")
+        every = ("rate", *each)
+        table = {
+            name: values.reshape(len(rates), count, *values.shape[1:])[:, at]
+            for name, values in table.items()
+        }
+        jumps, low, high = np.moveaxis(table["jumps"], -2, 0)
         shown = table["shown"].reshape(*jumps.shape, SLOTS, len(SHOWN))
         voltages, speeds = np.moveaxis(first_past(jumps[0], shown), -1, 0)
         late = "voltage at which the speed jumps on the ramp"
@@ -93,13 +95,17 @@ class JumpVoltagesJob(Job):
             "speed_before": variable(every, speeds, "rad/s", before),
             "jumps": variable(each, jumps[0], "V", "the same at rate 0"),
             "standard_error": variable(each, halves, "V", error),
-            "decided": (each, table["decided"][: len(KINDS)], {"long_name": how}),
+            "decided": (each, table["decided"][0], {"long_name": how}),
         }
         coordinates = {
             "rate": variable("rate", rates, "V/s", "change of the voltage"),
             "structure": ("structure", list(KINDS), {"long_name": "structure"}),
             "jump": ("jump", list(DIRECTIONS), {"long_name": "direction in which the speed jumps"}),
         }
+        if self.over:
+            quantity = STRUCTURE[self.over]
+            words = (np.array(self.values), quantity.unit, quantity.description)
+            coordinates[self.over] = variable(self.over, *words)
         return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
 
 
@@ -115,7 +121,8 @@ def first_past(jumps: np.ndarray, shown: np.ndarray) -> np.ndarray:
     """Return of the jumps that ramps show those that come next after the motion is lost."""
     signs = np.array([1.0, -1.0]) * np.sign(jumps)
     late = signs[..., np.newaxis] * (shown[..., 0] - jumps[..., np.newaxis])
-    late = np.where(late > -EARLY * np.abs(jumps[..., np.newaxis]), late, np.inf)
+    # a ramp shows its jump no earlier than by a thousandth
+    late = np.where(late > -1e-3 * np.abs(jumps[..., np.newaxis]), late, np.inf)
     first = np.argmin(late, axis=-1)[..., np.newaxis]
     chosen = np.take_along_axis(shown, first[..., np.newaxis], axis=-2)[..., 0, :]
     is_late = np.isfinite(np.take_along_axis(late, first, axis=-1))
@@ -131,6 +138,8 @@ def jump_voltages(
     back: bool = True,
     settle: float | None = None,
     step: float | None = None,
+    over: str | None = None,
+    values: Sequence[float] | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Find the voltages of the speed's jumps, bonded and delaminated, at ramp rate 0.
@@ -151,6 +160,11 @@ def jump_voltages(
         Time at the first voltage before, s; 300/omega by default.
     step : float, optional
         Communication step, s; controlled by its defect by default.
+    over : str, optional
+        A parameter that the bonded structure ignores: ``"clearance"``, ``"e"``, ``"e_slope"`` or
+        ``"gamma"``. The bonded structure is computed once.
+    values : sequence of float, optional
+        Its values, which are a dimension of the result then.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`; the ramps
         run side by side.
@@ -185,22 +199,24 @@ def jump_voltages(
     """
     require_motor(drive)
     unit = drive.volts(structure) * structure.omega
-    volt_rates = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
+    volt_rates = [rate * unit for rate in (1e-4, 5e-5, 2.5e-5)] if rates is None else list(rates)
     if not volt_rates:
         raise InputError(f"rates = {rates}: expected one or more, in V/s")
-    schedules = tuple(
-        require_ramp(
-            schedule_from_arguments(structure, drive, voltage, None, rate, settle, 0.0, back)
-        )
+    every = (
+        schedule_from_arguments(structure, drive, voltage, None, rate, settle, 0.0, back)
         for rate in sorted(set(volt_rates))
     )
-    scheme = scheme_from_arguments(structure, step)
-    job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme)
-    return answer(job, running, finder(running))
-
-
-def require_ramp(schedule: Schedule) -> Ramp:
-    """Return the schedule if it is a ramp; raise an error otherwise."""
-    if not isinstance(schedule, Ramp):
+    schedules = tuple(schedule for schedule in every if isinstance(schedule, Ramp))
+    if not schedules:
         raise InputError("voltage: expected (first, last) in V, the ends of ramps")
-    return schedule
+    scheme = scheme_from_arguments(structure, step)
+    if (over is None) != (values is None):
+        raise InputError("over and values: expected both, or none of them")
+    if over not in (None, *IGNORED):
+        expected = f"expected {' or '.join(IGNORED)}, which the bonded structure ignores"
+        raise InputError(f"over = {over!r}: {expected}")
+    varied = tuple(float(value) for value in values or ())
+    for value in varied:
+        structure.replace(**{str(over): value})  # raises where it is out of range
+    job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme, over or "", varied)
+    return answer(job, running, finder(running))

@@ -114,7 +114,7 @@ class Master:
         """Connect both instances and read their initial outputs."""
         self.oscillator = Channel(oscillator, CUBIC, OscillatorOutputs._fields)
         self.drive, self.scheme = DriveSide(drive, connection), scheme
-        self.goes_back = drive.description.has_states
+        self.connection, self.goes_back = connection, drive.description.has_states
         self.names = (*LEADING, *connection.outputs, *connection.inputs)
         self.inputs = slice(END + len(connection.outputs), len(self.names))
         unknown = [math.nan] * len(connection.inputs)
@@ -142,25 +142,41 @@ class Master:
         return self.run([inputs], h)
 
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
-        """Run an interval for each row of the drive's inputs, held constant; return the record."""
+        """Run an interval for each row of the drive's inputs, held constant; return the record.
+
+        Where something is recorded, inputs at the interval's end follow those over it in a row.
+        """
         values = np.asarray(inputs, dtype=float)
-        rows = values.reshape(len(values), len(self.names) - self.inputs.start)
+        rows = values.reshape(len(values), self.width)
         return self.run_controlled(rows.tolist(), len(values), h)
 
     def run_controlled(
         self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
     ) -> Record:
         """Run a number of intervals; its inputs are requested at its start."""
-        rows, ends = [list(self.row)], []
+        rows, ends, recorded = [list(self.row)], [], []
+        own = len(self.connection.inputs)
         for values in inputs:
-            rows += self._interval(list(values), h or self.scheme.h)
+            rows += self._interval(list(values[:own]), h or self.scheme.h)
             ends.append(len(rows) - 1)
-        return Record.of_rows(self.names, rows, ends)
+            recorded += [self.recorded(values[own:])] if self.connection.recorded else []
+        return Record.of_rows(self.names, rows, ends, recorded)
+
+    @property
+    def width(self) -> int:
+        """Return how many inputs of the drive a row of :meth:`run` has."""
+        return len(self.connection.inputs) * (2 if self.connection.recorded else 1)
+
+    def recorded(self, inputs: Sequence[float]) -> list[float]:
+        """Return what is recorded of the drive, in its own units, under some inputs."""
+        self.drive.put((self.row[MOTION + FORCE_PLACE], 0.0, 0.0, 0.0), inputs)
+        return [float(value) for value in self.drive.instance.get(*self.connection.recorded)]
 
     def _interval(self, inputs: list[float], h: float) -> list[list[float]]:
         """Run one communication interval; return the rows of its steps."""
         end = self.time + h
-        if inputs != self.row[self.inputs]:  # the acceleration belongs to the inputs as set now
+        # the acceleration belongs to the inputs as set now
+        if inputs != self.row[self.inputs] or self.connection.cubic >= 0:
             self.row[self.inputs] = inputs
             force = self.row[MOTION + FORCE_PLACE]
             self.row[DRIVE : self.inputs.start] = self._outputs_at(force, inputs)
@@ -200,10 +216,11 @@ class Master:
             motion = self._oscillate(acceleration, h)
             drive.put(self._force_over(motion, h), inputs)
             drive.channel.step(now[TIME], h)
-            acceleration = self._acceleration_over(self._outputs_at(motion[FORCE_PLACE], inputs), h)
+            outputs = self._outputs_at(motion[FORCE_PLACE], self._later(inputs, h))
+            acceleration = self._acceleration_over(outputs, h)
         self.oscillator.restore()
         motion = self._oscillate(acceleration, h)
-        outputs = self._outputs_at(motion[FORCE_PLACE], inputs)
+        outputs = self._outputs_at(motion[FORCE_PLACE], self._later(inputs, h))
         defect = 0.0
         if self.scheme.tolerance:
             defect = self._defect(self._force_over(motion, h), acceleration, outputs, h)
@@ -227,6 +244,14 @@ class Master:
         """Return the drive's outputs under the force at a communication point."""
         self.drive.put((force, 0.0, 0.0, 0.0), inputs)
         return self.drive.get()
+
+    def _later(self, inputs: list[float], h: float) -> list[float]:
+        """Return the drive's inputs at the end of a step: a cubic among them runs on."""
+        first = self.connection.cubic
+        if first < 0:
+            return inputs
+        cubic = end_derivatives(tuple(inputs[first : first + 4]), h)
+        return [*inputs[:first], *cubic, *inputs[first + 4 :]]
 
     def _force_over(self, motion: Sequence[float], h: float) -> Cubic:
         """Return the force over a step, exact in its mean and first moment if these are taken."""

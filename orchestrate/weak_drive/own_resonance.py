@@ -26,10 +26,6 @@ from ..model.drive import Drive
 from ..model.structure import Structure
 from . import averaged
 
-CLOSE = 1e-9  # to a pole, in parts of it
-SLOWEST = 1e-6  # frequency over omega of a box without springs
-SAMPLES = 400  # of a flight, whose gap is positive
-
 
 @lru_cache(maxsize=64)
 def elastic_resonance(structure: Structure, drive: Drive) -> float:
@@ -46,7 +42,7 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
     poles = np.unique(poles[(poles >= w[-2]) & (poles <= w[-1])])
     bonded, roots = averaged.resonance(structure, drive), []
     for low, high in pairwise(poles.tolist()):
-        ends = low * (1.0 + CLOSE), high * (1.0 - CLOSE)
+        ends = low * (1.0 + 1e-9), high * (1.0 - 1e-9)  # not at the poles themselves
         if gap_at_impact(ends[0]) < 0.0 < gap_at_impact(ends[1]):
             root = float(brentq(gap_at_impact, *ends, xtol=1e-12))
             if gap_stays_open(w, n, root):
@@ -64,12 +60,12 @@ def free_modes(structure: Structure, drive: Drive) -> tuple[np.ndarray, np.ndarr
     inertia[:2, 2] = inertia[2, :2] = masses
     springs = np.diag([beta, beta * structure.kappa, drive.Omega_b(structure) ** 2])
     squares, modes = eigh(springs, inertia)
-    return np.sqrt(np.maximum(squares, SLOWEST**2)), modes[1] - modes[0]
+    return np.sqrt(np.maximum(squares, 1e-6**2)), modes[1] - modes[0]  # of a box without springs
 
 
 def gap_stays_open(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
     """Return whether the gap stays open between two impacts of a mode."""
-    angles = np.pi / Omega * np.linspace(-1.0, 1.0, SAMPLES + 1)[1:-1]
+    angles = np.pi / Omega * np.linspace(-1.0, 1.0, 401)[1:-1]
     gaps = np.cos(np.outer(angles, w)) @ (n**2 / (w * np.sin(w * np.pi / Omega)))
     return bool((gaps > 0.0).all() or (gaps < 0.0).all())
 

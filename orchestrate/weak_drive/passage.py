@@ -7,10 +7,9 @@ motor's revolutions of it.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,11 +17,13 @@ from ..constants import TURN
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from .controllers import Controller
 from .couple import (
@@ -35,12 +36,6 @@ from .couple import (
 from .revolutions import COLUMNS
 from .run import Run
 from .schedule import Schedule, check
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 SAMPLES = {
     "time": ("s", "time"),
@@ -77,10 +72,9 @@ class PassageJob(Job):
     item: ClassVar[str] = "step"
 
     def items(self) -> Sequence[int]:
-        """Return the item indices: all communication steps, then the hysteresis loop."""
         return self.run.items()
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Compute one chunk of steps with all samples, or the hysteresis loop."""
 
         def revolve_with_samples(run: Run) -> Table:
@@ -95,9 +89,6 @@ class PassageJob(Job):
         return self.run.work_on(fmus, items, previous, self.chunk_size, revolve_with_samples)
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of samples over time and of the jumps."""
-        import xarray as xr
-
         of_run = {name: table[name] for name in (*COLUMNS, "jump_rows")}
         revolutions = self.run.dataset(of_run)
         samples = {name: table[KEPT + name] for name in SAMPLES}
@@ -237,11 +228,17 @@ def waterfall(
     >>> float(strongest)
     1.0
     """
-    import xarray as xr
-
     check_spectra(found, mass, revolutions, highest)
     points = max(16, math.ceil(4.0 * highest))
-    times, moved = resample_over_angle(found, mass, points)
+    from scipy.interpolate import CubicHermiteSpline
+
+    angle, time = np.abs(found.angle.values - found.angle.values[0]), found.time.values
+    forward = np.concatenate([[True], np.diff(np.maximum.accumulate(angle)) > 0.0])
+    last = math.floor(angle[forward][-1] * points / TURN)
+    times = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
+    position = (found[f"x{mass}"] + found.box_position).values
+    velocity = (found[f"v{mass}"] + found.box_velocity).values
+    moved = CubicHermiteSpline(time, position, velocity)(times)
     length, hop = revolutions * points, max(1, revolutions // 4) * points
     begins = np.arange(0, len(times) - length + 1, hop)
     if not begins.size:
@@ -266,19 +263,6 @@ def waterfall(
         "order": variable("order", order[shown], "1", "multiple of the motor's speed"),
     }
     return xr.Dataset(variables, coordinates, {"title": "Spectra over the motor's revolutions"})
-
-
-def resample_over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolate a mass's absolute displacement at equal steps of the motor's angle."""
-    from scipy.interpolate import CubicHermiteSpline
-
-    angle, time = np.abs(data.angle.values - data.angle.values[0]), data.time.values
-    forward = np.concatenate([[True], np.diff(np.maximum.accumulate(angle)) > 0.0])
-    last = math.floor(angle[forward][-1] * points / TURN)
-    times = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
-    position = (data[f"x{mass}"] + data.box_position).values
-    velocity = (data[f"v{mass}"] + data.box_velocity).values
-    return times, CubicHermiteSpline(time, position, velocity)(times)
 
 
 def hann_spectrum(pieces: np.ndarray) -> np.ndarray:

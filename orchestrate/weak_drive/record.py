@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .polynomials import Cubic
 
 Floats = NDArray[np.float64]
+NOTHING = np.empty((0, 0))
 BOX = ("box_position", "box_velocity", "box_acceleration")
 
 
@@ -45,11 +46,16 @@ class Record:
     names: tuple[str, ...]
     columns: Floats  # (names, 1 + steps)
     ends: NDArray[np.integer[Any]]  # places in a column at which communication intervals end
+    recorded: Floats = field(default_factory=lambda: NOTHING)  # of the drive there, (ends, names)
 
     @classmethod
-    def of_rows(cls, names: tuple[str, ...], rows: Any, ends: Any) -> Record:
+    def of_rows(
+        cls, names: tuple[str, ...], rows: Any, ends: Any, recorded: Any = NOTHING
+    ) -> Record:
         """Make a record of rows, one for the state before and for each step."""
-        return cls(names, np.ascontiguousarray(np.transpose(rows)), np.asarray(ends, dtype=np.intp))
+        columns = np.ascontiguousarray(np.transpose(rows))
+        table = np.asarray(recorded, dtype=float)
+        return cls(names, columns, np.asarray(ends, dtype=np.intp), table)
 
     @property
     def before(self) -> Record:
@@ -85,4 +91,5 @@ def joined(records: Sequence[Record]) -> Record:
     starts = np.cumsum([0, *(record.columns.shape[1] - 1 for record in records)])
     columns = [records[0].columns[:, :1], *(record.after.columns for record in records)]
     ends = [start + record.ends for start, record in zip(starts, records, strict=False)]
-    return Record(records[0].names, np.concatenate(columns, axis=1), np.concatenate(ends))
+    recorded = np.concatenate([record.recorded for record in records])
+    return Record(records[0].names, np.concatenate(columns, axis=1), np.concatenate(ends), recorded)

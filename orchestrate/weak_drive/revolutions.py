@@ -44,7 +44,6 @@ class Revolutions:
     """Collect a run's records into rows, one per revolution of the motor."""
 
     def __init__(self, structure: Structure) -> None:
-        """Start the record of the first revolution."""
         self.structure, self.balance = structure, EnergyBalance(structure)
         # full turns, s, and impacts so far, at the beginning of the revolution
         self.turn = self.time = self.impacts = 0.0
@@ -54,7 +53,9 @@ class Revolutions:
     def add(self, record: Record) -> tuple[Table, Energies]:
         """Return the revolutions that a record completes, and the energies at its rows."""
         energies = self.balance.add(record)
-        largest = largest_in_steps(self.structure, record)
+        of_mass, of_box = range_of_mass(self.structure, record), range_of_box(record)
+        shaken = np.abs(record.after["box_acceleration"])
+        largest = np.stack([of_mass.high, -of_mass.low, of_box.high, -of_box.low, shaken])
         voltage, x1, y = record["voltage"], record["x1"], record["box_position"]
         rows, begin = [], 0
         for end, time, speed, impacts in self.completed(record):
@@ -96,9 +97,3 @@ class Revolutions:
         """Restore the state that :meth:`get_state` returned."""
         self.turn, self.time, self.impacts = numbers[:3]
         self.largest = np.array(numbers[3:])
-
-
-def largest_in_steps(structure: Structure, record: Record) -> Floats:
-    """Return by steps the largest x1, -x1, box position, its negative, and its acceleration."""
-    x, y = range_of_mass(structure, record), range_of_box(record)
-    return np.stack([x.high, -x.low, y.high, -y.low, np.abs(record.after["box_acceleration"])])

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR, SHAKER
 from ..model.drive import Drive
 from ..model.structure import Structure
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
 from .compiled import create_master
 from .controllers import Controller, Measurement
 from .master import Scheme
@@ -55,7 +54,6 @@ class Run:
     """Step both FMU instances of a coupled run and collect its revolutions."""
 
     def __init__(self, job: CoupledRun, oscillator: Instance, shaker: Instance) -> None:
-        """Initialise both FMU instances and create their master."""
         self.job, self.oscillator, self.shaker = job, oscillator, shaker
         oscillator.initialize(**oscillator_start(job.structure))
         voltage = job.schedule.voltage(0.0)
@@ -113,7 +111,7 @@ class Run:
 
 
 @contextmanager
-def begin_run(job: CoupledRun, fmus: Mapping[str, Path]) -> Iterator[Run]:
+def begin_run(job: CoupledRun, fmus: Fmus) -> Iterator[Run]:
     """Create both FMU instances, start a run on them and free them at the end."""
     with (
         Instance(fmus[OSCILLATOR], "oscillator") as oscillator,

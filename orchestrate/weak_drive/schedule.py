@@ -15,8 +15,6 @@ import numpy as np
 from ..errors import InputError
 from ..files import read_text
 
-MAX_BYTES = 1 << 22  # of a file: some hundred thousand rows
-
 
 def check(
     name: str,
@@ -63,21 +61,17 @@ class Constant(Schedule):
     time: float  # s
 
     def __post_init__(self) -> None:
-        """Check voltage and duration."""
         check("voltage", self.value, "V")
         check("duration", self.time, "s", low=0.0)
 
     @property
     def duration(self) -> float:
-        """Return the duration of the whole run, s."""
         return self.time
 
     def voltage(self, time: float) -> float:
-        """Return the constant voltage, V."""
         return self.value
 
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Return zeros, because the voltage is constant."""
         return np.zeros(np.shape(times), dtype=int)
 
 
@@ -104,7 +98,6 @@ class Ramp(Schedule):
     low: float = 0.0  # voltage at which it spins up from, V
 
     def __post_init__(self) -> None:
-        """Check voltages, rate and times."""
         check("voltage", self.first, "V")
         check("voltage", self.last, "V")
         check("spin_up", self.spin_up, "s", low=0.0)
@@ -121,7 +114,6 @@ class Ramp(Schedule):
 
     @property
     def begin(self) -> float:
-        """Return the time at which the ramp leaves the first voltage, s."""
         return self.spin_up + self.settle
 
     @property
@@ -136,11 +128,9 @@ class Ramp(Schedule):
 
     @property
     def duration(self) -> float:
-        """Return the duration of the whole run, s."""
         return self.begin + self.rise * (2 if self.back else 1)
 
     def voltage(self, time: float) -> float:
-        """Return the voltage at a time, V."""
         if time < self.spin_up:
             return self.low + (self.first - self.low) * time / self.spin_up
         ramp = min(max(time - self.begin, 0.0), self.duration - self.begin)
@@ -155,7 +145,6 @@ class Ramp(Schedule):
         return self.first + math.copysign(change, self.last - self.first)
 
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Return at each time 1 if the voltage rises, -1 if it falls, 0 if constant."""
         times, there = np.asarray(times), 1 if self.last > self.first else -1
         return np.where(times > self.turn, -there, np.where(times > self.begin, there, 0))
 
@@ -186,7 +175,6 @@ class Course(Schedule):
     voltages: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        """Check that times and voltages fit together."""
         for name in ("times", "voltages"):
             object.__setattr__(self, name, tuple(float(value) for value in getattr(self, name)))
         if len(self.times) != len(self.voltages) or len(self.times) < 2:
@@ -203,7 +191,7 @@ class Course(Schedule):
     def from_csv(cls, path: str | PathLike[str]) -> Course:
         """Read the course from a CSV file with columns time, s, and voltage, V."""
         try:
-            lines = read_text(path, MAX_BYTES).splitlines()
+            lines = read_text(path, 1 << 22).splitlines()  # bytes: some hundred thousand rows
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
             raise InputError(f"{path}: cannot be read ({reason}); expected a CSV file") from None
@@ -222,15 +210,16 @@ class Course(Schedule):
                 continue  # names of the columns
             rows.append([time, voltage])
         times, voltages = zip(*rows, strict=True) if rows else ((), ())
-        return cls(times, voltages)
+        try:
+            return cls(times, voltages)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
 
     @property
     def duration(self) -> float:
-        """Return the duration of the whole run, s."""
         return self.times[-1]
 
     def voltage(self, time: float) -> float:
-        """Return the voltage at a time, V; at a jump, the voltage after it."""
         last = bisect_right(self.times, time)
         if last == len(self.times):
             return self.voltages[-1]
@@ -238,7 +227,15 @@ class Course(Schedule):
         low, high = self.voltages[last - 1], self.voltages[last]
         return low + (high - low) * (time - begin) / (end - begin)
 
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """Return the values at many times, as :meth:`voltage` does at one."""
+        known, values = np.array(self.times), np.array(self.voltages)
+        last = known.searchsorted(times, side="right").clip(max=len(known) - 1)
+        begin, low = known[last - 1], values[last - 1]
+        with np.errstate(invalid="ignore"):
+            inside = low + (values[last] - low) * (times - begin) / (known[last] - begin)
+        return np.where(times < known[-1], inside, values[-1])
+
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Return at each time 1 if the voltage rises, -1 if it falls, 0 if constant."""
         places = np.clip(np.searchsorted(self.times, times) - 1, 0, len(self.times) - 2)
         return np.sign(np.diff(self.voltages))[places].astype(int)

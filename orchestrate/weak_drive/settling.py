@@ -28,9 +28,6 @@ DECISIONS = {
     NO_LOAD: "no-load speed",
     NEITHER: "settled at the resonance",
 }
-LONGEST_MEMORY = 1000.0  # 1/omega, where next to nothing damps
-PATIENCE = 600.0  # slowest time constants in the default limit
-SHARE, FINEST, COARSEST = 0.1, 1e-6, 1e-4  # of the voltage's tolerance: settled to within that
 
 
 class Outcome(NamedTuple):
@@ -89,16 +86,14 @@ def settling_test(structure: Structure, drive: Drive, stay: int, distance: float
     """Create the test of a structure and its drive, for a tolerance of the voltage over K omega."""
     omega = structure.omega
     threshold = own_resonance.dividing_speed(structure, drive) * omega
-    tolerance = min(max(SHARE * distance, FINEST), COARSEST)
+    tolerance = min(max(0.1 * distance, 1e-6), 1e-4)
     return SettlingTest(threshold, omega, stay, SettledSettings(tolerance=tolerance))
 
 
 def longest_time_constant(structure: Structure, drive: Drive) -> float:
     """Return the longest time constant of motor and dampers, s; each is limited."""
     rates = (drive.b(structure), structure.D1, structure.D2, drive.D_b(structure))
-    return max(min(1.0 / rate if rate else math.inf, LONGEST_MEMORY) for rate in rates) / (
-        structure.omega
-    )
+    return max(min(1.0 / rate, 1000.0) if rate else 1000.0 for rate in rates) / structure.omega
 
 
 def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> float:
@@ -122,4 +117,4 @@ def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> f
 def usual_limit(structure: Structure, drive: Drive, distance: float) -> float:
     """Return the default time after which an unsettled start is undecided, s."""
     creeping = time_past_the_fold(structure.as_bonded(), drive, distance)
-    return PATIENCE * longest_time_constant(structure, drive) + 10.0 * creeping
+    return 600.0 * longest_time_constant(structure, drive) + 10.0 * creeping

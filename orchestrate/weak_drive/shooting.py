@@ -30,10 +30,6 @@ STARTS = {  # start values of the shaker and of the structure by the outputs tha
     **{name: f"{name}_start" for name in ("x1", "v1", "x2", "v2")},
     "motor_current": "current_start",
 }
-CHANGES = (1e-6, 1e-7)  # of an unknown, for differences: the first that will do
-AGREEMENT = 1e-3  # of a derivative by differences with another: one of twice the change
-RESIDUAL = 1e-9  # of the unit: what a root may leave of the equations
-HEAVY = 1e6  # times its inertia, a rotor that keeps its speed
 
 
 class Period(NamedTuple):
@@ -72,7 +68,7 @@ class Shooter:
     # its unit; voltage over K omega; mean speed over omega. Rounding leaves 1e-15 to 1e-13 times
     # the largest multiplier. Under a preload a period may begin and end in contact.
 
-    accuracy: float = RESIDUAL
+    accuracy: float = 1e-9  # of the unit: what a root may leave of the equations
 
     def __init__(
         self,
@@ -83,7 +79,6 @@ class Shooter:
         steps: int,
         length: float,
     ) -> None:
-        """Store both FMU instances and the units of the unknowns."""
         self.fmus, self.structure, self.drive = fmus, structure, drive
         self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
         self.used = False
@@ -163,7 +158,8 @@ class Shooter:
         self.begin_together(self.structure.bonded)
         longest = time + (self.turns + 1) * TURN / speed
         own_drive = self.drive
-        self.drive = own_drive.replace(rotor_inertia=HEAVY * own_drive.rotor_inertia)
+        # a rotor that keeps its speed
+        self.drive = own_drive.replace(rotor_inertia=1e6 * own_drive.rotor_inertia)
         state = np.zeros(self.size)
         state[self.names.index("speed")] = speed / self.structure.omega
         if "motor_current" in self.names:
@@ -221,22 +217,18 @@ class Shooter:
         together, sticks = self.together and not sizes.any(), False
         if self.structure.preload > 0.0:
             sticks = bool((sizes == 0.0).any())
-            forces = self.contact_forces(kept)
+            s = self.structure
+            x1, v1, x2, v2, gap = (kept[name] for name in ("x1", "v1", "x2", "v2", "x_rel"))
+            parting = (s.k1 * x1 + s.d1 * v1) / s.m1 - (s.k2 * x2 + s.d2 * v2) / s.m2
+            touching = (gap == 0.0) & (v1 == v2)
+            inside = touching & np.roll(touching, 1) & np.roll(touching, -1)
+            force = -parting * s.m1 * s.m2 / (s.m1 + s.m2)
+            forces = np.where(inside, np.maximum(force, 0.0), 0.0)
             together = together or bool(forces.any())
             sizes = forces if together else sizes
         clear = int(np.argmax(sizes))
         share = float(sizes[0] / sizes[clear]) if sizes[clear] > 0.0 else 1.0
         return clear, share, together, sticks
-
-    def contact_forces(self, kept: Record) -> Floats:
-        """Compute the contact force at each communication point, N."""
-        s = self.structure
-        x1, v1, x2, v2, gap = (kept[name] for name in ("x1", "v1", "x2", "v2", "x_rel"))
-        parting = (s.k1 * x1 + s.d1 * v1) / s.m1 - (s.k2 * x2 + s.d2 * v2) / s.m2
-        touching = (gap == 0.0) & (v1 == v2)
-        inside = touching & np.roll(touching, 1) & np.roll(touching, -1)
-        force = -parting * s.m1 * s.m2 / (s.m1 + s.m2)
-        return np.where(inside, np.maximum(force, 0.0), 0.0)
 
     def begin_later(self, unknowns: Floats, steps: int, together: bool) -> Floats:
         """Shift the period's start by some steps; return the unknowns there."""
@@ -300,14 +292,14 @@ class Shooter:
                 known[change] = self.shoot(moved)
             return known[change].end if known[change].is_connected_to(base) else None
 
-        for change in CHANGES:
+        for change in (1e-6, 1e-7):  # of the unknown: the first that will do
             for difference in (central_difference, one_sided_difference):
                 for size in (change,) if difference is central_difference else (change, -change):
                     fine = difference(end_state_shifted_by, size)
                     coarse = difference(end_state_shifted_by, 2.0 * size)
                     if fine is None or coarse is None:
                         continue
-                    if np.abs(fine - coarse).max() <= AGREEMENT * max(1.0, np.abs(fine).max()):
+                    if np.abs(fine - coarse).max() <= 1e-3 * max(1.0, np.abs(fine).max()):
                         return (4.0 * fine - coarse) / 3.0  # Richardson
         raise NoConvergenceError("a grazing is too near for a derivative")
 

@@ -1,7 +1,5 @@
 """Write hostile FMU archives, each from a seeded random generator."""
 
-from __future__ import annotations
-
 import functools
 import io
 import random

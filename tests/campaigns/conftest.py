@@ -1,7 +1,5 @@
 """Seed and budget of a campaign, and the FMU that is attacked."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Write hostile TOML, CSV and NetCDF, each from a seeded random generator."""
 
-from __future__ import annotations
-
 import json
 import math
 import random

@@ -1,7 +1,5 @@
 """How a campaign ends."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 SHOWN = 20

@@ -6,8 +6,6 @@ s, dampers far beyond critical, drives on a natural frequency. The same motion i
 over several communication grids, to the last bit.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Attractors of random structures: each returns in the FMU and by Newton's method."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -118,7 +116,7 @@ class ReportedMotion:
         if min(self.distance(row, self.state) for row in orbit.state.values) > DIFFERS:
             yield "orbit: another one"
 
-    def is_same(self, other: ReportedMotion) -> bool:
+    def is_same(self, other: "ReportedMotion") -> bool:
         """Return whether another motion has a state of this one at phase 0."""
         return any(self.distance(row, other.state) < DIFFERS for row in self.states)
 

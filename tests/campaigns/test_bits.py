@@ -1,7 +1,5 @@
 """A motion on several communication grids, by all forms and in WebAssembly: the same bits."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import itertools

@@ -1,7 +1,5 @@
 """Dask schedulers and workers killed while a command computes."""
 
-from __future__ import annotations
-
 import random
 import signal
 import sys

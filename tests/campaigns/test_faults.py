@@ -1,7 +1,5 @@
 """Commands killed, starved, damaged: run again, they give the bytes of one left in peace."""
 
-from __future__ import annotations
-
 import ctypes
 import random
 import resource

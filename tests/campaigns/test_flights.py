@@ -1,7 +1,5 @@
 """Ends of flights against a dense search in C and 50 digits; balances of impacts."""
 
-from __future__ import annotations
-
 import atexit
 import dataclasses
 import functools
@@ -47,7 +45,7 @@ class Flight:
     values: dict[str, float]
 
     @classmethod
-    def read(cls, line: str) -> Flight:
+    def read(cls, line: str) -> "Flight":
         """Return a flight from a line of the program's output."""
         _, kind, verdict, impact, end, *row = line.split()
         values = dict(zip(NAMES, map(float.fromhex, row), strict=True))

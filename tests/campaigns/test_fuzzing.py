@@ -1,7 +1,5 @@
 """Random calls of the FMU's C shim under sanitizers."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """Malicious input: refused in one line, without harm, in little time and memory."""
 
-from __future__ import annotations
-
 import http.server
 import random
 import shutil

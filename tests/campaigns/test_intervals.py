@@ -1,7 +1,5 @@
 """Stated 95 % intervals of ``fit`` on noisy records of the model itself hold the truth."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 

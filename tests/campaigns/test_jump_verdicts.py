@@ -14,8 +14,6 @@ at the end of each hold. An answer on one direction of the voltage is wrong wher
 too: a ramp throws a motion with a narrow basin out of it long before it ends.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Long sweeps into a file take no memory for what is done; of steps, valgrind says so."""
 
-from __future__ import annotations
-
 import multiprocessing
 import resource
 import sys

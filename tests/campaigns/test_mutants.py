@@ -1,7 +1,5 @@
 """Small changes of the sources, each of which a fast test must notice."""
 
-from __future__ import annotations
-
 import ast
 import os
 import random

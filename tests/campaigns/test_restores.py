@@ -1,7 +1,5 @@
 """Runs with states saved and restored keep their bits."""
 
-from __future__ import annotations
-
 import random
 import sys
 from collections import Counter

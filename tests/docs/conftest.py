@@ -1,7 +1,5 @@
 """A folder as a reader has it: the FMUs in ``build/``, nothing else."""
 
-from __future__ import annotations
-
 import pytest
 
 import orchestrate
@@ -19,9 +17,14 @@ def folder(exported, tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def small(monkeypatch):
-    """All questions are small ones, and pictures are coarse."""
+def coarse(monkeypatch):
+    """Pictures are coarse."""
     monkeypatch.setitem(STYLE, "savefig.dpi", 20)
+
+
+@pytest.fixture
+def small(monkeypatch, coarse):
+    """All questions are small ones too."""
     for name in QUESTIONS:
         if name in orchestrate.__all__:
             monkeypatch.setattr(orchestrate, name, smaller(getattr(orchestrate, name)))

@@ -1,14 +1,22 @@
 """Public questions made small, so that what a page shows runs in a second or two."""
 
-from __future__ import annotations
-
 import functools
 import inspect
 
 import numpy as np
 
+from orchestrate.weak_drive.hysteresis import Settings
+
 VALUES = 4  # of a list, at most
-MOST = {"transient": 5, "periods": 30, "samples": 6, "starts": 3, "points": 128, "settle": 5}
+MOST = {
+    "longest": 0,
+    "transient": 5,
+    "periods": 30,
+    "samples": 6,
+    "starts": 3,
+    "points": 128,
+    "settle": 5,
+}
 QUESTIONS = (
     *("simulate", "resonance", "sweep", "spectra", "map", "lyapunov", "attractors", "basin"),
     *("impact_statistics", "couple"),
@@ -46,6 +54,7 @@ def smaller(question):
         if "rate" in keywords:
             ends = np.ravel(keywords["voltage"])
             keywords |= {"rate": float(abs(ends[-1] - ends[0])), "settle": 1.0}
+            keywords["hysteresis"] = Settings(max_holds=2)
         return question(*arguments, **keywords)
 
     return asked

@@ -1,7 +1,5 @@
 """The manual as its readers have it: short pages, small pictures, limits beside every verdict."""
 
-from __future__ import annotations
-
 import re
 import runpy
 
@@ -15,7 +13,6 @@ from .written import DOCS, ROOT
 
 MOST_WORDS = 1500
 GENERATED = {  # by a tool, of which each row may be looked up but none is read in turn
-    "bifurcations": "tools.bifurcation_table",
     "claims": "tools.paper_page",
     "variables": "tools.assets",
 }

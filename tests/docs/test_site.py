@@ -3,8 +3,6 @@
 Slow: it takes half a minute, most of it the tutorial's own questions.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import runpy

@@ -1,7 +1,5 @@
 """Every block of Python and every command line of the README and the manual runs."""
 
-from __future__ import annotations
-
 import atexit
 import functools
 import shutil
@@ -12,6 +10,7 @@ import pytest
 from orchestrate import cli
 
 from ..orchestrate.weak_drive.drives import table
+from ..sparing import ordinary
 from .written import PAGES, commands, files, python_blocks
 
 LONG = {
@@ -27,14 +26,11 @@ LONG = {
     "report",
 }  # read only
 SHOWN = {words: page for page in reversed(PAGES) for words in map(tuple, commands(page))}
-EVERY = [
-    pytest.param(
-        words,
-        id=f"{page.stem}-{' '.join(words)[:60]}",
-        marks=[pytest.mark.slow] * (words[:1] == ("drive-branch",)),  # half a minute
-    )
+SHORT = {  # commands that are not only read
+    words: page
     for words, page in SHOWN.items()
-]
+    if words and words[0] not in LONG and words[-1] not in ("--help", "--version")
+}
 
 
 def write_files(folder):
@@ -73,14 +69,20 @@ def test_python_runs(page, folder, small):
         exec(compile(text, f"{page.name}, block {number}", "exec"), names)
 
 
-@pytest.mark.parametrize("words", EVERY)
-def test_commands_run(words, folder, small, capsys):
-    if not words or words[0] in LONG or words[-1] in ("--help", "--version"):
+def test_commands_are_read(capsys):
+    for words in SHOWN:
         try:
             cli.make_parser().parse_args(cli.join_negative_values(words))
         except SystemExit as ended:
             assert ended.code == 0 or not words, capsys.readouterr().err
-        return
+
+
+@pytest.mark.parametrize(
+    "words",
+    ordinary(SHORT, [words for words, page in SHORT.items() if page.stem in ("README", "index")]),
+    ids=lambda words: f"{SHORT[words].stem}-{' '.join(words)[:60]}",
+)
+def test_commands_run(words, folder, small, capsys):
     write_files(folder)
     if "shaker.fmu" in words:
         shutil.copy(own_drive(), folder / "shaker.fmu")

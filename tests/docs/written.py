@@ -1,7 +1,5 @@
 """What the README and the manual show: blocks of Python, TOML files, command lines."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The public face as users call it: every function, own SI parameters, scripts and notebooks."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

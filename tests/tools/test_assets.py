@@ -1,7 +1,5 @@
 """What the FMUs carry beside their code can be made: files of reference results, pictures."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The benchmark measures what it says."""
 
-from __future__ import annotations
-
 import sys
 from functools import partial
 

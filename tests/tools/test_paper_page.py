@@ -1,14 +1,11 @@
 """The manual's pages of the paper: their numbers are those of the claims beside them."""
 
-from __future__ import annotations
-
 import json
 
 import pytest
 
 from orchestrate.paper.claims import read_table
 from tools import paper_page
-from tools.marked import MARK
 
 
 @pytest.mark.parametrize("page", paper_page.PAGES, ids=lambda page: page.stem)
@@ -22,8 +19,8 @@ def test_the_page_is_made_from_the_claims(page):
 
 def test_all_that_was_computed_is_on_a_page():
     text = "".join(page.read_text("utf-8") for page in paper_page.PAGES)
-    for name in ("counts", "sections", "verdicts", "regions", "answers"):
-        assert text.count(MARK.format(name, "begin")) == 1
+    for name in ("counts", "sections", "verdicts", "regions"):
+        assert text.count(paper_page.MARK.format(name, "begin")) == 1
 
 
 def test_the_claims_beside_it_are_those_of_the_code():

@@ -1,7 +1,5 @@
 """The referee asks every public function, and says what differs."""
 
-from __future__ import annotations
-
 import inspect
 
 import numpy as np

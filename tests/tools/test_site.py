@@ -1,7 +1,5 @@
 """The check of the site: what points nowhere, and what comes from other hosts."""
 
-from __future__ import annotations
-
 import pytest
 
 from tools.site import Site

@@ -136,11 +136,6 @@ def compile_importer(
     return compile_against(fmu, folder, [HERE / f"{part}.c" for part in parts], options, command)
 
 
-def shim_files(version: str) -> list[str]:
-    """Return the names of the shim's C files for an FMI version."""
-    return [name for name in native_form.shim_sources(version) if name.endswith(".c")]
-
-
 def rebuild_shim(
     version: str,
     folder: Path,
@@ -165,7 +160,7 @@ def rebuild_shim(
         *options,
         "-o",
         target,
-        *shim_files(version),
+        *(name for name in native_form.shim_sources(version) if name.endswith(".c")),
         "kernel.o",
     ]
     run_compiler(command, folder)

@@ -1,9 +1,8 @@
 """Draw the pictures of README and manual: ``python -m tools.pictures [NAME ...]``.
 
 All of them, or those that are named. They are kept in the repository, small, since some take
-minutes; figures of the paper come from ``python -m orchestrate paper``, those of branches from
-``python -m tools.bifurcation_table``, and get their palette here: ``python -m tools.pictures
-figure6 branches``.
+minutes; figures of the paper come from ``python -m orchestrate paper`` and get their palette here:
+``python -m tools.pictures figure6``.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import xarray as xr
 from matplotlib.figure import Figure
 
 import orchestrate
@@ -24,6 +24,15 @@ from tools.pictures.small import save_small, write_small
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAPER = orchestrate.Structure.nondimensional(e=0.7, D=0.005)
+BRANCHES = {  # eta and periods of an orbit on each branch, and how far it is followed
+    "T, contact": (0.38, 1, (0.2, 1.0)),
+    "T/3": (0.69, 1, (0.42, 1.37)),
+    "T/2": (1.0, 1, (0.42, 1.37)),
+    "T/1": (1.37, 1, (0.9, 8.0)),
+    "2T/1": (4.0, 2, (1.37, 8.0)),
+    "3T/1": (6.0, 3, (1.37, 8.0)),
+    "4T/1": (8.0, 4, (1.37, 9.5)),
+}
 COMMANDS = {  # pictures that a command draws: name, its line, ending of the file that is taken
     "weak_drive": ("couple --eta0 0.3:1.65", ""),
     "weak_drive_jumps": ("couple --eta0 0.3:1.65", "_jumps"),
@@ -33,7 +42,7 @@ COMMANDS = {  # pictures that a command draws: name, its line, ending of the fil
         "",
     ),
 }
-KEPT = ("figure6", "figure12", "lyapunov", "branches", "borders", "diagnosis")  # by other tools
+KEPT = ("figure6", "figure12", "lyapunov", "diagnosis")  # by other tools
 
 
 def draw_verdict() -> Figure:
@@ -67,6 +76,33 @@ def draw_researcher_card() -> Figure:
     return cards.draw_orbits(orchestrate.sweep(PAPER, eta=eta, samples=40, progress=False))
 
 
+def follow_branches() -> dict[str, xr.Dataset]:
+    """Return the branches of the orbits of Figure 6, each by a name."""
+    return {
+        label: orchestrate.branch(
+            PAPER, start=orchestrate.orbit(PAPER, eta=eta, period=period), limits=limits
+        )
+        for label, (eta, period, limits) in BRANCHES.items()
+    }
+
+
+def draw_branches() -> Figure:
+    """Draw Figure 6 with its branches; return the figure."""
+    responses = orchestrate.sweep(PAPER, eta=np.arange(100, 8001, 2) / 1000.0)
+    return orchestrate.plot(responses, *follow_branches().values())
+
+
+def draw_borders() -> Figure:
+    """Draw the bifurcation curves of T/1 to 4T/1 over eta and e; return the figure."""
+    every, limits = follow_branches(), [(0.9, 9.5), (0.05, 1.0)]
+    curves = [
+        orchestrate.border(PAPER, start=every[label], bifurcation=i, limits=limits)
+        for label in ("T/1", "2T/1", "3T/1", "4T/1")
+        for i in range(every[label].sizes["bifurcation"])
+    ]
+    return orchestrate.plot(*curves)
+
+
 def draw_spectra() -> Figure:
     """Draw spectra of the set ``quick`` with the motor at resonance; return the figure."""
     structure = orchestrate.Structure.from_file("quick")
@@ -83,6 +119,8 @@ PICTURES: dict[str, Callable[[], Figure]] = {
     "states": draw_states,
     "certificate": theory.draw_certificate,
     "spectra": draw_spectra,
+    "branches": draw_branches,
+    "borders": draw_borders,
 }
 
 

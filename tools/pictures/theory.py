@@ -58,17 +58,6 @@ def wave_derivative(time: float | np.ndarray, order: int) -> Any:
     return mean + sum(waves)
 
 
-def safe_bound(time: float) -> Polynomial:
-    """Return a polynomial below the gap from a time on, by a bound of its second derivative.
-
-    The code has the fifth one's, and comes so close that no picture shows it.
-    """
-    largest = sum(a * k**2 for a, k, _ in WAVES)
-    return Polynomial(
-        [float(wave_derivative(time, 0)), float(wave_derivative(time, 1)), -0.5 * largest]
-    )
-
-
 @styled
 def draw_certificate() -> Figure:
     """Draw why sampling misses an impact and certified steps do not; return the figure."""
@@ -93,7 +82,10 @@ def draw_steps(axes: Axes) -> None:
     """Draw the certified steps from bound to bound, up to the root."""
     now = 0.0
     for step in range(STEPS):
-        bound = safe_bound(now)
+        largest = sum(a * k**2 for a, k, _ in WAVES)
+        bound = Polynomial(
+            [float(wave_derivative(now, 0)), float(wave_derivative(now, 1)), -0.5 * largest]
+        )
         length = float(max(bound.roots().real))  # it falls from a value above 0: one root ahead
         along = np.linspace(0.0, length, 100)
         label = "bounds" if step == 0 else None

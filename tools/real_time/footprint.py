@@ -88,10 +88,7 @@ def call_graph(sources: Path, compiler: str, *flags: str) -> CallGraph:
 
 
 def stack_table(sources: Path, *flags: str) -> dict[str, dict[str, int]]:
-    """Return stack bytes of FMU calls, by machine and purpose.
-
-    "a refusal" is a step with its message, but without what the C library's ``snprintf`` takes.
-    """
+    """Return stack bytes of FMU calls, by machine and purpose."""
     table = {}
     for machine, (compiler, *own) in MACHINES.items():
         graph = call_graph(sources, compiler, *own, *flags)

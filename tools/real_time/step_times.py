@@ -30,7 +30,6 @@ class StepTimes:
     contacts: int
 
     def __add__(self, other: StepTimes) -> StepTimes:
-        """Combine the step times of two runs."""
         return StepTimes(
             self.histogram + other.histogram,
             max(self.evaluations, other.evaluations),

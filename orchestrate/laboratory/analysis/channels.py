@@ -1,20 +1,19 @@
-"""The acceleration channels of a record, checked before they are analysed."""
+"""The acceleration channels of a record, checked, and its overlapping segments (Welch)."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...errors import InputError
+from ...lazy import xr
+from ...model.arguments import checked_word
 from ...response.labels import Variable, variable
 from ..columns import column_taken
 from ..pieces import Floats
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 BOX = "box_acceleration"
 CHANNELS = {  # and what the result of shake calls them
@@ -22,9 +21,6 @@ CHANNELS = {  # and what the result of shake calls them
     "acceleration1": "a1_abs",
     "acceleration2": "a2_abs",
 }
-FEWEST_SAMPLES = 16
-STEP_TOLERANCE = 0.05  # of a step: how far a time may be from equal ones
-RATE_TOLERANCE = 0.01  # between the attribute sample_rate and the time's steps
 
 
 @dataclass(frozen=True)
@@ -42,8 +38,6 @@ class Channels:
     @classmethod
     def from_record(cls, record: xr.Dataset, needed: tuple[str, ...] = ()) -> Channels:
         """Check a record, or a result of :func:`orchestrate.shake`, and take its channels."""
-        import xarray as xr
-
         if not isinstance(record, xr.Dataset) or "time" not in record.coords:
             expected = "expected an xarray.Dataset over time with box_acceleration, acceleration1"
             raise InputError(f"record: {type(record).__name__} without time; {expected}")
@@ -55,8 +49,8 @@ class Channels:
             expected = " and ".join(needed) or "one of them"
             raise InputError(f"record: no {lacking}; expected {expected} over time, in m/s2")
         time = np.asarray(record.time.values, dtype=float)
-        if time.ndim != 1 or len(time) < FEWEST_SAMPLES:
-            raise InputError(f"record: {time.size} samples; expected at least {FEWEST_SAMPLES}")
+        if time.ndim != 1 or len(time) < 16:
+            raise InputError(f"record: {time.size} samples; expected at least 16")
         rate = sample_rate(time, record.attrs.get("sample_rate"))
         values = np.stack([finite(name, array, time) for name, array in present.items()])
         title, box_label = str(record.attrs.get("title", "record")), column_taken(record.attrs, BOX)
@@ -87,16 +81,14 @@ def channel_variable(record: xr.Dataset, name: str) -> xr.DataArray | None:
 
 
 def sample_rate(time: Floats, stated: Any) -> float:
-    """Return the sampling rate of equally spaced times, Hz; the stated one if they agree with
-    it.
-    """
+    """Return the sampling rate of equally spaced times, Hz; the stated one if it agrees."""
     steps = np.diff(time)
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         wrong = int(np.argmin(np.nan_to_num(steps, nan=-np.inf)))
         raise InputError(f"time[{wrong + 1}] = {time[wrong + 1]!r} s: expected ascending numbers")
     rate = (len(time) - 1) / (time[-1] - time[0])
     uneven = np.abs((time - time[0]) * rate - np.arange(len(time)))
-    if uneven.max() > STEP_TOLERANCE:
+    if uneven.max() > 0.05:  # of a step
         wrong = int(np.abs(steps * rate - 1.0).argmax())
         text = f"a step of {steps[wrong]:.6g} s after it, of {1.0 / rate:.6g} s on average"
         raise InputError(f"time[{wrong}] = {time[wrong]:.9g} s: {text}; expected equal steps")
@@ -106,7 +98,7 @@ def sample_rate(time: Floats, stated: Any) -> float:
         number = float(stated)
     except (TypeError, ValueError):
         number = np.nan
-    if not abs(number / rate - 1.0) <= RATE_TOLERANCE:
+    if not abs(number / rate - 1.0) <= 0.01:
         text = f"the time has {rate:.6g} samples a second; expected the same"
         raise InputError(f"attribute sample_rate = {stated!r} Hz: {text}")
     return number
@@ -153,3 +145,68 @@ def checked_number(
         text = f"expected {low:.4g} <= {name} {sign} {high:.4g}"
         raise InputError(f"{name} = {value!r}{' ' + unit if unit else ''}: {text}")
     return number
+
+
+WINDOWS = ("hann", "hamming", "blackman", "blackmanharris", "flattop", "boxcar")
+FEWEST_LINES = 8  # samples in a segment
+
+
+@dataclass(frozen=True)
+class Averaging:
+    """How a record is divided into segments for Welch's method."""
+
+    # samples of a segment, and those it shares with the next
+    length: int
+    overlap: int
+    window: str  # of scipy.signal.get_window
+    segments: int  # how many there are
+    resolution: float  # distance of the lines, Hz
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Keywords of :func:`scipy.signal.csd` and :func:`scipy.signal.welch`."""
+        return {
+            "window": self.window,
+            "nperseg": self.length,
+            "noverlap": self.overlap,
+            "detrend": "constant",
+        }
+
+    @property
+    def independent(self) -> float:
+        """Number of independent segments that would have the same random error."""
+        # overlapping segments are correlated by the squared correlation of the window with itself
+        # (Welch, IEEE Trans. Audio Electroacoust. 15, 1967, 70-73)
+        from scipy.signal import get_window
+
+        w = get_window(self.window, self.length)
+        hop, count = self.length - self.overlap, self.segments
+        shifts = range(1, min(count, -(-self.length // hop)))
+        shared = (float(w[: -s * hop] @ w[s * hop :]) / float(w @ w) for s in shifts)
+        total = sum((1.0 - s / count) * c**2 for s, c in zip(shifts, shared, strict=True))
+        return count / (1.0 + 2.0 * total)
+
+
+def segment_length(channels: Channels, resolution: float | None) -> int:
+    """Return the samples of a segment whose lines have a distance in Hz; 0 if none is given."""
+    if resolution is None:
+        return 0
+    finest, coarsest = (channels.sample_rate / n for n in (len(channels.time), FEWEST_LINES))
+    checked = checked_number("resolution", resolution, finest, coarsest, "Hz")
+    return round(channels.sample_rate / checked)
+
+
+def averaging(
+    channels: Channels, resolution: float | None, window: str, overlap: float, fewest: int = 1
+) -> Averaging:
+    """Divide a record into overlapping windowed segments."""
+    checked_word("window", window, WINDOWS)
+    part = checked_number("overlap", overlap, 0.0, 0.95)
+    count, rate = len(channels.time), channels.sample_rate
+    length = segment_length(channels, resolution) or max(count // 16, FEWEST_LINES)
+    shared = min(int(part * length), length - 1)
+    segments = (count - shared) // (length - shared)
+    if segments < fewest:
+        text = f"{segments} segments in {channels.duration:.4g} s; expected at least {fewest}"
+        raise InputError(f"resolution = {rate / length:.4g} Hz: {text}")
+    return Averaging(length, shared, window, segments, rate / length)

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...lazy import xr
 from ...response.labels import variable
 from .channels import Channels, Floats, attributes, channel_coordinate, checked_number
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PARTS = 16  # of the record, for standard errors
 
@@ -53,11 +50,11 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
     >>> abs(float(answer.skewness.sel(channel="box_acceleration"))) < 0.2
     True
     """
-    import xarray as xr
-
     channels = Channels.from_record(record)
     number = round(checked_number("bins", bins, 4, 100_000))
-    middles, density = histograms(channels.values, number)
+    counted = [np.histogram(channel, number, density=True) for channel in channels.values]
+    middles = np.stack([0.5 * (edges[:-1] + edges[1:]) for _, edges in counted])
+    density = np.stack([heights for heights, _ in counted])
     moments = {name: variable("channel", *row) for name, row in statistics(channels.values).items()}
     over = ("channel", "bin")
     return xr.Dataset(
@@ -69,16 +66,6 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
         },
         attributes("probability_density", "Probability density", channels.title),
     )
-
-
-def histograms(values: Floats, bins: int) -> tuple[Floats, Floats]:
-    """Return bin centres and densities of each channel, both of shape (channels, bins)."""
-    middles, densities = [], []
-    for channel in values:
-        density, edges = np.histogram(channel, bins, density=True)
-        densities.append(density)
-        middles.append(0.5 * (edges[:-1] + edges[1:]))
-    return np.stack(middles), np.stack(densities)
 
 
 def statistics(values: Floats) -> dict[str, tuple[Floats, str, str]]:

@@ -6,17 +6,20 @@ by omega^2 on the way (no line at 0 Hz), and does not know the error of overlapp
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ...errors import InputError
+from ...lazy import xr
 from ...response.labels import variable, yes_or_no
-from .averaging import averaging
-from .channels import BOX, Channels, Floats, attributes, channel_coordinate, frequency_coordinate
-
-if TYPE_CHECKING:
-    import xarray as xr
+from .channels import (
+    BOX,
+    Channels,
+    Floats,
+    attributes,
+    averaging,
+    channel_coordinate,
+    frequency_coordinate,
+)
 
 ESTIMATORS = ("H1", "H2", "Hv")
 EXCITED = 1e-2  # of the largest power density of the box: below, a response has no meaning
@@ -74,7 +77,6 @@ def frf(
     >>> float(answer.magnitude.sel(estimator="H1", channel="acceleration1").idxmax())
     12.5
     """
-    import xarray as xr
     from scipy.signal import csd, welch
 
     channels = Channels.from_record(record, (BOX,))

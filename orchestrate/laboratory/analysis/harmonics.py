@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...lazy import xr
 from ...response.labels import variable
 from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
 from .channels import attributes, checked_number
 from .orders import MOST_ORDERS, track_orders
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def harmonics(
@@ -59,8 +55,6 @@ def harmonics(
     >>> bool(answer.distortion.sel(channel="acceleration1").max() > 0.01)
     True
     """
-    import xarray as xr
-
     number = round(checked_number("highest", highest, 2, MOST_ORDERS))
     tracked = track_orders(record, orders=number, phase=phase, periods=periods, overlap=overlap)
     first = tracked.amplitude.sel(order=1.0, drop=True)

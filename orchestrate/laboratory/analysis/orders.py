@@ -5,26 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...constants import TURN
 from ...errors import InputError
+from ...lazy import xr
 from ...response.labels import variable
 from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
 from .channels import BOX, Channels, Floats, attributes, channel_coordinate, checked_number
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 MOST_ORDERS = 50
 EDGE = 2.0  # periods at both ends where the Hilbert transform is not trusted
 NYQUIST = 0.45  # of the sampling rate: orders above are not resolved
-NO_SINE = 0.5  # rms of what the box does beside its sine, over the rms of the sine
-LEAST_LEVEL = 1e-6  # of the largest amplitude of the box: below, it is at rest
 
 
 @dataclass(frozen=True)
@@ -97,8 +92,6 @@ def track_orders(
     >>> round(float(first.idxmax()), 1)
     12.7
     """
-    import xarray as xr
-
     channels = Channels.from_record(record, (BOX,) if phase is None else ())
     wanted = checked_orders(orders)
     length = checked_number("periods", periods, 2.0, 1e4)
@@ -227,7 +220,7 @@ def moves_as_sine(
     rms = np.abs(amplitudes[row, first]) * 0.5**0.5
     beside = residual[row] / np.maximum(rms, 1e-300)
     forward = np.array([window.frequency > 0.0 for window in windows])
-    sine = forward & (beside <= NO_SINE) & (rms > LEAST_LEVEL * rms.max())
+    sine = forward & (beside <= 0.5) & (rms > 1e-6 * rms.max())  # below, the box is at rest
     length = np.array([len(window.phase) for window in windows])
     if length[sine].sum() < 0.5 * length.sum():
         raise InputError(

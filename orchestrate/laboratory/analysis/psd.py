@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ...lazy import xr
 from ...response.labels import variable
-from .averaging import averaging
-from .channels import Channels, attributes, channel_coordinate, frequency_coordinate
-
-if TYPE_CHECKING:
-    import xarray as xr
+from .channels import Channels, attributes, averaging, channel_coordinate, frequency_coordinate
 
 
 def psd(
@@ -58,7 +53,6 @@ def psd(
     >>> round(float(answer.rms.sel(channel="box_acceleration")), 2), round(noise.rms, 2)
     (0.53, 0.53)
     """
-    import xarray as xr
     from scipy.signal import welch
 
     channels = Channels.from_record(record)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import InputError
+from ...lazy import xr
 from ...response.labels import variable
 from .channels import (
     Channels,
@@ -18,13 +18,6 @@ from .channels import (
     checked_number,
     frequency_coordinate,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-IN_AN_OCTAVE = 12
-IN_A_PERIOD = 40  # response samples: a peak between them is at most 0.3 % higher
-HIGHEST = 0.1  # of the sampling rate, as ISO 18431-4 advises
 
 
 def shock_spectrum(
@@ -70,8 +63,6 @@ def shock_spectrum(
     >>> answer.maximax.sel(channel="box_acceleration").values.round(1)
     array([ 40.5, 164.8, 100.8])
     """
-    import xarray as xr
-
     channels = Channels.from_record(record)
     ratio = checked_number("damping", damping, 0.0, 1.0, open_end=True)
     natural = natural_frequencies(channels, frequencies)
@@ -95,11 +86,11 @@ def shock_spectrum(
 
 def natural_frequencies(channels: Channels, given: ArrayLike | None) -> Floats:
     """Return the natural frequencies of the oscillators, Hz: those given, or a default range."""
-    highest = HIGHEST * channels.sample_rate
+    highest = 0.1 * channels.sample_rate  # as ISO 18431-4 advises
     if given is None:
         octaves = math.log2(highest * channels.duration)
-        count = max(1, math.floor(octaves * IN_AN_OCTAVE))
-        return np.asarray(highest * 2.0 ** (np.arange(-count, 1) / IN_AN_OCTAVE))
+        count = max(1, math.floor(octaves * 12))  # twelve in an octave
+        return np.asarray(highest * 2.0 ** (np.arange(-count, 1) / 12))
     try:
         natural = np.atleast_1d(np.asarray(given, dtype=float))
     except (TypeError, ValueError):
@@ -116,7 +107,8 @@ def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats,
     from scipy.signal import lfilter
 
     rate = channels.sample_rate
-    parts = max(1, math.ceil(IN_A_PERIOD * frequency / rate))
+    # a peak between samples is at most 0.3 % higher
+    parts = max(1, math.ceil(40 * frequency / rate))
     base = straight_between(channels.values, parts)
     # one period of the free vibration after the record has its largest value
     after = math.ceil(parts * rate / frequency) + parts

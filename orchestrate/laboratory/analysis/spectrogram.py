@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ...lazy import xr
 from ...model.arguments import checked_word
 from ...response.labels import variable
-from .averaging import FEWEST_LINES, WINDOWS, segment_length
 from .channels import (
+    FEWEST_LINES,
+    WINDOWS,
     Channels,
     attributes,
     channel_coordinate,
     checked_number,
     frequency_coordinate,
+    segment_length,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-USUAL_SHARE = 32.0  # lines times spectra, over the samples, without overlap
 
 
 def spectrogram(
@@ -64,14 +60,14 @@ def spectrogram(
     >>> float(box.idxmax())
     12.0
     """
-    import xarray as xr
     from scipy.signal import ShortTimeFFT
 
     channels = Channels.from_record(record)
     checked_word("window", window, WINDOWS)
     most = round(checked_number("spectra", spectra, 1, 100_000))
     count, rate = len(channels.time), channels.sample_rate
-    usual = min(max(int((USUAL_SHARE * count) ** 0.5), FEWEST_LINES), count)
+    # as many lines times spectra as 32 times the samples
+    usual = min(max(int((32.0 * count) ** 0.5), FEWEST_LINES), count)
     length = segment_length(channels, resolution) or usual
     hop = max(1, -(-(count - length) // most))
     transform = ShortTimeFFT.from_window(

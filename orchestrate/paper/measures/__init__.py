@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from ..claims import NO, PARTLY, Claim, judge
+from ..claims import NO, PARTLY, Claim, judge, plain
 from ..datasets import Datasets
-from ..readable import plain
 from . import equations, influence, limits, peaks, setup, windows
 
 Measure = Callable[..., Any]  # from the datasets and the claim to a ``Measured``

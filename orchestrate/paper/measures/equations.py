@@ -16,7 +16,6 @@ ETA, D, STIFFNESS, BEGAN = 1.3, 0.02, 1.2, 0.7  # of an oscillator (6), and its 
 START = (0.4, -0.3)
 TAUS = np.linspace(0.1, 9.0, 40)
 ROUNDING = 1e-6
-RATIO = 1e-6  # of successive times between impacts, against e
 
 
 def compare(what: str, printed: float, right: float, form: str) -> Measured:
@@ -116,7 +115,7 @@ def is_endless(rows: xr.Dataset, e: float) -> bool:
     with np.errstate(divide="ignore"):  # at e = 1 more impacts than any number
         expected = np.diff(np.log(rows.gamma.values)) / np.log(e)
     grows = np.abs(np.diff(rows.impacts.values) - expected) <= 1.0 + 1e-9
-    near = float(rows.ratio_error[-1]) < RATIO
+    near = float(rows.ratio_error[-1]) < 1e-6
     return bool(grows.all() and near and rows.sticks.values.all())
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...dynamics.lyapunov import CHAOTIC
-from ..answers import largest_text
 from ..cases import CASES
 from ..claims import Claim, Measured
 from ..datasets import Datasets
 from ..reading import (
+    Region,
     between,
     decreases,
     impact_runs,
@@ -18,8 +18,6 @@ from ..reading import (
     relative_peak,
     runs,
 )
-
-DECADE, RESEMBLES = 10.0, 0.1
 
 
 def impacts_decrease(data: Datasets, claim: Claim) -> Measured:
@@ -174,7 +172,7 @@ def decay(data: Datasets, claim: Claim) -> Measured:
     by = "; ".join(f"{a:.3g}, {b:.3g}" for a, b in factors)
     return Measured(
         f"eta: largest gap, closing velocity: {text}; they fall by {by}",
-        (factors >= DECADE).ravel().tolist(),
+        (factors >= 10.0).ravel().tolist(),
     )
 
 
@@ -190,10 +188,44 @@ def single_oscillator(data: Datasets, claim: Claim) -> Measured:
         away.append(max(abs(ratio - 1.0) for ratio in ratios))
         gap = float(row.xi_rel_max / row.xi1_max)
         text.append(f"{eta:g}: {ratios[0]:.3f}, {ratios[1]:.3f}, gap {gap:.2f}")
-    near = [part < RESEMBLES for part in away[1:]]  # beyond the main peak
+    near = [part < 0.1 for part in away[1:]]  # beyond the main peak
     falls = all(a > b for a, b in zip(away[1:], away[2:], strict=False))
     return Measured(
         "amplitudes of both masses over that of both as one (6), and gap over amplitude: "
         f"{'; '.join(text)}",
         [*near, falls],
     )
+
+
+def region_rows(data: Datasets) -> list[dict[str, str]]:
+    """Return a row of texts for each region of each case: limits, chaotic share, verdict."""
+    rows = []
+    for case, structure in CASES.items():
+        for region in data.regions(case):
+            chaotic, neutral = data.shares(case, region.low, region.high)
+            kinds = {"chaotic in part": chaotic, "neutral in part": neutral, "periodic": 1.0}
+            rows.append(
+                {
+                    "case": f"e = {structure.e:g}, D = {structure.get('D'):g}",
+                    "region": f"{region.low:.5f} to {region.high:.5f} ({region.name})",
+                    "chaotic": f"{100 * chaotic:.0f} %",
+                    "neutral": f"{100 * neutral:.0f} %",
+                    "count": str(between(data.settled(case), *region[:2]).sizes["eta"]),
+                    "largest": largest_text(data, case, region),
+                    "verdict": next(word for word, share in kinds.items() if share > 0.01),
+                }
+            )
+    return rows
+
+
+def largest_text(data: Datasets, case: str, region: Region) -> str:
+    """Return a region's largest exponent with its error and place, from long runs."""
+    # an exponent of which less than half is left there is named: its chaos has ended
+    part, first = (between(one, *region[:2]) for one in (data.largest(case), data.exponent(case)))
+    best = part.isel(eta=int(part.exponent.values.argmax()))
+    text = f"{float(best.exponent):.4f} ± {float(best.standard_error):.4f} at {float(best.eta):.3f}"
+    for one in (part.isel(eta=k) for k in range(part.sizes["eta"])):
+        screened = float(first.exponent.sel(eta=one.eta))
+        if screened > 0.001 and float(one.exponent) < 0.5 * screened:
+            text += f" ({screened:.4f} at {float(one.eta):.3f} did not last)"
+    return text

@@ -27,13 +27,10 @@ def limit(
     near: float = 0.0,
     slack: float = 0.0,
 ) -> Measured:
-    """Find a limit in the sweep, the middle of two frequencies, and the exact one of a branch.
-
-    ``orbit``: ``contact``, ``T`` of any impacts, or mT/k; around ``inside``, or the longest run
-    where that is 0. ``exact``: the orbit, around ``near``, that decides where it is another one;
-    ``upper:`` before it asks for its other end. ``slack``: within which the printed number agrees,
-    by default half a unit of its last digit.
-    """
+    """Find a limit in the sweep, the middle of two frequencies, and the exact one of a branch."""
+    # orbit: "contact", "T" of any impacts, or mT/k; around `inside`, or the longest run where that
+    # is 0. exact: the orbit, around `near`, that decides where it is another one; "upper:" before
+    # it asks for its other end
     swept, back = (run_edges(one, orbit, inside) for one in (data.up(case), data.down(case)))
     which, printed, slack = int(edge == "upper"), float(claim.printed), slack or claim.slack
     end, _, decides = exact.rpartition(":")

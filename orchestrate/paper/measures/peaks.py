@@ -8,7 +8,6 @@ from ..cases import CASES
 from ..claims import Claim, Measured
 from ..datasets import Datasets
 
-SAME_PLACE = 0.01  # in eta
 SAME_ORDER = 10.0**0.5  # two numbers within such a factor are of the same order
 
 
@@ -55,7 +54,7 @@ def both_at_peak(data: Datasets, claim: Claim) -> Measured:
             f"{case}: largest gap at {eta:.3f}, amplitudes at {places[0]:.3f} and {places[1]:.3f}, "
             f"impulse at {places[2]:.3f}, at the gap's still {100 * kept:.0f} %"
         )
-        parts += [abs(place - eta) <= SAME_PLACE for place in places]
+        parts += [abs(place - eta) <= 0.01 for place in places]  # in eta
     return Measured("; ".join(text), parts)
 
 

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import stepper
-from fmu_src.kernels.oscillator.motion import FAINTEST, move_origin
+from fmu_src.kernels.oscillator.motion import move_origin
 from tools import exact_motion as truth
 
 from . import reference
-from .kernel import DEFAULTS, advanced, examples, least_work, pieces, started
+from .kernel import DEFAULTS, advanced, examples, pieces, started
 
 STATE = (-0.3, 0.2, 0.4, -0.5)  # x1, v1, x2, v2
 STARTS = dict(zip(("x1_start", "v1_start", "x2_start", "v2_start"), STATE, strict=True))
@@ -141,51 +141,6 @@ def test_equal_oscillators_always_move_together(values, drive):
     assert m[at.X1] == pytest.approx(float(common(99.5)), abs=1e-12)
 
 
-def part_from_rest(kappa, frequency):
-    """From rest two nearly equal oscillators; the memory after a while, and the gap then by
-    Newton's law.
-    """
-    m = started(k2=kappa, box_frequency=frequency)
-    advanced(m, 0.5 / frequency)
-    first, second = truth.free_motion(
-        {**DEFAULTS, "k2": kappa, "box_frequency": frequency}, (0, 0, 0, 0), mp.mpf(0)
-    )
-    return m, float((second - first)(0.5 / frequency))
-
-
-@pytest.mark.parametrize("frequency", [0.15, 0.11, 1.3])
-def test_a_contact_of_a_trillionth_of_a_radian_from_rest_ends(frequency):
-    """Dampers that differ by 1e-13 press together what the springs part at once."""
-    values = {"m2": 7.75, "k2": 0.0814, "d1": 0.0, "d2": 4.4e-13, "box_frequency": frequency}
-    values["phase_start"] = 7e-14
-    m = advanced(started(**values), 1e-12, 5e-5, 0.5)
-    assert m[at.MODE] == at.FLIGHT and m[at.WORK] < 30.0
-    first, second = truth.free_motion({**DEFAULTS, **values}, (0.0,) * 4, mp.mpf(7e-14))
-    assert m[at.X_REL] == pytest.approx(float(second(0.5) - first(0.5)), rel=1e-9)
-
-
-def test_from_rest_the_first_moments_are_not_lost_in_rounding():
-    for frequency in (0.01, 0.4, 3.0):
-        for kappa in (1 - 1e-3, 1 - 1e-4, 1 - 1e-5, 1 - 1e-6, 1 - 1e-7, 1 - 1e-8):
-            m, gap = part_from_rest(kappa, frequency)
-            assert m[at.IMPACT_COUNT] == 0.0
-            # small steps: a bound of the free parts is far above the gap's own size
-            assert m[at.WORK] < 20000.0
-            assert m[at.X_REL] == pytest.approx(gap, abs=1e-15)
-
-
-@pytest.mark.parametrize("factor", [0.7, 3.0, 7.1])
-@pytest.mark.parametrize("m1, k1", [(0.1, 0.3), (0.7, 0.1), (0.3, 1.7), (1.1, 0.9)])
-@least_work
-def test_oscillators_equal_up_to_rounding_move_together(m1, k1, factor):
-    m = started(
-        box_frequency=1.3, m1=m1, k1=k1, d1=0.02, m2=factor * m1, k2=factor * k1, d2=factor * 0.02
-    )
-    for i in range(1, 50):
-        advanced(m, 2.0 * i)
-        assert m[at.X_REL_MAX] == m[at.IMPACT_COUNT] == 0.0
-
-
 STEEP = {"m2": 1.3, "k2": 9.3, "d1": 0.0, "d2": 79.0, "e": 0.2, "gamma": 1e-6}
 
 
@@ -196,13 +151,3 @@ def test_a_motion_that_decays_for_ever_comes_to_rest():
         advanced(m, 20_000.0)
     assert [m[slot] for slot in (at.X1, at.V1, at.X2, at.V2, at.X_REL)] == [0.0] * 5
     assert m[at.IMPACT_COUNT] > 1000.0
-
-
-@pytest.mark.parametrize("box_amplitude", [1e-280, 1.0])
-def test_a_driven_motion_never_does(box_amplitude):
-    """However small: the same motion as a large one's, but for its last digits."""
-    begun = {"x1_start": -0.3 * box_amplitude, "v1_start": -0.3 * box_amplitude}
-    m = advanced(started(box_amplitude=box_amplitude, d1=0.05, **begun), 300.0)
-    assert abs(m[at.X1]) > 1e-3 * box_amplitude
-    smallest = started(box_amplitude=FAINTEST / 1024.0, d1=0.05)
-    assert advanced(smallest, 300.0)[at.X1] != 0.0

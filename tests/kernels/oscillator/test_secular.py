@@ -14,8 +14,6 @@ from fmu_src.kernels.oscillator import event_function, roots, secular, stepper
 from fmu_src.kernels.oscillator import memory as at
 from tools import exact_motion as truth
 
-from ...sparing import ordinary
-from . import reference
 from .kernel import (
     DEFAULTS,
     advanced,
@@ -28,7 +26,6 @@ from .kernel import (
     started,
 )
 from .test_event_function import MAKERS, STATES
-from .test_motion import STARTS, STATE, events
 
 AGES = st.floats(0.0, 40.0)
 
@@ -41,16 +38,6 @@ def size(values, age):
 def fastest(values):
     """The fastest oscillation, over omega."""
     return max(1.0, math.sqrt(values["k2"] / values["m2"]), values["box_frequency"])
-
-
-def test_without_damping_or_detuning_the_amplitude_grows_as_time():
-    """At rest before: xi = (sin tau - tau cos tau)/2."""
-    m = started(bonded=1.0, m2=0.5, k2=0.5, d1=0.0, d2=0.0, box_frequency=1.0)
-    for time in (0.3, 4.0, 77.0, 3000.0, 1e6):
-        advanced(m, time)
-        expected = 0.5 * (mp.sin(time) - time * mp.cos(time))
-        # the phase at a time is known to a rounding of the time
-        assert abs(m[at.X1] - expected) <= 2e-15 * (1.0 + time) + 2.3e-16 * time * time
 
 
 @examples(60)
@@ -147,34 +134,6 @@ def test_a_flight_ends_at_its_first_root(values, state):
     else:
         closing = abs(float((second - first).derivative()(expected)))
         assert abs(end - expected) <= 1e-15 + 2e-14 * size(values, 6.0) / closing
-
-
-EXACT_OR_NEAR = [
-    {"box_frequency": 1.0},  # of mass 1
-    {"k2": 1.00003, "box_frequency": 1.0},  # nearly equal
-    {"k2": 2.125, "box_frequency": 1.25, "e": 0.1, "gamma": 1e-2},  # of both together
-    {"k2": 1.5625, "box_frequency": 1.25, "e": 0.3},  # of mass 2
-    {"k2": 1.5625, "m2": 4.0, "box_frequency": 0.625, "gamma": 1e-2, "e": 0.2},  # of mass 2
-    {"d1": 1e-5, "d2": 2e-5, "box_frequency": 1.00001, "phase_start": 2.0},
-]
-
-
-@pytest.mark.parametrize("values", ordinary(EXACT_OR_NEAR))
-def test_event_by_event_in_high_precision(values):
-    values = {**DEFAULTS, "d1": 0.0, "d2": 0.0, **values}
-    stop = 30.0
-    expected, state = reference.event_by_event(values, STATE, stop)
-    m = started(**values, **STARTS)
-    assert m[at.SECULAR] == 1.0
-    found = events(m, stop)
-    assert len(found) == len(expected) >= 5
-    assert [mode == at.CONTACT for _, mode in found] == [kind == "release" for _, kind in expected]
-    assert [time for time, _ in found] == pytest.approx(
-        [float(time) for time, _ in expected], rel=1e-11
-    )
-    assert [m[i] for i in (at.X1, at.V1, at.X2, at.V2)] == pytest.approx(
-        [float(value) for value in state], abs=1e-9
-    )
 
 
 @pytest.mark.parametrize("values", [{"k2": 1.2}, {"k2": 1.0}, {"k2": 1.2, "bonded": 1.0}])

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.image import imread
 from scipy.io import wavfile
 
-from orchestrate import Sensor, measure, psd, write_record
+from orchestrate import write_record
 
 RATE = 1000.0
 
@@ -182,26 +182,6 @@ def test_measured_beside_simulated(ask, tmp_path, files):
     ).success()
     lines = [line for line in said(done) if "mass 1" in line]
     assert len(lines) == 2 and all("  6 m/s2 at" in line for line in lines)
-
-
-def test_sensors_feel_the_impulses_of_impacts(ask, tmp_path):
-    """As orchestrate.measure has it: what is measured is compared with that, not with nothing."""
-    sweep = ("--swept-sine", "10:13", "--duration", "8", "--g", "0.02", "--sample-rate", "1000")
-    ask("shake", "--structure", "beam", *sweep, "--plot", "none").success()
-    (path,) = (tmp_path / "results").glob("shake*.nc")
-    show = ("--show", "psd", "--plot", "none")
-    between = said(ask("analyse", path, *show).success())
-    felt = said(ask("analyse", path, "--sensor", "400:1500", *show).success())
-    made = measure(xr.load_dataset(path), Sensor(bandwidth=400.0, sample_rate=1500.0))
-    rms = float(psd(made).rms.sel(channel="acceleration1"))
-    assert felt[2].endswith(f"  {rms:.6g}") and felt[2] != between[2]
-    assert len(list((tmp_path / "results").glob("analyse*.nc"))) == 2
-    made.to_netcdf(tmp_path / "measured.nc")
-    beside = ("--beside", f"measured={tmp_path / 'measured.nc'}", *show)
-    warned = ask("analyse", path, *beside)
-    assert warned.code == 0 and "compares like with like" in warned.err
-    ask("analyse", path, "--sensor", "400:1500", *beside).success()
-    ask("analyse", path, "--sensor", "-1").complaint("bandwidth = -1.0")
 
 
 def test_numbers_in_another_unit_are_noticed_in_one_line(ask, tmp_path):

@@ -76,6 +76,7 @@ def under_way(commands, fmu):
     return process, list(below(process.pid))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "number", "word"),
     [

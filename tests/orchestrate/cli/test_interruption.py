@@ -66,9 +66,8 @@ def results_left(commands):
     return [name for name in commands.files() if not name.endswith(kinds)]
 
 
-@pytest.mark.parametrize(
-    "number", [signal.SIGKILL, pytest.param(signal.SIGINT, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_after_an_interruption_the_bytes_are_equal(commands, uninterrupted, number):
     """A sweep, in threads."""
     process = commands.start(*RUNS["sweep"])

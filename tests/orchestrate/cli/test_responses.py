@@ -16,7 +16,6 @@ from matplotlib import image
 import orchestrate
 from orchestrate import Structure
 from orchestrate.cli import responses
-from orchestrate.cli.dynamics import lyapunov_summary
 from orchestrate.fmu import OSCILLATOR, find
 from orchestrate.version import __version__
 
@@ -49,18 +48,6 @@ def test_formats_hold_the_same_numbers(ask, folder):
     sheet = pd.read_excel(result.with_suffix(".xlsx"), sheet_name="structure_direction_frequency")
     np.testing.assert_allclose(sheet["a2_max [g]"] * 9.80665, data.a2_max.values.ravel())
     assert result.with_suffix(".mat").stat().st_size > 1000
-
-
-@pytest.mark.slow
-def test_a_branch_goes_on_from_a_stored_one(ask, folder):
-    place = folder / "window.nc"
-    assert ask("branch", "--eta", "2.7", "--limits", "2.6:2.82", "--store", place).code == 0
-    done = ask("branch", "--start", place, "--switch", "1", "--limits", "2.78:2.8")
-    assert done.code == 0 and "first end: start" in done.out, done.err
-    limits = ("--over", "eta,e", "--limits", "2.6:2.7,0.69:0.71", "--longest", "0.5")
-    done = ask("border", "--start", place, *limits)
-    assert done.code == 0 and "Neimark-Sacker: " in done.out, done.err
-    assert len(list(folder.glob("*.nc"))) == 3
 
 
 def test_the_excitation_of_the_file(ask, folder, tmp_path):
@@ -113,23 +100,6 @@ def test_what_is_trivial_is_said(ask, words, said):
     assert done.code == 0 and said in done.out, done.err
 
 
-def test_frequencies_in_hertz_are_told_whose_structure_they_meet(ask, caplog):
-    short = ("--periods", "1", "--plot", "none")
-    done = ask("simulate", "--hz", "47", "--g", "0.5", *short)
-    assert "structure: the paper's, omega = 1 rad/s, 0.1592 Hz (--structure names" in done.out
-    assert caplog.messages[-1].startswith(
-        "frequencies of 295 times the structure's 0.1592 Hz are far from it"
-    )
-    caplog.clear()
-    done = ask("simulate", "--hz", "12", "--g", "0.02", "--structure", "beam", *short)
-    assert "structure:" not in done.out
-    done = ask("simulate", "--eta", "30", *short)
-    assert "structure:" not in done.out and caplog.messages == []
-    low = ("resonance", "--structure", "beam", "--hz", "0.1,12", "--amplitude", "1e-3")
-    ask(*low, "--transient", "1", "--samples", "1", "--plot", "none")
-    assert caplog.messages[-1].startswith("frequencies of 0.00838 to 1.01 times")
-
-
 def made_sweep(kinds, impacts, **sizes):
     """A made-up sweep of responses: their kinds, as ``multiplicity_decided`` has them."""
     words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
@@ -160,21 +130,6 @@ def test_a_sweep_is_summed_up_in_a_table_of_ten_lines():
     assert "undecided" in rows[4]
     assert lines[-1].startswith("undecided: ") and "--transient 5000" in lines[-1]
     assert not any("permanent contact" in line for line in lines)
-
-
-def test_the_largest_of_many_exponents_is_not_passed_off_as_an_estimate():
-    etas = np.linspace(5.0, 5.3, 12)
-    exponents = np.full(12, 0.25)
-    exponents[7] = 0.2777
-    columns = {"exponent": exponents, "standard_error": np.full(12, 0.003)}
-    columns["impacts_per_period"] = np.ones(12)
-    words = {"flag_values": [-1, 0, 1], "flag_meanings": "periodic neutral chaotic"}
-    data = xr.Dataset({name: ("eta", values) for name, values in columns.items()}, {"eta": etas})
-    data = data.assign(verdict=("eta", np.ones(12, dtype=int), words))
-    data = data.assign_coords(period=("eta", 2.0 * np.pi / etas))
-    first, *_ = lyapunov_summary(data.assign_attrs(periods=2500, wander=10.0))
-    assert first.startswith("largest exponent 0.27770 +- 0.00300 per tau at eta = 5.19")
-    assert "the largest of 12 is biased" in first
 
 
 # -- files ----------------------------------------------------------------------------------------
@@ -247,15 +202,6 @@ def test_a_file_of_ones_own_is_not_replaced_by_another_question(ask, folder):
     assert fingerprint(folder) == {"mine.png": before["mine.png"]}
 
 
-def test_a_file_of_others_stays_whatever_is_forced(ask, folder):
-    folder.mkdir()
-    own = folder / "mine.nc"
-    own.write_text("my notes")
-    for force in ([], ["--force"]):
-        ask(*SWEEP, "--store", own, *force).complaint("mine.nc", "remove it", code=1)
-    assert own.read_text() == "my notes" and len(fingerprint(folder)) == 1
-
-
 def test_a_failed_picture_is_drawn_by_the_same_command(ask, folder):
     ask(*SWEEP)
     (picture,) = folder.glob("*.png")
@@ -265,19 +211,6 @@ def test_a_failed_picture_is_drawn_by_the_same_command(ask, folder):
     picture.rmdir()
     assert ask(*SWEEP).code == 0
     assert picture.is_file()
-
-
-def test_a_list_is_taken_in_its_own_order(ask, folder):
-    ask("sweep", "--eta", "1.31, 1.28,2", *SHORT, "--plot", "none")
-    data = result_in(folder)
-    assert data.eta.values.tolist() == [1.31, 1.28, 2.0]
-    assert data.attrs["direction"] == "given"
-
-
-def test_up_and_down(ask, folder):
-    done = ask(*SWEEP, "--direction", "both", "--plot", "none")
-    assert result_in(folder).direction.values.tolist() == ["up", "down"]
-    assert "up and down differ" in done.out and ", down" in done.out
 
 
 def test_over_another_parameter_of_an_own_structure(ask, folder, tmp_path):
@@ -315,21 +248,6 @@ def test_a_motion(ask, folder):
     assert shows_something(next(folder.glob("*.png")))
 
 
-def test_the_same_motion_told_in_other_units(ask, folder):
-    short = ("simulate", "--structure", "beam", "--periods", "2", "--plot", "none")
-    told = (
-        ("--frequency", "80", "--amplitude", "0.001"),
-        ("--hz", f"{80 / (2 * np.pi)!r}", "--g", f"{0.001 * 80**2 / 9.80665!r}"),
-        ("--rpm", f"{80 * 30 / np.pi!r}", "--amplitude", "0.001"),
-        ("--eta", f"{80 / 75!r}", "--amplitude", "0.001"),
-    )
-    for options in told:
-        assert ask(*short, *options).code == 0
-    motions = [xr.load_dataset(path).x1.values for path in folder.glob("*.nc")]
-    for motion in motions:
-        np.testing.assert_allclose(motion, motions[0], rtol=1e-9, atol=1e-15)
-
-
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -356,16 +274,6 @@ def test_shaken_as_in_the_laboratory(ask, folder, options, words):
     assert all(word in done.out for word in words), done.out
     assert len(list(folder.glob("*.nc"))) == 1 + drawn
     assert not drawn or shows_something(next(folder.glob("*.png")))
-
-
-def test_another_record_has_files_of_its_own(ask, folder, tmp_path):
-    """Though it has as many samples at the same rate."""
-    for name, level in (("one", 1.0), ("other", 2.0)):
-        rows = [f"{i / 200.0!r},{level * (i % 7)!r}" for i in range(60)]
-        (tmp_path / f"{name}.csv").write_text("time [s],box [m/s2]\n" + "\n".join(rows) + "\n")
-        asked = ("shake", "--structure", "beam", "--record", tmp_path / f"{name}.csv")
-        ask(*asked, "--plot", "none").success()
-    assert len(list(folder.glob("*.nc"))) == 2
 
 
 def test_a_record_is_played_again(ask, folder, tmp_path):

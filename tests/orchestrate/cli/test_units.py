@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import functools
 import hashlib
-import json
 import re
 
 import numpy as np
@@ -12,14 +10,12 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-import orchestrate
 from orchestrate import cli
-from orchestrate.cli import diagnosis, dynamics, responses, weak_drive
+from orchestrate.cli import dynamics, responses
 from orchestrate.cli.text import attractor_table
 from orchestrate.dynamics.orbit_records import STABILITY
 from orchestrate.response.labels import flags
-from orchestrate.show import weak_drive as figures
-from orchestrate.units import Units, with_units
+from orchestrate.units import with_units
 
 from ...exports import BUILD
 
@@ -237,167 +233,3 @@ def test_the_picture_of_an_orbit_says_whether_it_is_stable():
 def test_a_command_without_such_numbers_says_why(ask):
     ask("paper", "--units", "Hz").complaint("--units Hz: ", REFUSED["paper"])
     assert cli.main(["build", "--units", "Hz"]) == 2
-
-
-def answer_with(monkeypatch, name, data):
-    """Let a public function give a made-up answer; its signature stays."""
-    function = functools.wraps(getattr(orchestrate, name))(lambda *_, **__: data)
-    monkeypatch.setattr(orchestrate, name, function)
-
-
-def variable(values, unit, dims=()):
-    return (dims, values, {"units": unit})
-
-
-def test_the_weak_drive_prints_speeds_in_the_unit_asked_for(ask, monkeypatch, tmp_path):
-    """Made-up answers, as their functions give them."""
-    speed = np.array([[[100.0, 110.0, 105.0]], [[101.0, 111.0, 106.0]]])
-    along = {"structure": ["bonded", "delaminated"], "leg": ["from below"]}
-    dims = (*along, "point")
-    branch = {
-        "voltage": variable(speed / 100.0, "V", dims),
-        "speed": variable(speed, "rad/s", dims),
-    }
-    branch |= {"amplitude": variable(1e-5 * speed, "m", dims), "stable": (dims, speed < 200.0)}
-    branch |= {"revolutions": (dims, np.ones_like(speed)), "end": (tuple(along), [["limit"]] * 2)}
-    at = {"structure": ["bonded"], "kind": ["period doubling"]}
-    branch |= {f"bifurcation_{name}": ("bifurcation", value) for name, value in at.items()}
-    numbers = {"voltage": (1.05, "V"), "speed": (105.0, "rad/s"), "amplitude": (1e-3, "m")}
-    for name, (value, unit) in {**numbers, "revolutions": (1.0, "1")}.items():
-        branch[f"bifurcation_{name}"] = variable([value], unit, ("bifurcation",))
-    (tmp_path / "results").mkdir()
-    about = {"k1": 8437.5, "m1": 1.5, "call": "drive_branch()"}
-    branch = xr.Dataset(branch, along, about)
-    answer_with(monkeypatch, "drive_branch", branch)
-    done = ask("drive-branch", "--drive", "beam", "--units", "rpm,um").success()
-    assert re.search(r"speed rpm.*\n.* 1002\.68", done.out) and "rad/s" not in done.out
-    assert next((tmp_path / "results").glob("*.png")).stem.endswith("_rpm-um")
-    assert "speed rad/s" in ask("drive-branch", "--drive", "beam", "--plot", "none").out
-
-    each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
-    jumps = {"jumps": variable([[1.5, 1.4]] * 2, "V", tuple(each))}
-    jumps["standard_error"] = variable([[0.1, 0.1]] * 2, "V", tuple(each))
-    jumps["decided"] = (tuple(each), [["by held voltages"] * 2] * 2)
-    answer_with(monkeypatch, "jump_voltages", xr.Dataset(jumps, each))
-    asked = ("jump-voltages", "--plot", "none")
-    note = "--units rpm: these have no such numbers, only V"
-    assert note in ask(*asked, "--units", "rpm").success().out
-    assert "--units" not in ask(*asked).success().out
-
-    capture = {"passes": ("voltage", [0, 1]), "decision": ("voltage", ["converged"] * 2)}
-    capture |= {"passage_time": variable([np.nan, 5.0], "s", ("voltage",)), "above_fold": 0.0}
-    capture |= {"border": ((), 1.5, {"units": "V", "tolerance": 1.0}), "border_low": 1.4}
-    capture |= {"border_high": 1.6, "speed_low": variable(100.0, "rad/s")}
-    capture |= {"speed_high": variable(110.0, "rad/s")}
-    tried = xr.Dataset(capture, {"voltage": [1.4, 1.6]}, {"k1": 8437.5, "m1": 1.5})
-    answer_with(monkeypatch, "capture", tried)
-    options = ("capture", "--plot", "none", "--only", "bonded")
-    assert "954.9 rpm    1050 rpm" in ask(*options, "--units", "rpm").success().out
-    assert "eta = 1.333  eta = 1.467" in ask(*options, "--units", "eta").success().out
-    assert "100 rad/s    110 rad/s" in ask(*options).success().out
-    sheet = ("--rated-voltage", "2", "--no-load-rpm", "16", "--stall-torque", "60")
-    assert "1050 rpm" in ask(*options, *sheet, "--eta0", "1:2").success().out
-
-
-def test_a_passage_prints_its_motion_in_the_unit_asked_for(monkeypatch):
-    moved = {"x1": variable([1e-3, -2e-3], "m", ("time",)), "passage_time": 0.5}
-    moved["speed"] = variable([100.0, 110.0], "rad/s", ("time",))
-    moved |= {"jumps": ("jump", [np.nan]), "decided": ("jump", ["no"])}
-    data = xr.Dataset(moved, {"time": [0.0, 1.0], "jump": ["up"]}, {"kept": "all"})
-    monkeypatch.setattr("orchestrate.show.passage.jump_texts", lambda _: [])
-    (line,) = weak_drive.passage_lines({"bonded": data})
-    assert "largest |x1| 0.002 m, speed up to 110 rad/s" in line
-    (line,) = weak_drive.passage_lines({"bonded": with_units(data, "rpm, mm")})
-    assert "largest |x1| 2 mm, speed up to 1050 rpm" in line
-
-
-def test_pictures_of_the_weak_drive_move_with_their_axes(ask, tmp_path):
-    """Runs and the averaged theory under them."""
-    short = ("--eta0", "1.4:1.41", "--rate", "2e-4", "--step", "0.2", "--settle", "9", "--one-way")
-    ask("couple", *short, "--only", "delaminated", "--units", "rpm,um").success()
-    (result,), (picture,) = ((tmp_path / "results").glob(f"*.{e}") for e in ("nc", "png"))
-    assert picture.stem == f"{result.stem}_rpm-um"
-    data = xr.load_dataset(result)
-    plain = figures.draw({"delaminated": data})
-    shown = figures.draw({"delaminated": with_units(data, "rpm, um")})
-    in_rpm = 60.0 / (2.0 * np.pi)
-    for figure, speed, length in ((plain, 1.0, 1.0), (shown, in_rpm, 1e6)):
-        x, y = figure.axes[1].lines[0].get_xydata()[-1]
-        expected = figures.drop_spin_up(data)
-        part = figures.split_directions(expected)[0][0]
-        assert x == pytest.approx(speed * float(expected.speed[part][-1]))
-        assert y == pytest.approx(length * float(expected.amplitude[part][-1]))
-    assert plain.axes[1].get_ylabel() == "amplitude of $x_1$ in m"
-    assert shown.axes[1].get_ylabel() == "amplitude of $x_1$ in µm"
-    assert shown.axes[1].get_xlabel() == shown.axes[0].get_ylabel() == "mean speed in rpm"
-    text = next(weak_drive.couple_lines({"delaminated": with_units(data, "eta")}, 1.0))
-    assert re.search(r"at eta = [\d.]+ to [\d.]+", text)
-
-
-@pytest.fixture
-def record(tmp_path):
-    """A swept sine of 2 g, and a response of twice as much."""
-    time = np.arange(4000) / 500.0
-    angle = 2.0 * np.pi * (20.0 * time + time**2)
-    box = 19.6133 * np.sin(angle)
-    data = {"time [s]": time, "base [m/s2]": box, "acc 1 [m/s2]": 2.0 * box}
-    path = tmp_path / "swept.csv"
-    pd.DataFrame(data).to_csv(path, index=False)
-    return path
-
-
-def test_what_an_analyser_shows(ask, record, tmp_path):
-    show = ("--show", "psd,orders,density", "--to", "6")
-    plain = ask("analyse", record, *show, "--plot", "none").success().out
-    stored = sums(tmp_path / "results")
-    done = ask(
-        "analyse", record, *show, "--units", "rpm,g", "--format", "csv", "--plot", "none"
-    ).success()
-    assert sums(tmp_path / "results") == stored and len(stored) == 3
-    assert "rms m/s2" in plain and "(m/s2)2/Hz at" in plain and " Hz" in plain
-    for words in (r"rms g\n.* 1\.41", r"g2/Hz at [\d.]+ rpm", r"  4(\.0\d+)? g at"):
-        assert re.search(words, done.out), words
-    assert not re.search(r"m/s2| Hz\b", done.out.replace("g2/Hz", ""))
-    tables = [path for path in (tmp_path / "results").glob("*.csv") if "_psd_" in path.name]
-    columns = {name for path in tables for name in pd.read_csv(path).columns}
-    assert {"frequency [rpm]", "psd [g2/Hz]", "rms [g]"} <= columns
-    (name,) = (n for n in stored if "_density_" in n)
-    data = xr.load_dataset(tmp_path / "results" / name)
-    curves = [
-        orchestrate.plot(data, units=units).axes[0].lines[-1].get_xydata() for units in ("", "g")
-    ]
-    np.testing.assert_allclose(*curves)
-
-
-def test_a_verdict_is_said_in_the_units_asked_for(tmp_path):
-    """Made-up: nothing opens up to 0.5 g over 40 to 56 Hz, 20 um would have been seen."""
-    numbers = {"level_high": (4.903325, "m/s2"), "smallest_opening": (2e-5, "m")}
-    numbers |= {"frequency_low": (40.0, "Hz"), "frequency_high": (56.0, "Hz")}
-    made = {name: variable(value, unit) for name, (value, unit) in numbers.items()}
-    verdict = xr.Dataset({"verdict": "no opening seen", **made})
-    for units, level, words in (
-        ("", "4.9 m/s² over 40 to 56 Hz", "20 µm"),
-        ("rpm, g, mm", "0.5 g over 2400 to 3360 rpm", "0.02 mm"),
-    ):
-        said = " ".join(diagnosis.verdict_lines(tmp_path / "a.csv", with_units(verdict, units)))
-        assert f" up to {level}. Faces at the sensor that part by {words} or more would" in said
-
-
-TOURS = {  # what the page says of the pressed beam
-    **dict.fromkeys(["", "Hz,mm,g"], "by 0.05 mm, the halves stay shut at 30 Hz and"),
-    "rad/s,um,m/s2": "by 50 µm, the halves stay shut at 188.5 rad/s and 4.903 m/s²:",
-}
-
-
-def test_the_explorer_opens_in_the_units_asked_for(ask, tmp_path):
-    page = tmp_path / "page.html"
-    asked = (("", "paper"), ("Hz,mm,g", "g"), ("rad/s,um,m/s2", "g"))
-    for units, level in asked:
-        more = ("--units", units) if units else ()
-        ask("explore", "--no-open", *more, output=page).success()
-        text = page.read_text(encoding="utf-8")
-        assert re.search(rf'"level": ?\["{level}", ?1', text), units
-        shown = json.loads(re.search(r'"shown": ?(\{[^}]*\})', text)[1])
-        words = Units.from_text(units).with_defaults(Units("Hz", "mm", "g"))
-        assert level == "paper" or Units(**shown) == words
-        assert TOURS[units] in text, units

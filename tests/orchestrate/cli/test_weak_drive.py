@@ -143,27 +143,6 @@ def test_capture(ask, folder):
     assert all(shows_something(picture) for picture in folder.glob("*.png"))
 
 
-def test_a_threshold_that_is_not_to_be_trusted():
-    """Made-up: an interval that undecided starts have left, above the fold."""
-    data = xr.Dataset(
-        {
-            "passes": ("voltage", [0, 0, 1]),
-            "decision": ("voltage", ["converged", "undecided", "converged"]),
-            "border": ((), 1.525, {"tolerance": 1e-4}),
-            **{"border_low": 1.49, "border_high": 1.56, "fold": 1.45, "above_fold": 1.0},
-            **{"speed_low": 1.25, "speed_high": 1.55},
-        },
-        {"voltage": [1.4, 1.5, 1.6]},
-    )
-    _, row, undecided, warning = weak_drive.capture_lines({"bonded": data})
-    assert " ".join(row.split()[1:]) == "1.49000 to 1.56000 1 1 1 1.25 rad/s 1.55 rad/s"
-    assert undecided.startswith("bonded, 1.5 V undecided")
-    assert "warning: bonded, above the fold at 1.45000 V" in warning
-    sure = data.assign(border_low=1.52496, border_high=1.52504, above_fold=0.0)
-    _, row = weak_drive.capture_lines({"bonded": sure.isel(voltage=[0, 2])})
-    assert row.split()[1:6] == ["1.52500", "+-", "4e-05", "1", "1"]
-
-
 def test_passage(ask, folder):
     options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--around", "60", "--one-way", *SHORT)
     done = ask("passage", *options, "--revolutions", "4", "--only", "delaminated").success()
@@ -201,51 +180,6 @@ def test_a_jump_that_no_ramp_has_and_an_undecided_one():
     assert up.split() == ["up", "1.50000", "+-", "0.00010", "none"]
     assert down.split() == ["down", "undecided", "none"] and "drive-branch" in hint
     assert len(list(weak_drive.jump_voltage_lines({"": data.isel(jump=[0])}))) == 2
-
-
-def made_branch(motions, bifurcations):
-    """A branch of one leg, by voltage, speed and whether it is stable, and its bifurcations."""
-    along = {"structure": ["bonded"], "leg": ["from below"]}
-    names = ("voltage", "speed", "stable")
-    made = {
-        name: ((*along, "point"), np.array(column)[None, None])
-        for name, column in zip(names, zip(*motions, strict=True), strict=True)
-    }
-    made["revolutions"] = xr.ones_like(xr.DataArray(made["speed"][1], dims=(*along, "point")))
-    made["end"] = (tuple(along), [["limit"]])
-    columns = {
-        "structure": ["bonded"] * len(bifurcations),
-        "revolutions": [1.0] * len(bifurcations),
-    }
-    names = ("kind", "voltage", "speed")
-    columns |= dict(zip(names, map(list, zip(*bifurcations, strict=True)), strict=True))
-    made |= {f"bifurcation_{name}": ("bifurcation", column) for name, column in columns.items()}
-    return xr.Dataset(made, along)
-
-
-def test_stationary_motions_are_listed_with_what_a_slow_ramp_does_there():
-    """Made-up: a branch with two folds, and one change of stability that was not located."""
-    motions = [(1.0, 0.8, 0), (1.2, 0.9, 1), (1.4, 1.0, 1), (1.3, 1.1, 0), (1.2, 1.2, 0)]
-    motions += [(1.35, 1.3, 1), (1.5, 1.4, 1)]
-    made = made_branch(motions, [("fold", 1.41, 1.03), ("fold", 1.19, 1.22)])
-    _, up, down, end, titles, branch = weak_drive.drive_branch_lines({"": made})
-    assert titles.endswith("stability changes near, not located (--period)")
-    assert up.split() == ["bonded", "fold", "1.41", "1.03", "jumps", "up", "to", "1.34", "rad/s"]
-    assert down.split() == ["bonded", "fold", "1.19", "1.22", "jumps", "down"]
-    nowhere = "these branches have no stable motion at 1.19000 V to jump to"
-    assert end == f"bonded, a slow ramp down: {nowhere}"
-    assert branch.split() == ["bonded,", "from", "below", "7", "4", "limit", "0.8", "rad/s"]
-
-
-def test_titles_state_voltages_and_rates():
-    asked = {"voltage": (1.2, 1.65), "rates": [1e-4, 2.5e-5]}
-    title = "1.2 V to 1.65 V, 2.5e-05 V/s to 0.0001 V/s, and at rate 0"
-    assert weak_drive.jump_voltages_title({}, asked) == title
-    motions = xr.Dataset({"voltage": ("point", [1.1, 1.3, 1.2])})
-    title = weak_drive.drive_branch_title({"": motions}, {})
-    assert title == "stationary motions, 1.1 V to 1.3 V"
-    title = weak_drive.capture_title({}, {"voltage": (1.2, 1.65), "control": None})
-    assert title == "switched on from rest, 1.2 V to 1.65 V"
 
 
 def test_the_weak_drive_as_a_package(ask, tmp_path):

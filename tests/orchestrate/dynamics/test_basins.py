@@ -1,7 +1,5 @@
 """Basins: what the coordinates of a plane mean, and that each start leads where it says."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -9,7 +9,6 @@ import pytest
 from orchestrate.dynamics import borders
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
-from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.response import questions
@@ -20,7 +19,7 @@ from .single_impact import SingleImpact
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
 LIMITS = {"e": (0.6, 0.8), "D": (0.003, 0.01), "kappa": (1.15, 1.3)}
 KINDS = ("Neimark-Sacker", "period_doubling", "grazing_of_a_flight")
-CURVES = [  # every kind and every parameter stands among the first three
+CURVES = [
     (kind, list(LIMITS)[(i + shift) % 3]) for shift in range(3) for i, kind in enumerate(KINDS)
 ]
 
@@ -38,11 +37,11 @@ def number(kind):
     return there[-1]
 
 
-@pytest.mark.parametrize(("kind", "over"), ordinary(CURVES, 3, several_names=True))
+@pytest.mark.parametrize(("kind", "over"), ordinary(CURVES, several_names=True))
 def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
     limits, at = [(2.5, 5.0), LIMITS[over]], number(kind)
     found = border(
-        PAPER, start=window(), bifurcation=at, over=("eta", over), limits=limits, longest=0.15
+        PAPER, start=window(), bifurcation=at, over=("eta", over), limits=limits, longest=0.4
     )
     assert found.sizes["point"] > 5
     for i, end in ((0, "first_end"), (-1, "last_end")):
@@ -60,29 +59,6 @@ def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
             assert abs(found.nearest_miss.values[i]) < 1e-12
             times = np.linspace(0.01, 0.99, 20_001) * truth.time
             assert abs(truth.gap(times).min()) < 1e-7
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("frequencies", [(0.95, 1.05), (0.5, 1.5)])
-def test_impacts_begin_along_the_resonance_curve(frequencies):
-    """A linear response reaches a wall at 1 at the force sqrt((1 - omega^2)^2 + c^2 omega^2).
-
-    The box's amplitude is A/omega^2.
-    """
-    rate = 1e5
-    wall = Structure(m2=1e12, k2=1e12 * rate**2, d1=0.1, d2=2e12 * rate, e=0.8)
-    given = {"box_acceleration": 1.0}
-    start = orbit(wall, frequency=1.0, amplitude=0.2, guess={"impact_time": [2.0]}, **given)
-    above = branch(wall, start=start, over="amplitude", limits=(0.08, 0.22), **given)
-    (at,) = np.flatnonzero(above.bifurcation_kind.values == 3)
-    over, limits = ("amplitude", "frequency"), [(0.05, 4.0), frequencies]
-    found = border(
-        wall, start=above, bifurcation=at, over=over, limits=limits, longest=0.1, **given
-    )
-    omega = found.frequency.values
-    force = np.sqrt((1.0 - omega**2) ** 2 + 0.01 * omega**2)
-    assert found.amplitude.values * omega**2 == pytest.approx(force, abs=1e-8)
-    assert (omega.min(), omega.max()) == frequencies
 
 
 @pytest.mark.parametrize(
@@ -142,16 +118,3 @@ def test_a_fold_is_found_from_either_side_of_it(monkeypatch, beyond):
     job = replace(job, values=(value + beyond, 0.7))
     curve, root = borders.start_root(job)
     assert root.unknowns[curve.first_parameter :] == pytest.approx([value, 0.7], abs=1e-11)
-
-
-def test_one_direction_does_not_depend_on_the_other(monkeypatch):
-    """Each begins with the matrix bordered at the start, not at the far end of the other one."""
-    at, limits = number("Neimark-Sacker"), [(3.0, 4.0), (0.695, 0.705)]
-    monkeypatch.setattr(questions, "answer", lambda job, *rest: job)
-    job = border(PAPER, start=window(), bifurcation=at, limits=limits, longest=0.1)
-    curve, start = borders.start_root(job)
-    alone = borders.trace_curve(job, curve, start)
-    borders.trace_curve(job, curve, start.reversed())
-    after_the_other = borders.trace_curve(job, curve, start)
-    for first, second in zip(alone.points, after_the_other.points, strict=True):
-        assert first.unknowns.tobytes() == second.unknowns.tobytes()

@@ -36,7 +36,7 @@ WALL_RATE = 1e5  # of mass 2 where it is a wall: the difference is 1e-10
 @functools.cache
 def windows(period):
     """The branch with one impact in so many periods, for Figure 6."""
-    return branch(PAPER, eta=STARTS[period], period=period, limits=LIMITS[period], longest=0.08)
+    return branch(PAPER, eta=STARTS[period], period=period, limits=LIMITS[period], longest=0.3)
 
 
 def values(found, kind):
@@ -91,17 +91,6 @@ def test_a_window_begins_where_a_flight_grazes(period):
     assert abs(truth.gap(fine).min()) < 1e-9
 
 
-@pytest.mark.parametrize(("kind", "multiplier"), [(FLIP, -1.0), (TORUS, None)])
-def test_multipliers_at_bifurcations(kind, multiplier):
-    found = windows(2)
-    at = found.bifurcation_multipliers.values[found.bifurcation_kind.values == kind] @ [1, 1j]
-    for row in at:
-        if multiplier is None:
-            assert np.abs(np.abs(row) - 1.0).min() < 1e-9
-        else:
-            assert np.abs(row - multiplier).min() < 1e-9
-
-
 def test_period_doubling_against_a_stiff_wall():
     """At omega = 2.5 and restitution 0.8 the orbit doubles its period at a wall 0.07667521 away."""
     structure = wall(0.0, 0.8)
@@ -110,6 +99,7 @@ def test_period_doubling_against_a_stiff_wall():
     assert np.abs(values(found, FLIP) - 0.07667521).min() < 2e-8
 
 
+@pytest.mark.slow
 def test_impacts_begin_where_the_linear_response_touches():
     """At the force 0.1 for k = 1, c = 0.1, omega = 1 and a wall at 1."""
     structure = wall(0.1, 0.8)
@@ -177,6 +167,7 @@ def test_an_orbit_with_one_impact_more_leaves_at_a_grazing():
     assert np.abs(fold.bifurcation_multipliers.values[0] @ [1, 1j] - 1.0).min() < 1e-6
 
 
+@pytest.mark.slow
 def test_permanent_contact_is_followed_until_it_is_lost():
     found = branch(PAPER, eta=0.413, limits=(0.412, 0.43))
     assert found.attrs["last_end"] == "loss of permanent contact"
@@ -196,21 +187,6 @@ def contacts(instance, eta, found):
     before = instance.get("contact_count")[0]
     instance.advance(500 * excitation.period, 520 * excitation.period)
     return instance.get("contact_count")[0] - before
-
-
-# D and kappa stand in the tests of borders too
-@pytest.mark.parametrize("over", ordinary(["e", "mu", "D", "kappa"]))
-def test_other_parameters_cross_the_same_border(over):
-    """Multipliers along other parameters are the closed form's, and limits are reached exactly."""
-    limits = {"e": (0.3, 1.0), "D": (0.0, 0.1), "mu": (0.8, 1.1), "kappa": (1.1, 1.5)}[over]
-    found = branch(PAPER, eta=4.0, period=2, over=over, limits=limits)
-    ends = [(name, found.attrs[name]) for name in ("first_end", "last_end")]
-    for i, (_, end) in zip((0, -1), ends, strict=True):
-        if end == "limit":
-            assert found[over].values[i] in limits
-    for i in range(0, found.sizes["point"], 7):
-        truth = SingleImpact(4.0, 2, **{over: float(found[over].values[i])})
-        assert np.hypot(*found.multipliers.values[i, 0]) == pytest.approx(truth.largest, abs=1e-8)
 
 
 @pytest.mark.parametrize("period", PERIODS)
@@ -244,13 +220,6 @@ def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
     for value in found.bifurcation_value.values:
         truth = SingleImpact(float(value), 1, D=0.06876)
         assert np.abs(truth.multipliers + 1.0).min() < 1e-9
-
-
-def test_the_call_told_asks_it_again():
-    first = branch(PAPER, eta=2.5, limits=(2.48, 2.52))
-    names = {"orbit": orbit, "branch": branch, "Structure": Structure}
-    again = eval(first.attrs["call"], names)  # noqa: S307
-    assert again.xi.values == pytest.approx(first.xi.values, abs=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -75,17 +75,18 @@ def test_states_go_to_faces_and_back(clearance):
     assert point.from_faces(faces) == pytest.approx(states)
 
 
+@pytest.mark.slow
 def test_branches_over_clearance_and_amplitude():
     """Each orbit is run through by the FMU, and solves the equations to rounding; scaling the box
     and the clearance alike gives the same bifurcations.
     """
     structure = DAMPED.replace(clearance=-0.05)
-    found = orchestrate.branch(structure, **BOX, over="clearance", limits=(-0.2, 0.1), longest=0.2)
+    found = orchestrate.branch(structure, **BOX, over="clearance", limits=(-0.2, 0.1), longest=0.5)
     assert found.sizes["point"] > 5 and found.fmu_same_impacts.all()
     assert float(found.residual.max()) < 1e-9
     assert float(found.fmu_return.max()) < 1e-6
     limits = tuple(-0.05 / np.array([-0.2, -0.01]))
-    level = orchestrate.branch(structure, **BOX, over="amplitude", limits=limits, longest=0.2)
+    level = orchestrate.branch(structure, **BOX, over="amplitude", limits=limits, longest=0.5)
     ratios = sorted(-0.05 / level.bifurcation_value.values)
     values = [v for v in found.bifurcation_value.values if -0.2 < v < -0.01]
     assert len(values) > 0
@@ -119,6 +120,7 @@ def test_a_border_begins_where_an_open_structure_touches():
     assert curve.clearance.values / curve.amplitude.values == pytest.approx(touching, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_a_border_follows_the_opening_of_a_pressed_structure():
     """The earlier release of the motion that is held together for good is the threshold; over
     frequency and amplitude it is the closed form's curve, which has a resonance between the limits.
@@ -134,13 +136,13 @@ def test_a_border_follows_the_opening_of_a_pressed_structure():
     names = ("amplitude", "frequency")
     box = [(0.01, 5.0), (0.7, 1.6)]
     curve = orchestrate.border(
-        pressed, start=found, bifurcation=0, over=names, limits=box, longest=0.1
+        pressed, start=found, bifurcation=0, over=names, limits=box, longest=0.3
     )
     assert curve.attrs["kind"] == found.attrs["last_end"] == "earlier release"
     assert curve.frequency.values[[0, -1]].tolist() == [0.7, 1.6]
     expected = orchestrate.contact_threshold(pressed, frequency=curve.frequency.values)
     assert curve.amplitude.values == pytest.approx(expected.threshold_amplitude.values, rel=1e-9)
-    assert curve.sizes["point"] > 10 and 0 < curve.amplitude.values.argmin() < len(curve.point) - 1
+    assert curve.sizes["point"] > 5 and 0 < curve.amplitude.values.argmin() < len(curve.point) - 1
 
 
 def test_exponents_of_linear_motions_and_of_orbits():
@@ -157,27 +159,6 @@ def test_exponents_of_linear_motions_and_of_orbits():
         orbit = orchestrate.orbit(structure, **BOX)
         found = orchestrate.lyapunov(structure, **asked, start=orbit.state.values[0])
         assert float(found.exponent[0]) == pytest.approx(float(orbit.exponent), abs=2e-3)
-
-
-def test_statistics_and_maps_over_the_clearance():
-    structure = DAMPED.replace(e=0.0)
-    counted = orchestrate.impact_statistics(
-        structure, over="clearance", values=[-0.3, 0.3], frequency=0.9, amplitude=1.0, periods=20
-    )
-    assert counted.impacts.values.tolist() == [1.0, 1.0]
-    motion = orchestrate.simulate(
-        structure.replace(clearance=-0.3), frequency=0.9, amplitude=1.0, transient=500, periods=1,
-        points=4000,
-    )  # fmt: skip
-    share = float(motion.in_contact.mean())
-    assert float(counted.contact_share[0]) == pytest.approx(share, abs=1e-3)
-    table = orchestrate.map(
-        structure, clearance=[-9.0, -0.3, 0.3, 9.0], amplitude=[0.5, 1.0], frequency=0.9,
-        exponent=True,
-    )  # fmt: skip
-    counts = table.impacts_per_period.transpose("clearance", "amplitude").values
-    assert counts.tolist() == [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 0.0]]
-    assert (table.exponent.values < 0.0).all()
 
 
 @pytest.mark.parametrize("clearance", [0.6, -0.15])

@@ -1,7 +1,5 @@
 """Responses told apart: clusters against SciPy's single linkage, and cases with a known answer."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -61,7 +59,7 @@ def test_irregular_responses_are_grouped_by_their_means():
 def test_a_response_is_run_on_until_it_is_known(exported, eta, multiplicity, least, most):
     point = Point(PAPER, Excitation.nondimensional(eta, PAPER))
     with Instance(find(OSCILLATOR).path) as instance:
-        response, periods = run_until_settled(instance, point, REST, AttractorSettings())
+        ((response, periods),) = run_until_settled(instance, point, REST, AttractorSettings())
     assert response.multiplicity == multiplicity
     assert least <= periods <= most
 

@@ -1,7 +1,5 @@
 """What responses settle to: known orbits, copies, long transients, impacts at the sampled phase."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.optimize import brentq

@@ -1,22 +1,16 @@
 """Attractors carried along a parameter: found as far as they exist, matched, with their shares."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.clusters import AttractorSettings
-from orchestrate.dynamics.decision import MotionDecider
 from orchestrate.dynamics.global_continuation import (
     BY_NEWTON,
     BY_SIMULATION,
-    instance_pair,
     match_neighbours,
 )
-from orchestrate.fmu import OSCILLATOR, REST, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import ORBIT
 from orchestrate.response.questions import Point
@@ -54,13 +48,6 @@ def test_shares_count_random_starts_alone(line):
     assert carried.any()  # found by carrying alone
 
 
-def test_the_order_of_the_values_does_not_matter(line):
-    order = [3, 0, 7, 5, 1, 6, 2, 4]
-    again = attractors(PAPER, eta=line.eta.values[order], starts=8, seed=2)
-    assert again.number.values.tolist() == line.number.values[order].tolist()
-    np.testing.assert_allclose(again.first_found.values.min(), 1.31)
-
-
 def value(*motions):
     return SimpleNamespace(motions=[motion(*one) for one in motions])
 
@@ -96,22 +83,3 @@ def test_which_attractors_of_neighbours_are_one(before, after, forth, back, expe
             links[i, k, 1 - i] = to if isinstance(to, tuple) else (to, BY_SIMULATION)
     found = match_neighbours(value(*before), value(*after), 0, links)
     assert sorted(found) == expected
-
-
-CHATTERING = Structure(
-    m2=0.5326656919141614,
-    k2=3.0361901103312166,
-    d1=0.014835068436763413,
-    d2=0.05425741861337725,
-    e=0.12145386639598714,
-)
-GAINS = 1.8903747226797813, 1.8960458468478205  # it gains an impact between these
-
-
-def test_an_orbit_that_is_followed_has_the_impacts_that_the_fmu_runs_through():
-    points = [Point(CHATTERING, Excitation.nondimensional(eta, CHATTERING)) for eta in GAINS]
-    with instance_pair(find(OSCILLATOR).path) as instances:
-        before, after = (MotionDecider(*instances, point, AttractorSettings()) for point in points)
-        motion, _ = before.decide(REST)
-        followed = after.continue_orbit(motion)
-    assert (motion.impacts_per_period, followed.impacts_per_period) == (6.0, 7.0)

@@ -1,7 +1,5 @@
 """Impact statistics against the impacts of the motion itself."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

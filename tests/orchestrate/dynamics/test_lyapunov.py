@@ -1,7 +1,5 @@
 """Largest Lyapunov exponents against multipliers, neighbours, linear cases and other units."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,14 +1,11 @@
 """Unstable manifolds: curves that are known exactly, and that of a saddle by its inverse map."""
 
-from __future__ import annotations
-
 import functools
 import math
 
 import numpy as np
 import pytest
 from scipy.linalg import expm
-from scipy.optimize import brentq
 
 import orchestrate
 from orchestrate import InputError, Structure
@@ -18,7 +15,7 @@ from orchestrate.fmu import OSCILLATOR, Instance, begin
 from orchestrate.response.questions import make_point
 
 from ...processors import printed_on_each
-from .single_impact import GAP, RATE, SingleImpact
+from .single_impact import GAP, SingleImpact
 
 PAPER = Structure.nondimensional()
 QUIET = {"progress": False}
@@ -89,63 +86,7 @@ def test_a_curve_that_converges_ends():
 
 @functools.cache
 def curve(**more):
-    return orchestrate.manifold(PAPER, eta=3.0, **{"length": 2.0, **more}, **QUIET)
-
-
-class Backwards:
-    """The stroboscopic map of one impact a period, run backwards in closed form."""
-
-    def __init__(self, eta):
-        self.hit = SingleImpact(eta, 1)
-        self.period = 2.0 * math.pi / eta
-        self.rates, self.vectors = np.linalg.eig(self.hit.a)
-
-    def steady(self, times):
-        """The forced response, shape (n, 4)."""
-        return np.outer(np.exp(1j * self.hit.eta * times), self.hit.response).imag
-
-    def flow(self, state, start, times):
-        """The states at other times, in flight."""
-        free = np.linalg.solve(self.vectors, state - self.steady(np.array([start]))[0])
-        return (np.exp(np.outer(times - start, self.rates)) * free @ self.vectors.T).real + (
-            self.steady(times)
-        )
-
-    def __call__(self, state):
-        """The state a period before."""
-
-        def gap(time):
-            return float(self.flow(state, self.period, np.array([time]))[0] @ GAP)
-
-        times = np.linspace(self.period, 0.0, 400)
-        first = int(np.argmax(self.flow(state, self.period, times) @ GAP < 0.0))
-        at = brentq(gap, times[first], times[first - 1], xtol=1e-15)
-        after = self.flow(state, self.period, np.array([at]))[0]
-        before = np.linalg.solve(self.hit.restitution, after)
-        assert RATE @ before < 0.0 < RATE @ after
-        return self.flow(before, at, np.zeros(1))[0]
-
-
-def saddle_of(data):
-    return data.saddle.values
-
-
-def test_run_backwards_its_points_come_to_the_saddle():
-    """At the rate of its multiplier: only what is on the manifold does, all else leaves."""
-    data, back = curve(distance=1e-6, length=0.5), Backwards(3.0)
-    multiplier = float(data.multiplier)
-    exact = SingleImpact(3.0, 1).multipliers
-    assert multiplier == pytest.approx(exact[np.abs(exact).argmax()].real, rel=1e-9)
-    for side in "+-":
-        part = data.sel(side=side)
-        number = int(np.flatnonzero(part.iterate.values > 1.6)[0])
-        state = part.state.values[number]
-        distances = []
-        for _ in range(4):  # more than its own periods: beyond its start on the tangent
-            state = back(state)
-            distances.append(float(np.linalg.norm(state - saddle_of(data))))
-        ratios = np.array(distances[:-1]) / np.array(distances[1:])
-        assert ratios == pytest.approx(abs(multiplier), rel=0.02)
+    return orchestrate.manifold(PAPER, eta=3.0, **{"length": 1.0, **more}, **QUIET)
 
 
 def test_its_direction_is_the_eigenvector_at_phase_0():

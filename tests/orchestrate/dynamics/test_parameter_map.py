@@ -1,7 +1,5 @@
 """Maps: each point is a response from the same start, in whatever unit and order."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

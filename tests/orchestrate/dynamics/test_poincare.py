@@ -1,7 +1,5 @@
 """Sections of a motion: against its histories, its impacts, and the contact force."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate.dynamics.bifurcations import FLIP, FOLD, GRAZING, KINDS, BifurcationKind
+from orchestrate.dynamics.bifurcations import KINDS, Kind
 from orchestrate.dynamics.continuation import ArclengthStepper, NoConvergenceError, Root
 from orchestrate.dynamics.tracer import LIMIT, MAX_POINTS, NO_CONVERGENCE, BranchTracer
 
@@ -23,10 +23,10 @@ class Circle:
 class CircleTracer(BranchTracer):
     """Folds are where x turns; other kinds are where a function of a point is zero."""
 
-    kinds = (FOLD,)
+    kinds = (Kind.FOLD,)
 
     def __init__(self, angle=-0.5, longest=0.2, limits=(-2.0, 2.0), most=100, **functions):
-        self.range, self.functions = limits, {KINDS[FOLD]: lambda root: root.tangent[0]}
+        self.range, self.functions = limits, {KINDS[Kind.FOLD]: lambda root: root.tangent[0]}
         self.functions |= functions
         point, tangent = [np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]
         self.start = Root(np.array(point), np.array(tangent), 0.0, 0)
@@ -50,7 +50,7 @@ def test_folds_are_located_on_the_curve():
     segment = (tracer := CircleTracer(most=40)).trace(tracer.start)
     assert segment.end == MAX_POINTS and len(segment.points) == 41
     folds = segment.bifurcations
-    assert [each.kind for each in folds[:2]] == [FOLD, FOLD]
+    assert [each.kind for each in folds[:2]] == [Kind.FOLD, Kind.FOLD]
     found = np.array([each.point.unknowns for each in folds[:2]])
     assert found == pytest.approx(np.array([[1.0, 0.0], [-1.0, 0.0]]), abs=1e-12)
     before, after = (segment.points[int(folds[0].position) + i].unknowns[1] for i in (0, 1))
@@ -65,12 +65,12 @@ def test_a_branch_stops_on_a_limit():
 
 def test_a_branch_ends_at_an_ending_kind():
     class Ending(CircleTracer):
-        kinds, ending_kinds = (FOLD, GRAZING), (GRAZING,)
+        kinds, ending_kinds = (Kind.FOLD, Kind.GRAZING), (Kind.GRAZING,)
 
-    grazing = {KINDS[GRAZING]: lambda root: 0.5 - root.unknowns[1]}
+    grazing = {KINDS[Kind.GRAZING]: lambda root: 0.5 - root.unknowns[1]}
     segment = (tracer := Ending(**grazing)).trace(tracer.start)
-    assert segment.end == KINDS[GRAZING]
-    assert [each.kind for each in segment.bifurcations] == [FOLD, GRAZING]
+    assert segment.end == KINDS[Kind.GRAZING]
+    assert [each.kind for each in segment.bifurcations] == [Kind.FOLD, Kind.GRAZING]
     assert segment.points[-1].unknowns[1] == pytest.approx(0.5, abs=1e-12)
     assert segment.bifurcations[-1].position == len(segment.points) - 1
 
@@ -78,9 +78,9 @@ def test_a_branch_ends_at_an_ending_kind():
 @pytest.mark.parametrize("both", [True, False])
 def test_two_bifurcations_in_one_step_are_found_where_they_are_sought(both):
     class Pairs(CircleTracer):
-        kinds, finds_pairs = (FLIP,), both
+        kinds, finds_pairs = (Kind.FLIP,), both
 
-    dip = {KINDS[FLIP]: lambda root: (root.unknowns[1] - 0.3) ** 2 - 1e-4}
+    dip = {KINDS[Kind.FLIP]: lambda root: (root.unknowns[1] - 0.3) ** 2 - 1e-4}
     segment = (tracer := Pairs(-0.3, limits=(0.8, 2.0), **dip)).trace(tracer.start)
     places = [each.point.unknowns[1] for each in segment.bifurcations]
     assert places == pytest.approx([0.29, 0.31] if both else [], abs=1e-12)
@@ -93,7 +93,7 @@ def test_a_step_is_shortened_where_a_bifurcation_cannot_be_located():
 
     def fail_in_long_steps(step):
         lengths.append(step.length)
-        if step.length > 0.01 and step.brackets(FOLD):
+        if step.length > 0.01 and step.brackets(Kind.FOLD):
             raise NoConvergenceError("too long")
         return located(step)
 
@@ -130,7 +130,7 @@ def test_a_step_is_shortened_where_its_last_point_cannot_be_solved_for():
 
     def solve_for_a_level_first(*arguments):
         if arguments[-1].length > 0.05:  # the test has not the same sign at both ends
-            arguments[-1].solve_for_level(FOLD, 0.0, arguments[-1].length, level=2.0)
+            arguments[-1].solve_for_level(Kind.FOLD, 0.0, arguments[-1].length, level=2.0)
         return finished(*arguments)
 
     tracer.finish_step = solve_for_a_level_first
@@ -140,4 +140,4 @@ def test_a_step_is_shortened_where_its_last_point_cannot_be_solved_for():
 
 
 def test_every_kind_has_a_name_of_its_own():
-    assert len({kind.label for kind in BifurcationKind}) == len(BifurcationKind) == len(KINDS)
+    assert len({kind.label for kind in Kind}) == len(Kind) == len(KINDS)

@@ -1,7 +1,5 @@
 """Flow and saltation matrices against neighbouring runs of the FMU and matrix exponentials."""
 
-from __future__ import annotations
-
 import dataclasses
 import itertools
 
@@ -11,9 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from orchestrate.dynamics.closed_form import ClosedForm
+from orchestrate.dynamics.closed_form import ClosedForm, contact_durations
 from orchestrate.dynamics.following import follow_impacts
-from orchestrate.dynamics.release import contact_durations
 from orchestrate.dynamics.variational import contact_durations_after, monodromy, period_in_tau
 from orchestrate.fmu import (
     OSCILLATOR,

@@ -11,7 +11,7 @@ import xarray as xr
 import orchestrate
 from orchestrate import cli
 from orchestrate.errors import InputError
-from orchestrate.explorer import figure6
+from orchestrate.explorer import sweep_data
 from orchestrate.explorer.page import explore
 from orchestrate.explorer.sweep_data import read_sweep
 from orchestrate.running.store import load
@@ -179,14 +179,14 @@ ANEW = "the kernel has changed: make Figure 6 of the explorer anew, python -m to
 
 
 def test_figure_6_comes_from_the_present_kernel():
-    assert figure6.is_current(load(figure6.FILE)), ANEW
+    assert sweep_data.is_current(load(sweep_data.FILE)), ANEW
 
 
 @pytest.mark.parametrize("first", [0, 1100, 2850, 7896])  # chaos at 1100 and 2850
 def test_figure_6_is_replayed_from_where_its_responses_begin(exported, first):
-    given = load(figure6.FILE)
+    given = load(sweep_data.FILE)
     few = given.isel(eta=slice(first, first + 5))
-    found = figure6.first_diagram(orchestrate.Structure())
+    found = sweep_data.first_diagram(orchestrate.Structure())
     start = found.numbers[3 * found.count :].reshape(-1, 4)[first]
     swept = orchestrate.sweep(
         orchestrate.Structure(), eta=few.eta.values, start=start, direction="up", progress=False
@@ -196,7 +196,7 @@ def test_figure_6_is_replayed_from_where_its_responses_begin(exported, first):
 
 
 def test_a_page_of_another_kernel_computes_its_own_and_says_so(monkeypatch, tmp_path, caplog):
-    monkeypatch.setattr(figure6, "kernel_digest", lambda model: "another")
+    monkeypatch.setattr(sweep_data, "kernel_digest", lambda model: "another")
     page = tmp_path / "page.html"
     assert cli.main(["explore", "--no-open", "--output", str(page)]) == 0
     assert '"count": 0' in page.read_text(encoding="utf-8")

@@ -1,7 +1,5 @@
 """FMUs that differ from ours in their description."""
 
-from __future__ import annotations
-
 import zipfile
 from pathlib import Path
 

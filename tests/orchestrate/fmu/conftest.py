@@ -1,7 +1,5 @@
 """The FMUs of the present sources, in all forms that can be had here."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -2,8 +2,6 @@
 hands every call on, but one.
 """
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

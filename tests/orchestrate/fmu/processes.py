@@ -1,7 +1,5 @@
 """Processes that unpack an FMU, for the tests of what they leave: ``processes.py FMU ENDING``."""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys

@@ -1,7 +1,5 @@
 """The fast way does what the plain way does."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

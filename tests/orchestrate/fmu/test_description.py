@@ -1,7 +1,5 @@
 """An FMU is described as it is now, and what is none is refused in one line."""
 
-from __future__ import annotations
-
 import pickle
 import shutil
 

@@ -1,7 +1,5 @@
 """The compiled loop through events against the same in Python: equal bits, equal refusals."""
 
-from __future__ import annotations
-
 import ctypes
 import shutil
 import sys

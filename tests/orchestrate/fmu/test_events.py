@@ -1,7 +1,5 @@
 """Impacts by the clock: all of them, at the same bits as without events."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -38,32 +36,6 @@ def test_every_impact_is_there(impacts, event_fmu):
     assert impacts.time[-1] == last
     assert impacts.sticks.sum() == contacts
     assert np.all(np.diff(impacts.time) > 0.0) and np.all(impacts.closing >= 0.0)
-
-
-def test_stopping_at_impacts_changes_no_bit(events, event_fmu):
-    begin(events, STRUCTURE, CHAOS)
-    events.impacts(0.0, END)
-    stopped = events.get(*STATE)
-    begin(events, STRUCTURE, CHAOS)
-    events.advance(0.0, END)
-    assert events.get(*STATE) == stopped
-    with Instance(event_fmu) as instance:
-        begin(instance, STRUCTURE, CHAOS)
-        instance.step(0.0, END)
-        assert instance.get(*STATE) == stopped
-
-
-def test_an_impact_s_laws(impacts):
-    before, after, mu = impacts.before(STRUCTURE), impacts.state, STRUCTURE.mu
-    np.testing.assert_array_equal(before[:, :2], after[:, :2])
-    momentum = [states[:, 2] + mu * states[:, 3] for states in (before, after)]
-    np.testing.assert_allclose(momentum[0], momentum[1], atol=1e-13)
-    np.testing.assert_allclose(before[:, 2] - before[:, 3], impacts.closing, atol=1e-13)
-    free = ~impacts.sticks
-    parting = after[free, 3] - after[free, 2]
-    np.testing.assert_allclose(parting, STRUCTURE.e * impacts.closing[free], atol=1e-12)
-    gained = (before[:, 2] - after[:, 2])[free] * STRUCTURE.m1
-    np.testing.assert_allclose(gained, impacts.impulse(STRUCTURE)[free], atol=1e-12)
 
 
 def test_no_impacts(events):

@@ -1,7 +1,5 @@
 """The FMUs of the present sources: found, exported where missing or out of date, always whole."""
 
-from __future__ import annotations
-
 import shutil
 import sys
 import threading

@@ -1,11 +1,7 @@
 """What is set is what is read, errors are the FMU's words, states come back bit by bit."""
 
-from __future__ import annotations
-
 import math
 import os
-import subprocess
-import sys
 
 import pytest
 
@@ -147,20 +143,6 @@ def test_reset(instance):
     assert trajectory(instance, 0.0) == once
 
 
-def test_instances_side_by_side_do_not_mind_each_other(any_fmu):
-    with Instance(any_fmu) as one, Instance(any_fmu, name="two") as two:
-        for instance in (one, two):
-            instance.initialize(**CHAOS)
-        one.step(0.0, 200.0)
-        two.step(0.0, 50.0)
-        one.close()
-        two.step(50.0, 200.0)
-        with Instance(any_fmu, name="three") as three:
-            three.initialize(**CHAOS)
-            three.step(0.0, 200.0)
-            assert three.get(*STATE[:5]) == two.get(*STATE[:5])
-
-
 def test_what_is_no_number_is_refused(instance):
     with pytest.raises(FmuError, match="real number"):
         instance.set(e="much")
@@ -185,23 +167,3 @@ def test_an_fmu_without_a_binary_for_this_machine(any_fmu, tmp_path):
     with pytest.raises((FmuError, InputError), match="Elsewhere") as error:
         Instance(fmu)
     assert "\n" not in str(error.value)
-
-
-SECONDS = """
-import sys, time
-from orchestrate.fmu import Instance
-for _ in range(2):
-    with Instance(sys.argv[1]) as instance:
-        instance.initialize(box_amplitude=0.7, box_frequency=1.2)
-        begin = time.process_time()
-        instance.step(0.0, 10000.0)
-        print(time.process_time() - begin)
-"""
-
-
-@pytest.mark.slow
-def test_the_second_instance_of_a_process_is_as_fast_as_the_first(python_fmu):
-    command = [sys.executable, "-c", SECONDS, str(python_fmu)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    first, second = map(float, done.stdout.split())
-    assert second < 8.0 * first + 0.05

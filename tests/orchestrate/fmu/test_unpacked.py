@@ -1,7 +1,5 @@
 """Unpacked FMUs: once a process, gone at its end, and after a kill with the next process."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -59,8 +59,9 @@ def five_digits(count=12_000, rate=1024.0):
 
 def test_rounded_times_say_so_and_a_sampling_rate_corrects_them():
     time, values = five_digits()
-    with pytest.raises(InputError, match=r"rounded to 0.001 s, give sample_rate="):
-        record(time=time, acceleration1=values)
+    alone = record(time=time, acceleration1=values)
+    assert alone.attrs["time_base"] == "rounded to 0.001 s, taken as 1024 Hz"
+    assert (alone.time.values == np.arange(len(time)) / 1024.0).all()
     data = record(time=time, acceleration1=values, sample_rate=1024.0)
     assert (data.time.values == np.arange(len(time)) / 1024.0).all()
     with pytest.raises(
@@ -68,8 +69,9 @@ def test_rounded_times_say_so_and_a_sampling_rate_corrects_them():
     ):
         record(time=time, acceleration1=values, sample_rate=1000.0)
     kept = np.delete(np.arange(len(time)), [5000, 7000, 9000])
-    with pytest.raises(InputError, match="time, row"):
-        record(time=time[kept], acceleration1=values[kept], sample_rate=1024.0)
+    for rate in (1024.0, None):
+        with pytest.raises(InputError, match="time, row"):
+            record(time=time[kept], acceleration1=values[kept], sample_rate=rate)
 
 
 def changed(column, row, value):
@@ -270,9 +272,9 @@ def test_text_as_analysers_write_it(tmp_path, name, encoding):
     [
         ("t,Table,Beam", None, 'base "Table", face 1 "Beam", time "t"'),
         (
-            "t,tip,foot",
+            "t,one,two",
             None,
-            'time "t", base "tip", face 1 "foot", by their order: no name is known',
+            'time "t", base "one", face 1 "two", by their order: no name is known',
         ),
         ("t,tip,foot", [0, 2, 1], 'time "t", base "foot", face 1 "tip"'),
         ("t,tip / g,foot / g", [0, "foot / g", "tip"], 'time "t", base "foot", face 1 "tip"'),
@@ -361,7 +363,10 @@ def test_a_record_says_which_unit_was_taken_in_place_of_the_file_s(tmp_path):
         (lines(r10="0.010,1,2,3"), "row 12: 4 columns; expected 3"),
         (lines(r10="0.0105,1,2"), "time, row 12: a step of 0.0015 s where others are 0.001 s"),
         (lines(r10="0.005,1,2"), "time, row 12: 0.005 s after 0.009 s; expected ascending"),
-        ("t [s],base [V]\n0,1\n1,2\n2,3\n3,1\n", "column \"base\": unit = 'V'; expected one such"),
+        (
+            "t [s],base [V]\n0,1\n1,2\n2,3\n3,1\n",
+            'column "base": in V, without a sensitivity; expected one',
+        ),
         ("t,base\n0,1\n1,2\n2,3\n3,1\n", 'column "base": no unit; expected one such as m/s2, g'),
         ("t [s],base [g]\n0,1\n1,2\n", "base_acceleration"),
         ("\0\1\2", "no text; expected columns of numbers"),

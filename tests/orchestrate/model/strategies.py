@@ -1,7 +1,5 @@
 """Structures, excitations and drives as hypothesis makes them up."""
 
-from __future__ import annotations
-
 from hypothesis import strategies as st
 
 from orchestrate.model import Drive, Excitation, Structure

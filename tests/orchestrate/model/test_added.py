@@ -73,15 +73,6 @@ def test_files_have_it_with_all_keys_and_may_leave_it_out(tmp_path, keys, name):
         Structure.from_file(path)
 
 
-@pytest.mark.parametrize("name", ADDED)
-def test_an_older_file_without_it_has_its_default(name):
-    attributes = Structure(e=0.4).parameters()
-    del attributes[name]
-    assert Structure.from_attributes(attributes) == Structure(e=0.4)
-    with pytest.raises(KeyError, match="m1"):
-        Structure.from_attributes({"e": 0.4})
-
-
 @pytest.mark.parametrize("name", sorted({*ADDED} & {*OF_LENGTH}))
 def test_with_a_length_in_it_the_level_counts_and_scaling_it_too_does_not(name):
     """At twice the amplitude the motion is another one, unless the parameter goes along."""

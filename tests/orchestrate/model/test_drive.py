@@ -1,7 +1,5 @@
 """Motor and box: both ways, the units they give, refusals."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """The box's motion: both ways, units, refusals."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

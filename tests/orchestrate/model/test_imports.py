@@ -1,7 +1,5 @@
 """Describing a structure needs nothing heavy: it is there at once."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

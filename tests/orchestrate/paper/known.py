@@ -1,7 +1,5 @@
 """Datasets of the paper that a test makes up: verdicts follow from them alone."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

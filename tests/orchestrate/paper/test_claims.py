@@ -1,7 +1,5 @@
 """The table of claims, the rule of its verdicts, and that numbers which change turn them over."""
 
-from __future__ import annotations
-
 import inspect
 
 import numpy as np
@@ -19,10 +17,10 @@ from orchestrate.paper.claims import (
     read_table,
 )
 from orchestrate.paper.curves import CONTACT, FLIGHT
-from orchestrate.paper.measures import check_claims, equations, find_measure, limits, setup
+from orchestrate.paper.measures import check_claims, find_measure, limits
 from orchestrate.paper.resolution import QUICK
 
-from .known import along_eta, known, measured, responses, verdict
+from .known import along_eta, known, responses, verdict
 
 PRINTED = (
     "0.43 1.37 0.89 21.56 1.045 1.07 2.61 3.77 0.48 0.85 1.08 2.63 1.056 1.1 1.11 1.33 0.97 1.02 "
@@ -108,6 +106,24 @@ def test_one_printed_digit_does_not_make_a_limit_vacuous():
 # -- no check that cannot fail ---------------------------------------------------------------------
 
 
+def loops(count, last=0.0):
+    """Flights and impacts in turn; the last impact parts with ``last``, contact follows."""
+    rows = []
+    for number in range(count):
+        rate = 0.7 if number < count - 1 else last
+        rows += [
+            (number + 0.5, 1, 0, FLIGHT),
+            (number + 1, 0, -1, FLIGHT),
+            (number + 1, 0, rate, FLIGHT),
+        ]
+    rows[-1] = (count, 0, last, CONTACT)
+    rows += [(count + 1, 0, 0, CONTACT), (count + 2, 0.5, 0.5, FLIGHT)]
+    tau, gap, rate, kind = np.array(rows, dtype=float).T
+    state = np.column_stack([0 * gap, gap, 0 * gap, rate])
+    points = {"tau": ("point", tau), "kind": ("point", kind.astype(int))}
+    return xr.Dataset({**points, "state": (("point", "coordinate"), state)})
+
+
 def one_kind(n, impacts):
     """A world in which all responses of all cases repeat after nT with so many impacts."""
     rising, ones = np.linspace(1.0, 2.0, len(ETAS)), np.ones(len(ETAS))
@@ -154,25 +170,6 @@ def test_not_everything_is_borne_out_where_all_responses_are_of_one_kind(row):
 # -- section 1 -------------------------------------------------------------------------------------
 
 
-def ramp(damping, bump=0.0):
-    """A run whose amplitude is a linear oscillator's, but for a bump half way up."""
-    speed = np.linspace(0.6, 1.099, 400)
-    amplitude = 1e-3 * setup.linear_curve(np.array([0.06, 1.1, damping]), speed)
-    amplitude *= 1.0 + bump * np.exp(-(((speed - 0.9) / 0.02) ** 2))
-    columns = {"amplitude": amplitude, "voltage": np.linspace(4.0, 7.0, 400), "Omega": speed}
-    rows = {name: ("revolution", values) for name, values in columns.items()}
-    return xr.Dataset({**rows, "jumps": ("jump", [np.nan])}, {"jump": ["up"]})
-
-
-def test_an_amplitude_curve_is_like_a_linear_one_or_not():
-    plain = measured("linear_amplitudes", known(ramp=lambda kind: ramp(0.008)))
-    assert judge(plain.parts) == YES and "D = 0.0080 at 1.1000 omega" in plain.found
-    bumped = known(ramp=lambda kind: ramp(0.008, 0.3 * (kind == "delaminated")))
-    assert verdict("linear_amplitudes", bumped) == NO
-    broken = ramp(0.005).assign(jumps=("jump", [6.0]))
-    assert setup.ascending_branch(broken)[0].max() < broken.Omega.values[270]
-
-
 # -- section 2 -------------------------------------------------------------------------------------
 
 
@@ -181,102 +178,7 @@ def test_an_equation_holds_as_corrected_only(name):
     assert verdict(name, known()) == NO  # undecided where the corrected form does not hold either
 
 
-def test_both_misprints_of_the_solution_matter():
-    nu = np.sqrt(equations.STIFFNESS - equations.D**2)
-    assert equations.residual(equations.solution(nu, equations.D)) < 1e-6
-    assert equations.residual(equations.solution(nu, 1.0)) > 0.1
-
-
-@pytest.mark.parametrize(
-    ("restitutions", "change", "expected"),
-    [
-        ((0.1, 0.9), {}, YES),
-        ((0.1, 0.9, 1.0), {}, PARTLY),
-        ((0.1, 0.9), {"ratio_error": 1e-3}, PARTLY),  # times that do not shrink by e
-        ((0.1, 0.9), {"impacts": 9.0}, PARTLY),  # a count that has an end
-        ((0.1, 0.9), {"sticks": 0.0}, PARTLY),
-        ((0.1,), {"ratio_error": 1e-3}, NO),
-    ],
-)
-def test_chattering_is_endless_or_not(restitutions, change, expected):
-    gammas, e = np.array([1e-3, 1e-5, 1e-7, 1e-9]), np.array(restitutions)[:, np.newaxis]
-    counts = np.round(5 + np.log(gammas / gammas[0]) / np.log(np.minimum(e, 0.999)))
-    rows = {"impacts": counts, "sticks": 1.0 * (e < 1.0) + 0.0 * counts}
-    rows["ratio_error"] = np.full(counts.shape, 1e-9)
-    for name, value in change.items():
-        rows[name][0, -1] = value
-    variables = {name: (("e", "gamma"), values) for name, values in rows.items()}
-    data = xr.Dataset(variables, {"e": list(restitutions), "gamma": gammas})
-    assert verdict("chattering", known(chattering=data)) == expected
-
-
 # -- section 3 -------------------------------------------------------------------------------------
 
 
-def loops(count, last=0.0):
-    """Flights and impacts in turn; the last impact parts with ``last``, contact follows."""
-    rows = []
-    for number in range(count):
-        rate = 0.7 if number < count - 1 else last
-        rows += [
-            (number + 0.5, 1, 0, FLIGHT),
-            (number + 1, 0, -1, FLIGHT),
-            (number + 1, 0, rate, FLIGHT),
-        ]
-    rows[-1] = (count, 0, last, CONTACT)
-    rows += [(count + 1, 0, 0, CONTACT), (count + 2, 0.5, 0.5, FLIGHT)]
-    tau, gap, rate, kind = np.array(rows, dtype=float).T
-    state = np.column_stack([0 * gap, gap, 0 * gap, rate])
-    points = {"tau": ("point", tau), "kind": ("point", kind.astype(int))}
-    return xr.Dataset({**points, "state": (("point", "coordinate"), state)})
-
-
-def test_loops_of_the_relative_motion():
-    found = measured("many_loops", known(figure=loops(15)))
-    assert judge(found.parts) == PARTLY
-    assert "15 loops in T" in found.found and "14 begin at one, 1 at the end" in found.found
-
-
-def test_a_contact_that_is_not_there_is_no_agreement():
-    for last, limit, expected in (
-        (0.0, 0.417, YES),
-        (0.01, 0.417, PARTLY),  # no impact slower than the paper's gamma
-        (0.01, np.nan, NO),  # a gamma with which there is no contact
-    ):
-        data = known(figure=loops(15, last), last_contact=np.array([0.417, limit]))
-        assert verdict("gamma_scale", data) == expected
-
-
-@pytest.mark.parametrize(
-    ("below", "beyond", "expected"), [(1, 1, YES), (1, 20, PARTLY), (20, 1, PARTLY), (20, 20, NO)]
-)
-def test_whether_500_periods_suffice(below, beyond, expected):
-    """A hundred frequencies up to the end of the window T, at 2.65, and a hundred beyond it."""
-    etas = np.concatenate([np.linspace(1.0, 2.6, 100), np.linspace(2.7, 8.0, 100)])
-    irregular = np.repeat([0, 1, 0, 1], [below, 100 - below, beyond, 100 - beyond])
-    same, late = responses(etas, 1, 1), responses(etas, irregular, 1)
-    data = known(sweep=same, later=lambda first, count=None: same if count else late)
-    found = measured("enough_periods", data)
-    assert judge(found.parts) == expected
-    assert f"{below} of 100 frequencies from 1.000 to 2.650 ({below} periodic, later" in found.found
-
-
 # -- sections 3.2 to 5 -----------------------------------------------------------------------------
-
-TO_AND_FRO = [5, 5, 4, 5, 0, 7, 8, 7, 3, 2]
-
-
-def one_period(impacts):
-    """T-periodic responses from 0.5 to 0.6 with these numbers of impacts, 0: irregular."""
-    counts = np.array(impacts)
-    verdicts = np.full(len(counts), PERIODIC)
-    return responses(np.linspace(0.5, 0.6, len(counts)), counts > 0, counts, verdict=verdicts)
-
-
-@pytest.mark.parametrize(
-    ("impacts", "expected"),
-    [(TO_AND_FRO, PARTLY), ([5, 0, 5, 3], YES), ([3, 4, 5], NO), ([5, 5, 5], NO)],
-)
-def test_impacts_that_rise_in_between_do_not_decrease(impacts, expected):
-    """A number that had been there before was dropped before the numbers were compared."""
-    assert verdict("impacts_decrease", known(sweep=one_period(impacts))) == expected

@@ -1,7 +1,5 @@
 """The whole paper at the reduced resolution: complete, and right where that resolution suffices."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """The page: nothing from the network, all pictures and verdicts in it, every text escaped."""
 
-from __future__ import annotations
-
 import base64
 import re
 from importlib import resources
@@ -34,7 +32,7 @@ ROW = {
 def page(tmp_path, resolution, *claims):
     picture = tmp_path / "figure5.png"
     picture.write_bytes(PICTURE)
-    content = {"claims": claims, "regions": [], "answers": []}
+    content = {"claims": claims, "regions": []}
     path = report.write_report(tmp_path, {"5": picture}, content, resolution, find(OSCILLATOR))
     return path.read_text(encoding="utf-8")
 

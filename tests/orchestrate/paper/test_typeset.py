@@ -1,7 +1,5 @@
 """Plain sentences become HTML with formulas: none is lost, none is left in a program's letters."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

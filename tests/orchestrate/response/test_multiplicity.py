@@ -8,8 +8,12 @@ from hypothesis import strategies as st
 from fmu_src.kernels import repetition
 from orchestrate.dynamics.continuation import NoConvergenceError
 from orchestrate.dynamics.families import Setting
-from orchestrate.dynamics.guesses import guess_from_state
-from orchestrate.dynamics.orbit_search import least_periods, solve_orbit, why_no_motion
+from orchestrate.dynamics.orbit_search import (
+    guess_from_state,
+    least_periods,
+    solve_orbit,
+    why_no_motion,
+)
 from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.model import Excitation, Structure
@@ -344,7 +348,6 @@ def test_impacts_of_all_samples_are_those_of_the_response(found, impacts, n, sam
         tolerance=TOLERANCE,
     )
     assert response.repeats(impacts, n) == same
-    count = lambda periods: impacts  # noqa: E731
-    decided = response.conclude(Decision(n, REPEATED), count)[0].decided
+    decided = response.conclude(Decision(n, REPEATED), impacts)[0].decided
     assert decided == (REPEATED if same else UNDECIDED)
-    assert response.conclude(Decision(n, IRREGULAR), count)[0].decided == IRREGULAR
+    assert response.conclude(Decision(n, IRREGULAR), impacts)[0].decided == IRREGULAR

@@ -51,6 +51,7 @@ def peaks_of(instance, point, transient, samples, most):
         transient=transient,
         samples=samples,
         tolerance=1e-2,
+        decides=True,
         peak_periods=most,
         peak_points=POINTS,
     )

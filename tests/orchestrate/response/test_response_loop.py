@@ -40,18 +40,19 @@ def points(seed, count=12):
 
 def bits(results):
     counts = [results.counts[name] for name in sorted(results.counts)]
-    tables = results.states, results.ends, results.x_rel_max, results.orbits
+    tables = *results[:3], results.deviations, results.orbits
     return b"".join(np.ascontiguousarray(table).tobytes() for table in (*tables, *counts))
 
 
 @pytest.mark.parametrize("is_chain", [False, True])
-def test_the_compiled_loop_has_the_bits_of_python(instance, is_chain):
+def test_the_compiled_loop_has_the_bits_of_python(instance, is_chain, monkeypatch):
     some, random = list(points(3)), np.random.default_rng(4)
     starts = [(0.0,) * 4, *random.uniform(0.0, 1.0, (len(some) - 1, 4)) * (-1, 5, 1, 1)]
     settings = LoopSettings(
-        transient=30,
+        transient=30 if is_chain else [30 + i for i in range(len(some))],
         samples=40,
         tolerance=1e-2,
+        decides=True,
         is_chain=is_chain,
         chain_gap=0.5 if is_chain else None,
         peak_periods=8,
@@ -60,10 +61,22 @@ def test_the_compiled_loop_has_the_bits_of_python(instance, is_chain):
     chosen = starts[1:2] if is_chain else starts
     loop = response_loop(instance)
     assert type(loop) is CompiledResponseLoop
+    monkeypatch.setattr("orchestrate.response.response_loop.MAX_PERIODS", 200)  # several calls
     compiled = loop.respond(some, chosen, settings)
     assert bits(compiled) == bits(ResponseLoop(instance).respond(some, chosen, settings))
     decided = compiled.counts["multiplicity"], compiled.counts["later_impacts"]
     assert all(np.any(numbers) for numbers in decided)  # of these responses some repeat
+
+
+def test_repetitions_within_two_tolerances_have_the_bits_of_python(instance):
+    some = list(points(9))
+    settings = LoopSettings(transient=60, samples=24, tolerance=1e-6, loose=1e-2)
+    compiled, python = (
+        loop.respond(some, np.zeros((len(some), 4)), settings) for loop in loops(instance)
+    )
+    assert bits(compiled) == bits(python)
+    counts = compiled.counts["multiplicity"], compiled.counts["nearly"]
+    assert np.any(counts[0]) and np.any(counts[0] != counts[1]) and np.any(compiled.deviations)
 
 
 def test_samples_are_more_than_a_step_keeps(instance):

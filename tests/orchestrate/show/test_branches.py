@@ -8,7 +8,6 @@ import xarray as xr
 
 from orchestrate.dynamics.branches import branch
 from orchestrate.model import Structure
-from orchestrate.show import labels
 from orchestrate.show.lines import draw_branch
 from orchestrate.show.planes import draw_border
 from orchestrate.units import with_units
@@ -65,24 +64,3 @@ def test_gaps_of_a_branch_are_lengths_where_they_are_asked_for():
     lengths = 1e3 * (found.xi_rel * found.amplitude * found.eta**2).values
     drawn = np.concatenate([np.ravel(line.get_ydata()) for line in plane.lines[:2]])
     assert np.nanmax(drawn) == pytest.approx(lengths.max())
-
-
-def test_the_title_of_a_branch_has_what_is_held_of_the_box(exported):
-    beam = {"m1": 1.5, "m2": 1.4, "k1": 8437.5, "k2": 9450.0, "d1": 1.125, "d2": 1.95, "e": 0.7}
-    omega = np.sqrt(beam["k1"] / beam["m1"])
-    frequency = np.array([80.0, 81.0, 82.0])
-
-    def titled(over, frequency, amplitude, units=""):
-        points = {"frequency": frequency, "eta": frequency / omega, "amplitude": amplitude}
-        columns = {name: ("point", values * np.ones(3)) for name, values in points.items()}
-        data = xr.Dataset(coords=columns, attrs=beam)
-        return labels.branch_title(with_units(data, units), [over])
-
-    assert titled("frequency", frequency, 3e-5, "Hz, mm").endswith("$a$ = 0.03 mm")
-    level = titled("frequency", frequency, 0.2 / frequency**2, "Hz, mm, g")
-    assert level.endswith(r"$a\,\Omega^2$ = 0.0204 g") and r"\Omega/2\pi" not in level
-    both = titled("e", 80.0 * np.ones(3), 3e-5, "Hz, mm")
-    assert both.endswith(r"$\Omega/2\pi$ = 12.732 Hz, $a$ = 0.03 mm") and "$e$" not in both
-    assert draw_branch(window()).get_suptitle() == "$e$ = 0.7, $D$ = 0.005"
-    in_si = window().assign_attrs({**window().attrs, "over": "frequency", "m1": 2.0, "m2": 2.0})
-    assert draw_branch(in_si).get_suptitle().endswith(r"$a\,\Omega^2$ = 1 m/s$^2$ (0.102 g)")

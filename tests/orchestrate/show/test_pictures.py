@@ -29,9 +29,8 @@ from orchestrate.show.style import XI_REL, make_panels
 from orchestrate.units import with_units
 
 from . import made
-from .made import drawn, legend_texts
+from .made import legend_texts
 
-PAPER = orchestrate.Structure.nondimensional()
 HERE = {"progress": False, "jobs": 1}
 HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
 BEAM = orchestrate.Structure.from_halves(**HALVES)
@@ -88,19 +87,6 @@ def test_all_samples_are_in_an_orbit_diagram():
         need = set(map(tuple, (wanted * lines.CELLS).astype(int).tolist()))
         assert need <= have
         assert len(marked) <= len(points)
-
-
-def test_what_a_logarithm_has_no_place_for_is_told():
-    figure = lines.draw_sweep(made.sweep())
-    assert figure.axes[0].get_yscale() == "symlog"
-    assert "linear" in [text.get_text() for text in figure.axes[0].texts]
-    data = made.sweep()
-    data.xi_rel[:] = data.xi_rel * 0.0 + 0.5
-    assert lines.draw_sweep(data).axes[0].get_yscale() == "log"
-    data.xi_rel[:] = 0.0
-    data.impacts_per_period[:] = 0.0
-    bottom = lines.draw_sweep(data).axes[1]
-    assert [text.get_text() for text in bottom.texts] == ["no impacts"]
 
 
 @pytest.mark.parametrize("count", [40, 700])
@@ -161,15 +147,6 @@ def test_resonance_has_all_curves_and_their_peaks():
     assert len(resonance.draw_resonance(alone).axes[0].texts) == 1
 
 
-def test_exponents_beyond_the_axis_are_marked():
-    figure = lines.draw_lyapunov(made.exponents(False))
-    texts = legend_texts(figure)
-    assert {*texts} == {"chaotic", "neutral", "periodic", "periodic, below -0.1"}
-    assert figure.legends[0].get_title().get_text() == "bars: one standard error"
-    below = [line for line in figure.axes[0].lines if line.get_marker() == "v"]
-    assert len(below[0].get_xdata()) == int((made.exponents(False).exponent < -0.1).sum())
-
-
 def test_an_attractor_is_drawn_as_far_as_it_exists():
     """One attractor, T and then 2T, that ends; another one that appears beside it."""
     nan = np.nan
@@ -193,19 +170,6 @@ def test_an_attractor_is_drawn_as_far_as_it_exists():
     np.testing.assert_array_equal(shares[1], [nan, nan, 0.7, 1.0])
 
 
-def test_jump_voltages_end_at_rate_0_where_it_is_known():
-    nan = np.nan
-    for ends, errors, words in (
-        ([1.5, 1.5], [nan, nan], ["bonded: 1.5000 V", "delaminated: 1.5000 V"]),
-        ([1.5, nan], [4e-4, nan], ["bonded: 1.50000 ± 0.00040 V", "delaminated: 2 rates"]),
-        ([nan, nan], [nan, nan], ["bonded: 2 rates", "delaminated: 2 rates"]),
-    ):
-        (panel,) = lines.draw_jump_voltages(made.late_jumps(ends, errors)).axes
-        assert legend_texts(panel) == words and not panel.texts
-    (panel,) = lines.draw_jump_voltages(made.late_jumps([nan] * 2, [nan] * 2, jumps=False)).axes
-    assert [text.get_text() for text in panel.texts] == ["no jump up"]
-
-
 def test_starts_from_rest_have_their_kind_the_border_and_how_sure_it_is():
     data = made.capture()
     (panel,) = weak_drive.draw_capture({"bonded": data}).axes
@@ -223,21 +187,6 @@ def test_starts_from_rest_have_their_kind_the_border_and_how_sure_it_is():
 # -- planes ---------------------------------------------------------------------------------------
 
 
-def test_phase_curves_of_the_paper():
-    figure = planes.draw_states(made.paper_curves(1))
-    assert legend_texts(figure) == ["separate motion", "a sequence", "contact"]
-    assert len(figure.axes[0].lines) == 6
-    three = planes.draw_masses(made.paper_curves(3)).axes
-    assert len(three) == 3 and three[0].get_xlim() == three[2].get_xlim()
-    grid = planes.draw_phase_grid(made.paper_curves(6), columns=4).axes
-    assert [axes.get_visible() for axes in grid] == [True] * 6 + [False] * 2
-    titles = [axes.get_title(loc="left").rpartition(", ")[2] for axes in grid[:3]]
-    assert titles == ["not periodic", "$T$", "$2T$"]
-    *gaps, excitation = histories.draw_paper_histories(made.paper_curves(2)).axes
-    assert len(gaps) == 2
-    assert np.abs(drawn(excitation)[0][:, 1]).max() == pytest.approx(1.0, abs=0.01)
-
-
 def test_maps_have_a_row_each_and_say_where_there_is_none():
     one, two = made.mapped(False), made.mapped(False)
     figure = planes.draw_map(one.assign_coords(e=[0.01, 0.02, 0.04, 0.08, 0.16]), two)
@@ -250,21 +199,6 @@ def test_maps_have_a_row_each_and_say_where_there_is_none():
     assert bars[0].get_position().x1 < panels[1].get_position().x0
 
 
-def test_a_map_has_impulses_in_newton_seconds_where_the_structure_is_in_si():
-    """m1 omega a eta^2 of 1.5 kg, 75 rad/s, 1 mm at eta 1 and 2."""
-    sides = {"e": [0.3, 0.5], "frequency": [75.0, 150.0], "eta": ("frequency", [1.0, 2.0])}
-    attributes = {**made.known(True), "amplitude": 1e-3}
-    names = ("impacts_per_period", "multiplicity", "xi_rel_max", "impulse_max")
-    data = xr.Dataset({name: (("e", "frequency"), np.ones((2, 2))) for name in names}, sides)
-    values, label = planes.shown_values(data.assign_attrs(attributes), "impulse_max")
-    assert label == "largest impulse in mN s"
-    assert values.transpose("e", "frequency").values[0] == pytest.approx([112.5, 450.0])
-    assert planes.shown_values(data.assign_attrs(attributes), "xi_rel_max")[1].endswith("in mm")
-    by_ratio = made.mapped(False)
-    by_ratio["impulse_max"] = by_ratio.xi_rel_max
-    assert planes.shown_values(by_ratio, "impulse_max")[1] == planes.COLUMNS["impulse_max"]
-
-
 def test_a_basin_names_all_that_is_in_it():
     figure = planes.draw_basin(made.plane(False), "here", ("gap", ""))
     (axes,) = figure.axes
@@ -272,38 +206,6 @@ def test_a_basin_names_all_that_is_in_it():
     texts = legend_texts(figure)
     assert len(texts) == len(planes.BASINS) + 2
     assert texts[-2:] == ["25.0%: 2 others", "no states: the gap would be below 0"]
-
-
-def test_a_basin_says_its_frequency_once_and_gaps_as_asked(exported):
-    plane = {"x": ("x_rel", 0.1, 0.2, 2), "y": ("v_rel", 0.0, 0.1, 2)}
-    data = orchestrate.basin(PAPER, eta=1.7, **plane, **HERE)
-    for units in ("", "eta"):
-        figure = planes.draw_basin(with_units(data, units))
-        title = figure.get_suptitle() + figure.axes[0].get_title(loc="left")
-        assert title.count(r"\eta") == 1
-    (legend,) = planes.draw_basin(with_units(data, "mm")).legends
-    gap = 1e3 * float(data.xi_rel_max[0])
-    assert any(f"largest gap = {gap:.4g} mm" in text.get_text() for text in legend.get_texts())
-
-
-def test_sections_have_the_points_of_their_kind(exported):
-    for at, kinds in (("phase", 1), ("impacts", 2), ("releases", 1)):
-        data = orchestrate.poincare(PAPER, eta=0.4, periods=20, at=at, **HERE)
-        (axes,) = orchestrate.plot(data).axes
-        assert len(axes.lines) == kinds
-        assert sum(len(points) for points in drawn(axes)) == data.sizes["point"] > 0
-
-
-def test_a_manifold_has_the_unit_asked_for():
-    over = ("side", "point")
-    gaps = xr.Dataset(
-        {"x_rel": (over, np.full((2, 3), 2e-5)), "v_rel": (over, np.full((2, 3), 1e-3))},
-        {"side": ["+", "-"]},
-        {**made.known(True), "shown_in": "mm"},
-    )
-    axes = planes.draw_manifold(gaps).axes[0]
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("gap in mm", "gap velocity in mm/s")
-    assert axes.lines[0].get_xdata()[0] == pytest.approx(0.02)
 
 
 # -- time histories and spectra -------------------------------------------------------------------
@@ -341,74 +243,7 @@ def test_two_structures_have_one_unit_on_an_axis(exported):
     assert np.allclose(tops[0], GRAVITY * np.array(tops[1]))
 
 
-def test_what_shook_the_box_is_said_in_the_unit_asked_for(exported):
-    level = 0.02 * GRAVITY
-    sine = orchestrate.SweptSine(first=9.0, last=16.0, acceleration=level, duration=2.0)
-    steps = orchestrate.SteppedSine(frequencies=(9.0, 16.0), acceleration=level)
-    shock = orchestrate.Shock(peak=5.0 * GRAVITY, length=0.011)
-    told = {sine: f"{sine.label} at 0.02 g; ", steps: f"{steps.label} at 0.02 g; "}
-    for excitation, words in {**told, shock: "half-sine shock, 5 g for"}.items():
-        data = orchestrate.shake(BEAM, excitation, progress=False)
-        assert histories.draw_shake(with_units(data, "g")).get_suptitle().startswith(words)
-    assert "49.03 m/s$^2$" in histories.draw_shake(data).get_suptitle()
-
-
-def test_both_sides_of_a_line_are_visible():
-    figure, _ = made.rendered(orchestrate.plot(made.lines(False).assign_attrs(call="spectra()")))
-    left, right = figure.axes[:2]
-    assert left.get_ylim() == right.get_ylim()
-    assert [stems.get_label() for stems in left.collections] == ["bonded"]
-    wide, thin = right.collections
-    assert wide.get_linewidth() > 2.0 * thin.get_linewidth()
-    (first, *_) = wide.get_segments()  # a stem: it stands on the axis, at one frequency
-    assert first[0, 0] == first[1, 0] == 1.0 and first[0, 1] == left.get_ylim()[0]
-    legend = figure.legends[0]
-    assert legend.get_title().get_text().endswith("of the largest line is left out")
-
-
 # -- titles and numbers ---------------------------------------------------------------------------
-
-
-def test_names_and_numbers():
-    assert labels.symbol("kappa") == r"$\kappa$" and labels.symbol("a_thing") == "a thing"
-    assert labels.format_parameters({"e": 0.7, "omega": 75.0}) == r"$e$ = 0.7, $\omega$ = 75 rad/s"
-    assert labels.format_voltage(6.325, 0.0251) == "6.325 ± 0.025 V"
-    assert labels.format_voltage(1.5, np.nan) == "1.5000 V"
-    added = labels.format_added_parameter
-    clearances = [added("clearance", value, xr.Dataset()) for value in (1.5e-3, -2e-5)]
-    assert clearances == ["clearance 1.5 mm", "pressed together by 20 µm"]
-    assert scales.AxisValues(np.ones(1), scales.ETA).text(1.04) == r"$\eta$ = 1.04"
-    many = scales.AxisValues(np.ones(1), scales.FREQUENCIES["Hz"]).text(*range(10))
-    assert many == "0, 1, 2, 3, 4, 5 Hz and 4 more"
-
-
-def test_titles_tell_what_is_not_usual():
-    data = xr.Dataset(attrs={**made.PAPER, "e": 0.3, "gamma": 1e-4, "bonded": 1})
-    assert labels.title_from_attributes(data) == "$e$ = 0.3, $D$ = 0.005, bonded"
-    data.attrs |= {"d2": 0.1, "gamma": 1e-3, "k2": 2.0}
-    told = r"$e$ = 0.3, $D_1$ = 0.005, $D_2$ = 0.05, $\kappa$ = 2, $\gamma$ = 0.001"
-    assert labels.title_from_attributes(data.assign_attrs(bonded=0)) == told
-    swept = data.assign_attrs(bonded=0).assign_coords(D=[0.1, 0.2])
-    assert labels.title_from_attributes(swept) == r"$e$ = 0.3, $\kappa$ = 2, $\gamma$ = 0.001"
-    assert labels.title_from_attributes(xr.Dataset()) == ""
-    shaken = data.assign_attrs(frequency=20.0 * np.pi, amplitude=2.5e-5)
-    assert labels.title_from_attributes(shaken).endswith(r"$\Omega/2\pi$ = 10 Hz, $a$ = 25 µm")
-    held = made.sweep(si=True).assign_coords(amplitude=lambda data: 3.0 / data.frequency**2)
-    assert labels.title_from_attributes(held).endswith(r"$a\,\Omega^2$ = 3 m/s$^2$ (0.306 g)")
-
-
-def test_a_title_of_a_file_is_written_out_for_a_reader():
-    beam = orchestrate.Structure.from_halves(**HALVES, e=0.6, clearance=-2e-5)
-    halves = r"$f_1$ = 42 Hz, $f_2$ = 55 Hz, $\zeta_1$ = 0.7 %, $\zeta_2$ = 0.7 %"
-    title = labels.plain_title(f"Orders: swept sine: {beam.label()}, as sensors read it")
-    assert title.startswith("Orders: swept sine, $e$ = 0.6, ") and title.endswith(
-        ", as sensors read it"
-    )
-    assert halves in title and "pressed together by 20 µm" in title
-    assert labels.plain_title("Orders: Record beam_a.csv") == "Orders: Record beam_a.csv"
-    assert labels.plain_title("Map over e: e0.6_f42-55", structure=False) == "Map over e"
-    bonded = labels.plain_title(f"Motion: {beam.as_bonded().label()}")
-    assert "bonded" in bonded and "_" not in "".join(bonded.split("$")[::2])  # outside of formulas
 
 
 def test_titles_have_the_level_in_the_unit_asked_for(exported):

@@ -49,27 +49,6 @@ def test_the_least_torque_divides_both_resonances():
 
 
 @pytest.mark.slow
-def test_a_fold_far_above_omega_is_seen():
-    """It was said that the speed follows the voltage, or that the ramp ends below the resonance."""
-    found = run(HIGH, (3.15, 3.4), 2e-3, step=None, back=False).sel(jump="up")
-    assert found.decided == "by held voltages"
-    volts = HIGH.drive.volts(HIGH.structure)
-    assert float(found.jumps) / volts == pytest.approx(BRANCH["high"][0], abs=1e-4)
-
-
-@pytest.mark.slow
-def test_a_jump_at_the_resonance_of_the_box_is_one_of_its_own():
-    """Its voltage on the ramp was that of the jump at the structure's resonance."""
-    found = run(NEAR, (0.7, 1.5), 2e-4, step=None)
-    volts = NEAR.drive.volts(NEAR.structure)
-    jumps = found.jumps / volts
-    places = {"up": 0.8206, "up 2": BRANCH["near"][0], "down": BRANCH["near"][1], "down 2": 0.80537}
-    for label, place in places.items():
-        assert float(jumps.sel(jump=label)) == pytest.approx(place, abs=1e-4), label
-        late = abs(float(found.ramp_voltage.sel(jump=label)) / volts - place)
-        assert 0.0 < late < 0.04, label
-
-
 def test_between_both_resonances_the_motor_is_captured():
     """It was said that it passes: the threshold lay between the resonances."""
     volts = NEAR.drive.volts(NEAR.structure)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate import InputError, capture
-from orchestrate.weak_drive.averaged import dividing_speed, folds
+from orchestrate.weak_drive.averaged import dividing_speed
 from orchestrate.weak_drive.capture import CaptureJob, threshold_voltage
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.settling import CONVERGED, UNDECIDED, Outcome
@@ -14,9 +14,6 @@ from .coupled import QUICK, drawn, rest
 from .monolithic import Monolith
 
 SHORT = {"step": 0.2, "progress": False}
-CREEPING = drawn(
-    2026, 61
-).as_bonded()  # a slow motor: by its fold it creeps for thousands of 1/omega
 OPEN = QUICK.with_structure(clearance=3.0)
 SWINGING = drawn(
     11, 30
@@ -40,19 +37,6 @@ def test_the_border_is_that_of_the_whole_system():
     assert border == pytest.approx(1.54443, abs=1e-4)
     below, beyond = (float(found[name]) for name in ("speed_low", "speed_high"))
     assert below < 1.3 and beyond > 1.5 and found.speed[1] == pytest.approx(beyond, abs=1e-3)
-
-
-@pytest.mark.slow
-def test_no_border_above_the_fold():
-    """Above its fold the speed creeps for long, and passes: it is not captured."""
-    fold = folds(*CREEPING)[0].eta0
-    asked = {"voltage": (fold - 2e-3, fold + 2e-3), "count": 3, "tolerance": 4e-4, **SHORT}
-    found = capture(*CREEPING, **asked)
-    assert found.passes.values.tolist()[::2] == [0, 1]
-    assert float(found.border_low) < fold + 1.5e-4  # what the averaged theory is off at most
-    assert float(found.fold) == fold and float(found.above_fold) == 0.0
-    slow = found.passage_time.values[-1]
-    assert slow > 1000.0 and passes(CREEPING, fold + 2e-3, 1.5 * slow)
 
 
 @pytest.mark.slow
@@ -107,19 +91,6 @@ def test_undecided_starts_widen_the_border(known):
     low, high = (end.voltage for end in ends)
     assert 1.27 <= low < 1.28 and 1.47 < high <= 1.48
     assert len(asked) < 30
-
-
-def test_of_several_borders_the_highest():
-    """Made-up: captured from 1.2 to 1.4 too, where a lower voltage passes."""
-
-    def start(voltage):
-        captured = voltage < 1.1 or 1.2 < voltage < 1.4
-        return Outcome(CONVERGED) if captured else Outcome(CONVERGED, True, 1.0)
-
-    known = (1.0, 1.15, 1.3, 1.5)
-    ends = threshold_voltage(known, [start(voltage) for voltage in known], start, 0.01)
-    low, high = (end.voltage for end in ends)
-    assert low < 1.4 <= high and high - low <= 0.01
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from orchestrate import couple
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.revolutions import Revolutions
 
+from ...sparing import ordinary
 from .coupled import GRID, QUICK, history, master, rest, settled
 from .monolithic import Monolith
 
@@ -33,7 +34,7 @@ class Case:
         self.amplitude = 0.5 * np.ptp(truth[:, 0])
 
 
-@pytest.fixture(scope="module", params=SYSTEMS)
+@pytest.fixture(scope="module", params=ordinary(SYSTEMS))
 def case(request):
     return Case(SYSTEMS[request.param])
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate import couple
-from orchestrate.dynamics.bifurcations import FOLD
+from orchestrate.dynamics.bifurcations import Kind
 from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.drive_tracer import motion_near
@@ -121,7 +121,7 @@ def test_held_voltages_find_the_fold_of_the_branch():
     (fold,) = legs[0].bifurcations
     ramp = Ramp(1.52, 1.62, 4e-4, settle=600.0, back=False)
     up = couple(*OPEN, voltage=ramp, speed_start=0.0, progress=False).sel(jump="up")
-    assert fold.kind == FOLD and up.decided == "by held voltages"
+    assert fold.kind == Kind.FOLD and up.decided == "by held voltages"
     assert up.jump_low - 2e-5 < fold.point.coordinates[0] < up.jump_high + 2e-5
     assert up.jump_high - up.jump_low < 2.1e-4
 

@@ -14,7 +14,7 @@ from .coupled import QUICK, master, rest
 def test_fmus_of_other_forms_step_in_python(monkeypatch):
     with master(QUICK, Scheme(), rest()) as m:
         assert type(m) is CompiledMaster
-    with master(QUICK, Scheme(), rest(), "fmi2") as m:
+    with master(QUICK, Scheme(), rest(), "fmi2-python") as m:
         assert type(m) is Master
     monkeypatch.setattr(compiled, "load_step_function", lambda: None)
     with master(QUICK, Scheme(), rest(), kind=create_master) as m:

@@ -4,17 +4,19 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.fmu.description import describe
 from orchestrate.weak_drive import cosimulate
+from orchestrate.weak_drive.compiled import CompiledMaster
 from orchestrate.weak_drive.connection import proposals
+from orchestrate.weak_drive.master import Master
 from orchestrate.weak_drive.polynomials import derivatives
 
 from ...sparing import ordinary
 from .drives import table
+from .drives.linear import draw, sine, table_drive, together
 
 STRUCTURE = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
 CONNECT = {"box_acceleration": "table_acc", "box_force": "specimen_force"}
@@ -44,55 +46,9 @@ def drive(tmp_path_factory):
     return FmuBuilder.build_FMU(table.__file__, dest=folder)
 
 
-def together(numbers=table.NUMBERS, structure=STRUCTURE):
-    """Displacements of both masses, and the number of impacts, of structure and shaker as one."""
-    s, n = structure, numbers
-
-    def rates(time, state):
-        x1, x2, v1, v2, y, w, i = state
-        force = s.k1 * x1 + s.d1 * v1 + s.k2 * x2 + s.d2 * v2
-        box = (n["bl"] * i - n["stiffness"] * y - n["damping"] * w + force) / n["mass"]
-        a1 = -(s.k1 * x1 + s.d1 * v1) / s.m1 - box
-        a2 = -(s.k2 * x2 + s.d2 * v2) / s.m2 - box
-        current = (20.0 * math.sin(26.0 * time) - n["r"] * i - n["bl"] * w) / n["l"]
-        return [v1, v2, a1, a2, w, box, current]
-
-    def gap(time, state):
-        return state[1] - state[0]
-
-    gap.terminal, gap.direction = True, -1
-    time, state, impacts, rows = 0.0, np.zeros(7), 0, {0.0: (0.0, 0.0)}
-    # both masses are pressed together at first: they are let apart where they part, a step later
-    state[1] = 1e-14
-    while time < DURATION:
-        ahead = TIMES[time + 1e-12 < TIMES]
-        done = solve_ivp(
-            rates,
-            (time, DURATION),
-            state,
-            method="DOP853",
-            rtol=1e-11,
-            atol=1e-14,
-            events=gap,
-            t_eval=ahead,
-            max_step=0.01,
-        )
-        rows |= dict(zip(np.round(done.t, 9), done.y[:2].T, strict=True))
-        if not done.t_events[0].size:
-            break
-        time, state = done.t_events[0][0], done.y_events[0][0].copy()
-        closing = state[2] - state[3]
-        impulse = (1.0 + s.e) * s.m1 * s.m2 / (s.m1 + s.m2) * closing
-        state[2] -= impulse / s.m1
-        state[3] += impulse / s.m2
-        state[1] = state[0] + 1e-15
-        impacts += closing > 1e-9
-    return np.array([rows[time] for time in np.round(TIMES, 9)]), impacts
-
-
 @pytest.fixture(scope="module")
 def truth():
-    return together()
+    return together(table_drive(table.NUMBERS), STRUCTURE, sine(), TIMES)
 
 
 def error(run, truth):
@@ -111,6 +67,22 @@ def test_errors_fall_with_the_square_of_the_step(drive, truth, name):
     assert error(coarse, truth[0]) < 0.07 * size
     assert 3.0 < error(coarse, truth[0]) / error(fine, truth[0]) < 6.0
     assert coarse.sizes["impact"] == fine.sizes["impact"] == truth[1] > 10
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize("seed", ordinary(range(20), 3))
+def test_random_drives_against_one_system(tmp_path, seed):
+    """Native ones of FMI 3.0, of any names and signs; every second without feedthrough."""
+    drive = draw(seed)
+    path = drive.write(tmp_path)
+    run = {**RUN, "inputs": {drive.names[1]: RUN["inputs"]["volts"]}, "connect": drive.connect}
+    run |= {"parameters": drive.parameters}
+    expected, impacts = together(drive, STRUCTURE, sine(), TIMES)
+    coarse, fine = (orchestrate.cosimulate(STRUCTURE, path, step=h, **run) for h in (5e-3, 2.5e-3))
+    one, other = error(coarse, expected), error(fine, expected)
+    assert other < 0.01 * np.abs(expected).max() and one / other > 3.0
+    assert coarse.attrs["resumable"].startswith("yes" if drive.has_states else "no")
+    assert coarse.sizes["impact"] == fine.sizes["impact"] == impacts
 
 
 @pytest.mark.usefixtures("exported")
@@ -196,6 +168,20 @@ def test_an_electrodynamic_shaker_of_ours_is_coupled_with_its_limits(exported):
 
 
 @pytest.mark.usefixtures("exported")
+def test_a_level_is_held_on_a_drive_of_somebody_else(drive):
+    """It takes the command without its derivatives: its mean over each step."""
+    sine = orchestrate.SteppedSine(frequencies=(8.0,), acceleration=2.0, settle_cycles=60)
+    control = orchestrate.LevelControl(sine=sine, start=1.0)
+    run = {**RUN, "inputs": {"volts": control}, "duration": 8.0, "record": ["volts"]}
+    found = orchestrate.cosimulate(STRUCTURE.as_bonded(), drive, connect=CONNECT, step=5e-3, **run)
+    last = found.sel(time=slice(7.0, 8.0 - 1e-9))
+    turns = np.exp(-1j * sine.phase(last.time.values))
+    table, volts = (complex((last[n] * turns).mean()) for n in ("box_acceleration", "volts"))
+    assert 2.0 * abs(table) == pytest.approx(2.0, rel=0.03)
+    assert abs(volts) > 1.0 and np.isnan(found.control_aborted)
+
+
+@pytest.mark.usefixtures("exported")
 def test_the_work_on_the_drive_is_what_the_system_loses(exported):
     """Energy of the masses: what the box's motion puts in, less dampers and impacts."""
     structure = STRUCTURE.replace(d1=0.0, d2=0.0)
@@ -221,22 +207,12 @@ def test_the_work_on_the_drive_is_what_the_system_loses(exported):
     assert np.abs(balance).max() < 1e-4 * np.abs(run.box_work).max()
 
 
-WRONG = {
-    "nothing connected": ({}, {}, "box_force"),
-    "no force": ({"box_acceleration": "table_acc"}, {}, "box_force"),
-    "no motion": ({"box_force": "specimen_force"}, {}, "box_acceleration"),
-    "our name": ({**CONNECT, "box_speed": "table_vel"}, {}, "box_speed"),
-    "their name": ({**CONNECT, "box_force": "specimen_forse"}, {}, "did you mean specimen_force"),
-    "an input as motion": ({**CONNECT, "box_acceleration": "volts"}, {}, "causality input"),
-    "an output as force": ({**CONNECT, "box_force": "table_acc"}, {}, "causality output"),
-    "no parameter": (CONNECT, {"parameters": {"masse": 3.0}}, "did you mean mass"),
+WRONG = {  # by Python alone: what a command line can have is tested there
+    "no names": (["table_acc"], {}, "connect = "),
     "no number": (CONNECT, {"parameters": {"mass": math.nan}}, "mass = nan"),
-    "no input": (CONNECT, {"inputs": {"amperes": 1.0}}, "causality output"),
     "no course": (CONNECT, {"inputs": {"volts": "loud"}}, "volts"),
-    "nothing recorded": (CONNECT, {"record": ["speed"]}, "speed"),
-    "no step": (CONNECT, {"step": 0.0}, "step = 0.0 s"),
-    "no duration": (CONNECT, {"duration": -1.0}, "duration = -1.0 s"),
-    "no start": (CONNECT, {"start": (0.0, 1.0)}, "start"),
+    "no step": (CONNECT, {"step": "0.1"}, "step = 0.1 s"),
+    "our own name": (CONNECT, {"record": ["x1"]}, "x1"),
 }
 
 
@@ -259,3 +235,37 @@ def test_derivatives_of_a_polynomial_through_points():
     values = [2.0 - t + 3.0 * t**2 + 5.0 * t**3 for t in times]
     assert derivatives(times, values, 1) == pytest.approx((-1.0, 6.0))
     assert derivatives(times, values, 2) == pytest.approx((6.0, 30.0))
+
+
+def tables(monkeypatch, exported, path, **run):
+    """What compiled steps and those in Python leave of a run, in this process."""
+    monkeypatch.setattr(cosimulate, "answer", lambda job, *_: job)
+    job = orchestrate.cosimulate(STRUCTURE, path, step=0.01, **{**RUN, "duration": 0.6, **run})
+    fmus = {"TwoMassImpactOscillator": exported / "fmi3" / "TwoMassImpactOscillator.fmu"}
+    for kind in (CompiledMaster, Master):
+        monkeypatch.setattr(cosimulate, "create_master", kind)
+        table = job.work(fmus, range(60), None)
+        yield {name: part.tobytes() for name, part in table.items() if "states" not in name}
+
+
+@pytest.mark.parametrize("links", [["acceleration"], ["acceleration", "velocity"], [*"apv"]])
+def test_compiled_steps_have_the_bits_of_python(tmp_path, monkeypatch, exported, links):
+    drive = draw(0)
+    names = dict(zip(("acceleration", "position", "velocity"), drive.names[2:], strict=True))
+    run = {"inputs": {drive.names[1]: RUN["inputs"]["volts"]}, "parameters": drive.parameters}
+    more = {f"box_{n}": names[n] for n in names if any(n.startswith(one) for one in links)}
+    run |= {"record": [drive.names[3]], "connect": {**more, **drive.connect}}
+    compiled, python = tables(monkeypatch, exported, drive.write(tmp_path), **run)
+    assert compiled == python and len(compiled["recorded"]) == 61 * 8
+
+
+def test_controlled_steps_of_fmi_2_have_the_bits_of_python(monkeypatch, exported):
+    """With a cubic of the command, and the force alone."""
+    sine = orchestrate.SteppedSine(frequencies=(8.0,), acceleration=2.0, settle_cycles=60)
+    shaker = orchestrate.Shaker.from_file("shaker_100N")
+    run = {"inputs": {"command": orchestrate.LevelControl(sine=sine, start=0.1)}}
+    run |= {"parameters": shaker.parameters(), "record": ["current", "command"]}
+    run["connect"] = {name: name for name in ("box_acceleration", "box_force")}
+    path = exported / "fmi2" / "ElectrodynamicShaker.fmu"
+    compiled, python = tables(monkeypatch, exported, path, **run)
+    assert compiled == python and np.frombuffer(compiled["recorded"]).any()

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from orchestrate import Drive, InputError, Structure, drive_branch
+from orchestrate import InputError, drive_branch
 from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.drive_tracer import motion_near
 from orchestrate.weak_drive.shooting import Shooter
 
-from .coupled import BEAM, QUICK, System
+from .coupled import BEAM, QUICK
 from .monolithic import Monolith
 from .validation import Whole, branch_of
 
@@ -27,12 +27,14 @@ def points(branch, structure, kind):
     return branch.bifurcation_voltage.values[chosen.values]
 
 
+@pytest.mark.slow
 def test_folds(branch):
     """By the averaged theory, to 1e-4."""
     expected = [fold.eta0 for fold in averaged.folds(*QUICK.as_bonded())]
     assert points(branch, "bonded", "fold") == pytest.approx(expected, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_voltage_of_the_bonded_branch(branch):
     """The fluctuation of the speed changes little."""
     bonded = branch.sel(structure="bonded", leg="from below").dropna("point")
@@ -41,6 +43,7 @@ def test_voltage_of_the_bonded_branch(branch):
     assert branch.end.sel(structure="bonded").values[0] == "limit"
 
 
+@pytest.mark.slow
 def test_between_the_folds_it_is_unstable(branch):
     """Speeds between both folds, and only they."""
     bonded = branch.sel(structure="bonded", leg="from below").dropna("point")
@@ -72,19 +75,6 @@ def test_neimark_sacker_point(upper):
     pair = found.isel(multiplier=slice(2))
     size = np.hypot(pair.bifurcation_multiplier_real, pair.bifurcation_multiplier_imag)
     assert size.values == pytest.approx(1.0, abs=1e-4)
-
-
-@pytest.mark.slow
-def test_a_branch_turns_back_over_the_speed():
-    """The delaminated upper branch of `beam` ends in a fold over voltage and speed alike."""
-    omega = BEAM.structure.omega
-    found = drive_branch(*BEAM, speed=(1.24 * omega, 1.4 * omega), most=140, progress=False)
-    below = found.sel(structure="delaminated", leg="from below").dropna("point")
-    speed = below.speed.values / omega
-    assert speed.max() == pytest.approx(1.36829, abs=1e-5)
-    assert speed[-1] < 1.35
-    last = points(found, "delaminated", "fold") / BEAM.drive.volts(BEAM.structure)
-    assert np.abs(last - 1.37580).min() < 1e-5
 
 
 def test_an_orbit_and_its_multipliers_are_the_whole_systems():
@@ -164,29 +154,3 @@ def test_a_branch_ends_where_the_masses_touch():
     gap, slow = rows[:, 2] - rows[:, 0], np.abs(rows[:, 3] - rows[:, 1]) < 0.02 * length
     assert impacts == motion.period.impacts == 2
     assert gap[slow].min() < 1e-4 * length
-
-
-@pytest.mark.slow
-def test_no_branch_is_followed_past_a_grazing():
-    """Motions are roots by what they leave, with the impacts of the first; no doubling there.
-
-    Differences that straddle the grazing had let false motions through, left 1e-4, and gave `rig` a
-    period doubling at 1.144206; the monolithic solution's multipliers are 1.1137 and .836 +- .50i.
-    """
-    rig = System(Structure.from_file("rig"), Drive.from_file("rig"))
-    legs, length = branch_of(rig, most=60, range_=(0.995, 1.02))
-    for leg in legs[:2]:
-        assert max(motion.root.residual for motion in leg.points) <= 1e-9
-        assert len({motion.period.impacts for motion in leg.points}) == 1
-    upper = legs[1]
-    assert [leg.end for leg in legs[:2]] == ["grazing of an impact", "grazing of a flight"]
-    assert [event.kind.label for event in upper.bifurcations] == ["fold", "grazing of a flight"]
-    last = upper.points[-1]
-    unknowns, omega = last.root.unknowns, rig.structure.omega
-    turns = last.period.revolutions
-    whole = Whole(rig, turns, last.angle, length)
-    period = turns * 2.0 * np.pi / (unknowns[-1] * omega)
-    found, matrix = whole.orbit(unknowns[:-1], period)
-    assert found[-1] == pytest.approx(unknowns[-2], abs=1e-7)
-    truth = np.sort(abs(whole.multipliers(matrix)))
-    assert np.sort(abs(last.multipliers)) == pytest.approx(truth, abs=1e-4)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from orchestrate import Drive, Structure
 from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.response.spectra import amplitude_spectrum
@@ -17,27 +16,6 @@ from orchestrate.weak_drive.schedule import Ramp
 from .coupled import BEAM, QUICK, state_of
 from .monolithic import Monolith
 
-FAN = """
-[structure]
-m1 = 2.0
-omega_hz = 14.0
-mu = 0.9
-kappa = 1.3
-D = 0.01
-e = 0.55
-[motor]
-rated_voltage = 24.0
-no_load_speed_rpm = 3000.0
-stall_torque = 0.25
-rotor_inertia = 1e-4
-armature_inductance = 2e-3
-unbalance_mass = 0.05
-unbalance_radius = 0.015
-[box]
-box_mass = 8.0
-box_stiffness = 600.0
-box_damping = 7.0
-"""
 SHORT = {"jobs": 1, "rate": 4e-4, "hold": 400.0, "revolutions": 32, "progress": False}
 
 
@@ -73,14 +51,6 @@ def test_the_line_is_that_of_the_averaged_theory(quick):
     assert line(quick, "bonded", 1.0) == pytest.approx(expected, rel=0.01)
 
 
-def test_twice_as_many_samples_show_the_same(quick):
-    """An impact is a kink of what is sampled: little folds back from above half the rate."""
-    finer = drive_spectra(*QUICK, points=512, **SHORT)
-    for order in (0.5, 3.0, 7.5, 12.0):
-        expected = line(finer, "delaminated", order)
-        assert line(quick, "delaminated", order) == pytest.approx(expected, rel=0.01)
-
-
 @pytest.mark.slow
 def test_lines_are_those_of_the_whole_system(quick):
     """The monolithic solution from the end of the same approach, sampled eight times as densely."""
@@ -113,22 +83,6 @@ def test_the_default_voltage_is_at_the_resonance(system):
     Omega = found.speed.values / omega
     assert np.all(averaged.amplitude(*system, Omega) > 0.5 * averaged.amplitude(*system, up.Omega))
     assert np.all(Omega < up.Omega)
-
-
-@pytest.mark.slow
-def test_a_structure_that_jumps_earlier_is_still_at_the_resonance(tmp_path):
-    """Delaminated this motor has jumped at 0.6 of the way between the bonded one's folds."""
-    (tmp_path / "fan.toml").write_text(FAN)
-    fan = Structure.from_file(tmp_path / "fan.toml"), Drive.from_file(tmp_path / "fan.toml")
-    quickly = {"rate": 1e-4 * fan[1].volts(fan[0]) * fan[0].omega, "hold": 800.0 / fan[0].omega}
-    found = drive_spectra(*fan, points=64, **{**SHORT, **quickly})
-    up = averaged.folds(*fan)[0].Omega * fan[0].omega
-    assert (found.speed < 1.01 * up).all()
-    volts = voltage_at_resonance(*fan)
-    told = float(found.attrs["title"].split()[-2])
-    assert told < volts
-    late = drive_spectra(*fan, points=64, voltage=volts, **{**SHORT, **quickly})
-    assert late.speed.sel(kind="delaminated") > 1.03 * up
 
 
 def test_mistakes():

@@ -5,12 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.hysteresis import LOST, UNDECIDED, HeldPoint, HysteresisLoop, Settings
 from orchestrate.weak_drive.ramp_record import RampRecord, find_falls, jump_labels
 from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.settled import settled_speed
-from tools.draws import draw_system, scale_to_slope
+from tools.draws import draw_system
 
 from .coupled import QUICK, System
 from .test_couple import run
@@ -73,13 +72,6 @@ def test_a_fold(slope, up, start):
 
 
 NARROW = {"ends": (1.47, 1.53), "stiff": 2500.0}  # speeds change little between its folds
-
-
-@pytest.mark.parametrize(("up", "start"), [(True, 1.27), (False, 1.33)])
-def test_folds_that_are_close_in_speed_too(up, start):
-    """1.1e-4 apart; the speed jumps by 0.0066."""
-    (jump,) = decided(-0.0365, up=up, start=start, at=0.25, **NARROW)
-    assert_at(jump, fold_of(-0.0365, up, 2500.0))
 
 
 @pytest.mark.parametrize("slope", [-0.05, -0.03, -0.01, 0.01, 0.03])
@@ -264,22 +256,13 @@ def bracket(found, system):
     return np.sort([found.jump_low.values / volts, found.jump_high.values / volts], axis=0)
 
 
+@pytest.mark.slow
 def test_folds_that_are_close_through_both_fmus():
     """A record of a ramp does not tell them from a steep branch."""
     found = run(CLOSE, (1.2, 1.08), 2e-4, **DOWN).sel(jump="down")
     low, high = bracket(found, CLOSE)
     assert found.no_jump == "" and found.decided == "by held voltages"
     assert low - 5e-5 < 1.13041 < high + 5e-5 and high - low < 2.1e-4
-
-
-@pytest.mark.slow
-def test_a_vertical_branch_through_both_fmus():
-    """Its least slope is 0.02, there is no fold."""
-    edge = System(*scale_to_slope(DRAWN[1], 0.02)).as_bonded()
-    assert not averaged.folds(*edge)
-    found = run(edge, (1.58, 1.45), 1e-4, **DOWN).sel(jump="down")
-    assert np.isnan(found.jumps) and found.decided == "by held voltages"
-    assert "same speeds" in str(found.no_jump.item())
 
 
 def test_what_has_not_settled_is_undecided():
@@ -300,6 +283,7 @@ def test_a_ramp_that_ends_before_the_jump_shows():
     assert low < 1.5831 < high and 1e-3 < high - low < 4.1e-3
 
 
+@pytest.mark.slow
 def test_a_motor_that_turns_backward_has_the_mirrored_jump():
     quick = QUICK.as_bonded()
     found = run(quick, (-1.5, -1.65), 2e-4, back=False, step=None)

@@ -33,6 +33,7 @@ def test_a_run_up_begins_below_the_resonance():
     assert up.no_jump == ""
 
 
+@pytest.mark.slow
 def test_a_motor_without_folds():
     """A steep torque line: the speed goes through the resonance there and back."""
     resistance = QUICK.drive.armature_resistance / 20.0
@@ -42,6 +43,7 @@ def test_a_motor_without_folds():
     assert all("no jump" in text for text in found.no_jump.values)
 
 
+@pytest.mark.slow
 def test_a_spin_up_that_ends_beyond_the_resonance():
     """Too fast a one, near the fold: no jump of the ramp that follows is made of it."""
     asked = {"settle": 150.0, "spin_up": 300.0, "back": False, "step": 0.4}

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from orchestrate.weak_drive.averaged import dividing_speed, folds
 from orchestrate.weak_drive.settled import SettledSettings
 from orchestrate.weak_drive.settling import (
     BOUNDED,
@@ -16,8 +15,7 @@ from orchestrate.weak_drive.settling import (
     usual_limit,
 )
 
-from . import bonded
-from .coupled import QUICK, drawn
+from .coupled import QUICK
 
 TEST = SettlingTest(1.3, 1.0, 100, SettledSettings(tolerance=1e-5))
 TIME = np.arange(1.0, 40_000.0, 5.0)  # ends of revolutions
@@ -104,20 +102,6 @@ def test_a_drift_is_not_settled():
     """Irregular, and rising slowly: it is on its way."""
     noise = np.random.default_rng(3).normal(0.0, 1e-3, len(TIME))
     assert decided(1.1 + 4e-6 * TIME + noise)[0].decision == UNDECIDED
-
-
-def test_a_motor_creeps_past_its_fold_as_long_as_the_theory_has_it():
-    """Against the plain simulation: what it takes longer at a quarter of the distance."""
-    system = drawn(2026, 61).as_bonded()
-    fold, threshold = folds(*system)[0].eta0, dividing_speed(*system)
-
-    def passage(distance, time):
-        speeds, _ = bonded.run(system, lambda *_: fold + distance, 0.2, round(5 * time))
-        return 0.2 * np.flatnonzero(np.array(speeds) < threshold)[-1]
-
-    longer = passage(5e-4, 4500.0) - passage(2e-3, 2500.0)
-    expected = time_past_the_fold(*system, 5e-4) - time_past_the_fold(*system, 2e-3)
-    assert longer == pytest.approx(expected, rel=0.1)
 
 
 def test_the_limit_scales_with_the_drive():

@@ -59,7 +59,7 @@ def case(request, tmp_path_factory):
     return write(tmp_path_factory.mktemp("ssp"), system), truth(system)
 
 
-@pytest.mark.parametrize("tool", TOOLS)
+@pytest.mark.parametrize("tool", ordinary(TOOLS))
 def test_tools(case, tool):
     """Each error is of first order in the step: structure, motor and start are as written."""
     path, expected = case

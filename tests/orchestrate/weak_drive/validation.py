@@ -1,4 +1,4 @@
-"""Random sets against one system of equations: trajectories, folds, Neimark-Sacker points, jumps.
+"""Random sets against one system of equations: trajectories, folds, Neimark-Sacker points.
 
 The truth is :class:`.monolithic.Monolith`, with shooting of its own: nothing of it knows the FMUs
 but the state that it starts from.
@@ -6,13 +6,12 @@ but the state that it starts from.
 
 import numpy as np
 
-from orchestrate import Drive, Structure, jump_voltages
-from orchestrate.dynamics.bifurcations import FLIP, FOLD
+from orchestrate import Drive, Structure
+from orchestrate.dynamics.bifurcations import Kind
 from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_from_arguments
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
-from orchestrate.weak_drive.ramp_record import find_falls
 
 from .coupled import System, master, rest, state_of
 from .monolithic import Monolith
@@ -24,13 +23,12 @@ RANGES = {  # of what a laboratory would build
     **{"e": (0.3, 0.9), "beta": (0.1, 0.4), "epsilon": (3e-4, 2e-3), "b": (0.02, 0.1)},
     **{"Omega_b": (0.05, 0.3), "D_b": (0.005, 0.05), "lag": (0.0, 1.0)},
 }
-RATES = (4e-5, 2e-5, 1e-5)
 
 
-def random_sets(count, seed=SEED, others=None):
+def random_sets(count, seed=SEED):
     """Structures with their drives, each number uniform in its range."""
-    rng, ranges = np.random.default_rng(seed), {**RANGES, **(others or {})}
-    return [made({name: rng.uniform(*ends) for name, ends in ranges.items()}) for _ in range(count)]
+    rng = np.random.default_rng(seed)
+    return [made({name: rng.uniform(*ends) for name, ends in RANGES.items()}) for _ in range(count)]
 
 
 def made(v):
@@ -152,11 +150,11 @@ class Whole:
     def test(self, kind, unknowns, period):
         """What is 0 at a bifurcation, and the motion there."""
         found, matrix = self.orbit(unknowns, period)
-        if kind == FOLD:
+        if kind == Kind.FOLD:
             slope = np.linalg.solve(matrix[:, :-1], -matrix[:, -1])
             return float(slope[-1]), found
         values = self.multipliers(matrix)
-        if kind == FLIP:
+        if kind == Kind.FLIP:
             return float(values.real.min() + 1.0), found
         pairs = np.abs(values[np.abs(values.imag) > 1e-6])
         return float(pairs[np.argmin(np.abs(pairs - 1.0))] - 1.0), found
@@ -211,75 +209,3 @@ def bifurcations(system, range_=(0.95, 1.15)):
 
 
 # -- jumps -----------------------------------------------------------------------------------------
-
-
-def monolithic_jump(system, state, voltages, rate):
-    """The voltage over K omega at which the monolithic solution jumps on a ramp."""
-    omega, volts = system.structure.omega, system.drive.volts(system.structure)
-    first, last = voltages
-    times = np.arange(0.0, (last - first) / rate, 0.2) / omega
-    whole = Monolith(
-        *system,
-        lambda time: volts * (first + rate * omega * time),
-        {"method": "DOP853", "rtol": 1e-9, "atol": 1e-12},
-    )
-    rows = whole.solve(state, times)[0]
-    return jump_of(system, times, rows[:, 6], lambda time: first + rate * omega * time)
-
-
-def jump_of(system, times, angles, eta0):
-    """The jump up of a motion by the angle over time."""
-    from scipy.interpolate import CubicSpline
-
-    turns = 2.0 * np.pi * np.arange(np.ceil(angles[0] / (2.0 * np.pi)), angles[-1] // (2.0 * np.pi))
-    ends = CubicSpline(angles, times)(turns)
-    speed = 2.0 * np.pi / np.diff(ends) / system.structure.omega
-    voltage = eta0(ends[1:])
-    slip = np.convolve(voltage - speed, np.full(12, 1.0 / 12.0), "same")
-    high, low = max(find_falls(slip, 0.02), key=lambda fall: slip[fall[0]] - slip[fall[1]])
-    half = 0.5 * (slip[high] + slip[low])
-    return float(np.interp(-half, -slip[high : low + 1], voltage[high : low + 1]))
-
-
-def coupled_jump(system, state, voltages, rate):
-    """The same of the FMUs."""
-    omega, volts = system.structure.omega, system.drive.volts(system.structure)
-    first, last = voltages
-    scheme = scheme_from_arguments(system.structure, None)
-    times, angles = [0.0], [state[6]]
-    with master(system, scheme, state) as m:
-        while m.time * omega * rate < last - first:
-            m.step(volts * (first + rate * omega * (m.time + 0.5 * scheme.h)))
-            times.append(m.time)
-            angles.append(m["angle"])
-    eta0 = lambda time: first + rate * omega * time  # noqa: E731
-    return jump_of(system, np.array(times), np.array(angles), eta0)
-
-
-def ramp_jumps(system, fold, rate=1e-4):
-    """Jumps up on a ramp past a fold: of the FMUs and of the monolithic solution."""
-    speed, volts = below_resonance(system)
-    unit = system.drive.volts(system.structure)
-    state = settled_state(system, volts, speed)
-    ends = (volts / unit, fold + 0.06)
-    return coupled_jump(system, state, ends, rate), monolithic_jump(system, state, ends, rate)
-
-
-def extrapolated_jumps(system, fold):
-    """Jumps up at rate 0 over K omega, bonded and delaminated."""
-    volts, omega = system.drive.volts(system.structure), system.structure.omega
-    _, first = below_resonance(system)
-    found = jump_voltages(
-        *system,
-        voltage=(first, (fold + 0.04) * volts),
-        rates=[rate * volts * omega for rate in RATES],
-        back=False,
-        progress=False,
-    )
-    return [float(value) / volts for value in found.jumps.sel(jump="up")]
-
-
-def first_fold(found):
-    """The fold that a run up meets first."""
-    folds = [row for row in found if row[0] == FOLD]
-    return folds[0] if folds else None

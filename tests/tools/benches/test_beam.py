@@ -1,7 +1,5 @@
 """The beam of finite elements against closed forms and published frequencies."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The integration of benches against closed forms and an adaptive method with tight tolerances."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """What shakers do, what sensors read, random beams, and the records of the manual's tutorial."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -7,8 +7,7 @@ import pytest
 from scipy import stats
 
 from orchestrate import Structure, frf, psd, spectrogram
-from orchestrate.laboratory.analysis.averaging import averaging
-from orchestrate.laboratory.analysis.channels import Channels
+from orchestrate.laboratory.analysis.channels import Channels, averaging
 
 from ....sparing import ordinary
 from .records import DAMPED, LIGHT, make, random_record, transfer

@@ -1,0 +1,271 @@
+"""Whether channels are wired as stated: checked before a beam is blamed for what they say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..constants import GRAVITY, TURN
+from ..errors import InputError
+from ..laboratory.analysis.channels import BOX, Channels
+from ..laboratory.analysis.orders import measured_phase
+from ..laboratory.pieces import Floats
+from ..laboratory.record import SHORT_NAMES
+from ..laboratory.record_checks import CLIPPED, clipped_share
+from .orders import Complexes, RecordOrders, assembled_orders, sine_windows
+
+MAX_MODE = 1.8  # participation factor of a sensor
+MAINS = (50.0, 60.0)  # Hz
+HUM_WINDOW, HUM_AWAY, HUM_NEXT = 2.0, 5.0, (-3.0, -2.0, 2.0, 3.0)  # s, Hz, Hz
+HUM_ORDERS = (0.5, 1.0, 2.0, 3.0)
+JUMP_PERIODS = 2.0  # of the lowest frequency: stretches before and after a jump
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """Thresholds of the rule of :func:`wiring_notes`."""
+
+    low: float = 0.7  # of the resonance's frequency: up to it the response is fitted
+    fewest: int = 5  # windows there, else nothing is said of gains and delays
+    misfit: float = 0.15  # of the response: a fit that misses more says nothing
+    swapped: float = 4.0  # times better a fit describes the exchanged channels
+    scale: float = 2.5  # factor of the base's motion beyond which a sensor's scale is wrong
+    gravity: float = 0.12  # relative distance of a factor from 9.80665 that names the unit
+    delay: float = 1e-3  # s
+    clear: float = 7.5  # phase of a delay at the lowest frequency, over the misfit
+    dead: float = 0.05  # of the base's motion: a sensor without a resonance that moves less
+    floor: float = 3.0  # times the amplitude between the orders that a line is above
+    hum: float = 6.0  # amplitude of a mains line over that of the lines next to it
+    coherence: float = 0.8  # of that line from one window to the next
+    jump: float = 0.35  # rad of the base's phase
+    samples: float = 10.0  # in a period of the resonance
+
+
+SETTINGS = Settings()
+
+
+@dataclass(frozen=True)
+class Note:
+    """A doubt about a channel, and how to read the record where it is right."""
+
+    kind: str  # polarity, unit, scale, delay, swapped, dead, clipped, lost samples, hum, sampling
+    text: str
+
+
+def wiring_notes(channels: Channels, settings: Settings = SETTINGS) -> list[Note]:
+    """Return what is doubtful about the channels of a swept or stepped sine.
+
+    - Up to 0.7 of its resonance a sensor reads ``s exp(-i w t) (1 + G r^2/(1 - r^2))`` times the
+      base's order 1, with the ratio r of the frequencies: s < 0 is polarity, |s| near 9.8 or its
+      inverse a unit, |s| beyond 2.5 a scale, |t| above 1 ms, clearer than the misfit, a delay.
+    - Base and face are swapped where that describes the inverse of the response four times better;
+      a sensor is dead that moves less than 0.05 times the base, without a resonance.
+    - Samples are lost where the base's phase, continued from both sides, jumps by 0.35 rad.
+    - A line at 50 or 60 Hz is hum if it is 6 times its neighbours and keeps its phase, while the
+      orders are elsewhere.
+    - A channel is clipped by the rule of `clipped_share`; samples are few below ten in a period.
+    """
+    try:
+        orders = assembled_orders(channels, *sine_windows(channels))
+    except InputError:
+        return list(notes_without_sine(channels, settings))
+    notes = [note for row in orders.rows for note in sensor_notes(orders, row, settings)]
+    notes += clipped_notes(channels)
+    if any(note.kind == "swapped" for note in notes):
+        return notes  # the base is none
+    notes += lost_sample_notes(orders, settings)
+    notes += [
+        note for row in range(len(channels.names)) for note in hum_notes(orders, row, settings)
+    ]
+    samples = channels.sample_rate / orders.resonance
+    if samples < settings.samples:
+        text = (
+            f"{samples:.3g} samples in a period of {orders.resonance:.3g} Hz, the largest response"
+        )
+        notes.append(Note("sampling", f"{text}; expected {settings.samples:g} or more"))
+    return notes
+
+
+def notes_without_sine(channels: Channels, settings: Settings) -> Iterator[Note]:
+    """Yield notes on a record whose base has no sine: another column's may be the base's."""
+    base = channels.names.index(BOX)
+    for row, name in enumerate(channels.names):
+        if row == base:
+            continue
+        values = channels.values.copy()
+        values[[base, row]] = values[[row, base]]
+        try:
+            exchanged = replace(channels, values=values)
+            orders = assembled_orders(exchanged, *sine_windows(exchanged))
+        except InputError:
+            continue
+        face = SHORT_NAMES[name]
+        size = np.median(np.abs(orders.amplitude[row, 0]) / orders.level)
+        if is_heard(orders, row, settings) and size > settings.dead:
+            yield swapped_note(face)
+        else:
+            yield Note("dead", f"the base has no sine, {face} has one: is the base's cable dead?")
+    yield from clipped_notes(channels)
+
+
+# -- gains and delays -----------------------------------------------------------------------------
+
+
+def sensor_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator[Note]:
+    """Yield notes on a sensor against the base: dead, swapped, polarity, unit, scale, delay."""
+    name = SHORT_NAMES[orders.channels.names[row]]
+    response = orders.amplitude[row, 0] / orders.order(1.0, BOX)
+    size = np.abs(response)
+    usual = float(np.median(size))
+    flat = size.max() < settings.floor * usual
+    if not is_heard(orders, row, settings) or (usual < settings.dead and flat):
+        yield Note("dead", f"{name} moves {usual:.2g} times the base: is its cable dead?")
+        return
+    frequency = orders.windows.frequency
+    straight = LowResponse.fitted(frequency, response, settings)
+    inverse = LowResponse.fitted(frequency, 1.0 / response, settings)
+    if (
+        inverse
+        and inverse.misfit < settings.misfit
+        and (straight is None or straight.misfit > settings.swapped * inverse.misfit)
+    ):
+        yield swapped_note(name)
+    elif straight and straight.misfit < settings.misfit:
+        yield from straight.notes(name, settings)
+
+
+def is_heard(orders: RecordOrders, row: int, settings: Settings) -> bool:
+    """Return whether a channel's order 1 is above the floor in half of the windows."""
+    above = np.abs(orders.amplitude[row, 0]) > settings.floor * orders.floor[row]
+    return bool(above.mean() > 0.5)
+
+
+def swapped_note(face: str) -> Note:
+    """Return the note on exchanged channels."""
+    text = f"{face} moves as a base and the base as {face}: swapped? exchange both in columns="
+    return Note("swapped", text)
+
+
+@dataclass(frozen=True)
+class LowResponse:
+    """A response below the resonance: ``factor exp(-i w delay) (1 + G r^2/(1 - r^2))``."""
+
+    frequency: float  # lowest, Hz
+    factor: float
+    delay: float  # s
+    misfit: float  # root mean square, relative to the response
+
+    @classmethod
+    def fitted(
+        cls, frequency: Floats, response: Complexes, settings: Settings
+    ) -> LowResponse | None:
+        """Fit a response in the windows below its peak; None where there are too few."""
+        from scipy.optimize import least_squares
+
+        peak = frequency[int(np.argmax(np.abs(response)))]
+        low = frequency < settings.low * peak
+        if low.sum() < settings.fewest:
+            return None
+        hertz, measured = frequency[low], response[low]
+
+        def residuals(numbers: Floats) -> Floats:
+            """Return the relative residuals of factor, delay in ms, G and resonance over peak."""
+            factor, late, mode, ratio = numbers
+            square = (hertz / (ratio * peak)) ** 2
+            model = factor * np.exp(-1e-3j * TURN * hertz * late)
+            rest = model * (1.0 + mode * square / (1.0 - square)) / measured - 1.0
+            return np.concatenate([rest.real, rest.imag])
+
+        first = float(np.median(measured.real)) or 1.0
+        bounds = ([-np.inf, -12.0, 0.1, 0.75], [np.inf, 12.0, MAX_MODE, 1.25])
+        best = least_squares(residuals, (first, 0.0, 1.0, 1.0), bounds=bounds, x_scale="jac")
+        factor, late, *_ = best.x
+        misfit = float(np.sqrt(2.0 * best.cost / len(hertz)))
+        return cls(float(hertz.min()), float(factor), 1e-3 * float(late), misfit)
+
+    def notes(self, name: str, settings: Settings) -> Iterator[Note]:
+        """Yield notes on polarity, unit or scale, and delay, with what mends them."""
+        word, size = name.replace(" ", ""), abs(self.factor)
+        moves = f"{name} moves {self.factor:.2g} times the base at {self.frequency:.3g} Hz"
+        if self.factor < 0.0:
+            yield Note("polarity", f'{moves}: polarity? scale="{word}=-1"')
+        large = size > 1.0
+        if abs(np.log(size if large else 1.0 / size) - np.log(GRAVITY)) < settings.gravity:
+            one, other = ("m/s2", "g") if large else ("g", "m/s2")
+            mended = f'unit="{word}={one}", or unit="base={other}"'
+            yield Note("unit", f"{moves}: g in place of m/s2? {mended}")
+        elif not 1.0 / settings.scale < size < settings.scale:
+            yield Note("scale", f'{moves}: its scale? scale="{word}={1.0 / size:.2g}"')
+        phase = TURN * self.frequency * abs(self.delay)
+        if abs(self.delay) > settings.delay and phase > settings.clear * self.misfit:
+            late = word if self.delay > 0.0 else "base"
+            text = f"{name} comes {1e3 * self.delay:.2g} ms after the base: delay?"
+            yield Note("delay", f'{text} delay="{late}={abs(self.delay):.2g}"')
+
+
+# -- samples --------------------------------------------------------------------------------------
+
+
+def clipped_notes(channels: Channels) -> Iterator[Note]:
+    """Yield notes on channels that are saturated."""
+    for name, values in zip(channels.names, channels.values, strict=True):
+        if (share := clipped_share(values)) > CLIPPED:
+            text = f"{SHORT_NAMES[name]} is saturated in {100.0 * share:.2g} % of its samples"
+            yield Note("clipped", f"{text}: record it again with a wider range")
+
+
+def lost_sample_notes(orders: RecordOrders, settings: Settings) -> Iterator[Note]:
+    """Yield a note on the largest jump of the base's phase."""
+    from scipy.signal import fftconvolve
+
+    channels, windows = orders.channels, orders.windows
+    count = int(JUMP_PERIODS * channels.sample_rate / windows.frequency.min())
+    row = np.linalg.pinv(np.vander(np.arange(count) + 0.5, 2))[1]  # a line's value at its end
+    kernel = np.concatenate([row[::-1], -row])  # as a convolution: later less earlier samples
+    phase = measured_phase(channels)
+    jump = np.abs(fftconvolve(phase - phase.mean(), kernel, "same"))
+    inside = np.zeros(len(phase), bool)
+    for part in windows.parts:
+        inside[part] = True
+    inside[: 2 * count] = inside[-2 * count :] = False
+    jump = np.where(inside, jump, 0.0)
+    where = int(np.argmax(jump))
+    if jump[where] > settings.jump:
+        text = f"the base's phase jumps by {jump[where]:.2g} rad at {channels.time[where]:.4g} s"
+        yield Note("lost samples", f"{text}: are samples lost? cut the record there")
+
+
+def hum_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator[Note]:
+    """Yield a note on a line of the mains in a channel."""
+    channels = orders.channels
+    count = int(HUM_WINDOW * channels.sample_rate)
+    starts = np.arange(0, len(channels.time) - count, count)
+    middle = channels.time[starts] + 0.5 * HUM_WINDOW
+    swept = np.interp(middle, orders.windows.time, orders.windows.frequency)
+    for mains in MAINS:
+        away = (np.abs(np.outer(HUM_ORDERS, swept) - mains) > HUM_AWAY).all(axis=0)
+        if away.sum() < settings.fewest:
+            continue
+        lines = np.stack(
+            [line_amplitudes(channels, row, starts, count, mains + off) for off in (0.0, *HUM_NEXT)]
+        )
+        size = np.median(np.abs(lines[:, away]), axis=1)
+        pairs = away[1:] & away[:-1]
+        turned = (lines[0, 1:] * lines[0, :-1].conj())[pairs]
+        kept = abs(turned.sum()) / max(np.abs(turned).sum(), 1e-300)
+        if size[0] > settings.hum * size[1:].max() and kept > settings.coherence:
+            name = SHORT_NAMES[channels.names[row]]
+            text = f"{name} has a line of {size[0]:.2g} m/s2 at {mains:g} Hz, of the mains"
+            yield Note("hum", f"{text}: look for a loop of earth")
+
+
+def line_amplitudes(
+    channels: Channels, row: int, starts: Floats, count: int, hertz: float
+) -> Complexes:
+    """Return the complex amplitude of a line in windows with Hann weights, m/s2."""
+    weights = np.hanning(count) * 2.0 / np.hanning(count).sum()
+    turn = np.exp(-1j * TURN * hertz * channels.time)
+    values = channels.values[row] * turn
+    return np.array([weights @ values[begin : begin + count] for begin in starts.astype(int)])

@@ -1,0 +1,158 @@
+"""Channels as they are measured, made accelerations: units, sensitivities, scales, delays."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..constants import GRAVITY, TURN
+from ..errors import InputError
+from .pieces import Floats
+
+INCH = 0.0254
+ACCELERATIONS = {  # in m/s2
+    **dict.fromkeys(("m/s2", "m/s/s", "ms-2", "m/sec2", "ms2"), 1.0),
+    **dict.fromkeys(("g", "gn", "g0", "gs", "gpk", "gpeak"), GRAVITY),
+    "mg": 1e-3 * GRAVITY,
+    "mm/s2": 1e-3,
+    "cm/s2": 1e-2,
+    "gal": 1e-2,
+    "in/s2": INCH,
+    "ft/s2": 12.0 * INCH,
+}
+SPEEDS = {  # in m/s
+    **{"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "in/s": INCH},
+    **dict.fromkeys(("um/s", "\u00b5m/s", "\u03bcm/s"), 1e-6),
+}
+LENGTHS = {  # in m
+    **{"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": INCH, "mil": 1e-3 * INCH, "nm": 1e-9},
+    **dict.fromkeys(("um", "\u00b5m", "\u03bcm", "micron"), 1e-6),
+}
+VOLTAGES = {"v": 1.0, "mv": 1e-3, **dict.fromkeys(("uv", "\u00b5v", "\u03bcv"), 1e-6)}  # in V
+FORCES = {"n": 1.0, "kn": 1e3, "mn": 1e-3, "lbf": 4.4482216152605}  # in N
+MOTIONS = {0: "acceleration", 1: "velocity", 2: "displacement"}  # by derivatives to take
+OF_MOTIONS = {0: ACCELERATIONS, 1: SPEEDS, 2: LENGTHS}
+SENSITIVITY = re.compile(
+    r"(?P<number>[+-]?\d+(?:[.,]\d+)?)\s*(?P<volts>[mu\u00b5\u03bc]?V)/(?P<unit>.+)"
+)
+CALLED = {  # what options call the channels
+    **dict.fromkeys(("base", "box", "box_acceleration"), "box_acceleration"),
+    **dict.fromkeys(("face", "face1", "acceleration1"), "acceleration1"),
+    **dict.fromkeys(("face2", "acceleration2"), "acceleration2"),
+    "force": "force",
+}
+ByChannel = str | float | Mapping[str, Any] | None  # as an argument: of all, or by channel
+
+
+def plain_unit(text: str) -> str:
+    """Return a unit in the spelling of the tables of units.
+
+    Examples
+    --------
+    >>> plain_unit("m/s\u00b2"), plain_unit("M/S^2"), plain_unit("m/s**2"), plain_unit(" G ")
+    ('m/s2', 'm/s2', 'm/s2', 'g')
+    """
+    plain = text.strip().lower().replace("\u00b2", "2").replace("\u207b", "-")
+    return plain.translate(str.maketrans("", "", "^*_. \u00b7[]()"))
+
+
+def by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[str, Any]:
+    """Return an argument by channel: of all, a mapping, or a text ``base=V,face=mm/s``.
+
+    Examples
+    --------
+    >>> by_channel("unit", "face=mm/s, base=V", ["box_acceleration", "acceleration1"])
+    {'acceleration1': 'mm/s', 'box_acceleration': 'V'}
+    """
+    if argument is None:
+        return {}
+    if isinstance(argument, str) and "=" in argument:
+        argument = dict(part.split("=", 1) for part in argument.split(",") if "=" in part)
+    if not isinstance(argument, Mapping):
+        return dict.fromkeys(channels, argument)
+    values = {}
+    for key, value in argument.items():
+        plain = CALLED.get(str(key).strip().lower().replace(" ", ""), "")
+        if plain not in channels:
+            text = f"expected {', '.join(word for word, one in CALLED.items() if one in channels)}"
+            raise InputError(f"{name}: no channel {key!r}; {text}")
+        values[plain] = value.strip() if isinstance(value, str) else value
+    return values
+
+
+def number_by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[str, float]:
+    """Return numbers by channel; raise for one that is no finite number, or 0."""
+    numbers = {}
+    for channel, value in by_channel(name, argument, channels).items():
+        try:
+            numbers[channel] = float(value)
+        except (TypeError, ValueError):
+            numbers[channel] = math.nan
+        if not math.isfinite(numbers[channel]) or numbers[channel] == 0.0:
+            raise InputError(f"{name} = {argument!r}: expected numbers other than 0")
+    return numbers
+
+
+def unit_factor(label: str, unit: str, sensitivity: str = "") -> tuple[float, int]:
+    """Return the factor from a column's unit to SI, and how many derivatives make acceleration.
+
+    Examples
+    --------
+    >>> unit_factor("face", "mm/s"), unit_factor("base", "mV", "100 mV/m/s2")
+    ((0.001, 1), (0.01, 0))
+    """
+    plain = plain_unit(unit)
+    if plain in VOLTAGES or (not plain and sensitivity):
+        return tuple_of_sensitivity(label, unit or "V", sensitivity)
+    for derivatives, known in OF_MOTIONS.items():
+        if plain in known:
+            return known[plain], derivatives
+    text = f"unit = {unit!r}" if unit else "no unit"
+    expected = "expected one such as m/s2, g, mm/s, um, V: give it by unit="
+    raise InputError(f"{label}: {text}; {expected}")
+
+
+def tuple_of_sensitivity(label: str, unit: str, sensitivity: str) -> tuple[float, int]:
+    """Return the factor of a voltage by its sensitivity, such as ``100 mV/g``."""
+    expected = "expected one such as 100 mV/g or 50 mV/(mm/s): give it by sensitivity="
+    if not sensitivity:
+        raise InputError(f"{label}: in {unit}, without a sensitivity; {expected}")
+    parts = SENSITIVITY.fullmatch(sensitivity.strip())
+    unit_below = plain_unit(parts["unit"]) if parts else ""
+    derivatives = next((n for n, known in OF_MOTIONS.items() if unit_below in known), None)
+    number = float(parts["number"].replace(",", ".")) if parts else 0.0
+    if parts is None or derivatives is None or not number:
+        raise InputError(f"{label}: sensitivity {sensitivity!r}; {expected}")
+    volts = number * VOLTAGES[plain_unit(parts["volts"])]
+    return VOLTAGES[plain_unit(unit)] * OF_MOTIONS[derivatives][unit_below] / volts, derivatives
+
+
+def differentiated(values: Floats, rate: float, derivatives: int, delay: float = 0.0) -> Floats:
+    """Return a channel's derivative of an order, earlier by a delay in s, by its spectrum.
+
+    The straight line between its ends is taken out, and the rest is continued oddly at both ends:
+    its spectrum has no jump there, and every frequency below half the sampling rate is exact.
+
+    Examples
+    --------
+    >>> time = np.arange(2000) / 1000.0
+    >>> made = differentiated(np.sin(300.0 * time), 1000.0, 1)
+    >>> bool(np.abs(made - 300.0 * np.cos(300.0 * time))[20:-20].max() < 1.0)
+    True
+    """
+    from scipy.fft import irfft, rfft, rfftfreq
+
+    if not derivatives and not delay:
+        return values
+    slope = (values[-1] - values[0]) / (len(values) - 1) * rate
+    time = np.arange(len(values)) / rate
+    rest = values - values[0] - slope * time
+    odd = np.concatenate([rest, -rest[-2:0:-1]])
+    turn = TURN * rfftfreq(len(odd), 1.0 / rate)
+    made = irfft((1j * turn) ** derivatives * np.exp(1j * turn * delay) * rfft(odd), len(odd))
+    line = {0: values[0] + slope * (time + delay), 1: np.full(len(values), slope)}
+    return np.asarray(made[: len(values)] + line.get(derivatives, 0.0))

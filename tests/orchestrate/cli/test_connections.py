@@ -1,0 +1,135 @@
+"""Drives that cannot be connected as the command has it: a line each, and nothing written."""
+
+import re
+import zipfile
+
+import pytest
+
+from orchestrate import cli
+from tests.orchestrate.weak_drive.drives.linear import draw
+
+A, F = "box_acceleration=acc", "box_force=force"
+RUN = ("--duration", "0.1", "--step", "0.01", "--plot", "none")
+NAMES = ("force", "command", "acc", "pos", "vel")
+
+
+@pytest.fixture(scope="module")
+def drives(exported, tmp_path_factory):
+    """FMUs by what is odd about them."""
+    folder = tmp_path_factory.mktemp("drives")
+    drive = draw(0)
+    plain = type(drive)(drive.a, drive.b, drive.c, drive.d, NAMES).write(folder, "plain")
+    changes = {
+        "units": (
+            "<ModelVariables>",
+            '<UnitDefinitions><Unit name="mm"><BaseUnit m="1" factor="0.001"/></Unit>'
+            '<Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit></UnitDefinitions>'
+            "<ModelVariables>",
+        ),
+        "single": ('<Float64 name="acc"', '<Float32 name="acc"'),
+        "whole": (
+            '<Float64 name="force" valueReference="30" causality="input" variability="continuous"',
+            '<Int32 name="force" valueReference="30" causality="input" variability="discrete"',
+        ),
+        "text": (
+            '<Float64 name="vel" valueReference="42" causality="output" variability="continuous"',
+            '<String name="vel" valueReference="42" causality="output" variability="discrete"',
+        ),
+        "equal": ('StepSize="true"', 'StepSize="false"'),
+        "exchange": ("CoSimulation modelIdentifier", "ModelExchange modelIdentifier"),
+        "first": ('fmiVersion="3.0"', 'fmiVersion="1.0"'),
+        "broken": ("<ModelVariables>", "<ModelVariables"),
+        "unbound": ('modelIdentifier="linear"', 'modelIdentifier="other"'),
+    }
+    with zipfile.ZipFile(plain) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    text = files["modelDescription.xml"].decode()
+    for name, (old, new) in changes.items():
+        assert old in text
+        changed = text.replace(old, new)
+        if name == "units":
+            changed = changed.replace('name="acc"', 'name="acc" unit="mm"')
+            changed = changed.replace('name="force"', 'name="force" unit="N"')
+        if name == "exchange":
+            changed = re.sub(r"canHandleVariableCommunicationStepSize=\S+ ", "", changed)
+        with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
+            for path, content in files.items():
+                archive.writestr(path, changed if path == "modelDescription.xml" else content)
+    (folder / "notes.fmu").write_text("no archive")
+    (folder / "column.csv").write_text("time,volts\n0,1\n1,two\n")
+    (folder / "back.csv").write_text("0,1\n2,1\n1,1\n")
+    return folder
+
+
+BAD = {  # options, and what the line says
+    "nothing": ("plain", [], "connect: nothing alone"),
+    "no force": ("plain", [A], "and box_force"),
+    "no motion": ("plain", [F], "box_acceleration"),
+    "our name": ("plain", [A, F, "box_speed=vel"], "box_speed is none of our names"),
+    "our name, nearly": ("plain", ["box_acceleratoin=acc", F], "did you mean box_acceleration"),
+    "their name": ("plain", ["box_acceleration=ac", F], "did you mean acc"),
+    "their name, of no kind": ("plain", ["box_acceleration=zzzz", F], "no variable 'zzzz'"),
+    "no name": ("plain", ["box_acceleration=", F], "box_acceleration="),
+    "only a sign": ("plain", ["box_acceleration=-", F], "no variable ''"),
+    "two signs": ("plain", ["box_acceleration=--acc", F], "no variable '-acc'"),
+    "no pair": ("plain", ["acc", F], "acc"),
+    "twice": ("plain", [A, "box_acceleration=vel", F], "box_acceleration"),
+    "input as motion": ("plain", ["box_acceleration=command", F], "causality input"),
+    "parameter as motion": ("plain", ["box_acceleration=p0", F], "causality parameter"),
+    "output as force": ("plain", [A, "box_force=pos"], "causality output"),
+    "one variable twice": ("plain", [A, F, "box_force_1=force"], "force is connected twice"),
+    "derivative alone": ("plain", [A, "box_force_1=force"], "and box_force"),
+    "unit": ("units", [A, F], "acc of the FMU Linear is in mm"),
+    "single precision": ("single", [A, F], "double precision"),
+    "whole number": ("whole", [A, F], "double precision"),
+    "a text": ("text", ["box_velocity=vel", F], "double precision"),
+    "record a text": ("text", [A, F, "--record", "vel"], "vel of the FMU Linear is String"),
+    "record what is not": ("plain", [A, F, "--record", "amperes"], "no variable 'amperes'"),
+    "parameter that is not": ("plain", [A, F, "--parameter", "p30=1"], "did you mean p"),
+    "parameter of no number": ("plain", [A, F, "--parameter", "p3=big"], "p3=big"),
+    "parameter infinite": ("plain", [A, F, "--parameter", "p3=inf"], "p3"),
+    "parameter that is an output": (
+        "plain",
+        [A, F, "--parameter", "pos=1"],
+        "has no start value",
+    ),
+    "input that is not": ("plain", [A, F, "--input", "volts=1"], "no variable 'volts'"),
+    "input that is an output": ("plain", [A, F, "--input", "pos=1"], "causality output"),
+    "input that is connected": (
+        "plain",
+        [A, F, "--input", "force=1"],
+        "force is connected",
+    ),
+    "input of no file": ("plain", [A, F, "--input", "command=no.csv"], "no.csv: cannot be read"),
+    "input of no numbers": ("plain", [A, F, "--input", "command=column.csv"], "line 3"),
+    "input backwards": ("plain", [A, F, "--input", "command=back.csv"], "back.csv"),
+    "step of zero": ("plain", [A, F, "--step", "0"], "step = 0.0 s"),
+    "duration below zero": ("plain", [A, F, "--duration", "-1"], "duration"),
+    "too many steps": ("plain", [A, F, "--step", "1e-12"], "duration/step"),
+    "a rest of a step": ("equal", [A, F, "--step", "0.03"], "takes steps of one length alone"),
+    "a start through itself": ("plain", [A, F, "--start", "1,0,0,0"], "start"),
+    "no co-simulation": ("exchange", [A, F], "co-simulation"),
+    "FMI 1.0": ("first", [A, F], "first.fmu"),
+    "no XML": ("broken", [A, F], "broken.fmu"),
+    "no archive": ("notes", [A, F], "notes.fmu"),
+    "no file": ("nowhere", [A, F], "nowhere.fmu"),
+    "no binary": ("unbound", [A, F], "unbound.fmu"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_cannot_be_connected_is_a_line(drives, tmp_path, monkeypatch, capsys, name):
+    fmu, options, words = BAD[name]
+    links = [one for one in options if "box_" in one or one == "acc"]
+    more = options[len(links) :]
+    if more[:1] == ["--input"]:
+        key, _, value = more[1].partition("=")
+        more[1] = f"{key}={drives / value}" if value.endswith(".csv") else more[1]
+    monkeypatch.chdir(tmp_path)
+    line = ["cosimulate", "--structure", "beam", "--drive", str(drives / f"{fmu}.fmu"), *RUN]
+    code = cli.main([*line, *(["--connect", *links] if links else []), *more])
+    done = capsys.readouterr()
+    text = done.err.splitlines()[-1] if done.err else ""
+    assert code == 2 and text.startswith("error: ") and words in text, (code, done.err)
+    assert "Traceback" not in done.err and done.err.count("error:") == 1
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]

@@ -1,0 +1,132 @@
+"""A shaker's table held at a level: against the linear response, and what impacts make of it."""
+
+import math
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate.errors import InputError
+from orchestrate.weak_drive import cosimulate
+
+HALVES = {"m1": 0.10, "m2": 0.08, "f1": 42.0, "f2": 55.0, "zeta1": 0.02, "zeta2": 0.02, "e": 0.6}
+BEAM = orchestrate.Structure.from_halves(**HALVES)
+SHAKER = orchestrate.Shaker.from_file("shaker_100N").replace(table_mass=0.4)
+LEVEL = 4.0
+STEPS = orchestrate.SteppedSine(
+    frequencies=(40.0, 46.0), acceleration=LEVEL, settle_cycles=120, measured_cycles=40
+)
+
+
+def impedance(shaker, structure, frequency):
+    """Command and current for a unit acceleration of the table, as complex amplitudes."""
+    s, n = 2j * math.pi * frequency, structure
+    m, d, k = n.m1 + n.m2, n.d1 + n.d2, n.k1 + n.k2
+    force = (d * s + k) * -m / (m * s**2 + d * s + k)  # of the beam on the table
+    y = 1.0 / s**2
+    own = shaker.table_mass + (shaker.suspension_damping * s + shaker.suspension_stiffness) * y
+    current = (own - force) / shaker.force_factor
+    coil = shaker.coil_resistance + s * shaker.coil_inductance
+    return current * coil + shaker.force_factor * s * y, current
+
+
+def fundamental(run, name, window, sine):
+    """Complex amplitude of a signal over a measured part."""
+    part = run.sel(time=slice(*window))
+    phase = sine.phase(part.time.values)
+    basis = np.column_stack([np.sin(phase), np.cos(phase), np.ones(len(phase))])
+    a, b, _ = np.linalg.lstsq(basis, part[name].values, rcond=None)[0]
+    return complex(a, b)
+
+
+@pytest.fixture(scope="module")
+def runs(exported):
+    structures = {"bonded": BEAM.as_bonded(), "delaminated": BEAM}
+    run = {"shaker": SHAKER, "progress": False}
+    return {name: orchestrate.shake(one, STEPS, **run) for name, one in structures.items()}
+
+
+def test_the_level_is_held_and_the_current_is_that_of_the_linear_system(runs):
+    for window, frequency in zip(STEPS.measured_times(), STEPS.frequencies, strict=True):
+        table, current, voltage = (
+            fundamental(runs["bonded"], name, window, STEPS)
+            for name in ("box_acceleration", "current", "voltage")
+        )
+        expected = impedance(SHAKER, BEAM, frequency)
+        assert abs(table) == pytest.approx(LEVEL, rel=0.02)
+        assert voltage / table == pytest.approx(expected[0], rel=2e-3)
+        assert current / table == pytest.approx(expected[1], rel=2e-3)
+
+
+def test_impacts_send_harmonics_into_the_table(runs):
+    tables = {}
+    for name, run in runs.items():
+        phase = STEPS.phase(run.time.values)
+        last = slice(*STEPS.measured_times()[1])
+        doubled = run.assign_coords(phase=("time", 2.0 * phase)).sel(time=last)
+        turns = np.exp(-1j * doubled.phase)
+        tables[name] = 2.0 * abs(complex((doubled.box_acceleration * turns).mean())) / LEVEL
+        assert np.isnan(run.control_aborted)
+    assert tables["bonded"] < 1e-3 and tables["delaminated"] > 0.05
+    assert runs["delaminated"].sizes["impact"] > 200
+
+
+@pytest.mark.usefixtures("exported")
+def test_it_aborts_where_the_amplifier_cannot():
+    weak = SHAKER.replace(voltage_limit=0.05)
+    run = orchestrate.shake(BEAM, STEPS, shaker=weak, progress=False)
+    end = float(run.control_aborted)
+    assert 100.0 < 40.0 * end < 125.0  # periods of `rise` and `patience`
+    assert abs(run.voltage.sel(time=slice(end + 0.01, None))).max() == 0.0
+    assert abs(run.voltage).max() == pytest.approx(0.05, rel=0.01)
+
+
+def test_the_command_of_a_rigid_load_is_that_of_the_equations():
+    rigid = BEAM.replace(k1=1e9, k2=1e9, d1=0.0, d2=0.0)
+    for shaker in (SHAKER, SHAKER.replace(current_control=True)):
+        voltage, current = impedance(shaker, rigid, 40.0)
+        command = abs(current if shaker.current_control else voltage)
+        assert shaker.command_for(2.0, 40.0, 0.18) == pytest.approx(2.0 * command, rel=1e-4)
+
+
+@pytest.mark.usefixtures("exported")
+def test_a_controlled_run_resumes_with_the_same_bits(monkeypatch):
+    control = orchestrate.LevelControl(sine=STEPS, start=0.05)
+    run = {"inputs": {"command": control}, "duration": 0.4, "step": 1e-3, "record": ["current"]}
+    run |= {"progress": False}
+    whole = orchestrate.cosimulate(BEAM, SHAKER, **run)
+    monkeypatch.setattr(cosimulate.CosimulateJob, "chunk_size", 57)
+    parts = orchestrate.cosimulate(BEAM, SHAKER, **run)
+    for name in ("x1", "current", "box_acceleration", "coupling_error"):
+        assert parts[name].values.tobytes() == whole[name].values.tobytes(), name
+    assert float(abs(whole.box_acceleration).max()) > 0.1 * LEVEL
+
+
+SINE = {"sine": STEPS, "start": 0.1}
+WRONG = {
+    "sine = 3: expected": {**SINE, "sine": 3},
+    "start = 0.0": {**SINE, "start": 0.0},
+    "limit = 0.05: expected at least start": {**SINE, "limit": 0.05},
+    "fastest = 1.0: expected a factor > 1": {**SINE, "fastest": 1.0},
+    "patience = -1": {**SINE, "patience": -1.0},
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_mistakes(text):
+    with pytest.raises(InputError, match=text):
+        orchestrate.LevelControl(**WRONG[text])
+
+
+@pytest.mark.usefixtures("exported")
+def test_what_cannot_be_controlled():
+    shock = orchestrate.Shock(peak=10.0, length=0.011)
+    with pytest.raises(InputError, match="on a shaker: expected a SweptSine"):
+        orchestrate.shake(BEAM, shock, shaker=SHAKER)
+    with pytest.raises(InputError, match="shaker = 3: expected a Shaker"):
+        orchestrate.shake(BEAM, STEPS, shaker=3)
+    control = orchestrate.LevelControl(**SINE)
+    names = {"box_velocity": "box_velocity", "box_force": "box_force"}
+    run = {"inputs": {"command": control}, "duration": 0.4, "step": 1e-3}
+    with pytest.raises(InputError, match="command is controlled; connect box_acceleration"):
+        orchestrate.cosimulate(BEAM, SHAKER, connect=names, **run)

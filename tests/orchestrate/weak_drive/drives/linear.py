@@ -1,0 +1,162 @@
+"""Linear drives of somebody else: random ones, their FMUs of FMI 3.0, and the truth about them."""
+
+import functools
+import math
+import random
+import subprocess
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from fmpy import platform_tuple, sharedLibraryExtension
+from scipy.integrate import solve_ivp
+
+SOURCE = Path(__file__).with_suffix(".c")
+SIZE = 4
+
+
+@dataclass(frozen=True)
+class LinearDrive:
+    """``x' = A x + B u``, u: force, command; acceleration ``C x + D u``; x: position, velocity."""
+
+    a: np.ndarray
+    b: np.ndarray
+    c: np.ndarray
+    d: np.ndarray
+    names: tuple[str, ...] = ("force", "command", "acceleration", "position", "velocity")
+    signs: tuple[int, int] = (1, 1)  # of the force that it takes, and of its acceleration
+    has_states: bool = False
+
+    @property
+    def parameters(self):
+        """Start values by the names in the FMU, with the signs of what it takes and gives."""
+        force, acceleration = self.signs
+        b, d = self.b * (force, 1), self.d * (force, 1) * acceleration
+        values = (self.a, b, self.c * acceleration, d)
+        numbers = np.concatenate([np.ravel(part) for part in values])
+        return {f"p{i}": float(value) for i, value in enumerate(numbers)}
+
+    @property
+    def connect(self):
+        """Names of theirs by ours."""
+        force, acceleration = ("-" if sign < 0 else "" for sign in self.signs)
+        return {
+            "box_force": force + self.names[0],
+            "box_acceleration": acceleration + self.names[2],
+        }
+
+    def write(self, folder, name="Linear"):
+        """Write the FMU."""
+        flag = str(self.has_states).lower()
+        rows = [(f"p{i}", i, "parameter", "fixed", 'start="0"') for i in range(30)]
+        force, command, *outputs = self.names
+        rows += [(force, 30, "input", "continuous", 'start="0"')]
+        rows += [(command, 31, "input", "continuous", 'start="0"')]
+        rows += [(one, 40 + i, "output", "continuous", "") for i, one in enumerate(outputs)]
+        rows += [("time", 99, "independent", "continuous", "")]
+        variables = "".join(
+            f'<Float64 name="{n}" valueReference="{i}" causality="{c}" variability="{v}" {start}/>'
+            for n, i, c, v, start in rows
+        )
+        structure = "".join(f'<Output valueReference="{40 + i}"/>' for i in range(len(outputs)))
+        text = (
+            '<?xml version="1.0"?><fmiModelDescription fmiVersion="3.0" modelName="Linear" '
+            'instantiationToken="1"><CoSimulation modelIdentifier="linear" '
+            f'canHandleVariableCommunicationStepSize="true" canGetAndSetFMUState="{flag}" '
+            f'canSerializeFMUState="{flag}"/><ModelVariables>{variables}</ModelVariables>'
+            f"<ModelStructure>{structure}</ModelStructure></fmiModelDescription>"
+        )
+        path = Path(folder) / f"{name}.fmu"
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("modelDescription.xml", text)
+            library = compiled(Path(folder))
+            archive.write(library, f"binaries/{platform_tuple}/{library.name}")
+        return path
+
+
+@functools.cache
+def compiled(folder):
+    """The library of all linear drives."""
+    path = folder / f"linear{sharedLibraryExtension}"
+    line = ["cc", "-O2", "-shared", "-fPIC", "-o", path, SOURCE, "-lm"]
+    subprocess.run([*map(str, line)], check=True)
+    return path
+
+
+def draw(seed):
+    """A random drive: a table on a suspension, a coil or other lag, a filter before the force."""
+    rng, words = np.random.default_rng(seed), random.Random(seed)
+    mass, lag, filtered = rng.uniform(2.0, 8.0), rng.uniform(0.01, 0.1), bool(seed % 2)
+    frequency, damping = rng.uniform(5.0, 30.0), rng.uniform(0.02, 0.3)
+    a, b, c, d = np.zeros((SIZE, SIZE)), np.zeros((SIZE, 2)), np.zeros(SIZE), np.zeros(2)
+    c[:3] = -(frequency**2), -2.0 * damping * frequency, rng.uniform(5.0, 20.0) / mass
+    a[3, 3], b[3, 0] = -1.0 / lag, 1.0 / lag
+    if filtered:  # the force acts late: no direct feedthrough
+        c[3] = 1.0 / mass
+    else:
+        d[0] = 1.0 / mass
+    a[0, 1], a[1], b[1] = 1.0, c, d
+    a[2, 1], a[2, 2] = -rng.uniform(10.0, 100.0), -rng.uniform(20.0, 100.0)
+    b[2, 1] = rng.uniform(10.0, 40.0)
+    letters = "abcdefghijklmnopqrstuvwxyz_"
+    names = {"".join(words.choices(letters, k=words.randint(3, 9))) + str(i) for i in range(5)}
+    signs = words.choice((1, -1)), words.choice((1, -1))
+    return LinearDrive(a, b, c, d, tuple(sorted(names)), signs, has_states=seed % 3 == 0)
+
+
+def together(drive, s, command, times):
+    """Displacements of both masses and the number of impacts, with the drive as one system."""
+
+    def rates(time, state):
+        x1, x2, v1, v2, *x = state
+        u = np.array([s.k1 * x1 + s.d1 * v1 + s.k2 * x2 + s.d2 * v2, command(time)])
+        box = float(drive.c @ x + drive.d @ u)
+        a1 = -(s.k1 * x1 + s.d1 * v1) / s.m1 - box
+        a2 = -(s.k2 * x2 + s.d2 * v2) / s.m2 - box
+        return [v1, v2, a1, a2, *(drive.a @ x + drive.b @ u)]
+
+    def gap(time, state):
+        return state[1] - state[0]
+
+    gap.terminal, gap.direction = True, -1
+    time, state, impacts, rows = 0.0, np.zeros(4 + len(drive.c)), 0, {0.0: (0.0, 0.0)}
+    # both masses are pressed together at first: they are let apart where they part, a step later
+    state[1] = 1e-14
+    while time < times[-1]:
+        done = solve_ivp(
+            rates,
+            (time, times[-1]),
+            state,
+            method="DOP853",
+            rtol=1e-11,
+            atol=1e-14,
+            events=gap,
+            t_eval=times[time + 1e-12 < times],
+            max_step=0.01,
+        )
+        rows |= dict(zip(np.round(done.t, 9), done.y[:2].T, strict=True))
+        if not done.t_events[0].size:
+            break
+        time, state = done.t_events[0][0], done.y_events[0][0].copy()
+        closing = state[2] - state[3]
+        impulse = (1.0 + s.e) * s.m1 * s.m2 / (s.m1 + s.m2) * closing
+        state[2] -= impulse / s.m1
+        state[3] += impulse / s.m2
+        state[1] = state[0] + 1e-15
+        impacts += closing > 1e-9
+    return np.array([rows[time] for time in np.round(times, 9)]), impacts
+
+
+def table_drive(n):
+    """The shaker of :mod:`.table` in this form."""
+    c = np.array([-n["stiffness"], -n["damping"], n["bl"]]) / n["mass"]
+    d = np.array([1.0 / n["mass"], 0.0])
+    a = np.array([[0.0, 1.0, 0.0], c, [0.0, -n["bl"] / n["l"], -n["r"] / n["l"]]])
+    b = np.array([[0.0, 0.0], d, [0.0, 1.0 / n["l"]]])
+    return LinearDrive(a, b, c, d)
+
+
+def sine(amplitude=20.0, rate=26.0):
+    """A command over time."""
+    return lambda time: amplitude * math.sin(rate * time)
