@@ -98,6 +98,7 @@ def test_a_pressed_delamination_stays_shut_below_a_level_and_knocks_above_it():
 HILL = (36.2, 47.0)  # Hz, as the page says it of the diagram
 
 
+@pytest.mark.slow
 def test_at_the_level_where_it_is_shut_the_pressed_beam_opens_on_its_hill_alone():
     """Over the frequencies of the step's diagram, closely at the ends of the hill."""
     stop = STOPS["pressed"]
@@ -155,6 +156,7 @@ def test_each_stop_is_a_link_that_opens_its_motion(browser):
     assert not browser.run("return document.querySelectorAll('#tour a[aria-current]').length")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("frequency", "length", "acceleration", "text", "labels"),
     [
