@@ -1,5 +1,8 @@
 """Results larger than memory: read, summed and written in blocks, with the same contents."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -62,3 +65,19 @@ def test_blocks_make_up_an_array_in_its_order(tmp_path, small, shape):
     assert all(len(part) <= 400 for part in parts)
     data = xr.Dataset({"x": ([f"d{i}" for i in range(len(shape))], values)})
     assert store.load(store.write_netcdf(data, tmp_path / "a.nc")).equals(data)
+
+
+IMPORTING = """
+import threading
+from orchestrate.running.blocks import lazy_rows
+from orchestrate.running.runner import import_xarray
+thread = threading.Thread(target=import_xarray)
+thread.start()
+{pause}
+lazy_rows((3,), 2, None)
+"""
+
+
+def test_another_thread_may_be_importing_xarray():
+    for pause in ("", "__import__('time').sleep(0.3)"):
+        subprocess.run([sys.executable, "-c", IMPORTING.format(pause=pause)], check=True)
