@@ -158,7 +158,7 @@ def time_question(checkout: Path, question: str) -> tuple[float, float]:
     return float(busy), float(elapsed)
 
 
-def compare_versions(before: Path, scale: float, rounds: int) -> None:
+def compare_versions(before: Path, scale: float, rounds: int, only: str) -> None:
     """Print times of this version and of another checkout, measured in turn, and their ratios."""
     checkouts = Path(__file__).parents[1], before
     fmus = [path / "build" / "fmi3" / f"{OSCILLATOR}.fmu" for path in checkouts]
@@ -173,6 +173,8 @@ def compare_versions(before: Path, scale: float, rounds: int) -> None:
     measures["a step without impact, from C"] = lambda i: (c_host.time_quiet_step(fmus[i]),)
     print(f"{'':32}{'processor: now':>16}{'before':>12}{'ratio':>8}{'elapsed: ratio':>16}")
     for name, measure in measures.items():
+        if only not in name:
+            continue
         times = np.array([[measure(0), measure(1)] for _ in range(rounds)]).min(axis=0)
         ratios, (unit, factor) = (
             times[0] / times[1],
@@ -214,10 +216,13 @@ def main() -> None:
     parser.add_argument("--once", nargs=3, metavar=("FMU", "ETA", "PERIODS"), help="seconds of one")
     parser.add_argument("--before", type=Path, metavar="CHECKOUT", help="another version's clone")
     parser.add_argument("--scale", type=float, default=1.0, help="of the questions' sizes")
+    parser.add_argument("--only", default="", help="rows whose name contains this")
     parser.add_argument("--rounds", type=int, default=3, help="the shortest of so many counts")
     arguments = parser.parse_args()
     if arguments.before:
-        compare_versions(arguments.before.resolve(), arguments.scale, arguments.rounds)
+        compare_versions(
+            arguments.before.resolve(), arguments.scale, arguments.rounds, arguments.only
+        )
     elif arguments.once:
         fmu, eta, count = arguments.once
         print(time_periods(fmu, float(eta), int(count))[0])

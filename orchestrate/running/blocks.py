@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,7 @@ def lazy_rows(
 
     ``read`` returns the rows (n, width) of given numbers, counted along the leading axes.
     """
+    import_module("xarray")  # whole before its parts: another thread may be importing it
     from xarray.backends import BackendArray
     from xarray.core import indexing
 

@@ -2,6 +2,7 @@
 
 import sys
 from functools import partial
+from pathlib import Path
 
 import pytest
 
@@ -24,6 +25,15 @@ def test_one_measurement_in_a_process_of_its_own(exported, capsys, monkeypatch):
     monkeypatch.setattr(sys, "argv", ["benchmark", "--once", str(fmu), "1.0", "1"])
     benchmark.main()
     assert float(capsys.readouterr().out) > 0.0
+
+
+def test_a_version_is_as_fast_as_itself(exported, capsys, monkeypatch):
+    root = str(Path(benchmark.__file__).parents[1])
+    options = ["--before", root, "--scale", "0.05", "--rounds", "1", "--only", "simulate"]
+    monkeypatch.setattr(sys, "argv", ["benchmark", *options])
+    benchmark.main()
+    row = capsys.readouterr().out.splitlines()[1]
+    assert row.startswith("simulate") and 0.1 < float(row.split()[-2]) < 10.0
 
 
 PAPER = Structure.nondimensional(e=0.7, D=0.005, kappa=1.2)

@@ -1,5 +1,8 @@
 """Results larger than memory: read, summed and written in blocks, with the same contents."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,7 +14,8 @@ from orchestrate.running import blocks, store
 
 PAPER = Structure.nondimensional()
 SHORT = {"transient": 5, "samples": 20, "progress": False, "jobs": 1}
-ETAS = np.append(np.linspace(1.0, 2.0, 120), [0.9, 0.5])  # two chunks, not in order
+FREQUENCIES = np.append(np.linspace(1.0, 2.0, 120), [0.9, 0.5])  # two chunks, not in order
+BOX = {"frequency": FREQUENCIES, "amplitude": 0.5}
 
 
 @pytest.fixture
@@ -34,23 +38,23 @@ def small(monkeypatch):
 
 @pytest.mark.parametrize("direction", ["down", "both", "given"])
 def test_a_sweep_in_blocks_is_that_of_memory(exported, tmp_path, small, direction):
-    arguments = {"eta": ETAS, "direction": direction, **SHORT}
+    arguments = {"direction": direction, **BOX, **SHORT}
     whole = sweep(PAPER, **arguments)
     assert not small
     for _ in range(2):  # computed, and read again
         stored = sweep(PAPER, store=tmp_path / "a.nc", **arguments)
         assert stored.equals(whole) and stored.xi_rel.attrs == whole.xi_rel.attrs
-    assert small and max(small) <= 20 and sum(small) >= 2 * len(ETAS)
+    assert small and max(small) <= 20 and sum(small) >= 2 * len(FREQUENCIES)
 
 
 def test_a_damaged_block_is_seen(exported, tmp_path, small):
     path = tmp_path / "a.nc"
-    sweep(PAPER, eta=ETAS, store=path, **SHORT).close()
+    sweep(PAPER, store=path, **BOX, **SHORT).close()
     data = xr.load_dataset(path)
     data.xi_rel[7, 3] += 1e-12
     data.to_netcdf(path)
     with pytest.raises(StoreError, match="checksum"):
-        sweep(PAPER, eta=ETAS, store=path, **SHORT)
+        sweep(PAPER, store=path, **BOX, **SHORT)
 
 
 @pytest.mark.parametrize("shape", [(), (0,), (7, 3), (5000,), (30, 50), (3, 41, 20), (900, 2, 3)])
@@ -61,3 +65,19 @@ def test_blocks_make_up_an_array_in_its_order(tmp_path, small, shape):
     assert all(len(part) <= 400 for part in parts)
     data = xr.Dataset({"x": ([f"d{i}" for i in range(len(shape))], values)})
     assert store.load(store.write_netcdf(data, tmp_path / "a.nc")).equals(data)
+
+
+IMPORTING = """
+import threading
+from orchestrate.running.blocks import lazy_rows
+from orchestrate.running.runner import import_xarray
+thread = threading.Thread(target=import_xarray)
+thread.start()
+{pause}
+lazy_rows((3,), 2, None)
+"""
+
+
+def test_another_thread_may_be_importing_xarray():
+    for pause in ("", "__import__('time').sleep(0.3)"):
+        subprocess.run([sys.executable, "-c", IMPORTING.format(pause=pause)], check=True)
