@@ -11,6 +11,7 @@ module                    idea
 :mod:`.shock`             a classical pulse
 :mod:`.sampled`           a record played again
 :mod:`.shake`             time histories and impacts under any of these
+:mod:`.level_control`     the same on a shaker whose table is held at a level
 :mod:`.reconstruction`    what the masses do between the samples of a history
 :mod:`.analog_filter`     the exact response of an analogue filter
 :mod:`.sensors`           what accelerometers read of a history
