@@ -12,7 +12,6 @@ module                    idea
 :mod:`.sampled`           a record played again
 :mod:`.level_control`     a sine whose level a controller holds, on a shaker
 :mod:`.shake`             time histories and impacts under any of these
-:mod:`.level_control`     the same on a shaker whose table is held at a level
 :mod:`.reconstruction`    what the masses do between the samples of a history
 :mod:`.analog_filter`     the exact response of an analogue filter
 :mod:`.sensors`           what accelerometers read of a history
