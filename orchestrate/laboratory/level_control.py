@@ -78,10 +78,10 @@ class LevelControl(InputControl):
     limit: float = math.inf
     averaging: float = 4.0
     compression: float = 10.0
-    fastest: float = 1.2
-    tolerance: float = 2.0
     patience: float = 20.0
     rise: float = 100.0
+    fastest: float = 1.2
+    tolerance: float = 2.0
 
     def __post_init__(self) -> None:
         if not isinstance(self.sine, Sine):
