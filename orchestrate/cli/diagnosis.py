@@ -324,6 +324,7 @@ def run_plan(arguments: argparse.Namespace) -> None:
     """Run ``plan``: compute a plan; print it; write result and picture."""
     import orchestrate
 
+    from ..files import open_folder
     from ..running.store import write_netcdf
 
     structure, question = ask_plan(arguments)
@@ -334,6 +335,7 @@ def run_plan(arguments: argparse.Namespace) -> None:
     described = plan.assign_attrs(structure.parameters())
     (shown,) = with_readable_lengths(with_units(described, units))
     print(*plan_lines(shown), sep="\n")
+    open_folder(arguments.output)
     write_netcdf(plan, files.result)
     files.write(shown, partial(orchestrate.plot, shown))
 

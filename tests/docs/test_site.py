@@ -9,7 +9,6 @@ import runpy
 import subprocess
 import sys
 import zlib
-from importlib import import_module
 
 import pytest
 from sphinx.search.en import SearchEnglish
@@ -21,8 +20,6 @@ from tools.site import Site
 from ..exports import once
 from .test_manual import GENERATED
 from .written import DOCS
-
-KERNEL = "fmu_src.kernels.oscillator"
 
 
 @pytest.fixture(scope="session")
@@ -102,16 +99,3 @@ def test_notebooks_ask_for_no_scripts_of_others():
     """Of widgets, where their package is installed: they come from two other hosts by default."""
     settings = runpy.run_path(str(DOCS / "conf.py"))
     assert settings.get("nb_ipywidgets_js") == {}
-
-
-def test_functions_of_the_theory_are_there():
-    text = (DOCS / "theory.md").read_text(encoding="utf-8")
-    named = sorted(set(re.findall(r"(?<!\})`(\w+)\.(\w+)`", text)))
-    assert len(named) > 20
-    for module, function in named:
-        assert hasattr(import_module(f"{KERNEL}.{module}"), function), (module, function)
-
-
-def test_equations_have_the_papers_numbers():
-    text = (DOCS / "theory.md").read_text(encoding="utf-8")
-    assert len(re.findall(r"^\$\$ \(eq-", text, re.M)) == 22

@@ -95,16 +95,6 @@ def test_sources_edited_during_an_export_are_named(monkeypatch, tmp_path):
     assert not list(tmp_path.rglob("*.fmu"))
 
 
-def test_guids_need_the_standard_library_alone():
-    """And an export says in one line which extra brings what is missing."""
-    told = told_by("bare.py")
-    assert len(told) == len(forms.FORMS) * len(forms.MODELS)
-    for key, (guid, reason) in told.items():
-        form, name = key.split("/")
-        assert guid == forms.guid(name, form)
-        assert 'pip install "vibroimpact[build]"' in reason and "\n" not in reason
-
-
 def test_pythonfmu_is_the_version_the_slave_is_made_for():
     required = [line for line in metadata.requires("vibroimpact") if line.startswith("pythonfmu")]
     assert required[0].startswith(f"pythonfmu=={pythonfmu_form.PYTHONFMU};")

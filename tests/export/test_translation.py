@@ -109,17 +109,6 @@ def test_what_is_outside_the_subset_is_refused(tmp_path, body, line, text):
     assert f"outside.py, line {line}: " in told and text in told and "\n" not in told
 
 
-def test_recursion_through_another_function_is_refused(tmp_path):
-    """At the call that closes the circle: nobody could say how much stack it takes."""
-    module = module_of(tmp_path, "return other(m, time)")
-    path = tmp_path / "outside.py"
-    other = "def other(m, time):\n    m[0] += 1.0\n    return entry(m, time)\n"
-    path.write_text(f"{path.read_text('utf-8')}\n\n{other}", "utf-8")
-    module.__spec__.loader.exec_module(module)
-    with pytest.raises(CannotExport, match="outside.py, line 15: entry calls itself"):
-        translate({"entry": module.entry})
-
-
 def test_comments_say_how_often_lines_run(tmp_path):
     """Beside a test and beside a def; what rare ways alone lead to stays out of the others."""
     body = "if m[0] != 0.0:  # rarely\n    m[0] = helper(m, time)\nreturn 0"

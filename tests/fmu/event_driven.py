@@ -21,8 +21,8 @@ class Motion:
         x1, v1, x2, v2 at ``time``.
     mode : str
         FLIGHT or CONTACT.
-    impacts : list of float
-        Times.
+    impacts, sticks : list
+        Times, and whether contact follows.
     releases : int
         Ends of permanent contact.
     """
@@ -44,7 +44,7 @@ class Motion:
         self.size = np.abs(self.state).max() + p["box_amplitude"] + abs(p["clearance"])
         fastest = max(p["box_frequency"], self.omega, np.sqrt(p["k2"] / p["m2"]))
         self.time, self.impacts, self.longest = 0.0, [], 0.2 / fastest
-        self.releases = 0
+        self.releases, self.sticks = 0, []
         self.step = self.longest
         closed = self.gap(0.0, self.state) <= 1e-14 * self.size
         pressed = closed and p["v1_start"] == p["v2_start"] and self.opening(x1, p["v1_start"]) < 0
@@ -127,8 +127,9 @@ class Motion:
         closing, pull = v1 - v2, self.opening(face, common)
         parting = p["e"] * closing / (1.0 + p.get("e_slope", 0.0) * closing)
         self.impacts.append(self.time)
+        self.sticks.append(False)
         if pull < 0.0 and 2.0 * parting * self.omega < p["gamma"] * -pull:
-            self.mode, parting = CONTACT, 0.0
+            self.mode, parting, self.sticks[-1] = CONTACT, 0.0, True
         else:
             self.hop = 2.0 * parting / -pull if pull < 0.0 else 4.0 * self.longest
         after = common - p["m2"] / self.total * parting, common + p["m1"] / self.total * parting

@@ -1,7 +1,6 @@
 """What lies beside FMI's core in the files: terminals, licences, the manifest of references."""
 
 import posixpath
-import re
 import zipfile
 from xml.etree import ElementTree as ET
 
@@ -12,11 +11,6 @@ from ..fresh import ROOT
 from .driver import FMUS
 
 MANIFEST = "extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml"
-SAID = {  # of each form's page, and nowhere else
-    "fmi2-python": "needsExecutionTool",
-    "fmi2": "fmi2GetRealOutputDerivatives",
-    "fmi3": "fmi3EnterEventMode",
-}
 
 
 @pytest.fixture(params=FMUS)
@@ -70,17 +64,3 @@ def test_the_manifest_names_files_that_are_there(archive):
 def test_the_licence_is_the_projects(archive):
     told = archive.read("documentation/licenses/license.txt").decode()
     assert told.startswith((ROOT / "LICENSE").read_text(encoding="utf-8"))
-
-
-@pytest.mark.parametrize("form", SAID)
-def test_each_page_tells_its_own_forms_truth(form):
-    pages = {}
-    for other, path in FMUS.items():
-        with zipfile.ZipFile(path) as opened:
-            pages[other] = opened.read("documentation/index.html").decode()
-            names = set(opened.namelist())
-        sources = re.search(r"<code>(\S*kernels/oscillator)</code>", pages[other]).group(1)
-        pattern = re.escape(sources).replace(r"\*", "[0-9a-f]+")
-        place = "" if sources.startswith("resources") else "documentation/"
-        assert [name for name in names if re.match(f"{place}{pattern}/motion.py", name)], other
-    assert [other for other, page in pages.items() if SAID[form] in page] == [form]

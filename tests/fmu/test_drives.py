@@ -4,7 +4,6 @@ resume, the motion of the equations, inputs that are seen at once, and mistakes 
 
 import math
 
-import numpy as np
 import pytest
 
 from ..kernels.electrodynamic_shaker.truth import Shaker
@@ -85,16 +84,6 @@ def test_a_coil_moves_by_the_equations(form, values):
     assert shaker.changes >= 3
     found = f.get("box_position", "box_velocity", "current", "voltage", "energy")
     assert found == pytest.approx([*state[:2], current, voltage, state[3]], rel=1e-10)
-
-
-@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
-def test_the_motor_turns_in_a_default_run(form):
-    """What a checker runs with nothing set shows a motion."""
-    f, positions = open_fmu(path_of(MOTOR, form)).start(), []
-    for k in range(1, 201):
-        positions.append(f.step(0.01 * k).one("box_position"))
-    assert f.one("speed") > 10.0
-    assert np.ptp(positions) > 1e-5
 
 
 @drives

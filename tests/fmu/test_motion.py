@@ -213,26 +213,6 @@ def test_phase_is_continuous_when_the_frequency_changes(fmu):
         assert math.remainder(found - phase, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-11)
 
 
-def test_constant_acceleration_ends_in_static_displacement(fmu):
-    """Pushed apart, mass i comes to rest at -m_i g/k_i; pressed together, both at -(m1 + m2) g/(k1
-    + k2), with the force that takes.
-    """
-    k1, k2, m1, m2 = 1.0, 1.4, 1.0, 1.2
-    values = {"m2": m2, "k2": k2, "d1": 0.05, "d2": 0.06, "box_amplitude": 0.0}
-    parted, pressed = (
-        open_fmu(fmu).start(**values, box_acceleration=g).step(3000.0).outputs()
-        for g in (0.5, -0.5)
-    )
-    assert parted["x1"] == pytest.approx(-0.5 * m1 / k1, rel=1e-12)
-    assert parted["x2"] == pytest.approx(-0.5 * m2 / k2, rel=1e-12)
-    assert not parted["in_contact"] and parted["contact_force"] == 0.0
-    together = 0.5 * (m1 + m2) / (k1 + k2)
-    assert pressed["x1"] == pressed["x2"] == pytest.approx(together, rel=1e-12)
-    assert pressed["in_contact"] and pressed["impact_count"] == 0
-    # what its spring does not carry of mass 1
-    assert pressed["contact_force"] == pytest.approx(0.5 * m1 - k1 * together, rel=1e-9)
-
-
 def signal(t):
     """A box acceleration, smooth and without a period, and its first three derivatives."""
     parts = ((0.8, 0.9, 0.3), (0.5, 1.7, 1.1), (-0.3, 2.3, 0.0))

@@ -4,11 +4,7 @@
 #include <string.h>
 
 #include "core.h"
-#ifdef SECOND
-#include "fmi2Functions.h"
-#else
 #include "fmi3Functions.h"
-#endif
 
 static union { double align; char bytes[1 << 20]; } room;
 static size_t used;
@@ -38,34 +34,6 @@ static unsigned reference(const char *name) {
 #define SIZE 0.1
 #define DO(CALL) do { if (CALL) return fprintf(stderr, "%s\n", #CALL), 1; } while (0)
 
-#ifdef SECOND
-static void say(fmi2ComponentEnvironment c, fmi2String name, fmi2Status status, fmi2String category, fmi2String text, ...) {
-    (void)c, (void)name, (void)status, (void)category, (void)text;
-}
-
-int main(void) {
-    const fmi2CallbackFunctions callbacks = {say, NULL, NULL, NULL, NULL};
-    fmi2Component c = fmi2Instantiate("one", fmi2CoSimulation, MODEL_TOKEN, "", &callbacks, fmi2False, fmi2False);
-    const long before = count;
-    const fmi2ValueReference inputs[] = {reference("box_frequency"), reference("box_amplitude")}, gap = reference("x_rel"), impacts = reference("impact_count");
-    const double drive[] = {0.3, 11.0}, nonsense = -1.0;
-    DO(fmi2SetReal(c, inputs, 2, drive));
-    DO(fmi2SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2False, 0.0));
-    DO(fmi2EnterInitializationMode(c));
-    DO(fmi2ExitInitializationMode(c));
-    int events = 0;
-    for (int i = 0; i < STEPS; i++) {
-        double x, rate;
-        const fmi2Integer first = 1;
-        DO(fmi2DoStep(c, i * SIZE, SIZE, fmi2True));
-        DO(fmi2GetReal(c, &gap, 1, &x));
-        DO(fmi2GetRealOutputDerivatives(c, &gap, 1, &first, &rate));
-        if (i % 100 == 0) DO(fmi2SetReal(c, inputs, 1, drive));
-        if (i % 1000 == 0) DO(fmi2SetReal(c, inputs, 1, &nonsense) != fmi2Error);
-    }
-    DO(fmi2GetInteger(c, &impacts, 1, &events));
-    DO(fmi2Reset(c));
-#else
 static void say(fmi3InstanceEnvironment c, fmi3Status status, fmi3String category, fmi3String text) {
     (void)c, (void)status, (void)category, (void)text;
 }
@@ -100,7 +68,6 @@ int main(void) {
         if (i % 1000 == 0) DO(fmi3SetFloat64(c, inputs, 1, &nonsense, 1) != fmi3Error);
     }
     DO(fmi3Reset(c));
-#endif
     const long after = count;
     printf("%ld %ld %d\n", before, after - before, events);
     return 0;

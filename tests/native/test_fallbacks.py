@@ -8,7 +8,6 @@ from fmpy.validation import validate_fmu
 from fmu_src.export import compiler, pythonfmu_form
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS, export
-from fmu_src.export.platforms import this_machine
 from fmu_src.export.source_code import kernel_source
 from tools import importers
 
@@ -55,14 +54,6 @@ def test_without_a_compiler_there_is_the_pythonfmu_fmu_and_one_line(fmus, hide, 
     assert "pure Python" in line
     assert validate_fmu(str(made["fmi2-python"])) == []
     assert same_run(made["fmi2-python"], fmus["fmi2"], tmp_path) == (True, [])
-
-
-def test_without_ziglang_the_own_compiler_links(hide):
-    hide("ziglang")
-    if importers.own_compiler() is None:
-        pytest.skip("the machine has no C compiler of its own")
-    made = compiler.link(this_machine(), "one", {"one.c": b"int one(void) { return 1; }"})
-    assert len(made) > 1000
 
 
 @pytest.mark.slow  # compiles for 4 s

@@ -83,50 +83,6 @@ def test_a_message_needs_no_arguments(exported, model):
 
 
 @versions
-def test_integers_and_booleans_are_printed_as_such(fmus, version):
-    with open_fmu(fmus[version]) as fmu:
-        sample_count, bonded, impact_count = (
-            fmu.variables[name].valueReference
-            for name in ("sample_count", "bonded", "impact_count")
-        )
-        set_integer = "setInt32" if version == "fmi3" else "setInteger"
-        fmu.start()
-        said = fmu.refused(set_integer, [sample_count], [300])
-        assert "sample_count = 300: expected 0 <= sample_count <= 200" in said
-        assert "impact_count = 7: an output" in fmu.refused(set_integer, [impact_count], [7])
-        assert "bonded = true: a fixed parameter" in fmu.refused("setBoolean", [bonded], [True])
-        assert "box_frequency = -1.0 rad/s" in fmu.refused(
-            "setFloat64" if version == "fmi3" else "setReal",
-            [fmu.variables["box_frequency"].valueReference],
-            [-1.0],
-        )
-
-
-@versions
-def test_a_wrong_type_is_named_with_its_variable(fmus, version):
-    real, whole = ("Float64", "Int32") if version == "fmi3" else ("Real", "Integer")
-    with open_fmu(fmus[version]) as fmu:
-        fmu.start()
-        reference = fmu.variables["in_contact"].valueReference
-        said = fmu.refused(f"get{real}", [reference])
-        assert f"valueReference = {reference}: in_contact is one of the Boolean variables" in said
-        assert f"expected one of the {real} variables in modelDescription.xml" in said
-        said = fmu.refused(f"get{whole}", [99999])
-        assert f"valueReference = 99999: expected one of the {whole} variables" in said
-
-
-@versions
-def test_unknown_log_categories_are_refused(fmus, version):
-    with open_fmu(fmus[version]) as fmu:
-        known = fmpy.read_model_description(str(fmus[version])).logCategories
-        assert known
-        fmu.fmu.setDebugLogging(True, [category.name for category in known])
-        fmu.fmu.setDebugLogging(False, [])
-        said = fmu.refused("setDebugLogging", True, [known[0].name, "logNonsense"])
-        assert "logNonsense" in said and known[0].name in said
-
-
-@versions
 def test_a_state_freed_by_its_handle_frees_nothing(fmus, version):
     """What fmusim 0.0.39 does: the handle where the standard has a pointer to it."""
     with open_fmu(fmus[version]) as fmu:

@@ -47,11 +47,3 @@ def test_sample_count_out_of_range(native_fmu, count):
     setter = "setInt32" if f.third else "setInteger"
     message = f.refused(setter, [f.reference("sample_count")], [count])
     assert f"sample_count = {count}:" in message and f"{ROOM}" in message
-
-
-def test_samples_of_a_step_that_returns_early_end_where_it_ends(fmus):
-    f = open_fmu(fmus["fmi3"], event_mode=True, early_return=True)
-    f.start(sample_count=8, **harmonic(1.13))
-    while not f.go(f.time + 8.0)[1]:
-        pass
-    assert f.series("x1_sample")[7] == f.one("x1")

@@ -119,19 +119,6 @@ def test_inductance_takes_its_energy_at_a_jump_of_a_commanded_current():
     assert other[at.ENERGY] == pytest.approx(m[at.ENERGY], rel=1e-6)
 
 
-def test_a_current_takes_its_time_where_the_voltage_is_limited():
-    """Also where intervals are so long that the command's cubic grows far beyond it in one."""
-    values = {"current_control": 1.0, "coil_inductance": 2.0, "voltage_limit": 10.0}
-    free = {"suspension_stiffness": 0.0, "suspension_damping": 0.0, "force_factor": 0.0}
-    m = started(**values, **free, command=-1e-3, command_2=-2.0, command_3=20.0)
-    assert m[at.CURRENT] == 0.0 and m[at.VOLTAGE] == -10.0 and m[at.LIMITED] == 1.0
-    advanced(m, 1e-4)
-    assert m[at.CURRENT] == pytest.approx(-10.0 / 2.0 * 1e-4, rel=1e-3)
-    advanced(m, 1e-3)
-    assert m[at.LIMITED] == 0.0
-    assert m[at.ENERGY] == pytest.approx(m[at.STORED_ENERGY] + m[at.COIL_HEAT], rel=1e-12)
-
-
 def test_a_constant_that_is_set_to_its_value_is_no_new_input():
     values = {"command": 3.0, "box_force": -1.0, "coil_inductance": 0.01, "current_limit": 0.5}
     whole = advanced(started(**values), 1.0)
@@ -183,15 +170,6 @@ def test_a_command_at_its_limit(command):
     assert m[at.LIMITED] == float(abs(command) > 2.0)
     advanced(m, 5.0)
     assert m[at.LIMITED] == float(abs(command) > 2.0)
-
-
-@pytest.mark.parametrize("lags", [0.0, 0.02])
-def test_a_held_current_stays_at_a_balance(lags):
-    """The command that holds the current at its limit, for good: no endless change of states."""
-    m = started(command=2.0, current_limit=0.5, coil_inductance=lags, force_factor=0.0)
-    advanced(m, 5.0)
-    assert m[at.CURRENT] == pytest.approx(0.5, rel=1e-12)
-    assert m[at.EVALUATIONS] < 5.0 / m[at.SPACING] + 10.0
 
 
 def test_no_event_is_missed():

@@ -1,12 +1,10 @@
 """Slots follow one another; variable tables and memories of the kernels agree."""
 
-import doctest
 from dataclasses import replace
 
 import pytest
 
 from fmu_src.kernels.electrodynamic_shaker import memory as coil
-from fmu_src.kernels.numerics import slots
 from fmu_src.kernels.oscillator import memory as oscillator
 from fmu_src.kernels.shaker import memory as shaker
 from fmu_src.models.electrodynamic_shaker import variables as coil_table
@@ -15,7 +13,7 @@ from fmu_src.models.motor_shaker import variables as motor_shaker_table
 from fmu_src.models.motor_shaker.model import MODEL as SHAKER
 from fmu_src.models.oscillator import variables as oscillator_table
 from fmu_src.models.oscillator.model import MODEL as OSCILLATOR
-from fmu_src.runtime.table import numbered, with_slots
+from fmu_src.runtime.table import numbered
 
 MODELS = [
     (oscillator, oscillator_table.VARIABLES),
@@ -27,11 +25,6 @@ PROMISED = {  # given out before: saved states and other people's scripts rely o
     **{"x1_sample[1]": 43, "x2_sample[1]": 243, "v1_sample[1]": 443, "v2_sample[200]": 842},
     **{"evaluations": 843, "evaluation_limit": 844, "clearance": 845, "e_slope": 846},
 }
-
-
-def test_the_example_in_its_docstring():
-    found = doctest.testmod(slots)
-    assert found.attempted > 0 and found.failed == 0
 
 
 @pytest.mark.parametrize(("memory", "variables"), MODELS)
@@ -70,12 +63,6 @@ def test_a_table_in_another_order_is_refused():
     first, second, *others = (replace(v, slot=-1) for v in oscillator_table.VARIABLES)
     with pytest.raises(ValueError, match="m2 is variable 0 of the table, but slot 1"):
         numbered([second, first, *others], oscillator)
-
-
-def test_messages_name_slots():
-    assert with_slots({3: "e = {E}, {MODE:a|b}"}, oscillator) == {
-        3: f"e = {{{oscillator.E}}}, {{{oscillator.MODE}:a|b}}"
-    }
 
 
 def test_no_slot_lies_in_another():

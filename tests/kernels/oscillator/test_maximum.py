@@ -54,14 +54,6 @@ def test_over_a_piece_of_flight(values, state, start, length):
     assert m[at.X_REL_MAX] == pytest.approx(highest, rel=1e-12, abs=1e-14 * terms)
 
 
-def test_at_the_very_end_of_a_step():
-    m = started(x1_start=0.0, x2_start=0.1, v2_start=1.0, box_amplitude=0.0)
-    advanced(m, 0.3)
-    assert m[at.X_REL_MAX] == m[at.X_REL]
-    advanced(m, 0.3)  # no time passes
-    assert m[at.X_REL_MAX] == m[at.X_REL]
-
-
 @examples(60)
 @given(
     sizes(0.03, 30.0),

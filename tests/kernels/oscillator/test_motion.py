@@ -3,21 +3,17 @@ that always move together.
 """
 
 import math
-from fractions import Fraction
 from unittest.mock import patch
 
 import mpmath as mp
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import stepper
-from fmu_src.kernels.oscillator.motion import move_origin
 from tools import exact_motion as truth
 
 from . import reference
-from .kernel import DEFAULTS, advanced, examples, pieces, started
+from .kernel import DEFAULTS, advanced, pieces, started
 
 STATE = (-0.3, 0.2, 0.4, -0.5)  # x1, v1, x2, v2
 STARTS = dict(zip(("x1_start", "v1_start", "x2_start", "v2_start"), STATE, strict=True))
@@ -78,35 +74,6 @@ def test_event_by_event_in_high_precision(values):
     assert [m[i] for i in (at.X1, at.V1, at.X2, at.V2)] == pytest.approx(
         [float(value) for value in state], abs=1e-11 * (1.0 + speed)
     )
-
-
-def test_a_flight_of_thousands_of_radians_is_written_anew():
-    values = {"k2": 0.5, "box_acceleration": -3.0, "box_amplitude": 0.1, "box_frequency": 1.7}
-    m = advanced(started(x1_start=3.0, x2_start=6.0, **values), 5000.0)
-    assert m[at.ORIGIN] > 4000.0
-    assert m[at.IMPACT_COUNT] == 0.0
-    first, second = truth.free_motion({**DEFAULTS, **values}, (3.0, 0.0, 6.0, 0.0), mp.mpf(0))
-    assert [m[at.X1], m[at.X2]] == pytest.approx(
-        [float(first(5000)), float(second(5000))], rel=1e-12
-    )
-
-
-@examples(20)
-@given(st.lists(st.floats(1e-6, 1e3), min_size=200, max_size=400), st.floats(0.0, 1.0))
-def test_separation_times_add_up_without_loss(ages, eta_turns):
-    m = [0.0] * at.SIZE
-    m[at.ETA_TURNS] = eta_turns
-    for age in ages:
-        move_origin(m, age)
-    exact = sum(map(Fraction, ages))
-    assert (
-        abs(Fraction(m[at.ORIGIN]) + Fraction(m[at.ORIGIN_LOW]) - exact)
-        <= Fraction(len(ages), 2**100) * exact
-    )
-    turns = exact * Fraction(eta_turns)
-    distance = abs(Fraction(m[at.TURN]) - (turns - math.floor(turns)))
-    assert 0.0 <= m[at.TURN] < 1.0
-    assert min(distance, 1 - distance) <= float(max(ages)) * len(ages) * 4e-16
 
 
 @pytest.mark.parametrize(

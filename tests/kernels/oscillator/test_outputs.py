@@ -160,15 +160,6 @@ def test_impulses_of_short_steps(step, push):
     assert m[at.BOX_IMPULSE_MOMENT] == pytest.approx(float(moment), rel=2e-14)
 
 
-def test_impulses_of_a_short_step_with_an_impact():
-    """There the force is no quintic: the dampers pull the other way behind it."""
-    values = {"d1": 2.0, "x2_start": 1e-4, "v1_start": 1.0}
-    whole, parts = started(**values), started(**values)
-    impulse = sum(advanced(parts, 1e-3 * i / 64.0)[at.BOX_IMPULSE] for i in range(1, 65))
-    assert advanced(whole, 1e-3)[at.IMPACT_COUNT] == parts[at.IMPACT_COUNT] == 1
-    assert whole[at.BOX_IMPULSE] == pytest.approx(impulse, rel=1e-11)
-
-
 @pytest.mark.parametrize("amplitude", [5e-324, 1e-310, 1e-201])
 def test_a_drive_next_to_nothing_leaves_the_numbers_finite(amplitude):
     """Displacements over such an amplitude have no finite value; there is no drive to speak of."""

@@ -82,41 +82,6 @@ def test_a_clear_step_is_certified(h0, h1, h2, h3, h4, bound):
     assert lowest((h0, h1, h2, h3, h4), bound, step) >= -4e-15
 
 
-def carry(value, falls):
-    """How far a positive term outweighs the falling ones, each a coefficient and the power it has
-    more than that term.
-    """
-    return min((value / (4.0 * fall)) ** (1.0 / power) for fall, power in falls if fall > 0.0)
-
-
-@examples(300)
-@given(HEIGHTS, SIGNED, SIGNED, SIGNED, SIGNED, sizes(1e-6, 1e6))
-@example(1.76e-3, -1.59e-3, 1.3e-5, 0.0, 0.0, 1420.0)
-@example(1.2, -0.93, 1.6e-15, -1e-3, 0.0, 355.0)
-def test_a_clear_step_is_not_small_without_need(h0, h1, h2, h3, h4, bound):
-    assume(h0 > 0.0 or h1 > 0.0 or (h1 == 0.0 and h2 > 0.0))
-    step = clear_step(h0, h1, h2, h3, h4, bound, REACH)
-    if h0 > 0.0:
-        assert step >= 0.02 * min(
-            REACH,
-            carry(h0, [(-h1, 1), (-h2 / 2, 2), (-h3 / 6, 3), (-h4 / 24, 4), (bound / 120, 5)]),
-        )
-    if h1 > 0.0:
-        assert step >= 0.02 * min(
-            REACH, carry(h1, [(-h2 / 2, 1), (-h3 / 6, 2), (-h4 / 24, 3), (bound / 120, 4)])
-        )
-
-
-@examples(100)
-@given(HEIGHTS, SIGNED, SIGNED, SIGNED, SIGNED, sizes(1e-6, 1e6), st.integers(-200, 200))
-def test_a_clear_step_is_scale_free(h0, h1, h2, h3, h4, bound, n):
-    assume(h0 > 0.0 or h1 > 0.0 or (h1 == 0.0 and h2 > 0.0))
-    unit = math.ldexp(1.0, n)
-    assert clear_step(
-        unit * h0, unit * h1, unit * h2, unit * h3, unit * h4, unit * bound, REACH
-    ) == clear_step(h0, h1, h2, h3, h4, bound, REACH)
-
-
 @examples(300)
 @given(
     sizes(1e-3, 1.0),

@@ -3,7 +3,6 @@ closed form is relative to the displacements.
 """
 
 import mpmath as mp
-import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -124,24 +123,6 @@ def test_a_short_flight_under_a_preload_is_that_of_the_gap(values, x, v, slope):
         assert abs(evaluate(m, 0.0)[2] - gap.derivative().derivative()(mp.mpf(0))) <= 1e-12 * (
             curvature + terms
         )
-
-
-def test_flights_from_a_hard_preload_are_short():
-    """So that the test above has something to see."""
-    for slope in (1e-6, 1e-3, 0.05):
-        for clearance in (-1.0, -10.0, -1e3):
-            m, _ = leaving_with_clearance(
-                {"clearance": clearance, "phase_start": 0.0}, 0.1, 0.2, slope
-            )
-            assert m[at.SERIES] != 0.0
-
-
-@pytest.mark.parametrize(("slope", "order"), [(1e-3, 8), (1.5e-2, 12), (0.2, 4)])
-def test_the_number_of_terms_grows_with_the_flight(slope, order):
-    m = flight(1.0, 0.0, 1.0, slope, box_amplitude=0.0)  # f = -0.2
-    assert series.required_order(m, slope, -0.2) == order
-    assert m[at.SERIES] == (order if order > 4 else 0.0)
-    assert series.required_order(m, slope, 0.2) == 4
 
 
 def test_a_gap_that_is_not_concave_is_walked():

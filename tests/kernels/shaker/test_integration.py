@@ -1,6 +1,5 @@
 """The shaker's kernel against scipy: motion, energies, sub-steps, and steps that cannot be done."""
 
-import math
 from unittest.mock import patch
 
 import pytest
@@ -75,32 +74,6 @@ def test_energy_is_kept():
             - (m[at.STORED_ENERGY] - before)
         )
         assert abs(balance) < 1e-12 * (1.0 + abs(m[at.BOX_FORCE_WORK]))
-
-
-def test_inductance_goes_to_zero():
-    expected = started(voltage=5.0, **MOVING)
-    stepper.advance(expected, 0.02)
-    errors = []
-    for inductance in (4e-3, 2e-3, 1e-3):
-        m = started(
-            voltage=5.0,
-            armature_inductance=inductance,
-            current_start=(5.0 - 0.06 * 40.0) / 12.0,
-            **MOVING,
-        )
-        assert stepper.advance(m, 0.02) == at.OK
-        errors.append(abs(m[at.SPEED] - expected[at.SPEED]))
-    assert 1.8 < errors[0] / errors[1] < 2.3
-    assert 1.8 < errors[1] / errors[2] < 2.3
-
-
-def test_many_turns_keep_their_digits():
-    """The angle of a free rotor, after a thousand turns in uneven steps."""
-    m = started(unbalance_mass=0.0, motor_constant=0.0, speed_start=2.0 * math.pi * 1000.0)
-    for time in (0.1, 0.1 + 1e-9, 0.7, 1.0):
-        assert stepper.advance(m, time) == at.OK
-    assert m[at.ANGLE] == pytest.approx(2.0 * math.pi * 1e3, rel=1e-14)
-    assert min(m[at.TURN], 1.0 - m[at.TURN]) < 1e-10
 
 
 @pytest.mark.parametrize(

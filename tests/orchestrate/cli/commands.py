@@ -1,7 +1,5 @@
 """The command line as its users run it: processes to be killed with all their children."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal
@@ -41,7 +39,7 @@ class Done:
         assert all(str(word) in line for word in words), line
         return line
 
-    def success(self) -> Done:
+    def success(self) -> "Done":
         """See that the command ended well and has nothing to complain of."""
         assert (self.code, self.complaints) == (0, []), (self.code, self.err)
         return self

@@ -1,22 +1,24 @@
 """What the tests of the command line share."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from orchestrate.cli import main
+from orchestrate.show.style import STYLE
 
 from .commands import Commands, Done
 
 Ask = Callable[..., Done]
 
 
-@pytest.fixture(autouse=True)
-def _exported(exported: Path) -> None:
-    """The FMUs are there before the first command asks for them."""
+@pytest.fixture(scope="session", autouse=True)
+def _exported(exported: Path) -> Iterator[None]:
+    """The FMUs are there before the first command asks for them, and pictures are coarse."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(STYLE, "savefig.dpi", 40)
+        yield
 
 
 @pytest.fixture

@@ -43,7 +43,7 @@ def files(tmp_path):
 
 def shows_something(path):
     picture = imread(path)
-    return picture.std() > 0.02 and min(picture.shape[:2]) > 300
+    return picture.std() > 0.02 and min(picture.shape[:2]) > 100
 
 
 ALL = ("frf", "psd", "orders", "harmonics", "spectrogram", "shock", "density")
@@ -100,14 +100,6 @@ def test_options_reach_the_analysis(ask, tmp_path, files):
     assert float(shock.damping) == 0.02 and density.sizes["bin"] == 30
     assert float(psd.resolution) == 4.0 and psd.attrs["window"] == "flattop"
     assert psd.attrs["overlap"] == 0.7 and not list((tmp_path / "results").glob("*.png"))
-
-
-def test_a_stored_result_of_shake(ask, tmp_path):
-    options = ("--structure", "beam", "--random", "5:0.05,40:0.05", "--duration", "20")
-    ask("shake", *options, "--plot", "none").success()
-    (path,) = (tmp_path / "results").glob("shake*.nc")
-    done = ask("analyse", path, "--show", "frf", "--from", "5", "--plot", "none").success()
-    assert "largest |H1|" in done.out
 
 
 MISTAKES = """
@@ -170,18 +162,6 @@ def test_records_of_all_kinds_of_files(ask, tmp_path, files, kind):
     record.to_netcdf(tmp_path / "plain.nc")
     assert said(done) == said(ask("analyse", tmp_path / "plain.nc", *show).success())
     assert any("  0.5 m/s2 at" in line for line in said(done))
-
-
-def test_measured_beside_simulated(ask, tmp_path, files):
-    in_g(sweep(0.5, second=False), tmp_path / "bench.csv")
-    columns = "box_acceleration=1,acceleration1=2"
-    done = ask(
-        *("analyse", files["parted"], "--beside", f"measured={tmp_path / 'bench.csv'}"),
-        *("--unit", "g", "--columns", columns, "--show", "orders", "--units", "m/s2"),
-        *("--plot", "none"),
-    ).success()
-    lines = [line for line in said(done) if "mass 1" in line]
-    assert len(lines) == 2 and all("  6 m/s2 at" in line for line in lines)
 
 
 def test_numbers_in_another_unit_are_noticed_in_one_line(ask, tmp_path):

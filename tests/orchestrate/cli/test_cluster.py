@@ -1,7 +1,5 @@
 """A command on the workers of a Dask scheduler: the same bytes as here, though a worker is lost."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal

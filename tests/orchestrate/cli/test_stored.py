@@ -1,7 +1,5 @@
 """Commands that begin with a stored result take its structure, or say that it is another."""
 
-from __future__ import annotations
-
 import argparse
 import functools
 import json

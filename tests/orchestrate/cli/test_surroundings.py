@@ -1,7 +1,5 @@
 """A command in a hostile place: outputs that are closed, full or not read, few files, signals."""
 
-from __future__ import annotations
-
 import dataclasses
 import io
 import os
@@ -10,16 +8,14 @@ import signal
 import subprocess
 import sys
 import time
-import weakref
 from importlib.metadata import entry_points
 from unittest.mock import Mock
 
 import pytest
 
 from orchestrate import __main__, cli
-from orchestrate.__main__ import resend_interrupt, run
+from orchestrate.__main__ import run
 from orchestrate.cli import main, responses
-from orchestrate.cli.grammar import plain_float, plain_int
 from orchestrate.cli.safe_output import SafeStream
 from tests.faults import Surroundings
 
@@ -115,16 +111,6 @@ def test_too_little_memory_is_a_line(monkeypatch, capsys, error):
     assert "out of memory, or the installation is incomplete" in told
 
 
-@pytest.mark.parametrize("text", ["１.２", "1_0", "٣"])
-def test_digits_of_other_scripts_are_none(text, capsys):
-    assert main(["sweep", "--eta", text]) == 2
-    assert main(["sweep", "--set", f"e={text}"]) == 2
-    assert "Traceback" not in capsys.readouterr().err
-    for number in (plain_float, plain_int):
-        with pytest.raises(ValueError, match=text):
-            number(text)
-
-
 @pytest.mark.slow
 def test_sigterm_at_random_moments_leaves_nothing(commands):
     """No temporary folder, no worker, and no word of a resource tracker."""
@@ -192,14 +178,6 @@ def test_an_interrupt_while_modules_are_read(monkeypatch, capfd):
     monkeypatch.setattr(sys.modules["orchestrate.cli"], "main", Mock(side_effect=KeyboardInterrupt))
     assert run() == 130
     assert capfd.readouterr().err == "interrupted\n"
-
-
-def test_other_exceptions_of_callbacks_are_reported(monkeypatch, capsys):
-    monkeypatch.setattr(sys, "unraisablehook", resend_interrupt)
-    thing = {0}
-    kept = weakref.ref(thing, lambda _: 1 / 0)
-    del thing
-    assert kept() is None and "ZeroDivisionError" in capsys.readouterr().err
 
 
 def test_the_installed_command_is_the_same():

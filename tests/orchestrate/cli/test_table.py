@@ -18,7 +18,7 @@ from orchestrate import cli
 from orchestrate.cli import grammar
 from orchestrate.cli.options import excitation_by_level, read_excitation
 from orchestrate.cli.output import result_name
-from orchestrate.cli.table import declared_option, documentation_of, parse_options
+from orchestrate.cli.table import parse_options
 from orchestrate.cli.text import format_ranges
 from orchestrate.errors import InputError
 from orchestrate.model import Structure
@@ -88,16 +88,6 @@ def test_every_number_is_read_by_the_grammar(parsers):
             assert action.type not in (float, int), (command, action.dest)
             number = isinstance(action.default, (int, float)) and action.nargs != 0
             assert action.type in plain or not number, (command, action.dest)
-
-
-def test_a_meaning_that_another_docstring_has_is_found_there():
-    settle = documentation_of("attractors", "settle")
-    assert documentation_of("basin", "settle") == settle
-    with pytest.raises(LookupError, match="sweep"):
-        documentation_of("sweep", "nothing")
-    details = declared_option("resonance", "direction").details
-    assert details["choices"] == ["up", "down", "both"] and details["default"] == "both"
-    assert declared_option("lyapunov", "sigmas").details["default"] == 3.0
 
 
 def test_a_line_that_is_no_option_is_refused():

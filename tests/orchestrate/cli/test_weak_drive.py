@@ -113,6 +113,7 @@ def test_a_motor_of_one_s_own(ask, folder, motor):
     assert any(abs(float(data.voltage[-1]) - 6.0) < 1e-9 for data in found.values())
 
 
+@pytest.mark.slow
 def test_a_motor_by_its_datasheet(ask, folder):
     """The torque line through no-load speed and stall torque, in place of the set's constants."""
     sheet = ("--rated-voltage", "2", "--no-load-rpm", "16", "--stall-torque", "60")
@@ -143,6 +144,7 @@ def test_capture(ask, folder):
     assert all(shows_something(picture) for picture in folder.glob("*.png"))
 
 
+@pytest.mark.slow
 def test_passage(ask, folder):
     options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--around", "60", "--one-way", *SHORT)
     done = ask("passage", *options, "--revolutions", "4", "--only", "delaminated").success()

@@ -1,7 +1,5 @@
 """Short records of known structures."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

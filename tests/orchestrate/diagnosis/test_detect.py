@@ -51,6 +51,7 @@ def test_of_a_bonded_structure_no_opening_is_seen_and_its_halves_are_not_stated(
     assert len(sound) > 3 and (misfits <= 1.001 * float(misfits.sel(hypothesis="bonded"))).all()
 
 
+@pytest.mark.slow
 def test_a_fit_is_within_its_errors_and_takes_what_is_not_free_from_the_guess():
     start = guess(e=0.5)
     measured = record(noise=0.01, both=False)

@@ -1,7 +1,5 @@
 """Sensors anywhere on a beam: each reads the base and a part of the mode, and is fitted so."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Signs of records whose orders, noise and pulses are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -121,6 +119,7 @@ def test_the_gain_of_a_sensor_moves_no_difference():
     assert of(signs(other), "sensor_difference") > 0.03
 
 
+@pytest.mark.slow
 def test_pulses_are_seen_above_the_band_alone():
     pulses = np.where(np.arange(len(TIME)) % 500 == 0, 4.0, 0.0)
     smooth = record({1: 6.0}, noise=0.1)
@@ -131,6 +130,7 @@ def test_pulses_are_seen_above_the_band_alone():
     assert np.isnan(of(signs(smooth.isel(time=slice(None, None, 8))), "kurtosis_high"))
 
 
+@pytest.mark.slow
 def test_other_levels_and_directions_are_compared():
     linear_ones = (record({1: 6.0}), record({1: 18.0}, level=3.0), record({1: 6.0}, down=True))
     same = signs(*linear_ones)

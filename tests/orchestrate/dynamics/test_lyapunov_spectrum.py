@@ -81,16 +81,6 @@ def test_permanent_contact_forgets_the_gap(exported):
     assert np.isnan(found.exponent_errors[0, 2:]).all()
 
 
-@pytest.mark.parametrize("damping", [0.02, 1.4])
-def test_of_a_bonded_structure_they_are_those_of_its_one_oscillator(exported, damping):
-    structure = make(D=damping, bonded=True)
-    found = orchestrate.lyapunov(structure, eta=[0.9], periods=20, spectrum=True, progress=False)
-    square = (1.0 + structure.kappa) / (1.0 + structure.mu)
-    roots = np.roots([1.0, 2.0 * structure.D3, square])
-    np.testing.assert_allclose(found.exponents[0, :2], np.sort(roots.real)[::-1], rtol=1e-12)
-    assert np.isneginf(found.exponents[0, 2:]).all()
-
-
 @pytest.mark.parametrize(
     ("exponents", "dimension"),
     [

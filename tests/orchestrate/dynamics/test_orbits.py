@@ -1,12 +1,10 @@
 """Periodic orbits against closed forms, against the FMU's own map, and where they must say no."""
 
 import functools
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from orchestrate.dynamics import orbit_records
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
@@ -156,38 +154,6 @@ def test_an_impact_at_phase_0_makes_no_longer_period():
     assert abs(np.sin(eta * single.impact_time.values)).max() < 1e-9
     with pytest.raises(InputError, match="repeats after 1 already"):
         orbit(structure, eta=eta, period=2)
-
-
-class OneImpactMore:
-    """An instance that sees one impact more, at a part of the largest closing speed."""
-
-    def __init__(self, instance, part):
-        self.instance, self.part = instance, part
-
-    def __getattr__(self, name):
-        return getattr(self.instance, name)
-
-    def impacts(self, time, target):
-        seen = self.instance.impacts(time, target)
-        return replace(
-            seen,
-            time=np.append(seen.time, target),
-            state=np.vstack([seen.state, seen.state[-1:]]),
-            closing=np.append(seen.closing, self.part * seen.closing.max()),
-            sticks=np.append(seen.sticks, False),
-        )
-
-
-@pytest.mark.parametrize(("part", "same"), [(1e-8, True), (1e-4, False)])
-def test_an_impact_that_grazes_by_rounding_decides_nothing(monkeypatch, part, same):
-    """Where a flight just grazes, the FMU has an impact there or none by the last bits."""
-    check = orbit_records.check_orbit_in_fmu
-    monkeypatch.setattr(
-        orbit_records,
-        "check_orbit_in_fmu",
-        lambda instance, *rest: check(OneImpactMore(instance, part), *rest),
-    )
-    assert bool(orbit(PAPER, eta=1.5).fmu_same_impacts) == same
 
 
 def test_a_stable_root_whose_impacts_are_not_those_of_the_fmu_is_undecided():

@@ -54,12 +54,6 @@ def test_at_releases_the_masses_part(exported):
     assert float(abs(section.v_rel).max()) < 1e-12 * float(abs(section.v1).max())
 
 
-def test_a_motion_without_impacts_has_no_section_at_them(exported):
-    bonded = PAPER.as_bonded()
-    section = orchestrate.poincare(bonded, eta=0.8, at="releases", periods=3, transient=3, **QUIET)
-    assert section.sizes["point"] == 0
-
-
 @pytest.mark.parametrize(
     ("wrong", "named"),
     [

@@ -122,22 +122,3 @@ def test_what_was_followed_is_kept_where_an_inner_iteration_fails(method, error)
     setattr(tracer, method, fail_from_the_fifth_call_on)
     segment = tracer.trace(tracer.start)
     assert segment.end == NO_CONVERGENCE and len(segment.points) >= 3
-
-
-def test_a_step_is_shortened_where_its_last_point_cannot_be_solved_for():
-    tracer = CircleTracer(limits=(0.25, 2.0))
-    finished = tracer.finish_step
-
-    def solve_for_a_level_first(*arguments):
-        if arguments[-1].length > 0.05:  # the test has not the same sign at both ends
-            arguments[-1].solve_for_level(Kind.FOLD, 0.0, arguments[-1].length, level=2.0)
-        return finished(*arguments)
-
-    tracer.finish_step = solve_for_a_level_first
-    segment = tracer.trace(tracer.start)
-    assert segment.end == LIMIT and segment.points[-1].unknowns[0] == 0.25
-    assert segment.bifurcations[0].point.unknowns == pytest.approx([1.0, 0.0], abs=1e-12)
-
-
-def test_every_kind_has_a_name_of_its_own():
-    assert len({kind.label for kind in Kind}) == len(Kind) == len(KINDS)

@@ -2,7 +2,7 @@
 
 import json
 
-import orchestrate
+import pytest
 
 from .conftest import typed
 
@@ -23,6 +23,7 @@ return JSON.stringify([values, texts, diagram.points.length, diagram.low, diagra
 """
 
 
+@pytest.mark.slow
 def test_reset_brings_back_the_page_as_it_was_opened(browser):
     browser.until(READY)
     before = json.loads(browser.run(SEEN))
@@ -47,35 +48,3 @@ def test_reset_brings_back_the_page_as_it_was_opened(browser):
     after = json.loads(browser.run(SEEN))
     for was, now in zip(before, after, strict=True):
         assert now == was
-
-
-EXPONENTS = {  # of a motion that has not repeated: value and error, headline, label
-    "chaos": (0.05, 0.01, "Chaos: never repeats", "chaotic"),
-    "converging": (-0.05, 0.01, "Has not repeated within 50 periods, but converges", "converges"),
-    "undecided": (-0.00103, 0.002, "Nearly repeats, or is still settling", "undecided"),
-    "undecided above zero": (0.009, 0.01, "Nearly repeats, or is still settling", "undecided"),
-}
-
-
-def test_an_exponent_has_an_error_that_decides(browser):
-    """It covers the careful exponent, and an exponent within it decides nothing."""
-    for eta in (1.7, 3.05, 2.9):
-        browser.run("explorer.inspect(arguments[0], [0, 0, 0, 0])", eta)
-        browser.until(READY)
-        found = browser.run("return explorer.inspector.exponent")
-        careful = orchestrate.lyapunov(orchestrate.Structure(), eta=eta, progress=False)
-        assert abs(found["value"] - careful.exponent.item()) < found["error"] < abs(found["value"])
-    assert browser.run("return explorer.inspector.found.response.multiplicity") == 0
-    for name, (value, error, headline, label) in EXPONENTS.items():
-        browser.run(
-            "const [value, error] = arguments;"
-            "explorer.inspector.takeSpectra({ exponent: { value, error } })",
-            value,
-            error,
-        )
-        assert browser.text("sentence").startswith(headline)
-        assert label in browser.text("exponent")
-        undecided = name.startswith("undecided")
-        for text in (browser.text("sentence"), browser.text("exponent")):
-            assert ("undecided here" in text) == undecided
-    assert "undecided here" in browser.text("help-exponent")

@@ -68,6 +68,7 @@ def test_six_tasks_are_done_by_the_page_alone(first):
     first.until("return document.getElementById('sentence').textContent.includes('4 impacts')")
 
 
+@pytest.mark.slow
 def test_from_which_level_on_a_pressed_beam_opens_is_the_closed_forms(browser):
     browser.run(WORDS, "a", "6 Pressed shut")
     browser.until(MOVED)
@@ -97,6 +98,7 @@ def opened_from(page, hertz):
     assert f"At this frequency they open from {level:.4g} g on." in page.text("sentence")
 
 
+@pytest.mark.slow
 def test_a_motion_that_cannot_be_computed_is_not_shown_as_the_one_before(browser):
     browser.until(MOVED)
     before = browser.text("sentence")

@@ -46,6 +46,7 @@ def own(browser):
     browser.until(READY)
 
 
+@pytest.mark.slow
 def test_the_papers_motions_are_those_of_a_beam_in_hertz(browser):
     """Its ratios stay, and so do motion, impacts and diagram; back in the paper's units it is
     Figure 6's structure again, bit for bit.
@@ -148,6 +149,7 @@ def record(frequency=30.0, level=2.0, rate=1000.0, count=3000):
     return time, level * np.sin(phase) + 0.1 * level * np.sin(3.0 * phase)
 
 
+@pytest.mark.slow
 def test_a_measured_record_is_laid_over_the_models_spectrum(browser):
     browser.chosen()
     time, values = record()
@@ -173,24 +175,3 @@ def test_a_measured_record_is_laid_over_the_models_spectrum(browser):
 
 
 LINES = "".join(f"{i},{i % 5}\n" for i in range(20))
-UNREADABLE = {  # a file, and what is said of it
-    "a picture": ("\x89PNG\x00\x01 nothing", "no columns of numbers in it; expected columns"),
-    "nothing": ("", "no columns of numbers in it; expected columns of numbers under a heading"),
-    "few rows": ("t,a\n0,1\n1,2\n", "2 rows of numbers; expected 16 at least"),
-    "a hole": (LINES + "20,\n" + LINES, 'line 21 "20," has no 2 numbers'),
-    "uneven times": (LINES + "40,1\n", "column 1 is no time in equal steps, line"),
-    "a strange unit": ("t [s],a1 [furlong]\n" + LINES, 'unit "furlong" of column 2; expected one'),
-}
-
-
-def test_what_cannot_be_read_is_said_in_a_line_and_nothing_changes(browser):
-    browser.chosen()
-    before = browser.run(STATE)
-    for name, (text, words) in UNREADABLE.items():
-        browser.run(FILE, f"{name}.csv", text)
-        browser.until(
-            f"return document.getElementById('record-status').textContent.includes('{name}.csv: ')"
-        )
-        assert words in browser.text("record-status")
-        assert browser.run(STATE) == before
-    assert browser.run("return explorer.inspector.measured") is None

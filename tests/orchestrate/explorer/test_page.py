@@ -73,6 +73,7 @@ def test_a_click_shows_the_motion_that_the_command_computes(browser, swept, tmp_
     assert "impacts in 10 periods" in browser.get("history", "aria-label")
 
 
+@pytest.mark.slow
 def test_a_dragged_region_is_computed_anew_and_there_is_a_way_back(browser, swept):
     whole = etas(browser)
     browser.mouse("diagram", (0.35, 0.3), (0.4, 0.3), (0.45, 0.3))
@@ -106,6 +107,7 @@ def test_a_link_restores_the_view(chromium, page):
     assert browser.console() == []
 
 
+@pytest.mark.slow
 def test_the_basin_fills_and_a_click_or_a_key_on_it_starts_there(browser):
     from selenium.webdriver.common.keys import Keys
 
@@ -127,6 +129,7 @@ def test_the_basin_fills_and_a_click_or_a_key_on_it_starts_there(browser):
     assert moved[3] - moved[2] > after[3] - after[2]
 
 
+@pytest.mark.slow
 def test_what_is_shown_can_be_taken_home(browser):
     browser.run("explorer.choose(0.4)")
     browser.chosen()

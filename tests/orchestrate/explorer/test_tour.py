@@ -70,9 +70,11 @@ def test_two_answers_are_two_periodic_motions_of_one_beam_at_one_frequency():
     assert float(abs(up - down).max()) > 0.1  # its diagram shows two colours
 
 
-def test_chaos_has_a_positive_exponent():
+def test_chaos_has_a_positive_exponent_that_lasts():
+    """Not so at 2.9: after thousands of periods responses are on a stable orbit of 14."""
     stop = STOPS["chaos"]
-    found = orchestrate.lyapunov(stop.structure, eta=stop.eta, progress=False)
+    more = {"transient": 60_000, "progress": False}
+    found = orchestrate.lyapunov(stop.structure, eta=stop.eta, **more)
     assert found.exponent.item() > 5.0 * found.standard_error.item() > 0.0
     assert settled("chaos")[2] == "irregular"
 
@@ -96,6 +98,7 @@ def test_a_pressed_delamination_stays_shut_below_a_level_and_knocks_above_it():
 HILL = (36.2, 47.0)  # Hz, as the page says it of the diagram
 
 
+@pytest.mark.slow
 def test_at_the_level_where_it_is_shut_the_pressed_beam_opens_on_its_hill_alone():
     """Over the frequencies of the step's diagram, closely at the ends of the hill."""
     stop = STOPS["pressed"]
@@ -153,6 +156,7 @@ def test_each_stop_is_a_link_that_opens_its_motion(browser):
     assert not browser.run("return document.querySelectorAll('#tour a[aria-current]').length")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("frequency", "length", "acceleration", "text", "labels"),
     [

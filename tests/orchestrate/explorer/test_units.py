@@ -81,6 +81,7 @@ def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
     assert browser.console() == []
 
 
+@pytest.mark.slow
 def test_a_sweep_by_ratios_is_shown_in_ratios_alone(swept, tmp_path):
     for units in ("Hz", "mm", "m/s2"):
         with pytest.raises(orchestrate.InputError, match="expected eta, or a structure instead"):

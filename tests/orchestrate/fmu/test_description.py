@@ -1,6 +1,5 @@
 """An FMU is described as it is now, and what is none is refused in one line."""
 
-import pickle
 import shutil
 
 import pytest
@@ -65,9 +64,3 @@ def test_an_fmu_that_changes_is_described_anew(tmp_path, any_fmu):
     assert describe(path).name == OSCILLATOR
     shutil.copy(find(SHAKER, any_fmu.parent.name).path, path)
     assert describe(path).name == SHAKER
-
-
-def test_descriptions_travel_to_other_processes(any_fmu):
-    there = pickle.loads(pickle.dumps(describe(any_fmu)))
-    assert there.variables["e"].unit == describe(any_fmu).variables["e"].unit
-    assert there.digest == describe(any_fmu).digest

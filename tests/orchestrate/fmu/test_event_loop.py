@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from orchestrate.errors import FmuError
-from orchestrate.fmu import PLAYED, REST, EventInstance, Player
-from orchestrate.fmu import c_library as libraries
+from orchestrate.fmu import PLAYED, REST, Player
 from orchestrate.fmu import event_loop as loops
 from orchestrate.fmu.c_library import library
 from orchestrate.fmu.event_loop import (
@@ -146,24 +145,6 @@ def test_shapes_that_do_not_fit_are_refused(event_fmu):
         player.start(STRUCTURE)
         with pytest.raises(ValueError, match=r"derivatives of shape \(400, 3\) for 401 nodes"):
             player.play(NODES, CUBICS[:, :3], SAMPLES)
-
-
-def test_without_a_library_python_does_it(event_fmu, monkeypatch):
-    monkeypatch.setattr(loops, "run_function", lambda: None)
-    with EventInstance(event_fmu) as instance:
-        assert type(instance.event_loop()) is EventLoop
-
-
-def test_with_a_library_c_does_it(event_fmu):
-    with EventInstance(event_fmu) as instance:
-        assert type(instance.event_loop()) is CompiledEventLoop
-        assert instance.event_loop() is instance.event_loop()
-
-
-def test_a_library_that_cannot_be_loaded_is_no_failure(tmp_path, monkeypatch):
-    (tmp_path / "event_loop.so").write_bytes(b"nothing")
-    monkeypatch.setattr(libraries, "library", lambda source: tmp_path / "event_loop.so")
-    assert loops.run_function.__wrapped__() is None
 
 
 def test_structures_have_the_sizes_of_the_source():

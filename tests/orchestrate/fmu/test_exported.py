@@ -98,12 +98,6 @@ def test_what_came_with_the_package_needs_no_export(maker, places, real):
     assert maker.asked == []
 
 
-def test_what_came_with_the_package_serves_where_nothing_can_be_made(maker, places, real):
-    maker.without.update(FORMS)
-    put(real["fmi2-python"], places[1], "fmi2-python")
-    assert find(OSCILLATOR).path == places[1] / "fmi2-python" / f"{OSCILLATOR}.fmu"
-
-
 def test_other_sources_than_the_package_s_are_exported(maker, places, real):
     guid = describe(real["fmi3"]).guid
     stale = put(real["fmi3"], places[1])
@@ -127,11 +121,6 @@ def test_what_is_damaged_or_out_of_date_is_made_anew(maker, places, real, damage
     assert not up_to_date("fmi3", OSCILLATOR, places[0])
     assert find(OSCILLATOR).guid == describe(real["fmi3"]).guid
     assert (OSCILLATOR, "fmi3", places[0]) in maker.asked
-
-
-def test_a_build_folder_given_is_the_only_place(maker, places, real, tmp_path):
-    put(real["fmi3"], places[0]), put(real["fmi3"], places[1])
-    assert find(OSCILLATOR, folder=tmp_path / "mine").path.parents[1] == tmp_path / "mine"
 
 
 def test_without_a_compiler_the_python_form_serves(maker, places, caplog):
@@ -176,16 +165,6 @@ def test_refusals(maker, places, call, words):
     assert words in str(error.value) and "\n" not in str(error.value)
 
 
-def test_finder_takes_a_question_s_keywords(maker, places, real, tmp_path):
-    assert finder({})(OSCILLATOR).path.parents[1] == places[0]
-    assert finder({"build_folder": tmp_path / "b"})(SHAKER).path.parents[1] == tmp_path / "b"
-    own = put(real["fmi2"], tmp_path / "own", "fmi2")
-    found = finder({"fmu": {OSCILLATOR: own}, "jobs": 2})
-    assert found(OSCILLATOR).path == own
-    assert found(SHAKER).path.parents[1] == places[0]
-    assert finder({"fmu": str(own)})(OSCILLATOR).path == own
-
-
 def test_build_writes_all(maker, places, tmp_path):
     written = build(tmp_path / "out")
     names = {path.relative_to(tmp_path / "out").as_posix() for path in written}
@@ -200,13 +179,6 @@ def test_build_leaves_out_what_cannot_be_made(maker, places, tmp_path, caplog):
     maker.without.update(FORMS)
     with pytest.raises(InputError, match="cannot be made: ziglang"):
         build(tmp_path / "out")
-
-
-def test_build_into_a_file(maker, tmp_path):
-    (tmp_path / "folder").write_text("mine")
-    with pytest.raises(StoreError, match="folder: .*; expected a folder that can be written"):
-        build(tmp_path / "folder")
-    assert maker.asked == [] and (tmp_path / "folder").read_text() == "mine"
 
 
 def test_a_full_disk(monkeypatch, tmp_path):

@@ -53,21 +53,6 @@ def test_what_is_set_is_read(any_fmu):
         assert instance.get("box_frequency", "m2") == [2.0, 0.1]
 
 
-def test_reader_agrees_with_get(instance):
-    time = 100.0
-    for step in (0.0, 0.1, 3.7, 20.0):
-        instance.step(time, time + step)
-        time += step
-        assert list(instance.read(*STATE)) == instance.get(*STATE)
-    assert list(instance.read("v2", "x1")) == instance.get("v2", "x1")
-
-
-def test_get_has_types(instance):
-    count, contact, gap = instance.get("impact_count", "in_contact", "x_rel")
-    assert isinstance(count, int) and count > 0
-    assert contact in (True, False) and isinstance(gap, float)
-
-
 def test_initialize_begins_at_a_time(any_fmu):
     with Instance(any_fmu) as instance:
         instance.initialize(start_time=5.0, x1_start=-0.25, **CHAOS)
@@ -141,17 +126,6 @@ def test_reset(instance):
     instance.reset()
     instance.initialize(**CHAOS)
     assert trajectory(instance, 0.0) == once
-
-
-def test_what_is_no_number_is_refused(instance):
-    with pytest.raises(FmuError, match="real number"):
-        instance.set(e="much")
-
-
-def test_closing_twice_is_closing(any_fmu):
-    with Instance(any_fmu) as instance:
-        instance.close()
-    instance.close()
 
 
 def test_the_environment_is_left_alone(any_fmu):

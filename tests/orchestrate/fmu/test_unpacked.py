@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fmu_src.version import VERSION
-from orchestrate.errors import InputError, StoreError
+from orchestrate.errors import StoreError
 from orchestrate.fmu import FORMS, Instance, describe
 from orchestrate.fmu.unpacked import unpacked
 from orchestrate.temporary import PREFIX, process_folder
@@ -82,22 +82,6 @@ def test_a_process_unpacks_an_fmu_once(any_fmu, tmp_path):
     with Instance(copy):
         assert unpacked(describe(copy)) == first  # the bytes decide, not the name
     assert (first / "modelDescription.xml").stat().st_mtime_ns == stamp
-
-
-def test_an_fmu_that_changes_is_unpacked_anew(any_fmu, tmp_path):
-    path = tmp_path / "mine.fmu"
-    path.write_bytes(any_fmu.read_bytes())
-    described = describe(path)
-    altered_fmu(any_fmu, path, version=(VERSION, "0.1.1"))
-    assert unpacked(describe(path)) != unpacked(describe(any_fmu))
-    described = describe(any_fmu)
-    other = tmp_path / "other.fmu"
-    altered_fmu(any_fmu, other, version=(VERSION, "0.1.2"))
-    old = describe(other)
-    other.write_bytes(b"something else")
-    with pytest.raises(InputError, match="it has changed since it was read"):
-        unpacked(old)
-    assert unpacked(described).is_dir()
 
 
 def test_what_cannot_be_unpacked_leaves_nothing(any_fmu, tmp_path, monkeypatch):

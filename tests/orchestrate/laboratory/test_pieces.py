@@ -1,7 +1,5 @@
 """Cubic pieces: they are as near to their signal as they say, for all kinds of excitation."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

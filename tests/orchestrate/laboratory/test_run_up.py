@@ -1,7 +1,5 @@
 """The run of a weak drive as a record, against the motion that it comes from."""
 
-from __future__ import annotations
-
 import warnings
 from functools import cache
 

@@ -1,7 +1,5 @@
 """What sensors read against an independent solution of motion and filter together."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math
@@ -16,15 +14,12 @@ from orchestrate import (
     InputError,
     Sampled,
     Sensor,
-    Shock,
     Structure,
     SweptSine,
     measure,
     shake,
-    simulate,
 )
 from orchestrate.laboratory.analog_filter import anti_aliasing, phi_functions
-from orchestrate.laboratory.reconstruction import Motion
 
 from ...sparing import ordinary
 
@@ -152,23 +147,6 @@ def test_the_historys_sampling_rate_does_not_matter_through_contact_and_release(
         assert float(np.abs(fine[channel] - without[channel]).max()) <= bound * peak
 
 
-@pytest.mark.parametrize("antialiasing", [False, True])
-def test_the_integral_of_what_is_read_is_the_change_of_velocity(antialiasing):
-    beam = Structure.from_halves(m1=1.5, m2=0.7, f1=42.0, f2=55.0, zeta1=0.3, zeta2=0.3, e=0.6)
-    shock = Shock(peak=300.0, length=0.011, delay=0.02, duration=0.6)
-    history = shake(beam, shock, sample_rate=2000.0, progress=False)
-    assert history.sizes["impact"] >= 3 and history.impulse.max() > 0.3
-    rate = 20_000.0 if antialiasing else 400_000.0  # else what is aliased is missing in the sum
-    sensor = Sensor(bandwidth=3000.0, sample_rate=rate, antialiasing=antialiasing)
-    felt = measure(history, sensor, excitation=shock)
-    box = 300.0 * 0.011 * 2.0 / math.pi
-    for channel, own in zip(CHANNELS, (0.0, "v1", "v2"), strict=True):
-        change = box + (float(history[own][-1]) if own else 0.0)
-        assert math.isclose(float(felt[channel].sum()) / rate, change, rel_tol=2e-6), channel
-    between = float(history.a1_abs.sum()) / 2000.0
-    assert abs(between - box) > 0.05 * box  # without the impulses it is not
-
-
 @pytest.mark.parametrize("size", [1e-9, 0.3, 1.0, 2.9, 3.1, 12.0, 60.0, 1e4])
 def test_phi_functions(size):
     for angle in (0.5 * math.pi, 0.6 * math.pi, math.pi):
@@ -264,43 +242,6 @@ def test_mistaken_measurements_are_one_line(given, words):
     with pytest.raises(InputError) as error:
         measure(**{"history": shaken(True), "sensor": SENSOR, **given})
     assert words in str(error.value) and "\n" not in str(error.value)
-
-
-def test_a_steady_harmonic_motion_is_read_with_the_filters_gain_and_delay():
-    bonded, turn = BEAM.as_bonded(), 2.0 * math.pi * 45.0
-    history = simulate(bonded, frequency=turn, amplitude=1e-4, transient=1000, periods=20)
-    sensor = Sensor(bandwidth=150.0, order=3, sample_rate=2000.0)
-    felt = measure(history, sensor)
-    assert float(felt.time[0]) == float(history.time[0]) > 20.0
-    gain = complex(sensor.analog_filter().frequency_response(np.array([45.0]))[0])
-    late = felt.isel(time=slice(-200, None))
-    for channel, own in (("box_acceleration", "box_acceleration"), ("acceleration1", "a1_abs")):
-        lines = []
-        for times, values in (
-            (history.time.values, history[own].values),
-            (late.time.values, late[channel].values),
-        ):
-            basis = np.exp(1j * turn * times)
-            matrix = np.stack([basis.real, -basis.imag], axis=1)
-            (real, imaginary), *_ = np.linalg.lstsq(matrix, values, rcond=None)
-            lines.append(real + 1j * imaginary)
-        assert abs(lines[1] / lines[0] - gain) < 1e-5
-
-
-def test_releases_are_found_between_the_samples():
-    beam = dataclasses.replace(BEAM, e=0.3)
-    sweep = SweptSine(first=15.0, last=75.0, duration=2.0, acceleration=5.0)
-    found = []
-    for rate in (8000.0, 1000.0):
-        history = shake(beam, sweep, sample_rate=rate, progress=False)
-        motion = Motion.from_history(history, beam, sweep.pieces(1e-6))
-        found.append(motion.releases())
-        for release in found[-1][1:]:  # the first is the start's
-            after = history.in_contact.sel(time=slice(release, release + 1.5 / rate))
-            struck = (motion.impact_times > release) & (motion.impact_times < release + 1.5 / rate)
-            assert not after.values[0] or struck.any()
-    assert found[0][0] == found[1][0] == 0.0 and len(found[0]) == len(found[1]) > 5
-    assert np.abs(found[0] - found[1]).max() < 1e-9
 
 
 @pytest.mark.parametrize("excitation", [BOX, None])

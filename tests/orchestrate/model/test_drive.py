@@ -33,28 +33,6 @@ def test_numbers_to_si_and_back(numbers, structure, length):
     assert math.isclose(drive.length, length, rel_tol=1e-12)
 
 
-def test_the_formulas():
-    structure = Structure(m1=2.0, k1=8.0)
-    drive = Drive(
-        box_mass=4.0,
-        box_stiffness=16.0,
-        box_damping=0.8,
-        unbalance_mass=0.5,
-        unbalance_radius=0.2,
-        rotor_inertia=0.01,
-        motor_constant=0.3,
-        armature_resistance=6.0,
-    )
-    assert drive.beta(structure) == 0.5
-    assert drive.length == pytest.approx(0.025, rel=1e-15)
-    assert drive.epsilon == pytest.approx(0.1**2 / (0.01 * 4.0), rel=1e-14)
-    assert drive.b(structure) == pytest.approx(0.09 / 6.0 / (0.01 * 2.0), rel=1e-14)
-    assert drive.Omega_b(structure) == 1.0
-    assert drive.D_b(structure) == pytest.approx(0.05, rel=1e-14)
-    assert drive.volts(structure) == 0.6
-    assert drive.energy(structure) == pytest.approx(4.0 * (2.0 * 0.025) ** 2, rel=1e-14)
-
-
 @given(DRIVES)
 def test_repr_can_be_evaluated(drive):
     assert eval(repr(drive)) == drive

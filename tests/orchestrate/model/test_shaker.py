@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
 from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, Instance, find
-from orchestrate.model import Drive, Shaker, Structure, read, write
+from orchestrate.model import Shaker, read, write
 from orchestrate.model.files import SHAKERS
 from orchestrate.model.ranges import SHAKER
 
@@ -112,13 +112,3 @@ def test_bad_files(tmp_path, text, words):
     path.write_text(f"[shaker]\n{text}\n")
     with pytest.raises(InputError, match=words):
         Shaker.from_file(path)
-
-
-def test_what_a_file_does_not_describe():
-    with pytest.raises(InputError, match=r"beam: describes no shaker; expected \[shaker\]"):
-        Shaker.from_file("beam")
-    for kind in (Structure, Drive):
-        with pytest.raises(InputError, match="shaker_10N: describes no"):
-            kind.from_file("shaker_10N")
-    with pytest.raises(InputError, match="did you mean shaker_100N"):
-        Shaker.from_file("shaker_100n")

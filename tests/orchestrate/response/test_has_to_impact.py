@@ -4,8 +4,6 @@ Just above the level at which the linear response opens or touches, a transient 
 state repeats meanwhile, within any tolerance, and "repeated, no impacts" was the answer.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

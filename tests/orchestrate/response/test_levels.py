@@ -1,7 +1,5 @@
 """The level of the shaking as a parameter: sweeps, maps and resonance curves over it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

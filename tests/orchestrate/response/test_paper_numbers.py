@@ -4,8 +4,6 @@ Peaks of max xi_Rel lie on a grid of 0.001 in eta; single responses are reached 
 bit below.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """At what a question is asked: both forms of an excitation, one parameter, and what is refused."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Resonance curves against what is known: linear theory, sweeps, scaling."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,11 +1,8 @@
 """Spectra hold the impulses: against the sum over the impacts that the FMU reports."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import trapezoid
-from scipy.signal import periodogram
 
 from orchestrate.errors import InputError
 from orchestrate.model import Structure
@@ -64,31 +61,6 @@ def test_amplitudes_of_sines(count):
     assert frequency[5] == pytest.approx(10.0 * np.pi)
     assert amplitude[0, [5, 50]] == pytest.approx([3.0, 2.0])
     np.testing.assert_allclose(amplitude[1], 2.0 * amplitude[0])
-
-
-@pytest.mark.parametrize("count", [256, 257])
-def test_a_mean_shows_at_zero_alone_and_changes_no_bit_of_other_lines(count):
-    """The window spreads it over the line beside zero, where a factor of frequency is not 0."""
-    time = np.arange(count) / count
-    signal = -0.5 + 3.0 * np.sin(10 * np.pi * time)
-    _, amplitude = amplitude_spectrum(signal, 1.0 / count)
-    assert amplitude[0] == pytest.approx(0.5) and amplitude[1:4] == pytest.approx(0.0, abs=1e-12)
-    _, power = periodogram(signal, fs=count, window="hann", detrend=False, scaling="spectrum")
-    assert amplitude[2:].tobytes() == np.sqrt(2.0 * power[2:]).tobytes()
-
-
-@pytest.mark.usefixtures("exported")
-def test_halves_that_stay_shut_beside_their_springs_lengths_have_one_line():
-    """The mean place is known: the springs hold the halves against each other."""
-    structure = PAPER.replace(clearance=-5.0)
-    moved = simulate(structure, eta=0.6, transient=300, periods=1, points=64)
-    shift = -5.0 * structure.k2 / (structure.k1 + structure.k2)
-    assert float(moved.x1[1:].mean()) == pytest.approx(shift, rel=1e-3, abs=1e-3 * abs(shift))
-    found = spectra(structure, eta=0.6, transient=300, periods=8, points=64, highest=20.0)
-    for kind in ("bonded", "delaminated", "sampled"):
-        line = found.acceleration.isel(eta=0).sel(kind=kind, mass=1)
-        largest = float(line.sel(order=1.0))
-        assert float(line.sel(order=slice(None, 0.8)).max()) < 1e-6 * largest, kind
 
 
 @pytest.mark.usefixtures("exported")

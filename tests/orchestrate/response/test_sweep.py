@@ -1,7 +1,5 @@
 """Sweeps: order, directions, any parameter; chunks and scales change nothing."""
 
-from __future__ import annotations
-
 import math
 from unittest.mock import patch
 

@@ -166,16 +166,3 @@ def test_the_lowest_threshold_is_that_of_the_curve_not_of_the_grid(seed):
     there = orchestrate.contact_threshold(structure, frequency=place)
     assert float(there.threshold_acceleration[0]) == pytest.approx(level, rel=1e-12)
     assert low < place < high and level < 0.9 * float(found.threshold_acceleration.min())
-
-
-def test_a_range_without_a_valley_has_its_lowest_threshold_at_an_end():
-    rising = Structure(clearance=-0.25)
-    found = orchestrate.contact_threshold(rising, frequency=[1.3, 1.2, 1.25])
-    assert float(found.lowest_threshold_frequency) == 1.2
-    assert float(found.lowest_threshold) == float(found.threshold_acceleration[1])
-    for none in (
-        orchestrate.contact_threshold(rising, frequency=1.2),
-        orchestrate.contact_threshold(Structure(), frequency=[1.2, 1.3]),
-        orchestrate.contact_threshold(Structure(k2=1.0, clearance=-1.0), frequency=[1.2, 1.3]),
-    ):
-        assert "lowest_threshold" not in none

@@ -1,7 +1,5 @@
 """Maxima and jumps of curves whose maxima and jumps are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What the tests of the runner share: a file that stands for an FMU."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

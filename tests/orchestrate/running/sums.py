@@ -1,7 +1,5 @@
 """Jobs of this test suite: squares of whole numbers, and what starts from others of them."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass
 from pathlib import Path

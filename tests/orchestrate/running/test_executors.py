@@ -1,7 +1,5 @@
 """Who computes changes no bit; workers that are lost are told in a line, and nothing is lost."""
 
-from __future__ import annotations
-
 import os
 import threading
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor

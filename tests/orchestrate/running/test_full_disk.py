@@ -1,7 +1,5 @@
 """A full disk ends a job with one line; what was computed is kept, and the job goes on later."""
 
-from __future__ import annotations
-
 import subprocess
 
 import pytest

@@ -1,9 +1,6 @@
 """A sequential job on many workers: guessed chunks that stand, and others that do not."""
 
-from __future__ import annotations
-
 import random
-from dataclasses import replace
 from unittest.mock import patch
 
 import numpy as np
@@ -76,7 +73,6 @@ def test_what_is_on_disk_is_certain(tmp_path):
 # -- orbit diagrams of the paper, at fewer frequencies over fewer periods --------------------------
 
 FIGURES = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D
-CHAOS = (1.0, 1.3)  # of Figure 6: irregular from 1.09 on
 
 
 def job(figure: str, direction: str, low: float = 0.1, high: float = 8.0, step: float = 0.05):
@@ -106,18 +102,3 @@ def test_any_number_of_workers_gives_the_same_sweep(figure, direction):
     assert wasted == 0
     for workers in (2, 7):
         assert played(sweep, workers)[0].identical(alone)
-
-
-@pytest.mark.usefixtures("exported")
-@pytest.mark.parametrize(
-    ("low", "high", "in_vain"),
-    [(1.4, 1.8, (0.0, 0.25)), (5.8, 6.2, (0.0, 2.0)), (*CHAOS, (0.1, 9))],
-)
-def test_what_stands_is_right_where_motions_repeat_and_where_not(low, high, in_vain):
-    """After more than one period a guess arrives in any of the phases."""
-    settled = {"transient": 500, "samples": 200} if low != CHAOS[0] else {}
-    sweep = replace(job("6", "up", low, high, 0.005), **settled)
-    alone, _ = played(sweep, 1)
-    many, wasted = played(sweep, 7)
-    assert alone.identical(many)
-    assert in_vain[0] <= wasted / alone.sizes["eta"] < in_vain[1]

@@ -1,7 +1,5 @@
 """What decides numbers is in an identity: parameters, FMU, and the code behind them."""
 
-from __future__ import annotations
-
 import ast
 from dataclasses import dataclass
 

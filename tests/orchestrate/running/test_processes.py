@@ -1,7 +1,5 @@
 """Scripts of users on processes and threads, interrupted and killed: the same bytes in the end."""
 
-from __future__ import annotations
-
 import os
 import random
 import signal

@@ -1,7 +1,5 @@
 """Results are stored, resumed and read; they are never taken for another question's."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A user's program in a fresh process: our pictures are drawn, and theirs are as they were."""
 
-from __future__ import annotations
-
 import sys
 
 import matplotlib

@@ -1,7 +1,5 @@
 """Made-up results of every kind, as questions give them, and where a drawn figure has its texts."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg

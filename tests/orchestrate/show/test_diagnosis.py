@@ -1,7 +1,5 @@
 """Pictures of signs and of a test's plan."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -39,6 +39,7 @@ BEAM = orchestrate.Structure.from_halves(**HALVES)
 # -- files ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_our_pictures_leave_theirs_alone(tmp_path):
     root = Path(__file__).resolve().parents[3]
     command = [sys.executable, "-m", "tests.orchestrate.show.drawing", str(tmp_path)]

@@ -1,7 +1,5 @@
 """``orchestrate.plot``: the right picture for each answer, and for answers that belong together."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

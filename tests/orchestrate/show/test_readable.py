@@ -1,7 +1,5 @@
 """Pictures that people can read: all is drawn, told with its unit, and covered by nothing."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np
@@ -23,6 +21,7 @@ from orchestrate.show import (
 )
 from orchestrate.show import spectra as spectra_pictures
 
+from ...sparing import ordinary
 from . import made
 
 QUICK = (orchestrate.Structure.from_file("quick"), orchestrate.Drive.from_file("quick"))
@@ -115,7 +114,7 @@ def colliding_numbers(figure, renderer) -> list[tuple[str, str]]:
     return found
 
 
-@pytest.mark.parametrize("name", [*SI, *OTHERS])
+@pytest.mark.parametrize("name", ordinary([*SI, *OTHERS], [*SI, *OTHERS][::3]))
 def test_a_picture_is_readable_and_says_what_it_shows(name):
     figure = {**SI, **OTHERS}[name]()
     texts = " ".join(all_is_readable(figure))
@@ -163,6 +162,7 @@ def test_the_weak_drive_says_its_jumps_and_draws_them_over_time(ramps, jumps):
     assert not [line for line in drawn if str(line.get_color()).startswith("C")]  # a user's cycle
 
 
+@pytest.mark.slow
 def test_a_constant_voltage_is_drawn_over_time_and_has_no_way_back(exported):
     data = orchestrate.couple(*QUICK, voltage=1.4, duration=60.0, **HERE)
     figure = passage.draw_run({"delaminated": data}, 1.35, "set")
@@ -173,6 +173,7 @@ def test_a_constant_voltage_is_drawn_over_time_and_has_no_way_back(exported):
     weak_drive.draw({"delaminated": data})
 
 
+@pytest.mark.slow
 def test_a_passage_has_both_structures_side_by_side(exported):
     asked = {"voltage": 1.45, "duration": 120.0, **HERE}
     structures = {"bonded": QUICK[0].as_bonded(), "delaminated": QUICK[0]}

@@ -1,7 +1,5 @@
 """The page of a report: it carries all it needs, escapes every text, and fits paper and phone."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import re
@@ -165,6 +163,7 @@ def verdict():
     )
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not shutil.which("chromium"), reason="no chromium here, which prints the page")
 def test_on_paper_one_page_is_signed_and_the_rest_is_short(verdict, signs, tmp_path):
     """A page with the signature, one with the signs, one of an appendix."""

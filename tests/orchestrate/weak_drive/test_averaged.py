@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from numpy.polynomial import Polynomial
 
 from orchestrate.model import Drive, Structure
 from orchestrate.weak_drive import averaged
@@ -47,13 +46,3 @@ def test_stability_is_that_of_slow_disturbances(name):
     for Omega in np.linspace(0.9 * speeds[0], 1.1 * speeds[-1], 25):
         grows = averaged.growth_rates(structure, drive, float(Omega))[0].real > 0.0
         assert stable[int(np.searchsorted(speeds, Omega))] != grows
-
-
-def test_polishing_a_root_makes_it_no_worse():
-    """Newton's method divides by zero at a double root and runs away beside an extremum."""
-    double = Polynomial([1.0, -2.0, 1.0])
-    assert averaged.polish_root(double, 1.0) == 1.0
-    simple = Polynomial([-2.0, 0.0, 1.0])
-    assert averaged.polish_root(simple, 1.4142) == pytest.approx(np.sqrt(2.0), abs=1e-15)
-    no_root = Polynomial([1e-12, 0.0, 1.0])
-    assert abs(averaged.polish_root(no_root, 1e-9)) < 1e-6

@@ -5,8 +5,7 @@ import pytest
 
 from orchestrate import InputError, capture
 from orchestrate.weak_drive.averaged import dividing_speed
-from orchestrate.weak_drive.capture import CaptureJob, threshold_voltage
-from orchestrate.weak_drive.master import Scheme
+from orchestrate.weak_drive.capture import threshold_voltage
 from orchestrate.weak_drive.settling import CONVERGED, UNDECIDED, Outcome
 
 from . import bonded
@@ -91,22 +90,6 @@ def test_undecided_starts_widen_the_border(known):
     low, high = (end.voltage for end in ends)
     assert 1.27 <= low < 1.28 and 1.47 < high <= 1.48
     assert len(asked) < 30
-
-
-@pytest.mark.parametrize(
-    ("low", "flag"), [(1.5, 0.0), (1.5832, 0.0), (1.5836, 1.0)], ids=["below", "at", "above"]
-)
-def test_a_border_above_the_fold_is_said_to_be(low, flag):
-    """Made-up borders of ``quick``, whose fold the averaged theory has at 1.58306."""
-    job = CaptureJob(
-        *("capture", *QUICK.as_bonded(), "", (), (1.4, 1.6)),
-        *(1e-4, 0.0, 100, Scheme(0.4)),
-    )
-    outcomes = np.array([[Outcome(CONVERGED), Outcome(CONVERGED, True, 5.0, 1.6)]], dtype=float)
-    borders = np.array([[low, 1.25, low + 1e-4, 1.6]])
-    found = job.dataset({"outcomes": outcomes, "borders": borders})
-    assert float(found.fold) == pytest.approx(1.58306, abs=1e-5)
-    assert float(found.above_fold) == flag
 
 
 def test_over_a_second_parameter():

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from orchestrate import couple
-from orchestrate.dynamics.bifurcations import Kind
 from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.drive_tracer import motion_near
-from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.shooting import Shooter
 
 from .coupled import QUICK
@@ -18,7 +16,6 @@ from .validation import branch_of
 APART = QUICK.with_structure(clearance=100.0)  # never touch
 OPEN = QUICK.with_structure(clearance=3.0)
 PRESSED = QUICK.with_structure(clearance=-3.0)  # part from an amplitude of about 16 on
-LESS_PRESSED = QUICK.with_structure(clearance=-1.0)
 
 
 def leg_of(system, range_, most=40):
@@ -114,18 +111,6 @@ def test_with_a_gap():
     assert_held(OPEN, motions[-1])
 
 
-@pytest.mark.slow
-def test_held_voltages_find_the_fold_of_the_branch():
-    """Of a structure with a gap, from states of a ramp that are restored."""
-    legs, _ = branch_of(OPEN, 30, (0.995, 1.002))
-    (fold,) = legs[0].bifurcations
-    ramp = Ramp(1.52, 1.62, 4e-4, settle=600.0, back=False)
-    up = couple(*OPEN, voltage=ramp, speed_start=0.0, progress=False).sel(jump="up")
-    assert fold.kind == Kind.FOLD and up.decided == "by held voltages"
-    assert up.jump_low - 2e-5 < fold.point.coordinates[0] < up.jump_high + 2e-5
-    assert up.jump_high - up.jump_low < 2.1e-4
-
-
 def test_halves_that_never_touch_are_two_oscillators():
     """By the averaged torque of two masses in one box, each on its own spring."""
     structure, drive = APART
@@ -141,11 +126,3 @@ def test_halves_that_never_touch_are_two_oscillators():
     expected = speeds - torque / drive.b(structure)
     assert [motion.coordinates[0] for motion in motions] == pytest.approx(expected, abs=2e-4)
     assert not any(motion.period.impacts for motion in motions)
-
-
-@pytest.mark.slow
-def test_a_branch_ends_where_a_chattering_no_longer_ends_in_contact():
-    motions, end, _ = leg_of(LESS_PRESSED, (0.946, 0.98))
-    assert end == "loss of permanent contact"
-    assert motions[0].together and not motions[-1].together
-    assert motions[-1].period.impacts > motions[2].period.impacts > 0

@@ -93,12 +93,6 @@ def test_a_machine_that_is_captured_gets_across():
     assert swung.no_jump.values.tolist() == ["a controller sets the voltage"] * 2
 
 
-def test_backward_too():
-    control = SpeedGradient(filter_time=1.0, passed=5.0)
-    assert control.update(Measurement(0.0, -3.0, -8.0, 0.01), (-2.0,))[0] == -8.0
-    assert abs(control.update(Measurement(0.0, -1.0, -8.0, 0.01), (-2.0,))[0]) == 0.0
-
-
 @pytest.mark.parametrize(
     ("make", "parts"),
     [

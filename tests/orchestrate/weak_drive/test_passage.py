@@ -39,12 +39,6 @@ def test_only_around_the_jump(whole):
     assert near.x1.equals(expected.x1) and near.speed.equals(expected.speed)
 
 
-def test_around_without_a_jump():
-    found = passage(*QUICK, voltage=1.3, duration=60.0, around=5.0, progress=False)
-    assert found.attrs["kept"] == "the end, there is no jump"
-    assert found.sizes["time"] == pytest.approx(101, abs=1) and found.time[-1] == pytest.approx(60)
-
-
 def test_lines_of_a_known_motion():
     """Mass and box at three times a speed that rises: one line, A (3 w)^2, all the time."""
     time = np.arange(0.0, 300.0, 0.05)
@@ -64,12 +58,6 @@ def test_halves_with_impacts(whole):
     """`quick` repeats after two revolutions at its resonance: lines at halves of the speed."""
     found = waterfall(whole.sel(time=slice(0, 250)), revolutions=8).isel(time=-1).acceleration
     assert found.sel(order=1.0) > 10.0 * found.sel(order=2.5) > 100.0 * found.sel(order=2.25)
-
-
-def test_gaps_are_not_bridged(whole):
-    parts = whole.isel(time=list(range(100)) + list(range(900, 1000)))
-    with pytest.raises(InputError, match=r"time: .* without a gap"):
-        waterfall(parts)
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,5 @@
 """The voltage over time."""
 
-import os
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -83,23 +79,3 @@ def test_mistakes_in_a_course(tmp_path, text, parts):
     with pytest.raises(InputError) as caught:
         Course.from_csv(path)
     assert all(part in str(caught.value) for part in parts), str(caught.value)
-
-
-def test_a_course_that_is_not_there(tmp_path):
-    with pytest.raises(
-        InputError, match="nowhere.csv: cannot be read .No such file or directory.;"
-    ):
-        Course.from_csv(tmp_path / "nowhere.csv")
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="devices and pipes")
-def test_a_course_is_an_ordinary_file_of_some_megabytes(tmp_path):
-    pipe, large = tmp_path / "pipe", tmp_path / "large.csv"
-    os.mkfifo(pipe)
-    with large.open("wb") as file:
-        file.truncate(8 << 30)  # zeros that take no room
-    for path in (Path("/dev/zero"), pipe, tmp_path):
-        with pytest.raises(InputError, match="cannot be read .no ordinary file.; expected a CSV"):
-            Course.from_csv(path)
-    with pytest.raises(InputError, match=f"{8 << 30} bytes, at most"):
-        Course.from_csv(large)

@@ -10,7 +10,6 @@ from scipy.signal import butter, freqs, welch
 
 import orchestrate
 from tools.benches import recipe, tutorial, verdicts
-from tools.benches.__main__ import main
 from tools.benches.bench import Bench
 from tools.benches.excitation import Random, Swept
 from tools.benches.lumped import TURN, Halves
@@ -122,19 +121,6 @@ def test_the_records_of_the_tutorial_are_read_as_they_are():
     guess = orchestrate.Structure.from_file(tutorial.FOLDER / "beam.toml")
     for name in ("m1", "m2", "f1", "f2"):
         assert getattr(guess, name) == pytest.approx(getattr(tutorial.BEAM, name), rel=0.1)
-
-
-def test_the_command_writes_them(tmp_path, monkeypatch, capsys):
-    """The first second is the committed one: the sweep begins alike, and no beam rattles yet."""
-    short = dataclasses.replace(tutorial.BENCH, excitation=Swept(20.0, 90.0, 1.0, 4.0))
-    monkeypatch.setattr(tutorial.write_records, "__defaults__", (tmp_path, short))
-    main(["tutorial", "--folder", str(tmp_path)])
-    assert capsys.readouterr().out.count("sha256") == 3
-    for name in tutorial.BEAMS:
-        written = (tmp_path / f"{name}.csv").read_text("utf-8")
-        kept = (tutorial.FOLDER / f"{name}.csv").read_text("utf-8")
-        assert written.splitlines()[:7] == kept.splitlines()[:7]
-        assert orchestrate.read_record(tmp_path / f"{name}.csv").sizes["time"] == 1251
 
 
 def test_a_table_of_verdicts_counts_what_is_wrong_and_ends_with_its_budget(monkeypatch, short):

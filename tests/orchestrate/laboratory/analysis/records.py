@@ -1,7 +1,5 @@
 """Records for tests: of signals that are known, and of shaken structures."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

@@ -1,15 +1,11 @@
 """Orders of swept sines: of signals that are known, and of shaken structures."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from orchestrate import InputError, SteppedSine, SweptSine, harmonics, read_record, track_orders
-from orchestrate.laboratory.analysis.channels import Channels
-from orchestrate.laboratory.analysis.orders import against_box
 
-from .records import DAMPED, LIGHT, SWEEP, make, of_shaken, random_record, swept_record, transfer
+from .records import DAMPED, LIGHT, SWEEP, make, random_record, swept_record, transfer
 
 RATE = 2000.0
 SWEEPS = {
@@ -41,17 +37,6 @@ def test_known_orders_are_found(name):
     expected = sweep.frequency(answer.time.values)
     assert np.abs(answer.frequency / expected - 1.0).max() < 1e-5
     assert (np.sign(answer.sweep_rate) == np.sign(sweep.last - sweep.first)).all()
-
-
-def test_amplitudes_that_change_at_a_constant_rate_are_found():
-    sweep = SWEEPS["up"]
-    time = np.arange(int(6.0 * RATE)) / RATE
-    angle = sweep.phase(time)
-    rising = (1.0 + time) * np.sin(angle) + (2.0 - 0.1 * time) * np.cos(2.0 * angle)
-    answer = track_orders(make(RATE, sweep(time), rising), orders=2, phase=angle)
-    shown = answer.amplitude.sel(channel="acceleration1")
-    assert np.abs(shown.sel(order=1) - (1.0 + answer.time)).max() < 1e-9
-    assert np.abs(shown.sel(order=2) - (2.0 - 0.1 * answer.time)).max() < 1e-9
 
 
 @pytest.mark.parametrize("name", SWEEPS)
@@ -98,16 +83,6 @@ def test_only_frequencies_that_the_record_has_whole():
     begin = record.sel(time=slice(0.0, 1.0))
     with pytest.raises(InputError, match="expected all of what is measured at a frequency"):
         track_orders(begin, phase=STEPPED)
-
-
-def test_phases_count_from_the_box():
-    """Order n turns n times as far as the box's own order 1."""
-    channels = Channels.from_record(make(100.0, np.ones(100), np.ones(100)))
-    amplitudes = np.array([[2.0, 0.0], [3.0, 4.0]], dtype=complex)[:, :, None]
-    amplitudes = amplitudes * np.exp(1j * np.array([0.3, 1.0]))[None, :, None]
-    turned = against_box(channels, amplitudes, (1.0, 2.0))
-    assert np.allclose(np.angle(turned[1, :, 0]), [0.0, 0.4])
-    assert np.allclose(np.abs(turned[1, :, 0]), [3.0, 4.0])
 
 
 def test_opening_shows_in_order_2_and_in_the_distortion():
@@ -197,11 +172,3 @@ def test_messages_name_the_column_that_the_user_gave(tmp_path):
     data = read_record(path, columns=("t", "shaker, top", "face"))
     with pytest.raises(InputError, match='^base "shaker, top": does not move'):
         track_orders(data)
-
-
-def test_a_result_of_shake_is_taken_as_it_is(exported):
-    from orchestrate import shake
-
-    data = shake(DAMPED, SWEEP, sample_rate=500.0, progress=False)
-    one, other = track_orders(data), track_orders(of_shaken(data))
-    assert one.drop_attrs().identical(other.drop_attrs())

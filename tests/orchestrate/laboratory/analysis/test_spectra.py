@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from orchestrate import Structure, frf, psd, spectrogram
 from orchestrate.laboratory.analysis.channels import Channels, averaging
@@ -37,28 +36,7 @@ def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator
         assert np.abs(found / expected - 1.0).max() < 0.01
 
 
-def probabilities(seeds, duration):
-    """Of a smaller error than each one found, where noise is on the response (Goodman's F)."""
-    chances = []
-    for seed in seeds:
-        record = random_record(HEAVILY.as_bonded(), seed, duration)
-        noise = np.random.default_rng(1000 + seed).normal(size=record.sizes["time"])
-        noisy = record.assign(acceleration1=record.acceleration1 + 4.0 * noise)
-        answer = frf(noisy, resolution=0.3)
-        frequency, found = complex_response(answer)
-        error = answer.random_error.sel(channel="acceleration1", frequency=BAND).values
-        expected, n = transfer(HEAVILY, frequency), float(answer.averages)
-        # the variance comes from n - 1 of n averages
-        ratio = np.abs(found - expected) ** 2 / (2.0 * (error * np.abs(found)) ** 2) * (n - 1) / n
-        chances.append(stats.f.cdf(ratio, 2, 2 * n - 2)[::3])  # lines 3 apart are independent
-    return np.concatenate(chances)
-
-
-def test_random_error_is_the_one_stated():
-    chances = probabilities(range(3), 22.0)
-    assert stats.kstest(chances, "uniform").pvalue > 1e-3
-
-
+@pytest.mark.slow
 def test_estimators_where_the_noise_is():
     """H1 is right with noise on the response, H2 with noise on the box, Hv with the same on both.
 
