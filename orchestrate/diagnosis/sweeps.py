@@ -39,7 +39,7 @@ def split_sweeps(record: xr.Dataset) -> list[xr.Dataset]:
     ]
 
 
-def is_sweep(group: NDArray[np.int_], time: Floats, frequency: Floats) -> bool:
+def is_sweep(group: NDArray[np.intp], time: Floats, frequency: Floats) -> bool:
     """Return whether a group of windows lasts long enough and covers enough frequencies."""
     if len(group) < 2:
         return False

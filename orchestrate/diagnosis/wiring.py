@@ -242,11 +242,11 @@ def hum_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator[No
     """Yield a note on a line of the mains in a channel."""
     channels = orders.channels
     count = int(HUM_WINDOW * channels.sample_rate)
-    starts = np.arange(0, len(channels.time) - count, count)
+    starts = np.arange(0, len(channels.time) - count, count, dtype=np.intp)
     middle = channels.time[starts] + 0.5 * HUM_WINDOW
     swept = np.interp(middle, orders.windows.time, orders.windows.frequency)
     for mains in MAINS:
-        away = np.all(np.abs(np.outer(HUM_ORDERS, swept) - mains) > HUM_AWAY, axis=0)
+        away = np.abs(np.outer(HUM_ORDERS, swept) - mains).min(axis=0) > HUM_AWAY
         if away.sum() < settings.fewest:
             continue
         lines = np.stack(
@@ -263,7 +263,7 @@ def hum_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator[No
 
 
 def line_amplitudes(
-    channels: Channels, row: int, starts: NDArray[np.int_], count: int, hertz: float
+    channels: Channels, row: int, starts: NDArray[np.intp], count: int, hertz: float
 ) -> Complexes:
     """Return the complex amplitude of a line in windows with Hann weights, m/s2."""
     weights = np.hanning(count) * 2.0 / np.hanning(count).sum()

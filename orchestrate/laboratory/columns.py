@@ -274,8 +274,7 @@ def channel_places(
 
     The order is time, base, face 1, face 2; without time where the file says the sampling rate.
     """
-    motions = [name for name in CHANNELS if name != FORCE]
-    wanted = (*(() if table.sample_rate else ("time",)), *motions)
+    wanted = (*(() if table.sample_rate else ("time",)), *CHANNELS)[: 3 + (not table.sample_rate)]
     if columns is None:
         return places_by_order(table, wanted)
     places = places_asked_for(table, columns, wanted, ("time", *CHANNELS))

@@ -21,13 +21,13 @@ from .time_base import checked_times, interpolated
 if TYPE_CHECKING:
     import xarray as xr
 
-CHANNELS = {  # long names
+ACCELERATIONS = {  # long names
     "box_acceleration": "acceleration of the box",
     "acceleration1": "absolute acceleration of mass 1",
     "acceleration2": "absolute acceleration of mass 2",
-    "force": "force on the structure",
 }
-FORCE = "force"  # in N; all others in m/s2
+FORCE = "force"  # in N
+CHANNELS = {**ACCELERATIONS, FORCE: "force on the structure"}
 SHORT_NAMES = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
 SHORT_NAMES[FORCE] = FORCE
 FEWEST = 4

@@ -16,7 +16,7 @@ from ..model.ranges import ADDED, STRUCTURE, Quantity, plain
 from .analog_filter import AnalogFilter, Cells, Floats, anti_aliasing, in_series, low_pass
 from .pieces import Pieces
 from .reconstruction import Motion, SmoothParts, smooth_parts
-from .record import CHANNELS, record
+from .record import ACCELERATIONS, record
 from .sampled import Sampled
 from .signals import HERTZ, ExcitationSignal, check_fields
 
@@ -200,7 +200,7 @@ def measure(
     parts = smooth_parts(motion, rate)
     readings = {
         name: sensors[name].digitised(sensor_reading(parts, motion, name, sensors[name]), number)
-        for number, name in enumerate(CHANNELS)
+        for number, name in enumerate(ACCELERATIONS)
         if name in sensors
     }
     made = record(
@@ -253,10 +253,10 @@ def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Piec
 def sensor_by_channel(sensor: Sensor | Mapping[str, Sensor]) -> dict[str, Sensor]:
     """Return the sensor of each channel, by name."""
     if isinstance(sensor, Sensor):
-        return dict.fromkeys(CHANNELS, sensor)
+        return dict.fromkeys(ACCELERATIONS, sensor)
     fits = isinstance(sensor, Mapping) and all(isinstance(s, Sensor) for s in sensor.values())
-    if not fits or not sensor or not set(sensor) <= set(CHANNELS):
-        names = ", ".join(CHANNELS)
+    if not fits or not sensor or not set(sensor) <= set(ACCELERATIONS):
+        names = ", ".join(ACCELERATIONS)
         raise InputError(f"sensor = {sensor!r}: expected a Sensor, or one for each of {names}")
     rates = sorted({own.rate for own in sensor.values()})
     if len(rates) > 1:

@@ -163,7 +163,7 @@ def test_signs_need_no_base_and_a_verdict_without_one_is_refused(tmp_path):
     force = 10.0 * np.sin(phase) + 0.3 * np.sin(2.0 * phase)
     made = Channels(time, RATE, (BASE,), force[None], "force")
     face = 0.7 * (SoundStructure(45.0, 0.01).acceleration(made) - force)
-    rattling = face + 0.05 * np.abs(face) + rng.normal(0.0, 0.01 * face.std(), COUNT)
+    rattling = face + 0.2 * np.abs(face) + rng.normal(0.0, 0.01 * face.std(), COUNT)
     path = tmp_path / "shaker.csv"
     rows = zip(time, 0.022 * force, face + rng.normal(0.0, 0.01 * face.std(), COUNT), strict=True)
     lines = "".join(f"{t:.12g},{f:.12g},{a:.12g}\n" for t, f, a in rows)
