@@ -7,13 +7,7 @@ from typing import Any
 
 
 def flag_words(attributes: Mapping[Any, Any]) -> dict[int, str]:
-    """Return a dict from number to word, read from ``flag_values`` and ``flag_meanings`` (CF).
-
-    Examples
-    --------
-    >>> flag_words({"flag_values": [0, 1], "flag_meanings": "irregular period_doubling"})
-    {0: 'irregular', 1: 'period doubling'}
-    """
+    """Return a dict from number to word, read from ``flag_values`` and ``flag_meanings`` (CF)."""
     import numpy as np  # a help needs none
 
     words = str(attributes["flag_meanings"]).split()

@@ -20,7 +20,7 @@ from ..errors import InputError, StaleError, Terminated, VibroimpactError
 from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest
 from ..version import __version__
 from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
-from .grammar import SET_NAMES
+from .grammar import SET_NAMES, with_option_names
 from .options import QUANTITIES, list_shipped_sets
 from .safe_output import safe_outputs
 from .table import DEBUG, parse_options
@@ -160,28 +160,6 @@ def run_command(arguments: Sequence[str]) -> int:
         hint = " (--force or --keep-stale)" if isinstance(error, StaleError) else ""
         print_error(f"error: {with_option_names(str(error), chosen)}{hint}")
         return MISTAKE if isinstance(error, InputError) else FAILURE
-
-
-def with_option_names(message: str, chosen: argparse.Namespace) -> str:
-    """Return a message in which keywords are options: ``--unit`` for ``unit=`` without a value.
-
-    Examples
-    --------
-    >>> chosen = argparse.Namespace(sample_rate=None, columns=None)
-    >>> with_option_names("expected columns=, sample_rate= or e=, not columns=3", chosen)
-    'expected --columns, --sample-rate or e=, not columns=3'
-    >>> with_option_names('polarity? columns="0,2,1"', chosen)
-    'polarity? --columns "0,2,1"'
-    """
-
-    def option(keyword: re.Match[str]) -> str:
-        """Return the option's spelling of a matched keyword, if it is one."""
-        name = keyword["name"]
-        spelling = f"--{name.replace('_', '-')}{' ' if keyword['quoted'] else ''}"
-        return spelling if name in vars(chosen) else keyword[0]
-
-    pattern = r"(?<![\w-])(?P<name>[a-z_]\w*)=((?=[\s,;:.)]|$)|(?=(?P<quoted>\")))"
-    return re.sub(pattern, option, message)
 
 
 def report_interruption(ended: KeyboardInterrupt) -> int:

@@ -9,12 +9,12 @@ import math
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..constants import GRAVITY
 from ..errors import InputError
 from ..units import Units, range_text, text_of, with_readable_lengths, with_units
-from .grammar import parse_values
+from .grammar import parse_values, with_option_names
 from .options import read_structure_options, structure_group
 from .output import (
     READING,
@@ -53,6 +53,17 @@ CHANNELS = {  # in the order of --columns, and what they are called towards the 
 }
 
 
+class Sweep(NamedTuple):
+    """A record file, and which of its sweeps; 0 where it has one."""
+
+    path: Path
+    number: int = 0
+
+    def __str__(self) -> str:
+        """Return the file's path, and the number of the sweep where there are several."""
+        return f"{self.path}{f', sweep {self.number}' if self.number else ''}"
+
+
 def run_diagnose(arguments: argparse.Namespace) -> None:
     """Run ``diagnose``: compute a verdict per record; print it; write results and reports."""
     import orchestrate
@@ -67,24 +78,27 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
         raise InputError("--other: of one beam; expected one record with it")
     log.info("reading %s", ", ".join(path.name for path in arguments.records))
     records, refused = read_all_records(arguments)
-    names = {path: file_stem(path, guess, arguments) for path in records}
+    names = {one: file_stem(one, guess, arguments) for one in records}
     verdicts = compute_verdicts(arguments, records, names, guess) if records else {}
     units = read_record_units(arguments)
-    for path, verdict in verdicts.items():
-        for line in verdict_lines(path, with_units(verdict, units), arguments):
+    for sweep, verdict in verdicts.items():
+        for line in verdict_lines(sweep, with_units(verdict, units), arguments):
             print(line)
-        log.info("%s: signs, pictures and page", path.name)
-        signs = orchestrate.signs(records[path], other=others, structure=guess)
-        write_files(arguments, names[path], {"": verdict, "_signs": signs})
+        log.info("%s: signs, pictures and page", sweep.path.name)
+        same = [data for one, data in records.items() if one.path == sweep.path and one != sweep]
+        signs = orchestrate.signs(records[sweep], other=[*others, *same], structure=guess)
+        write_files(arguments, names[sweep], {"": verdict, "_signs": signs})
     if refused:
-        count = len(records) + len(refused)
+        count = len({one.path for one in records}) + len(refused)
         raise InputError(f"{len(refused)} of {count} records refused: {'; '.join(refused)}")
 
 
-def file_stem(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
+def file_stem(sweep: Sweep, guess: Structure, arguments: argparse.Namespace) -> str:
     """Return the name of a record's result files, unique for content, guess and reading options."""
     read_as = [arguments.columns, arguments.participation, *values_of(arguments, READING).items()]
-    return f"diagnose_{path.stem}_{digest(file_checksum(path), guess.parameters(), read_as)}"
+    number = f"_sweep{sweep.number}" if sweep.number else ""
+    part = digest(file_checksum(sweep.path), guess.parameters(), read_as)
+    return f"diagnose_{sweep.path.stem}{number}_{part}"
 
 
 def file_checksum(path: Path) -> str:
@@ -92,18 +106,20 @@ def file_checksum(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def read_all_records(arguments: argparse.Namespace) -> tuple[dict[Path, xr.Dataset], list[str]]:
-    """Read all record files; return a dict of records, and an error line per refused file."""
+def read_all_records(arguments: argparse.Namespace) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
+    """Read all record files; return a dict of sweeps, and an error line per refused file."""
     from ..diagnosis.fit import checked_data
+    from ..diagnosis.sweeps import split_sweeps
 
-    records: dict[Path, xr.Dataset] = {}
+    records: dict[Sweep, xr.Dataset] = {}
     refused: list[str] = []
     paths = list(dict.fromkeys(arguments.records))
     for path in paths:
         try:
             record = read_one_record(arguments, path)
             checked_data(record)
-            records[path] = record
+            parts = split_sweeps(record)
+            records |= {Sweep(path, n * (len(parts) > 1)): one for n, one in enumerate(parts, 1)}
         except InputError as error:
             line = str(error)
             refused.append(line if line.startswith(str(path)) else f"{path}: {line}")
@@ -154,26 +170,27 @@ def participation_by_sensor(arguments: argparse.Namespace) -> dict[str, float] |
 
 def compute_verdicts(
     arguments: argparse.Namespace,
-    records: Mapping[Path, xr.Dataset],
-    names: Mapping[Path, str],
+    records: Mapping[Sweep, xr.Dataset],
+    names: Mapping[Sweep, str],
     guess: Structure,
-) -> dict[Path, xr.Dataset]:
+) -> dict[Sweep, xr.Dataset]:
     """Compute each record's verdict, or load a stored one; store with it where it comes from."""
     from .. import detect_all
     from ..running.store import write_netcdf
 
-    named = {names[path]: record for path, record in records.items()}
+    named = {names[sweep]: record for sweep, record in records.items()}
     running = read_running_options(arguments, arguments.output)
     factors = participation_by_sensor(arguments)
     verdicts = detect_all(named, guess, participation=factors, **running)
     described = {}
-    for path, name in names.items():
+    for sweep, name in names.items():
         verdict = verdicts[name]
-        words = origin_attributes(arguments, path, records[path])
-        words["title"] = f"Verdict on {path.name}: {verdict.verdict.item()}"
-        described[path] = verdict.assign_attrs(words)
+        words = origin_attributes(arguments, sweep.path, records[sweep])
+        label = Sweep(Path(sweep.path.name), sweep.number)
+        words["title"] = f"Verdict on {label}: {verdict.verdict.item()}"
+        described[sweep] = verdict.assign_attrs(words)
         if not words.items() <= verdict.attrs.items():
-            write_netcdf(described[path], arguments.output / f"{name}.nc")
+            write_netcdf(described[sweep], arguments.output / f"{name}.nc")
     return described
 
 
@@ -215,13 +232,14 @@ def write_files(
     print(report(*answers.values(), output=page, notes=arguments.notes or "", units=units))
 
 
-def verdict_lines(path: Path, verdict: xr.Dataset, arguments: argparse.Namespace) -> Iterator[str]:
+def verdict_lines(
+    sweep: Sweep, verdict: xr.Dataset, arguments: argparse.Namespace
+) -> Iterator[str]:
     """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
     from ..show.verdict import make_verdict
-    from . import with_option_names
 
     shown = make_verdict(verdict)
-    yield f"{path}: {shown.word} {shown.sentence}"
+    yield f"{sweep}: {shown.word} {shown.sentence}"
     for name, label in LINES.items():
         if verdict.attrs.get(name):
             yield f"  {label}: {with_option_names(verdict.attrs[name], arguments)}"
@@ -241,7 +259,8 @@ what it needs:
   table, the clamp; in Python and in files of this package box_acceleration) and of one face of
   the beam, or of both faces (acceleration1, acceleration2); and a guess of the beam in a file,
   within some 10 %: masses of both halves and their natural frequencies, see 'quantities'.
-  Several records are of several beams, and give a verdict each.
+  Several records are of several beams; several sweeps in a file give a verdict each, and the
+  signs compare their levels.
 what it gives:
   delaminated      the faces part and strike each other
   no opening seen  up to the level and over the frequencies of the record; never "intact"
@@ -305,6 +324,7 @@ def run_plan(arguments: argparse.Namespace) -> None:
     """Run ``plan``: compute a plan; print it; write result and picture."""
     import orchestrate
 
+    from ..files import open_folder
     from ..running.store import write_netcdf
 
     structure, question = ask_plan(arguments)
@@ -315,6 +335,7 @@ def run_plan(arguments: argparse.Namespace) -> None:
     described = plan.assign_attrs(structure.parameters())
     (shown,) = with_readable_lengths(with_units(described, units))
     print(*plan_lines(shown), sep="\n")
+    open_folder(arguments.output)
     write_netcdf(plan, files.result)
     files.write(shown, partial(orchestrate.plot, shown))
 

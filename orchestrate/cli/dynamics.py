@@ -44,9 +44,11 @@ from .text import (
     format_ranges,
     format_share,
     has_flag,
+    length_text,
     parameter_column,
     table,
     varied_parameter,
+    without_unit,
 )
 
 if TYPE_CHECKING:
@@ -250,11 +252,12 @@ def basin_summary(data: xr.Dataset) -> Iterator[str]:
     labels = data.attractor_of.values
     started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
     axes = [data[name] for name in map(str, data.attractor_of.dims)]
-    sides = (
-        range_text(data, axis.min().item(), axis.max().item(), str(axis.attrs["units"]))
-        for axis in axes
-    )
-    plane = ", ".join(f"{axis.name} {text}" for axis, text in zip(axes, sides, strict=True))
+    sides = []
+    for axis in axes:
+        unit = str(axis.attrs["units"])
+        text = range_text(data, axis.min().item(), axis.max().item(), unit)
+        sides.append(f"{axis.name} {without_unit(data, text, unit)}")
+    plane = ", ".join(sides)
     yield f"{data.sizes['attractor']} found, of {started} starts in {plane}"
     yield from attractor_table(data)
     if overlapping:
@@ -341,7 +344,7 @@ def orbit_summary(data: xr.Dataset) -> Iterator[str]:
     yield "multipliers " + ", ".join(f"{real:.6f}{imaginary:+.6f}i" for real, imaginary in parts)
     for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
         if math.isfinite(time):
-            at, closing = text_of(data, time, "s", ".8g"), text_of(data, speed, "m/s")
+            at, closing = text_of(data, time, "s", ".8g"), length_text(data, speed, "m/s")
             yield f"impact at {at}, closing at {closing}"
     for i, state in enumerate(data.state.values):
         numbers = ", ".join(f"{value:.8g}" for value in state)

@@ -5,7 +5,9 @@ What is wrong is an :class:`InputError` that names the option, its text and what
 
 from __future__ import annotations
 
+import argparse
 import math
+import re
 from collections.abc import Callable, Collection, Iterable
 from decimal import Decimal, InvalidOperation
 from typing import TypeVar
@@ -146,6 +148,28 @@ def read_pairs(option: str, texts: Iterable[str], expected: str) -> dict[str, st
             raise InputError(f"{option} {text}: expected {expected}, each name once")
         pairs[name] = value
     return pairs
+
+
+def with_option_names(message: str, chosen: argparse.Namespace) -> str:
+    """Return a message in which keywords are options: ``--unit`` for ``unit=`` without a value.
+
+    Examples
+    --------
+    >>> chosen = argparse.Namespace(sample_rate=None, columns=None)
+    >>> with_option_names("expected columns=, sample_rate= or e=, not columns=3", chosen)
+    'expected --columns, --sample-rate or e=, not columns=3'
+    >>> with_option_names('polarity? columns="0,2,1"', chosen)
+    'polarity? --columns "0,2,1"'
+    """
+
+    def option(keyword: re.Match[str]) -> str:
+        """Return the option's spelling of a matched keyword, if it is one."""
+        name = keyword["name"]
+        spelling = f"--{name.replace('_', '-')}{' ' if keyword['quoted'] else ''}"
+        return spelling if name in vars(chosen) else keyword[0]
+
+    pattern = r"(?<![\w-])(?P<name>[a-z_]\w*)=((?=[\s,;:.)]|$)|(?=(?P<quoted>\")))"
+    return re.sub(pattern, option, message)
 
 
 # -- ranges and lists -----------------------------------------------------------------------------

@@ -84,9 +84,18 @@ def extents(data: xr.Dataset, names: str) -> Iterator[str]:
             low, high = float(array.min()), float(array.max())
             unit = str(array.attrs.get("units", "1"))
             meaning = str(array.attrs.get("long_name", name)).partition(",")[0]
-            left_out = unit if unit in LENGTHS and is_in_ratios(data) else "1"
-            text = range_text(data, low, high, unit).removesuffix(f" {left_out}")
-            yield f"{meaning}: {text}"
+            text = without_unit(data, range_text(data, low, high, unit), unit)
+            yield f"{meaning}: {text.removesuffix(' 1')}"
+
+
+def without_unit(data: xr.Dataset, text: str, unit: str) -> str:
+    """Return a text without its unit of length where a result has the paper's ratios."""
+    return text.removesuffix(f" {unit}") if unit in LENGTHS and is_in_ratios(data) else text
+
+
+def length_text(data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g") -> str:
+    """Format a length, speed or acceleration in display units; as a ratio without one."""
+    return without_unit(data, text_of(data, value, unit, form), unit)
 
 
 def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
@@ -106,11 +115,11 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
         yield "no impacts"
         return
     first = int(data.impact_velocity.values.argmax())
-    speed = text_of(data, data.impact_velocity[first], "m/s", ".4g")
+    speed = length_text(data, data.impact_velocity[first], "m/s", ".4g")
     impulse, time = (f"{float(data[name][first]):.4g}" for name in ("impulse", "impact_time"))
     hardest = f"{impulse} N s at {time} s"
     if is_in_ratios(data):
-        speed, hardest = speed.removesuffix(" m/s"), f"at tau = {time}"
+        hardest = f"at tau = {time}"
     sticks = int(data.sticks.sum())
     yield f"{count} impacts, the fastest at {speed} ({hardest}); {sticks} begin permanent contact"
 

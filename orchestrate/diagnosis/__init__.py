@@ -12,6 +12,7 @@ module                  idea
 :mod:`.plan_test`       the frequencies and levels at which a delamination shows best
 :mod:`.settings`        every threshold and effort, in one place that a caller reaches
 :mod:`.orders`          orders of a record's channels in short windows, and the floor between them
+:mod:`.sweeps`          several sweeps in one record
 :mod:`.wiring`          whether channels are wired as stated: polarity, unit, delay, swapped, hum
 :mod:`.evidence`        orders of a record with their errors, and the base as input of motions
 :mod:`.curve_evidence`  the same of a resonance curve: settled motions under a stepped sine

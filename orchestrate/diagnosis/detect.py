@@ -161,6 +161,7 @@ class DetectJob(SearchJob):
         findings, even = findings_from_results(results), results.even
         whole = cached_orders(self.data)
         every, coordinates = results.comparison()
+        wiring = "; ".join(note.text for note in wiring_notes(whole.channels))
         scalars = {
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
             **{
@@ -176,11 +177,11 @@ class DetectJob(SearchJob):
             analysis="detect",
             title=f"Verdict: {findings.verdict()}",
             reason=findings.reason(),
-            settle=findings.next_measurement(),
+            settle="First mend the wiring. " * bool(wiring) + findings.next_measurement(),
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
             direction=sweep_direction(whole.windows.frequency),
-            wiring="; ".join(note.text for note in wiring_notes(whole.channels)),
+            wiring=wiring,
         )
 
 

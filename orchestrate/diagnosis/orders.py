@@ -178,6 +178,11 @@ def sensor_channels(record: xr.Dataset) -> Channels:
 
 def checked_channels(record: xr.Dataset) -> Channels:
     """Check that a record has the base's acceleration and a face's, and return the channels."""
+    if hasattr(record, "data_vars") and not {BOX} & set(record):
+        excited = "it is excited by a force" if "force" in record else "what excites it is unknown"
+        text = f"no acceleration of the base, {excited}; a verdict needs it"
+        test = "measure a swept sine of the base, with an accelerometer beside the clamp"
+        raise InputError(f"record: {text}: {test}; orchestrate.signs does without")
     channels = sensor_channels(record)
     if len(channels.names) < 2:
         text = "expected acceleration1, acceleration2 or both beside the base's"

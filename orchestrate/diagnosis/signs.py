@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
-from ..laboratory.analysis.channels import Channels, attributes, checked_number
+from ..laboratory.analysis.channels import BOX, Channels, attributes, checked_number
 from ..laboratory.pieces import Floats
+from ..laboratory.record import FORCE
 from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer
@@ -28,6 +30,8 @@ from .response_signs import (
 )
 from .undamaged import SoundStructure
 
+RESPONSE = "the response"  # reference of the phase where nothing else is known
+UNKNOWN = SoundStructure(math.nan, math.nan)
 EXCEED_FACTOR = 2.0  # times what noise and a sound structure show
 MEANINGS = {-1: "unknown", 0: "no", 1: "yes"}
 
@@ -47,8 +51,9 @@ def signs(
     Parameters
     ----------
     record : xarray.Dataset
-        As for :func:`orchestrate.frf`; or a run of :func:`orchestrate.couple`, for the signs of a
-        weak drive.
+        As for :func:`orchestrate.frf`. Without ``box_acceleration`` the phase is that of
+        ``force`` or, without one too, of the response itself, and no sound structure is known. Or
+        a run of :func:`orchestrate.couple`, for the signs of a weak drive.
     other : xarray.Dataset or sequence of them, optional
         Records of the same beam at other levels or in the other direction, for the signs that
         compare records; of a run on a weak drive that of the sound beam, which it must have.
@@ -106,7 +111,8 @@ def signs(
         return signs_of_drive_run(record, others)
     length = checked_number("periods", periods, 2.0, 1e4)
     count = checked_integer("seeds", seeds, 1, 1000)
-    every = [sensor_channels(one) for one in (record, *others)]
+    every = [reference_channels(one) for one in (record, *others)]
+    reference = every[0].box_label
     names = checked_responses(every)
     edge = high_band
     if edge is not None:
@@ -119,19 +125,25 @@ def signs(
         for channels, sine in zip(every, swept, strict=True)
     ]
     noises = [one.noise if level is None else np.full(len(names), level) for one in own]
-    sound = sound_structure(structure, own[0], every[0])
     values, floors = all_signs(own, len(names))
-    made = [
-        response_signs(sound.records(channels, rms, range(count)), sine, length, edge)
-        for channels, rms, sine in zip(every, noises, swept, strict=True)
-    ]
-    rows = np.stack(list(all_signs(made, len(names))[0].values()))
-    shown = rows.reshape(len(rows), count, len(names)).transpose(1, 0, 2)
+    shown = np.full((count, len(values), len(names)), np.nan)
+    sound = UNKNOWN
+    if reference != RESPONSE:
+        sound = sound_structure(structure, own[0], every[0])
+        made = [
+            response_signs(sound.records(channels, rms, range(count)), sine, length, edge)
+            for channels, rms, sine in zip(every, noises, swept, strict=True)
+        ]
+        rows = np.stack(list(all_signs(made, len(names))[0].values()))
+        shown = rows.reshape(len(rows), count, len(names)).transpose(1, 0, 2)
     described = {
         "seeds": f"0 to {count - 1}",
         "noise_from": "given" if level is not None else noise_source(swept[0]),
         "sound_from": "nearest oscillator" if structure is None else "the guess, bonded",
+        "reference": reference,
     }
+    if reference == RESPONSE:
+        described["sound_from"] = "none: what excites the structure is unknown"
     answer = signs_dataset(every[0].title, names, values, floors, shown, described)
     return answer.assign(
         frequency=peak_frequencies(own[0], names), **sound_variables(sound, noises[0])
@@ -143,6 +155,17 @@ def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Da
     if other is None:
         return []
     return [other] if isinstance(other, xr.Dataset) else list(other)
+
+
+def reference_channels(record: xr.Dataset) -> Channels:
+    """Return a record's channels; the force, or the first response, stands for a base without."""
+    if not isinstance(getattr(record, "data_vars", None), Mapping) or BOX in record:
+        return sensor_channels(record)
+    channels = Channels.from_record(record)
+    label = FORCE if FORCE in record else RESPONSE
+    values = np.asarray(record[FORCE].values, float) if FORCE in record else channels.values[0]
+    names, rows = (BOX, *channels.names), np.vstack([values, channels.values])
+    return replace(channels, names=names, values=rows, box_label=label)
 
 
 def noise_source(swept: bool) -> str:
@@ -166,13 +189,17 @@ def sound_structure(
     structure: Structure | None, own: ResponseSigns, channels: Channels
 ) -> SoundStructure:
     """Return the sound structure: the bonded guess, or the oscillator nearest to the record."""
-    if structure is not None:
+    force = channels.box_label == FORCE
+    if structure is not None and not (force and own.curves):
         return SoundStructure.from_structure(structure)
     if not own.curves:
         text = "too short, or the box does not move; expected structure="
         raise InputError(f"record: {text}")
     curve = own.curves[0]
-    return SoundStructure.nearest(curve.frequency, curve.response, channels)
+    if structure is not None:
+        bonded = SoundStructure.from_structure(structure)
+        return bonded.under_force(curve.frequency, curve.response)
+    return SoundStructure.nearest(curve.frequency, curve.response, channels, force)
 
 
 def all_signs(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,9 @@ class SoundStructure:
 
     f: float  # natural frequency, Hz
     zeta: float  # damping ratio
+    # of each sensor, its acceleration over the force that excites it, far above the resonance;
+    # none where the box moves
+    gains: tuple[float, ...] = ()
 
     @classmethod
     def from_structure(cls, structure: Structure) -> SoundStructure:
@@ -31,51 +34,67 @@ class SoundStructure:
         damping = (structure.d1 + structure.d2) / (2.0 * math.sqrt(k * m))
         return cls(math.sqrt(k / m) / TURN, min(damping, 0.999))
 
+    def under_force(self, frequency: Floats, response: Floats) -> SoundStructure:
+        """Return the oscillator under a force, with gains that are nearest to responses."""
+        model = transmissibility(frequency, self.f, self.zeta) - 1.0
+        gains = (response @ model.conj()).real / (np.abs(model) ** 2).sum()
+        return replace(self, gains=tuple(gains.tolist()))
+
     @classmethod
-    def nearest(cls, frequency: Floats, response: Floats, channels: Channels) -> SoundStructure:
+    def nearest(
+        cls, frequency: Floats, response: Floats, channels: Channels, force: bool = False
+    ) -> SoundStructure:
         """Fit the oscillator whose acceleration is nearest to a record's."""
         from scipy.optimize import least_squares
 
         peak = float(frequency[int(np.abs(response).max(axis=0).argmax())])
         measured = channels.responses()[1]
 
+        def made(logs: Floats) -> SoundStructure:
+            """Return the oscillator for logarithms of f and zeta."""
+            one = cls(*np.exp(logs).tolist())
+            return one.under_force(frequency, response) if force else one
+
         def response_residuals(logs: Floats) -> Floats:
             """Return the residuals of the transmissibility for logarithms of f and zeta."""
-            rest = (transmissibility(frequency, *np.exp(logs)) - response).ravel()
+            rest = (made(logs).response(frequency) - response).ravel()
             return np.concatenate([rest.real, rest.imag])
 
         def record_residuals(logs: Floats) -> Floats:
             """Return the residuals of the acceleration over time for these logarithms."""
-            return np.asarray((cls(*np.exp(logs)).acceleration(channels) - measured).ravel())
+            return np.asarray((made(logs).acceleration(channels) - measured).ravel())
 
         low, high = math.log(0.2 * frequency[0]), math.log(5.0 * frequency[-1])
         bounds = ([low, math.log(1e-4)], [high, math.log(0.9)])
         starts = [(math.log(peak), math.log(ratio)) for ratio in FIRST_DAMPING]
         fits = [least_squares(response_residuals, start, bounds=bounds) for start in starts]
         best = min(fits, key=lambda fitted: float(fitted.cost))
-        f, zeta = np.exp(
-            least_squares(record_residuals, best.x, bounds=bounds, x_scale=(0.01, 1.0)).x
-        )
-        return cls(float(f), float(zeta))
+        return made(least_squares(record_residuals, best.x, bounds=bounds, x_scale=(0.01, 1.0)).x)
+
+    def response(self, frequency: Floats) -> Floats:
+        """Return the acceleration over that of the box, or over the force: a row for each gain."""
+        moved = transmissibility(frequency, self.f, self.zeta)
+        return np.outer(self.gains, moved - 1.0) if self.gains else moved
 
     def acceleration(self, channels: Channels) -> Floats:
-        """Compute the absolute acceleration under the box of a record, m/s2.
+        """Compute the absolute acceleration under the box, or the force, of a record, m/s2.
 
         It is exact for a box that is straight between the samples.
         """
         from scipy.signal import lfilter
 
         filters = ramp_invariant(self.f, self.zeta, channels.sample_rate)
-        return np.asarray(lfilter(*filters, channels.box))
+        moved = np.asarray(lfilter(*filters, channels.box))
+        return np.outer(self.gains, moved - channels.box) if self.gains else moved
 
     def records(self, channels: Channels, noise: Floats, seeds: Sequence[int]) -> Channels:
         """Simulate what sensors on this structure would read: one row for each seed and channel."""
-        steady = self.acceleration(channels)
+        steady = np.broadcast_to(self.acceleration(channels), (len(noise), len(channels.time)))
         rows = [channels.box]
         for seed in seeds:
             for number, level in enumerate(noise):
                 generator = np.random.default_rng([seed, number])
-                rows.append(steady + level * generator.standard_normal(len(steady)))
+                rows.append(steady[number] + level * generator.standard_normal(len(steady[number])))
         names = (BOX, *(f"sound {number}" for number in range(1, len(rows))))
         return Channels(channels.time, channels.sample_rate, names, np.stack(rows), channels.title)
 

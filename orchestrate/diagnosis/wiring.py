@@ -32,7 +32,7 @@ class Settings:
     misfit: float = 0.15  # of the response: a fit that misses more says nothing
     swapped: float = 4.0  # times better a fit describes the exchanged channels
     scale: float = 2.5  # factor of the base's motion beyond which a sensor's scale is wrong
-    gravity: float = 0.12  # relative distance of a factor from 9.80665 that names the unit
+    gravity: float = 0.25  # distance of a factor's logarithm from that of 9.80665 for a unit
     delay: float = 1e-3  # s
     clear: float = 7.5  # phase of a delay at the lowest frequency, over the misfit
     dead: float = 0.05  # of the base's motion: a sensor without a resonance that moves less
@@ -91,22 +91,23 @@ def wiring_notes(channels: Channels, settings: Settings = SETTINGS) -> list[Note
 def notes_without_sine(channels: Channels, settings: Settings) -> Iterator[Note]:
     """Yield notes on a record whose base has no sine: another column's may be the base's."""
     base = channels.names.index(BOX)
+    spread = channels.values.std(axis=1)
     for row, name in enumerate(channels.names):
+        face, values = SHORT_NAMES[name], channels.values.copy()
+        values[[base, row]] = values[[row, base]]
         if row == base:
             continue
-        values = channels.values.copy()
-        values[[base, row]] = values[[row, base]]
         try:
             exchanged = replace(channels, values=values)
             orders = assembled_orders(exchanged, *sine_windows(exchanged))
         except InputError:
-            continue
-        face = SHORT_NAMES[name]
-        size = np.median(np.abs(orders.amplitude[row, 0]) / orders.level)
-        if is_heard(orders, row, settings) and size > settings.dead:
-            yield swapped_note(face)
+            is_face = False
         else:
-            yield Note("dead", f"the base has no sine, {face} has one: is the base's cable dead?")
+            is_face = is_heard(orders, row, settings)
+        if spread[base] < settings.dead * spread[row]:
+            yield Note("dead", f"the base has no sine and {face} moves: is the base's cable dead?")
+        elif is_face:
+            yield swapped_note(face)
     yield from clipped_notes(channels)
 
 
@@ -126,13 +127,12 @@ def sensor_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator
     frequency = orders.windows.frequency
     straight = LowResponse.fitted(frequency, response, settings)
     inverse = LowResponse.fitted(frequency, 1.0 / response, settings)
-    if (
-        inverse
-        and inverse.misfit < settings.misfit
-        and (straight is None or straight.misfit > settings.swapped * inverse.misfit)
-    ):
+    if straight is None:
+        return
+    limit = min(settings.misfit, straight.misfit / settings.swapped)
+    if inverse is not None and inverse.misfit < limit:
         yield swapped_note(name)
-    elif straight and straight.misfit < settings.misfit:
+    elif straight.misfit < settings.misfit:
         yield from straight.notes(name, settings)
 
 

@@ -1,10 +1,9 @@
 """Equations of a bifurcation followed over two parameters: orbit and bifurcation condition.
 
-Folds, period doublings and Neimark-Sacker bifurcations are where the orbit's matrix with a
-multiplier on the unit circle is singular. How nearly it is, the bordered system says (Govaerts,
-Numerical Methods for Bifurcations of Dynamical Equilibria, 2000, chapter 4), without a determinant.
-Grazings have equations of their own, and so has an earlier release: the contact force has a minimum
-that is zero. With a preload, and no impacts, that is the level at which the structure first opens.
+How nearly singular the orbit's matrix with a multiplier on the unit circle is, the bordered system
+says (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, 2000, chapter 4).
+Grazings and earlier releases have equations of their own: with a preload and no impacts the latter
+is the level at which the structure first opens.
 """
 
 from __future__ import annotations

@@ -1,14 +1,10 @@
 """Locate points of codimension two on a bifurcation curve, by test functions.
 
-Names and conditions as in Kuznetsov, Elements of Applied Bifurcation Theory, chapter 9, for maps;
-for grazing as in Thota and Dankowicz, SIAM Journal on Applied Dynamical Systems 5, 672 (2006). All
-but the cusp are decided by the polynomial D whose roots are the multipliers, the determinant of the
-orbit's matrix: D(1) = 0 at a fold, D(-1) = 0 at a period doubling, D'(1) = 0 besides at a second
-multiplier 1. It is finite where an impact grazes and multipliers are not.
-
-On the way a point is where a test function changes its sign; it is located by Brent's method on the
-curve itself. At a curve's end, where the unknowns of the curve are singular or no motion is left
-beyond, the equations of the point are solved by Newton's method.
+Names and conditions: Kuznetsov, Elements of Applied Bifurcation Theory, chapter 9, for maps; Thota
+and Dankowicz, SIAM Journal on Applied Dynamical Systems 5, 672 (2006), for grazing. All but cusps
+are signs of the polynomial whose roots are the multipliers: it is finite where an impact grazes and
+multipliers are not. A point is located by Brent's method on the curve, or where the curve ends by
+Newton's on the equations of the point.
 """
 
 from __future__ import annotations

@@ -1,11 +1,7 @@
 """Pseudo-arclength continuation: curves of roots of n equations in n + 1 unknowns.
 
-A curve is the set of roots of n equations in n + 1 unknowns. It is followed by Keller's method
-(Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977): a step along the
-tangent, then Newton's method in the plane orthogonal to it. It goes round folds, where no unknown
-serves as the curve's parameter. (Packages for continuation in Python detect branch points of smooth
-systems themselves; what ends a branch here are impacts, so this module only steps, and
-:mod:`.tracer` detects.)
+Keller's method (1977): a step along the tangent, then Newton's method in the plane orthogonal to
+it, round folds too. What ends a branch here are impacts, so :mod:`.tracer` detects that itself.
 """
 
 from __future__ import annotations

@@ -1,16 +1,10 @@
 """Grow a curve that is an image of a parameter: adaptive steps, breaks at its discontinuities.
 
-A one-dimensional unstable manifold is what becomes of a short piece of it, from a point to its
-image, when it is mapped again and again (Hobson, Journal of Computational Physics 104, 14, 1993).
-The number ``s`` of a point counts how often: its whole part is how many times, its fraction where
-in the first piece the point began. Every point is computed from its own start, so errors do not
-add up; what a start misses of the manifold shrinks with each image. New points come as close as
-distance and bend ask for (Krauskopf and Osinga, Journal of Computational Physics 146, 404, 1998).
-
-Where impacts come or go between two points, the place is bisected as far as rounding allows. The
-distance of both points falls with a power of the distance of their numbers: 1 where the curve is
-smooth, 1/2 at a grazing impact, 0 at a jump. That power, over the last bisections, decides whether
-the curve is broken there: it is connected only where the distance still falls.
+The number ``s`` of a point counts how often the first piece is mapped (Hobson, Journal of
+Computational Physics 104, 14, 1993); every point is computed from its own start. Points are as
+close as distance and bend ask for (Krauskopf and Osinga, ibid. 146, 404, 1998). Where impacts come
+or go, the place is bisected to rounding: the power with which the distance of both points falls
+with that of their numbers is 1 on a smooth curve, 1/2 at a grazing, 0 at a jump, and decides.
 """
 
 from __future__ import annotations

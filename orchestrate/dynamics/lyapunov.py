@@ -1,9 +1,7 @@
 """Largest Lyapunov exponents from impacts, with errors: periodic, neutral or chaotic responses.
 
-It is computed from the impacts that the FMU reports, with exact flow and saltation matrices
-(:mod:`.variational`), not from two neighbours: a neighbour must be near enough for its distance to
-be linear and far enough to be above rounding, which near grazing impacts and in chattering is no
-distance at all.
+By exact flow and saltation matrices (:mod:`.variational`), not from two neighbours, which near
+grazing impacts and in chattering are never both near enough and far enough.
 """
 
 from __future__ import annotations

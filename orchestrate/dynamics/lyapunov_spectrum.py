@@ -1,13 +1,8 @@
 """Growth under products of matrices: the largest Lyapunov exponent, or all four; the dimension.
 
-The sum of the k largest exponents is the growth of a k-dimensional volume. Volumes are carried
-along by compound matrices: those of the k-rowed minors of the matrices that carry a deviation
-(Temam, Infinite-Dimensional Dynamical Systems, 1997, section V.2). So each sum is the largest
-exponent of a product of its own, and no small exponent has to be found beside a large one.
-
-The state is (xi_1, xi_2, xi_1', xi_2') once an excitation period: no exponent is zero for the
-direction of time. Where permanent contact begins the gap and its rate are forgotten, the matrices
-have rank two, and the third and the fourth exponent are minus infinity.
+The sum of the k largest exponents is the growth of a volume, carried along by compound matrices,
+the k-rowed minors (Temam, Infinite-Dimensional Dynamical Systems, 1997, V.2). The state is taken
+once a period: no exponent is zero for the direction of time.
 """
 
 from __future__ import annotations

@@ -1,11 +1,7 @@
 """Trace a branch: predictor-corrector steps; folds and other bifurcations located; its end.
 
-Every branch is traced by the same loop (:meth:`BranchTracer.trace`), whatever its equations are:
-periodic orbits (:mod:`.orbit_tracer`), bifurcations over two parameters (:mod:`.borders`), motions
-of structure and motor together (:mod:`orchestrate.weak_drive.drive_tracer`). Steps are those of
-pseudo-arclength continuation (:mod:`.continuation`). A bifurcation is where a test function changes
-its sign; it is located by Brent's method on the branch itself, not between its points
-(Kuznetsov, Elements of Applied Bifurcation Theory, chapter 10).
+A bifurcation is where a test function changes its sign; it is located by Brent's method on the
+branch itself, not between its points (Kuznetsov, Elements of Applied Bifurcation Theory, 10).
 """
 
 from __future__ import annotations

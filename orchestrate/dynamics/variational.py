@@ -1,12 +1,8 @@
 """Linearised motion (variational equations): saltation matrices at impacts, flow matrices between.
 
-All is non-dimensional; the state is (xi_1, xi_2, xi_1', xi_2') as in :mod:`.closed_form`. In flight
-both masses are free oscillators (6), so the flow matrix is that of :class:`.ClosedForm` and
-independent of the excitation. At an impact the deviation is multiplied by the saltation matrix,
-which includes that the deviated motion impacts a little earlier or later (di Bernardo et al.,
-Piecewise-smooth Dynamical Systems, 2008, section 2.5). Where chattering ends in permanent contact
-the deviation of the gap dies: what is left is that of the common centre of mass. At a release the
-forces are continuous (19): nothing jumps.
+Non-dimensional, as in :mod:`.closed_form`. The saltation matrix includes that the deviated motion
+impacts earlier or later (di Bernardo et al., Piecewise-smooth Dynamical Systems, 2008, 2.5). Where
+chattering ends in permanent contact the deviation of the gap dies; at a release nothing jumps (19).
 """
 
 from __future__ import annotations

@@ -41,21 +41,7 @@ def explore(
     units: str | Units = "",
     build_folder: str | PathLike[str] | None = None,
 ) -> Path:
-    """Write the explorer, one HTML file that needs no other file and no network.
-
-    Notes
-    -----
-    A click replays a response from its start with the same kernel: the samples of the sweep, to
-    the last bit, where the sweep was told by ``eta`` and computed by an FMU of these sources; where
-    lengths and speeds were scaled the starts are so to rounding.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> page = explore(output=Path(tempfile.mkdtemp()) / "page.html")
-    >>> page.stat().st_size < 1_500_000
-    True
-    """
+    """Write the explorer, one HTML file that needs no other file and no network."""
     asked = units if isinstance(units, Units) else Units.from_text(units)
     if data is None or isinstance(data, Structure):
         chosen = first_diagram(data or Structure(), asked)

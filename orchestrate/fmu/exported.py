@@ -147,13 +147,7 @@ def find(
     fmu: str | PathLike[str] | None = None,
     level: int = logging.INFO,
 ) -> Description:
-    """Return the description of a model's FMU: a given file, an up-to-date one, or a new export.
-
-    Examples
-    --------
-    >>> find("TwoMassImpactOscillator").fmi_version
-    '3.0'
-    """
+    """Return the description of a model's FMU: a given file, an up-to-date one, or a new export."""
     check(model, form)
     if fmu is not None:
         return describe(fmu, model)

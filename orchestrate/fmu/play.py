@@ -20,24 +20,7 @@ PLAYED = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force")
 
 
 class Player(EventInstance):
-    """Oscillator FMU instance that simulates motions under box accelerations given as cubics.
-
-    The FMU is unpacked and its binary loaded once; another motion, of another structure too, takes
-    a reset of the instance.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from orchestrate.fmu import OSCILLATOR, Player, find
-    >>> from orchestrate.model import Structure
-    >>> nodes, cubics = np.array([0.0, 20.0]), np.array([[1.0, 0.0, 0.0, 0.0]])
-    >>> with Player(find(OSCILLATOR).path) as player:
-    ...     for e in (0.3, 0.9):
-    ...         player.start(Structure.nondimensional(e=e))
-    ...         print(player.play(nodes, cubics, nodes).impacts.time.round(3))
-    [ 6.024 12.036 18.048]
-    [ 6.024 12.05  18.045]
-    """
+    """Oscillator FMU instance that simulates motions under box accelerations given as cubics."""
 
     def start(self, structure: Structure, start: ArrayLike = REST) -> None:
         """Initialise a structure's motion at time 0 from a start state, its box at rest."""

@@ -39,14 +39,7 @@ class WebKernel:
 
 
 def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKernel:
-    """Return a model's kernel as WebAssembly; compile it first unless the present one is there.
-
-    Examples
-    --------
-    >>> kernel = web_kernel("TwoMassImpactOscillator")
-    >>> kernel.module[1:4], kernel.slots["m1"]
-    (b'asm', 0)
-    """
+    """Return a model's kernel as WebAssembly; compile it first unless the present one is there."""
     check(model, "fmi3")
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     guid = sources.guid(MODELS[model])
@@ -85,13 +78,7 @@ def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
 
 
 def kernel_digest(model: str) -> str:
-    """Return a digest (32 hexadecimal digits) of a model's kernel sources.
-
-    Examples
-    --------
-    >>> len(kernel_digest("TwoMassImpactOscillator"))
-    32
-    """
+    """Return a digest (32 hexadecimal digits) of a model's kernel sources."""
     files = model_sources(MODELS[model])
     return fingerprint({name: files[name] for name in files if name.startswith("kernels/")})
 

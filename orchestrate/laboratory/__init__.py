@@ -10,6 +10,7 @@ module                    idea
 :mod:`.random_vibration`  a power spectral density
 :mod:`.shock`             a classical pulse
 :mod:`.sampled`           a record played again
+:mod:`.level_control`     a sine whose level a controller holds, on a shaker
 :mod:`.shake`             time histories and impacts under any of these
 :mod:`.reconstruction`    what the masses do between the samples of a history
 :mod:`.analog_filter`     the exact response of an analogue filter

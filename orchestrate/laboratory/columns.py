@@ -15,6 +15,8 @@ from ..errors import InputError
 from .conversion import (
     ACCELERATIONS,
     LENGTHS,
+    OF_FORCES,
+    OF_MOTIONS,
     SPEEDS,
     VOLTAGES,
     ByChannel,
@@ -23,7 +25,7 @@ from .conversion import (
     unit_factor,
 )
 from .pieces import Floats
-from .record import CHANNELS, SHORT_NAMES
+from .record import CHANNELS, FORCE, SHORT_NAMES
 from .record_checks import ascends, first_hole
 
 MOST_NAMES = 12  # of columns in a message
@@ -62,6 +64,7 @@ NAMES = {
     "box_acceleration": f"{SENSOR}{BASE}{SENSOR}[xyz]?",
     "acceleration1": f"{NUMBERED}1{SENSOR}[xyz]?|{SENSOR}{BEAM}{SENSOR}[xyz]?",
     "acceleration2": f"{NUMBERED}2{SENSOR}[xyz]?",
+    "force": "(?:force|kraft|fuerza|forza|load|hammer|impulshammer)(?:cell|sensor|geber)?",
 }
 MOTION = "(?:amplitude|acceleration|acc|a|face|mass|velocity|v|displacement|x)"
 RATIO = "(?:transmissibility|ratio|response|magnitude)"
@@ -197,7 +200,9 @@ def converted_channels(
         column = table.columns[place]
         own = units.get(name, column.unit)
         sensor = stated.get(name, column.sensitivity)
-        factor, derivatives = unit_factor(column_label(table, column), own, sensor)
+        factor, derivatives = unit_factor(
+            column_label(table, column), own, sensor, OF_FORCES if name == FORCE else OF_MOTIONS
+        )
         if name in stated and plain_unit(own or "V") not in VOLTAGES:
             expected = f"expected volts: a sensitivity does not act on a column in {own}"
             raise InputError(f"{column_label(table, column)}: sensitivity {sensor}; {expected}")
@@ -269,7 +274,8 @@ def channel_places(
 
     The order is time, base, face 1, face 2; without time where the file says the sampling rate.
     """
-    wanted = (*(() if table.sample_rate else ("time",)), *CHANNELS)
+    motions = [name for name in CHANNELS if name != FORCE]
+    wanted = (*(() if table.sample_rate else ("time",)), *motions)
     if columns is None:
         return places_by_order(table, wanted)
     places = places_asked_for(table, columns, wanted, ("time", *CHANNELS))
@@ -361,7 +367,7 @@ def channels_by_name(table: Columns) -> dict[str, int]:
             text = f"{kind} over the frequency in the columns {column_names(table)}"
             expected = "expected accelerations over time; read_curve reads resonance curves"
             raise InputError(f"{table.path}: {text}; {expected}")
-    missing = {"box_acceleration", "acceleration1"} - set(known)
+    missing = {"box_acceleration", "acceleration1"} - set(known) if FORCE not in known else set()
     rest = unread_columns(table, known)
     channels = (*rest, *(i for name, i in known.items() if name != "time"))
     with_unit = {bool(table.columns[i].unit) for i in channels}

@@ -35,7 +35,9 @@ LENGTHS = {  # in m
 VOLTAGES = {"v": 1.0, "mv": 1e-3, **dict.fromkeys(("uv", "\u00b5v", "\u03bcv"), 1e-6)}  # in V
 FORCES = {"n": 1.0, "kn": 1e3, "mn": 1e-3, "lbf": 4.4482216152605}  # in N
 MOTIONS = {0: "acceleration", 1: "velocity", 2: "displacement"}  # by derivatives to take
-OF_MOTIONS = {0: ACCELERATIONS, 1: SPEEDS, 2: LENGTHS}
+Tables = Mapping[int, Mapping[str, float]]  # of units, by derivatives to take
+OF_MOTIONS: Tables = {0: ACCELERATIONS, 1: SPEEDS, 2: LENGTHS}
+OF_FORCES: Tables = {0: FORCES}
 SENSITIVITY = re.compile(
     r"(?P<number>[+-]?\d+(?:[.,]\d+)?)\s*(?P<volts>[mu\u00b5\u03bc]?V)/(?P<unit>.+)"
 )
@@ -71,7 +73,7 @@ def by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[
     if argument is None:
         return {}
     if isinstance(argument, str) and "=" in argument:
-        argument = dict(part.split("=", 1) for part in argument.split(",") if "=" in part)
+        argument = dict(part.split("=", 1) for part in re.split(r",(?=[^,=]+=)", argument))
     if not isinstance(argument, Mapping):
         return dict.fromkeys(channels, argument)
     values = {}
@@ -85,19 +87,21 @@ def by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[
 
 
 def number_by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[str, float]:
-    """Return numbers by channel; raise for one that is no finite number, or 0."""
+    """Return numbers by channel; raise for one that is not finite."""
     numbers = {}
     for channel, value in by_channel(name, argument, channels).items():
         try:
             numbers[channel] = float(value)
         except (TypeError, ValueError):
             numbers[channel] = math.nan
-        if not math.isfinite(numbers[channel]) or numbers[channel] == 0.0:
-            raise InputError(f"{name} = {argument!r}: expected numbers other than 0")
+        if not math.isfinite(numbers[channel]):
+            raise InputError(f"{name} = {argument!r}: expected numbers, such as face1=-1")
     return numbers
 
 
-def unit_factor(label: str, unit: str, sensitivity: str = "") -> tuple[float, int]:
+def unit_factor(
+    label: str, unit: str, sensitivity: str = "", known: Tables = OF_MOTIONS
+) -> tuple[float, int]:
     """Return the factor from a column's unit to SI, and how many derivatives make acceleration.
 
     Examples
@@ -107,28 +111,30 @@ def unit_factor(label: str, unit: str, sensitivity: str = "") -> tuple[float, in
     """
     plain = plain_unit(unit)
     if plain in VOLTAGES or (not plain and sensitivity):
-        return tuple_of_sensitivity(label, unit or "V", sensitivity)
-    for derivatives, known in OF_MOTIONS.items():
-        if plain in known:
-            return known[plain], derivatives
+        return factor_of_voltage(label, unit or "V", sensitivity, known)
+    for derivatives, factors in known.items():
+        if plain in factors:
+            return factors[plain], derivatives
     text = f"unit = {unit!r}" if unit else "no unit"
-    expected = "expected one such as m/s2, g, mm/s, um, V: give it by unit="
+    names = "m/s2, g, mm/s, um, V" if known is OF_MOTIONS else "N, kN, V"
+    expected = f"expected one such as {names}: give it by unit="
     raise InputError(f"{label}: {text}; {expected}")
 
 
-def tuple_of_sensitivity(label: str, unit: str, sensitivity: str) -> tuple[float, int]:
+def factor_of_voltage(label: str, unit: str, sensitivity: str, known: Tables) -> tuple[float, int]:
     """Return the factor of a voltage by its sensitivity, such as ``100 mV/g``."""
-    expected = "expected one such as 100 mV/g or 50 mV/(mm/s): give it by sensitivity="
+    usual = "100 mV/g or 50 mV/(mm/s)" if known is OF_MOTIONS else "22 mV/N"
+    expected = f"expected one such as {usual}: give it by sensitivity="
     if not sensitivity:
         raise InputError(f"{label}: in {unit}, without a sensitivity; {expected}")
     parts = SENSITIVITY.fullmatch(sensitivity.strip())
     unit_below = plain_unit(parts["unit"]) if parts else ""
-    derivatives = next((n for n, known in OF_MOTIONS.items() if unit_below in known), None)
+    derivatives = next((n for n, factors in known.items() if unit_below in factors), None)
     number = float(parts["number"].replace(",", ".")) if parts else 0.0
     if parts is None or derivatives is None or not number:
         raise InputError(f"{label}: sensitivity {sensitivity!r}; {expected}")
     volts = number * VOLTAGES[plain_unit(parts["volts"])]
-    return VOLTAGES[plain_unit(unit)] * OF_MOTIONS[derivatives][unit_below] / volts, derivatives
+    return VOLTAGES[plain_unit(unit)] * known[derivatives][unit_below] / volts, derivatives
 
 
 def differentiated(values: Floats, rate: float, derivatives: int, delay: float = 0.0) -> Floats:

@@ -159,9 +159,17 @@ def shake_on(
     own = math.sqrt(max(structure.k1 / structure.m1, structure.k2 / structure.m2)) / TURN
     every = math.ceil(STEPS_A_PERIOD * max(own, 0.05 * sine.usual_rate) / rate)
     count = math.floor(sine.duration * rate * (1.0 + 1e-14))
-    times = {"duration": count / rate, "step": 1.0 / (every * rate)}
-    inputs, more = {"command": control}, {"record": RECORDED, "start": start, "estimate": False}
-    run = cosimulate(structure, shaker, inputs=inputs, **times, **more, **running)
+    run = cosimulate(
+        structure,
+        shaker,
+        inputs={"command": control},
+        duration=count / rate,
+        step=1.0 / (every * rate),
+        record=RECORDED,
+        start=start,
+        estimate=False,
+        **running,
+    )
     run = run.isel(time=slice(None, None, every))
     states = np.stack([run[name].values for name in ("x1", "x2", "v1", "v2")], axis=1)
     one, two = absolute_accelerations(states, structure, run.in_contact.values).T

@@ -11,21 +11,12 @@ from numpy.typing import NDArray
 
 from ..constants import TURN
 from ..errors import InputError
+from . import signals
 from .pieces import ERROR, POINTS, Floats, Pieces, phase_step
-from .signals import (
-    DENSITY,
-    MOST_PIECES,
-    SECONDS,
-    ExcitationSignal,
-    Profile,
-    along_profile,
-    check_fields,
-    checked_profile,
-)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Random(ExcitationSignal):
+class Random(signals.ExcitationSignal):
     """Stationary Gaussian-like vibration of a given power spectral density.
 
     The sum of sines at all multiples of 1/duration, each with the amplitude that its share of the
@@ -54,13 +45,13 @@ class Random(ExcitationSignal):
     9.49
     """
 
-    psd: Profile
+    psd: signals.Profile
     duration: float
     seed: int = 0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "psd", checked_profile("psd", self.psd, DENSITY))
-        check_fields(self, duration=SECONDS)
+        object.__setattr__(self, "psd", signals.checked_profile("psd", self.psd, signals.DENSITY))
+        signals.check_fields(self, duration=signals.SECONDS)
         whole = isinstance(self.seed, (int, np.integer)) and not isinstance(self.seed, bool)
         if not whole or self.seed < 0:
             raise InputError(f"seed = {self.seed!r}: expected a whole number >= 0")
@@ -86,10 +77,10 @@ class Random(ExcitationSignal):
     def _amplitudes(self) -> Floats:
         """Return the amplitudes of the sines at 0, 1, 2 ... over the duration, m/s2."""
         count = math.floor(self.psd[-1][0] * self.duration * (1.0 + 1e-12)) + 1
-        if count > MOST_PIECES // 20:
-            most = (MOST_PIECES // 20) / self.psd[-1][0]
+        if count > signals.MOST_PIECES // 20:
+            most = (signals.MOST_PIECES // 20) / self.psd[-1][0]
             raise InputError(f"duration = {self.duration!r} s: expected at most {most:.3g} s")
-        density = along_profile(self.psd, np.arange(count) / self.duration)
+        density = signals.along_profile(self.psd, np.arange(count) / self.duration)
         return np.sqrt(2.0 * density / self.duration)
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:

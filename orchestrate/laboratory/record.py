@@ -25,8 +25,11 @@ CHANNELS = {  # long names
     "box_acceleration": "acceleration of the box",
     "acceleration1": "absolute acceleration of mass 1",
     "acceleration2": "absolute acceleration of mass 2",
+    "force": "force on the structure",
 }
+FORCE = "force"  # in N; all others in m/s2
 SHORT_NAMES = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
+SHORT_NAMES[FORCE] = FORCE
 FEWEST = 4
 
 
@@ -36,6 +39,7 @@ def record(
     box_acceleration: ArrayLike | None = None,
     acceleration1: ArrayLike | None = None,
     acceleration2: ArrayLike | None = None,
+    force: ArrayLike | None = None,
     sample_rate: float | None = None,
     source: str = "measured",
     sensors: Mapping[str, str] | str = "",
@@ -49,6 +53,9 @@ def record(
         s, in equal steps; or give ``sample_rate``, then it begins at 0.
     box_acceleration, acceleration1, acceleration2 : array_like, optional
         Absolute accelerations of the box and the masses, m/s2; one of them at least.
+    force : array_like, optional
+        N, of a structure that is excited by a force in place of its base: for
+        :func:`orchestrate.signs` alone.
     sample_rate : float, optional
         Hz; by default from ``time``. Of both the rate corrects times that are rounded.
     source : str
@@ -81,7 +88,9 @@ def record(
     >>> made.time.values[-1], made.attrs["sample_rate"]
     (np.float64(0.003), 1000.0)
     """
-    channels = dict(zip(CHANNELS, (box_acceleration, acceleration1, acceleration2), strict=True))
+    channels = dict(
+        zip(CHANNELS, (box_acceleration, acceleration1, acceleration2, force), strict=True)
+    )
     given = {name: one for name, one in channels.items() if one is not None}
     words = sensors
     if isinstance(sensors, Mapping):
@@ -124,7 +133,10 @@ def checked_record(
             warnings.warn(f"{channel_label(name)}: {text}", UserWarning, stacklevel=4)
     words = {"sensors": "", **attributes, "sample_rate": rate, **reading.words(time_base)}
     return xr.Dataset(
-        {name: variable("time", one, "m/s2", CHANNELS[name]) for name, one in values.items()},
+        {
+            name: variable("time", one, unit_of_channel(name), CHANNELS[name])
+            for name, one in values.items()
+        },
         {"time": variable("time", even, "s", "time")},
         words,
     )
@@ -172,6 +184,11 @@ def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
         text = f"{name}, row {wrong[0] + first_row}: {values[wrong[0]]}{more}"
         raise InputError(f"{text}; expected finite numbers")
     return values
+
+
+def unit_of_channel(name: str) -> str:
+    """Return the unit of a record's channel."""
+    return "N" if name == FORCE else "m/s2"
 
 
 def channel_label(name: str) -> str:

@@ -151,9 +151,9 @@ def column_headings(lines: list[str], dialect: Dialect, count: int) -> list[tupl
 
 def column_sensitivities(lines: list[str], dialect: Dialect, count: int) -> list[str]:
     """Return the sensitivities of columns from a line above the numbers, empty without one."""
-    rows = ([field.strip() for field in dialect.fields(line)] for line in lines)
-    fitting = (row for row in rows if len(row) == count and any(map(SENSITIVITY.fullmatch, row)))
-    row = next(fitting, [""] * count)
+    rows = [[field.strip() for field in dialect.fields(line)] for line in lines]
+    fitting = [row for row in rows if len(row) <= count and any(map(SENSITIVITY.fullmatch, row))]
+    row = [*(fitting or [[]])[0], *[""] * count][:count]
     return [field if SENSITIVITY.fullmatch(field) else "" for field in row]
 
 

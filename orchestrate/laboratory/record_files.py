@@ -16,7 +16,7 @@ from ..errors import InputError
 from ..files import check_path_encoding, write_whole
 from .columns import Column, Columns, converted_channels
 from .conversion import ByChannel, number_by_channel
-from .record import CHANNELS, Reading, checked_record
+from .record import CHANNELS, Reading, checked_record, unit_of_channel
 from .record_csv import read_csv, write_csv
 from .record_labview import read_lvm, read_tdms, unreadable
 from .record_mat import read_mat, write_mat
@@ -53,10 +53,11 @@ def read_record(
         ``.uff``, ``.unv`` (universal files, datasets 58 and 58b), ``.mat`` (MATLAB's up to
         version 7.2, structures too), ``.lvm`` and ``.tdms`` (LabVIEW), ``.nc`` (NetCDF), ``.wav``.
     columns : mapping or sequence, optional
-        Which column ``time``, ``box_acceleration``, ``acceleration1`` and ``acceleration2`` are
-        in, by name or by number from 0; a sequence has them in that order. By default columns
-        with these names or others that are usual, else the first ones in that order. A time that
-        is not named is in the column of that name, else in the first.
+        Which column ``time``, ``box_acceleration``, ``acceleration1``, ``acceleration2`` and
+        ``force`` are in, by name or by number from 0; a sequence has them in that order. By
+        default columns with these names or others that are usual, else the first ones in that
+        order, without a force. A time that is not named is in the column of that name, else in
+        the first.
     unit : str or mapping of str to str, optional
         Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face1=mm/s"``; ``base``,
         ``face1`` and ``face2`` stand for the names above): of an acceleration, velocity,
@@ -168,7 +169,7 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     if not channels or "sample_rate" not in data.attrs:
         raise InputError("data: expected a record, with a channel and the attribute sample_rate")
     columns = [Column("time", "s", data.time.values)]
-    columns += [Column(name, "m/s2", data[name].values) for name in channels]
+    columns += [Column(name, unit_of_channel(name), data[name].values) for name in channels]
     rate = float(data.attrs["sample_rate"])
     if kind in ("wav", "lvm", "tdms"):
         raise InputError(f"{path}: {kind.upper()} is only read; expected .csv, .uff, .mat or .nc")

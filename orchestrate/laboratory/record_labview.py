@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -14,21 +13,21 @@ from .columns import Column, Columns
 from .record_csv import decode_text
 
 
-def import_reader(package: str, kind: str) -> Any:
-    """Import a package that reads a kind of file; raise with the remedy if it is not installed."""
-    try:
-        return import_module(package)
-    except ImportError:
-        text = f"expected the package {package}: pip install 'vibroimpact[laboratory]'"
-        raise InputError(f"{kind} need a package that is not here; {text}") from None
+def missing_reader(package: str, kind: str) -> InputError:
+    """Return the error of a package that is not installed, with the remedy."""
+    text = f"expected the package {package}: pip install 'vibroimpact[laboratory]'"
+    return InputError(f"{kind} need a package that is not here; {text}")
 
 
 def read_lvm(path: Path) -> Columns:
     """Read the first segment of an .lvm file; others are refused, since their times differ."""
-    reader = import_reader("lvm_read", "LabVIEW's .lvm files")
+    try:
+        import lvm_read
+    except ImportError:
+        raise missing_reader("lvm_read", "LabVIEW's .lvm files") from None
     text = decode_text(path, path.read_bytes())
     try:
-        data = reader.read_str(text)  # its read() takes a pickle that lies beside the file
+        data = lvm_read.read_str(text)  # its read() takes a pickle that lies beside the file
         segment = data[0]
         names = list(map(str, segment["Channel names"]))
         rows = np.atleast_2d(np.asarray(segment["data"], float))
@@ -55,9 +54,12 @@ def read_lvm(path: Path) -> Columns:
 
 def read_tdms(path: Path) -> Columns:
     """Read the waveforms of a .tdms file that have the same times, with their units."""
-    reader = import_reader("nptdms", "LabVIEW's .tdms files")
     try:
-        file = reader.TdmsFile.read(path)
+        import nptdms
+    except ImportError:
+        raise missing_reader("npTDMS", "LabVIEW's .tdms files") from None
+    try:
+        file = nptdms.TdmsFile.read(path)
         channels = [
             (one, dict(one.properties)) for group in file.groups() for one in group.channels()
         ]

@@ -126,8 +126,8 @@ def mat_column(name: str, values: Floats, texts: dict[str, str]) -> Column:
 
     short = name.rpartition(".")[2]
     is_time = short.lower() in ("time", "t")
-    label = "" if is_time or "." not in name else nearest("name", "label", "channelname")
-    unit = "" if is_time else nearest("units", "unit", "y_unit", "unitlabel")
+    label = "" if is_time or "." not in name else nearest("name", "channelname")
+    unit = "" if is_time else nearest("units", "unit", "unitlabel", "label")
     return Column(label or short, unit, values, sensitivity=nearest("sensitivity"))
 
 

@@ -6,13 +6,14 @@ import logging
 import math
 import re
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
 from .columns import Column, Columns, Floats
-from .record_labview import import_reader
+from .record_labview import missing_reader
 
 Dataset = dict[str, Any]  # as pyuff gives it
 log = logging.getLogger(__name__)
@@ -27,11 +28,20 @@ NOTE = "sample_rate = {!r}, start = {!r}"  # a heading has six digits of both
 NOTED = re.compile(r"sample_rate = (\S+), start = (\S+)")
 
 
+def import_pyuff() -> ModuleType:
+    """Import the package pyuff; raise with the remedy if it is not installed."""
+    try:
+        import pyuff
+    except ImportError:
+        raise missing_reader("pyuff", "universal files") from None
+    return pyuff
+
+
 def read_uff(path: Path) -> Columns:
     """Read accelerations over time; other datasets are skipped, with a line in the log."""
     if not path.read_bytes().rstrip().endswith(b"    -1"):
         raise InputError(f"{path}: no '    -1' at its end; expected a universal file that is whole")
-    pyuff = import_reader("pyuff", "universal files")
+    pyuff = import_pyuff()
     try:
         file = pyuff.UFF(str(path))
         kinds = [int(kind) for kind in file.get_set_types()]
@@ -133,7 +143,7 @@ def column_from_dataset(number: int, one: Dataset) -> Column:
 
 def write_uff(path: Path, columns: list[Column], sample_rate: float, binary: bool) -> None:
     """Write columns after the first, which is the time, as datasets 58 or 58b."""
-    pyuff = import_reader("pyuff", "universal files")
+    pyuff = import_pyuff()
     time, *channels = columns
     datasets = [
         pyuff.prepare_58(

@@ -12,21 +12,12 @@ from ..constants import TURN
 from ..errors import InputError
 from ..model.arguments import checked_word
 from ..model.ranges import Quantity
+from . import signals
 from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step, subdivided
-from .signals import (
-    HERTZ,
-    SECONDS,
-    Profile,
-    Sine,
-    along_profile,
-    check_fields,
-    checked,
-    checked_level,
-)
 
 
 @dataclass(frozen=True, kw_only=True)
-class SweptSine(Sine):
+class SweptSine(signals.Sine):
     """A sine whose frequency moves slowly from one end of a range to the other.
 
     Linear: ``A sin(2 pi (f0 t + (f1 - f0) t^2/(2 T)))``. Logarithmic, with L = ln(f1/f0):
@@ -59,28 +50,32 @@ class SweptSine(Sine):
 
     first: float
     last: float
-    acceleration: float | Profile
+    acceleration: float | signals.Profile
     duration: float = 0.0
     rate: float | None = None
     spacing: str = "linear"
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        check_fields(self, first=HERTZ, last=HERTZ)
+        signals.check_fields(self, first=signals.HERTZ, last=signals.HERTZ)
         checked_word("spacing", self.spacing, ("linear", "log"))
         if self.first == self.last:
             raise InputError(f"last = {self.last!r} Hz: expected another frequency than first")
         low, high = sorted((self.first, self.last))
-        put(self, "acceleration", checked_level("acceleration", self.acceleration, low, high))
+        put(
+            self,
+            "acceleration",
+            signals.checked_level("acceleration", self.acceleration, low, high),
+        )
         given = [name for name in ("duration", "rate") if getattr(self, name)]
         if len(given) != 1:
             said = " and ".join(f"{name} = {getattr(self, name)!r}" for name in given)
             raise InputError(f"{said or 'nothing'} given: expected one of duration and rate")
         if self.rate:
-            rate = checked(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
+            rate = signals.checked(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
             put(self, "duration", self._span() / rate)
             put(self, "rate", None)
-        check_fields(self, duration=SECONDS)
+        signals.check_fields(self, duration=signals.SECONDS)
 
     def _span(self) -> float:
         """Return the range swept: Hz if linear, 60 times the octaves if logarithmic."""
@@ -137,7 +132,7 @@ class SweptSine(Sine):
         if isinstance(self.acceleration, float):
             return np.full(np.shape(time), self.acceleration)
         low, high = self.acceleration[0][0], self.acceleration[-1][0]
-        return along_profile(self.acceleration, np.clip(self.frequency(time), low, high))
+        return signals.along_profile(self.acceleration, np.clip(self.frequency(time), low, high))
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
         """Return pieces of equal phase, shorter where the frequency changes within them."""

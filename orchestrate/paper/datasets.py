@@ -17,18 +17,8 @@ from ..model import Drive, Structure
 from ..model.outcomes import REPEATED
 from ..running.store import write_netcdf
 from ..weak_drive import averaged
-from .cases import (
-    BRANCHES,
-    CASES,
-    CONTACT_RANGES,
-    GAMMAS,
-    MAP_ETAS,
-    PANELS,
-    RESTITUTIONS,
-    RIG,
-    STICKING_GAMMAS,
-    map_values,
-)
+from . import cases
+from .cases import CASES
 from .curves import Panel, curves_dataset, trace
 from .reading import Region, between, list_regions, relative_peak
 from .resolution import Resolution
@@ -132,7 +122,7 @@ class Datasets:
 
     def windows(self, case: str, orbit: str) -> list[StableWindow]:
         """Return the stable windows of the branch through the up-sweep's response, upwards."""
-        eta, period, limits = BRANCHES[case][orbit]
+        eta, period, limits = cases.BRANCHES[case][orbit]
         guess = self.up(case).end_state.sel(eta=eta, method="nearest").values
         name = f"{CASES[case].label()}_{orbit.replace('/', '-').replace(', ', '-')}"
         first = {"eta": eta, "period": period, "guess": guess}
@@ -161,8 +151,8 @@ class Datasets:
     def last_contact(self, case: str) -> np.ndarray:
         """Return the last eta with permanent contact on short sweeps from rest, for each gamma."""
         last = []
-        for gamma in GAMMAS:
-            etas = np.round(np.arange(*CONTACT_RANGES[case], 0.001), 9)
+        for gamma in cases.GAMMAS:
+            etas = np.round(np.arange(*cases.CONTACT_RANGES[case], 0.001), 9)
             name = f"contact_{CASES[case].label()}_gamma{gamma:g}"
             more = {"eta": etas, "transient": 250, "samples": 40}
             one = self.get(name, orchestrate.sweep, CASES[case].replace(gamma=gamma), **more)
@@ -177,13 +167,13 @@ class Datasets:
         if "chattering" not in self.known:
             rows = [
                 self.sequence(ELASTIC.replace(e=e, gamma=gamma))
-                for e in RESTITUTIONS
-                for gamma in STICKING_GAMMAS
+                for e in cases.RESTITUTIONS
+                for gamma in cases.STICKING_GAMMAS
             ]
-            columns = np.array(rows).T.reshape(3, len(RESTITUTIONS), -1)
+            columns = np.array(rows).T.reshape(3, len(cases.RESTITUTIONS), -1)
             names = "impacts", "sticks", "ratio_error"
             variables = {k: (("e", "gamma"), v) for k, v in zip(names, columns, strict=True)}
-            coordinates = {"e": list(RESTITUTIONS), "gamma": list(STICKING_GAMMAS)}
+            coordinates = {"e": list(cases.RESTITUTIONS), "gamma": list(cases.STICKING_GAMMAS)}
             self.known["chattering"] = xr.Dataset(variables, coordinates)
         return self.known["chattering"]
 
@@ -230,9 +220,9 @@ class Datasets:
         """Return the curves of Figure 5, 7, 8, 9 or 12, and write them beside the results."""
         name = f"figure{number}"
         if name not in self.known:
-            etas, keep, points = PANELS[number]
-            cases = CASES if number == "12" else ("elastic",)
-            panels = [panel for case in cases for panel in self.panels(number, case, etas)]
+            etas, keep, points = cases.PANELS[number]
+            chosen = CASES if number == "12" else ("elastic",)
+            panels = [panel for case in chosen for panel in self.panels(number, case, etas)]
             keep = keep or self.size.keep
             curves = [trace(panel, keep, points, self.running) for panel in panels]
             self.known[name] = curves_dataset(panels, curves)
@@ -286,8 +276,8 @@ class Datasets:
 
     def map(self, parameter: str) -> xr.Dataset:
         """Return the map over eta and e, D or kappa."""
-        size, etas = self.size, np.linspace(*MAP_ETAS, self.size.map_etas)
-        axes = {"eta": etas, parameter: map_values(parameter, size.map_rows)}
+        size, etas = self.size, np.linspace(*cases.MAP_ETAS, self.size.map_etas)
+        axes = {"eta": etas, parameter: cases.map_values(parameter, size.map_rows)}
         more = {"transient": size.map_settle, "samples": size.map_keep}
         return self.get(f"map_{parameter}", orchestrate.map, ELASTIC, **axes, **more)
 
@@ -298,7 +288,7 @@ class Datasets:
 
     def ramp(self, kind: str) -> xr.Dataset:
         """Return a slow voltage ramp of the set ``rig`` up to its fold, bonded or delaminated."""
-        structure, drive = Structure.from_file(RIG), Drive.from_file(RIG)
+        structure, drive = Structure.from_file(cases.RIG), Drive.from_file(cases.RIG)
         volts = drive.volts(structure)
         fold = averaged.folds(structure, drive)[0].eta0
         ends = 0.55 * fold * volts, 1.02 * fold * volts

@@ -80,14 +80,7 @@ def in_touch(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
 def absolute_accelerations(
     states: Floats, structure: Structure, touching: Flags | None = None
 ) -> Floats:
-    """Return both masses' absolute accelerations, as accelerometers read between impacts.
-
-    Examples
-    --------
-    >>> from orchestrate.model import Structure
-    >>> absolute_accelerations(np.array([[-1.0, 1.0, 0.0, 0.0]]), Structure(d1=0.0, d2=0.0))
-    array([[ 1. , -1.2]])
-    """
+    """Return both masses' absolute accelerations, as accelerometers read between impacts."""
     together = in_touch(states, structure.gap_offset) if touching is None else touching
     felt = MotionCoefficients.from_structures([structure]).effective(together[None])
     columns = states.T[:, None, :]

@@ -140,12 +140,12 @@ def make_series(
     )
     varied = varied or {name: (excitation[name],)}
     check_lengths(name, over, varied)
-    rows = [dict(zip(varied, row, strict=True)) for row in zip(*varied.values(), strict=True)]
-    points = [make_point(structure, {**excitation, **row}) for row in rows]
+    rows = (dict(zip(varied, row, strict=True)) for row in zip(*varied.values(), strict=True))
+    points = tuple(make_point(structure, {**excitation, **row}) for row in rows)
     etas = varied.get("eta") or tuple(p.excitation.eta(p.structure) for p in points)
     if "eta" in excitation:
         etas = (excitation["eta"],) * len(points)
-    return Series(name, varied[name], tuple(points), etas)
+    return Series(name, varied[name], points, etas)
 
 
 def varied_values(

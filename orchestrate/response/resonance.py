@@ -42,6 +42,7 @@ class ResonanceJob(SweepJob):
     prominence: float = positive()
     jump: float = positive()
     asked: ClassVar[str] = "resonance"
+    bulk: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -15,7 +15,9 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, Instance
 from ..model import Structure
 from ..model.arguments import checked, checked_word, positive, whole
+from ..running.blocks import lazy_rows
 from ..running.job import Table
+from ..running.store import StoredRows
 from .labels import (
     COORDINATES,
     Dims,
@@ -71,6 +73,7 @@ class SweepJob(SeriesQuestion):
     asked: ClassVar[str] = "sweep"
     chunk_size: ClassVar[int] = 100
     in_threads: ClassVar[bool] = True
+    bulk: ClassVar[tuple[str, ...]] = ("gap",)
     sequential: ClassVar[bool] = True
     warmup_items: ClassVar[int] = 16  # most responses forget where they came from within as many
 
@@ -152,7 +155,8 @@ class SweepJob(SeriesQuestion):
 
     def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of the sweep over the parameter, in the order of its values."""
-        ordered = {name: self.in_order(values) for name, values in table.items()}
+        ordered = {name: self.in_order(table[name]) for name in table if name != "gap"}
+        ordered["gap"] = self.gaps_in_order(table["gap"])
         title = f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
         return make_dataset(self.variables(ordered), self.coordinates(), title)
 
@@ -165,18 +169,29 @@ class SweepJob(SeriesQuestion):
             ordered[index, order] = rows[index]
         return ordered if self.direction == "both" else ordered[0]
 
+    def gaps_in_order(self, gaps: NDArray[np.float64] | StoredRows) -> Any:
+        """Return the samples of the gap over a eta^2 in the values' order, lazily if stored."""
+        length = self.series.scales()[:, :1]
+        if isinstance(gaps, np.ndarray):
+            return np.asarray(self.in_order(gaps), dtype=float) / length
+        numbers = self.in_order(np.arange(gaps.shape[0]))
+        source = numbers.ravel().astype(np.intp)
+
+        def read(rows: NDArray[np.intp]) -> NDArray[np.float64]:
+            """Return rows of samples by their place in the result."""
+            return gaps.rows(source[rows]) / length[rows % len(length)]
+
+        return lazy_rows(numbers.shape, gaps.shape[1], read)
+
     def variables(self, table: Table) -> dict[str, Variable]:
         """Return the result's variables, which become the CSV columns, from response rows."""
         along: Dims = (self.series.name,)
         if self.direction == "both":
             along = ("direction", self.series.name)
         scales = self.series.scales()
-        gaps, text = (
-            table["gap"] / scales[:, :1],
-            "stroboscopic samples of the gap xi_2 - xi_1 (21)",
-        )
+        text = "stroboscopic samples of the gap xi_2 - xi_1 (21)"
         return {
-            "xi_rel": variable((*along, "sample"), gaps, "1", text),
+            "xi_rel": variable((*along, "sample"), table["gap"], "1", text),
             **response_variables(along, table, scales[:, 0], RESPONSE_QUANTITIES),
             "end_state": variable((*along, "coordinate"), table["end"] / scales, "1", END),
         }

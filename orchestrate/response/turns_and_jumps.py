@@ -11,13 +11,7 @@ NEIGHBOURS, JUMP_FACTOR = 2, 3.0  # of the curve's own slope, which a jump must 
 
 
 def prominent_maxima(curve: ArrayLike, prominence: float) -> Rows:
-    """Return the indices of a curve's inner maxima whose relative prominence is enough.
-
-    Examples
-    --------
-    >>> prominent_maxima([1.0, 2.0, 1.9, 2.0, 5.0, 2.0], 0.1)
-    array([4])
-    """
+    """Return the indices of a curve's inner maxima whose relative prominence is enough."""
     from scipy.signal import find_peaks
 
     values = np.asarray(curve, dtype=float)
@@ -27,13 +21,7 @@ def prominent_maxima(curve: ArrayLike, prominence: float) -> Rows:
 
 
 def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
-    """Return, for each value of a curve, whether it lies in a range of irregular responses.
-
-    Examples
-    --------
-    >>> inside_irregular([False, True, False, False, True, False, False]).astype(int)
-    array([0, 1, 1, 1, 1, 0, 0])
-    """
+    """Return, for each value of a curve, whether it lies in a range of irregular responses."""
     from scipy.ndimage import binary_closing
 
     padded = np.pad(np.asarray(irregular, dtype=bool), WINDOW)
@@ -42,15 +30,7 @@ def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
 
 
 def jump_indices(curve: ArrayLike, minimum: float) -> Rows:
-    """Return the indices after which a curve jumps: steps far larger than their neighbours.
-
-    Examples
-    --------
-    >>> jump_indices([1.0, 1.1, 1.2, 2.0, 2.1, 2.2], 0.15)
-    array([2])
-    >>> jump_indices([1.0, 1.3, 1.7, 2.2, 2.9, 3.8], 0.15)
-    array([], dtype=int64)
-    """
+    """Return the indices after which a curve jumps: steps far larger than their neighbours."""
     values = np.asarray(curve, dtype=float)
     steps = np.abs(np.diff(values))
     large = steps > minimum * np.maximum(np.abs(values[1:]), np.abs(values[:-1]))

@@ -8,6 +8,7 @@ module              idea
 :mod:`.options`     keywords that all questions share
 :mod:`.store`       storage of chunks and results, in memory or on disk
 :mod:`.journal`     chunks on disk while a job is under way
+:mod:`.blocks`      arrays larger than memory, block by block
 :mod:`.checksum`    checksum of a result, however it is stored
 :mod:`.formats`     export of a result: CSV, MATLAB, Excel
 :mod:`.provenance`  attributes that say where a dataset comes from

@@ -14,24 +14,13 @@ from typing import Any
 import numpy as np
 
 from ..lazy import xr
+from .blocks import blocks
 
 ATTRIBUTE = "content_sha256"
 
 
 def checksum(data: xr.Dataset) -> str:
-    """Return a dataset's SHA-256 over names, attributes and values; its own attribute is left out.
-
-    A dataset that was written to NetCDF and read again has the checksum that it had before.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> data = xr.Dataset({"x": ("time", [1.0, 2.0])})
-    >>> checksum(data) == checksum(data.copy())
-    True
-    >>> checksum(data) == checksum(data + 1e-15)
-    False
-    """
+    """Return a dataset's SHA-256 over names, attributes and values, but its own attribute."""
     digest = hashlib.sha256(encode_json(normalized_attributes(data.attrs)))
     for name in sorted(data.variables, key=str):
         array = data.variables[name]
@@ -42,7 +31,8 @@ def checksum(data: xr.Dataset) -> str:
             normalized_attributes(array.attrs),
         ]
         digest.update(encode_json(header))
-        digest.update(encode_array(np.asarray(array.values)))
+        for block in blocks(array.shape):
+            digest.update(encode_array(np.asarray(array[block].values)))
     return digest.hexdigest()
 
 

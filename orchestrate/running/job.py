@@ -45,6 +45,7 @@ class Job(ABC):
     gathers: ClassVar[bool] = False  # the last item starts from all others, in a chunk of its own
     warmup_items: ClassVar[int] = 0  # after which a sequential job has forgotten its beginning
     in_threads: ClassVar[bool] = False  # whether its work is in the FMU, past Python
+    bulk: ClassVar[tuple[str, ...]] = ()  # columns that a store on disk gives as `StoredRows`
     item: ClassVar[str] = "item"  # what the progress bar counts
 
     def check_fields(self) -> None:

@@ -246,4 +246,4 @@ class Progress:
         last = len(self.chunks) - 1
         if self.job.gathers:
             return {**self.store.table(last), **self.store.get(last)}
-        return self.store.table(len(self.chunks))
+        return self.store.table(len(self.chunks), self.job.bulk)

@@ -7,15 +7,18 @@ import logging
 import os
 import re
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import InputError, StaleError, StoreError
 from ..files import check_path_encoding, open_folder, write_whole
 from ..lazy import xr
+from .blocks import blocks, chunk_shape
 from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
@@ -25,6 +28,7 @@ from .options import RunOptions
 log = logging.getLogger(__name__)
 MIN_COMPRESSED = 10_000  # values from which a variable is worth compressing
 LAST_SECOND = 253_402_300_799  # of the year 9999
+MAX_LOADED = 2**28  # bytes of a file that is read whole; larger ones are opened lazily
 ZLIB_LEVEL = 1  # not higher: the last digits of numbers do not shrink, however long it tries
 
 
@@ -80,10 +84,28 @@ class Store:
     def close(self) -> None:
         """Release all files and locks of the store."""
 
-    def table(self, count: int) -> Table:
+    def table(self, count: int, bulk: Sequence[str] = ()) -> Table:
         """Return the first ``count`` chunks as one dict of arrays, joined along the first axis."""
         parts = [self.get(index) for index in range(count)]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+class StoredRows:
+    """A column of all chunks on disk, of which chosen rows are read."""
+
+    def __init__(self, store: Disk, name: str, lengths: Sequence[int], width: int) -> None:
+        self.store, self.name, self.ends = store, name, np.cumsum(lengths)
+        self.shape = int(self.ends[-1]), width
+
+    def rows(self, chosen: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Return rows by their numbers, (n, width)."""
+        result = np.empty((len(chosen), self.shape[1]))
+        chunk = np.searchsorted(self.ends, chosen, side="right")
+        for index in np.unique(chunk).tolist():
+            here = chunk == index
+            part = self.store.get(index)[self.name]
+            result[here] = part[chosen[here] - (self.ends[index] - len(part))]
+        return result
 
 
 class Disk(Store):
@@ -176,6 +198,23 @@ class Disk(Store):
         self.journal.put(index, table)
         STARTED.add(self.journal.path)
 
+    def table(self, count: int, bulk: Sequence[str] = ()) -> Table:
+        """Return all chunks' arrays joined, those of ``bulk`` as :class:`StoredRows`."""
+        columns: dict[str, list[np.ndarray]] = {}
+        shapes: dict[str, list[tuple[int, ...]]] = {name: [] for name in bulk}
+        for index in range(count):
+            for name, values in self.get(index).items():
+                if name in shapes:
+                    shapes[name].append(values.shape)
+                else:
+                    columns.setdefault(name, []).append(values)
+        table: dict[str, Any] = {name: np.concatenate(parts) for name, parts in columns.items()}
+        table |= {
+            name: StoredRows(self, name, [rows for rows, _ in each], each[0][1])
+            for name, each in shapes.items()
+        }
+        return table
+
     def drop(self, index: int, reason: str) -> None:
         """Delete a chunk from the journal by its number, with a warning that names the reason."""
         self.journal.drop(index, reason)
@@ -211,7 +250,8 @@ def load(path: Path) -> xr.Dataset:
     """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum)."""
     check_path_encoding(path)
     try:
-        data = xr.load_dataset(path, engine="netcdf4")
+        is_large = path.stat().st_size > MAX_LOADED
+        data = (xr.open_dataset if is_large else xr.load_dataset)(path, engine="netcdf4")
         stored_checksum = data.attrs.pop(ATTRIBUTE, None)
         fits = stored_checksum is None or stored_checksum == checksum(data)
     except Exception as error:
@@ -224,6 +264,18 @@ def load(path: Path) -> xr.Dataset:
             f"or delete its attribute {ATTRIBUTE} to take it as it is"
         )
     return data
+
+
+def create_variable(file: Any, name: str, array: xr.DataArray) -> Any:
+    """Create a variable for a large array in an open file, to be written block by block."""
+    for dimension, size in array.sizes.items():
+        if dimension not in file.dimensions:
+            file.createDimension(str(dimension), size)
+    create: Any = file.createVariable
+    compression = {"zlib": True, "complevel": ZLIB_LEVEL, "chunksizes": chunk_shape(array.shape)}
+    target = create(name, array.dtype, array.dims, fill_value=np.nan, **compression)
+    target.setncatts(array.attrs)
+    return target
 
 
 def is_netcdf(path: Path) -> bool:
@@ -261,6 +313,11 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
     large_variables = [
         name for name, variable in dataset.data_vars.items() if variable.size > MIN_COMPRESSED
     ]
+    bulk = [  # in blocks, those whose rows are shorter than one
+        name
+        for name in large_variables
+        if dataset[name].dtype == float and len(list(blocks(dataset[name].shape))) > 1
+    ]
     encoding = {name: {"zlib": True, "complevel": ZLIB_LEVEL} for name in large_variables}
     open_file: Any = NetCDF4DataStore.open
 
@@ -268,6 +325,11 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
         # xarray's to_netcdf imports Dask's scheduler to find a lock that nobody needs here
         """Write the dataset to a netCDF file."""
         with open_file(path_to_write, mode="w", lock=False) as file:
-            dataset.dump_to_store(file, encoding=encoding)
+            targets = {name: create_variable(file.ds, str(name), dataset[name]) for name in bulk}
+            others = {name: options for name, options in encoding.items() if name not in bulk}
+            dataset.drop_vars(bulk).dump_to_store(file, encoding=others)
+            for name, target in targets.items():
+                for block in blocks(dataset[name].shape):
+                    target[block] = dataset.variables[name][block].values
 
     return write_whole(path, write)

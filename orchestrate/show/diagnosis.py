@@ -86,7 +86,7 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
     else:
         draw_distances(plane, data)
     unit = typeset_array_unit(data.level)
-    recommended = int(abs(data.level - data.recommended_level).argmin())
+    recommended = int(np.abs(data.level.values - float(data.recommended_level)).argmin())
     shown = data.isel(level=sorted({0, recommended, data.sizes["level"] - 1}))
     for (_, at), colour in zip(shown.groupby("level"), COLOURS, strict=False):
         words = f"at {float(at.level.item()):.3g} {unit}"

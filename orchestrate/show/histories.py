@@ -12,14 +12,8 @@ from matplotlib.figure import Figure
 
 from ..constants import TURN
 from ..units import units_of, with_units
+from . import labels
 from .colours import BLACK, BLUE, GREY, RED
-from .labels import (
-    format_period,
-    gap_name,
-    has_frequency_unit,
-    in_shown_units,
-    title_from_attributes,
-)
 from .planes import relative_motion as relative_curve
 from .scales import acceleration_scale, frequency_scale, length_scale
 from .spectra import acceleration_spectrum, draw_stems
@@ -45,7 +39,7 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
     """Draw a simulated motion: histories, phase planes and spectrum; return the figure."""
     figure = Figure(figsize=(10.4, 6.8), layout="constrained")
     axes = figure.subplot_mosaic(LAYOUT, width_ratios=(2.2, 1))
-    set_title(figure, title or title_from_attributes(data))
+    set_title(figure, title or labels.title_from_attributes(data))
     largest = {name: float(np.abs(data[name]).max()) for name in ("x1", "x2", "v1", "v2")}
     factor, letter = length_scale(data, max(largest["x1"], largest["x2"]))
     pace, speed_letter = length_scale(data, max(largest["v1"], largest["v2"]))
@@ -71,7 +65,7 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
         top = max(top, draw_spectrum(axes["spectrum"], alike, (("1", GLUED),)))
     axes["spectrum"].set_ylim(SPECTRUM_FLOOR * (top or 1.0), 2.0 * (top or 1.0))
     axes["masses"].set_ylabel(f"displacement in {letter}m")
-    axes["gap"].set_ylabel(f"{gap_name(data)} in {letter}m")
+    axes["gap"].set_ylabel(f"{labels.gap_name(data)} in {letter}m")
     axes["force"].set(ylabel="contact force in N", xlabel=instants, xlim=(turns[0], turns[-1]))
     rate_label = f"velocity in {speed_letter}m/s"
     axes["phases"].set(xlabel=f"displacement in {letter}m", ylabel=rate_label)
@@ -124,12 +118,12 @@ def draw_spectrum(
         felt_amplitude = amplitude / felt
         highest = float(felt_amplitude[shown].max(initial=0.0))
         top = max(top, highest)
-        lines = frequency * (TURN / turn if has_frequency_unit(data) else 1.0 / base)
+        lines = frequency * (TURN / turn if labels.has_frequency_unit(data) else 1.0 / base)
         stem = {name: style[name] for name in ("color", "alpha", "zorder") if name in style}
         floor = 1e-3 * SPECTRUM_FLOOR * highest  # unseen
         width = STEM_WIDTHS[style["color"]]
         draw_stems(axes, lines[peaks], felt_amplitude[peaks], floor, width, **stem)
-    unit = f"in {word}" if has_frequency_unit(data) else r"over $\Omega/2\pi$"
+    unit = f"in {word}" if labels.has_frequency_unit(data) else r"over $\Omega/2\pi$"
     axes.set(xlabel=f"frequency {unit}", ylabel=f"acceleration in {unit_felt}")
     return top
 
@@ -138,7 +132,7 @@ def draw_spectrum(
 def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
     """Draw a laboratory record: accelerations, gap and impulses over time; return the figure."""
     words = str(data.attrs.get("excitation_description") or data.attrs["excitation"])
-    title = title or f"{in_shown_units(data, words)}; {title_from_attributes(data)}"
+    title = title or f"{labels.in_shown_units(data, words)}; {labels.title_from_attributes(data)}"
     heights: Any = {"sharex": True, "height_ratios": (1.0, 1.6, 1.2, 1.2)}
     figure, (box, masses, gap, impacts) = make_panels(4, 1, (10.4, 7.2), title, **heights)
     scale, _ = acceleration_scale(data)
@@ -161,7 +155,7 @@ def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
     """Draw a coupled run over time, a panel for each quantity of the drive; return the figure."""
     names = [str(name) for name in data.attrs["recorded"].split(",") if name]
     count = 4 + len(names)
-    title = title or f"{data.attrs['drive']}; {title_from_attributes(data)}"
+    title = title or f"{data.attrs['drive']}; {labels.title_from_attributes(data)}"
     figure, rows = make_panels(count, 1, (10.4, 1.2 + 1.6 * count), title, sharex=True)
     draw_box_gap_impacts(data, rows[0], rows[2], rows[3])
     factor, letter = length_scale(data, float(abs(data.x1).max()))
@@ -220,7 +214,7 @@ def draw_paper_histories(data: xr.Dataset) -> Figure:
         tau, gap, _ = relative_curve(data, index)
         turns = tau * eta / TURN
         draw_line(plane, turns, gap, "-", BLACK, 0.9)
-        kind = f"{format_period(index + 1)}-periodic, one impact in a response period"
+        kind = f"{labels.format_period(index + 1)}-periodic, one impact in a response period"
         plane.set(ylabel=XI_REL, title=rf"$\eta = {eta:.3f}$: {kind}")
         plane.ticklabel_format(axis="y", scilimits=(-2, 3))
     draw_line(axes[-1], turns, np.sin(TURN * turns), "-", BLUE, 0.9)

@@ -29,20 +29,12 @@ from ..response.labels import parameter_variable, variable, yes_or_no
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
-from . import averaged
+from . import averaged, settling
 from .controllers import Controller
 from .couple import couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
 from .run import Run, begin_run
 from .schedule import Constant, check
-from .settling import (
-    DECISIONS,
-    NO_LOAD,
-    UNDECIDED,
-    Outcome,
-    settling_test,
-    usual_limit,
-)
 
 DRIVE_NAMES = tuple(field.name for field in fields(Drive))
 
@@ -87,11 +79,11 @@ class CaptureJob(Job):
             borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
-    def run_from_rest(self, fmus: Fmus, system: System, voltage: float) -> Outcome:
+    def run_from_rest(self, fmus: Fmus, system: System, voltage: float) -> settling.Outcome:
         """Simulate one start from rest at a voltage until the speed has settled."""
-        test = settling_test(*system, self.stay, self.distance(system))
+        test = settling.settling_test(*system, self.stay, self.distance(system))
         if voltage <= system.drive.motor_constant * test.threshold:
-            return Outcome(NO_LOAD)
+            return settling.Outcome(settling.NO_LOAD)
         schedule = Constant(voltage, self.time_limit(system))
         job = couple_job(*system, schedule, self.scheme, 0.0, self.control)
         with begin_run(job, fmus) as run:
@@ -99,7 +91,7 @@ class CaptureJob(Job):
 
     def time_limit(self, system: System) -> float:
         """Return the longest simulated time of a start, s; after it it is undecided."""
-        return self.time or usual_limit(*system, self.distance(system))
+        return self.time or settling.usual_limit(*system, self.distance(system))
 
     def distance(self, system: System) -> float:
         """Return the tolerance of the border over K omega."""
@@ -121,7 +113,7 @@ class CaptureJob(Job):
         above = low - folds > 2e-4 * volts[kept]
         variables = {
             "passes": yes_or_no(over, passes > 0, "whether the motor passes the resonance"),
-            "decision": (over, np.vectorize(DECISIONS.get)(decisions), {"long_name": how}),
+            "decision": (over, np.vectorize(settling.DECISIONS.get)(decisions), {"long_name": how}),
             "passage_time": variable(over, times, "s", text),
             "speed": variable(over, speeds, "rad/s", "mean speed at which the motor has settled"),
             "border": variable(along, 0.5 * (low + high), "V", edge, tolerance=self.tolerance),
@@ -153,8 +145,8 @@ class CaptureJob(Job):
 
 
 def run_until_settled(
-    run: Run, steps: range, outcome: Callable[[np.ndarray, np.ndarray], Outcome]
-) -> Outcome:
+    run: Run, steps: range, outcome: Callable[[np.ndarray, np.ndarray], settling.Outcome]
+) -> settling.Outcome:
     """Simulate a run until its recorded speed decides the outcome, or to its end."""
     times, speeds = np.zeros(0), np.zeros(0)
     first = 0
@@ -163,10 +155,10 @@ def run_until_settled(
         rows = run.revolve(piece)
         times, speeds = np.append(times, rows["time"]), np.append(speeds, rows["speed"])
         decision = outcome(times, speeds)
-        if decision.decision != UNDECIDED:
+        if decision.decision != settling.UNDECIDED:
             return decision
         first += len(piece)
-    return Outcome(UNDECIDED)
+    return settling.Outcome(settling.UNDECIDED)
 
 
 class ThresholdEnd(NamedTuple):
@@ -178,8 +170,8 @@ class ThresholdEnd(NamedTuple):
 
 def threshold_voltage(
     voltages: Sequence[float],
-    outcomes: Sequence[Outcome],
-    start: Callable[[float], Outcome],
+    outcomes: Sequence[settling.Outcome],
+    start: Callable[[float], settling.Outcome],
     tolerance: float,
 ) -> tuple[ThresholdEnd, ThresholdEnd]:
     """Bracket by bisection the voltage from which a start passes the resonance."""

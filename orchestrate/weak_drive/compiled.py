@@ -103,7 +103,8 @@ class CompiledMaster(Master):
 
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
         """Run an interval for each row of the drive's inputs, held constant; return the record."""
-        values = np.ascontiguousarray(inputs, dtype=float).reshape(len(inputs), self.width)
+        values = np.ascontiguousarray(inputs, dtype=float)
+        values = values.reshape(len(values), self.width)
         return self._run_pieces(iter([array("d", values.tobytes())]), len(values), len(values), h)
 
     def run_controlled(

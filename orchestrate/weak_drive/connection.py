@@ -67,7 +67,7 @@ def checked_links(connect: Mapping[str, str], drive: Description) -> dict[str, L
             raise InputError(f"connect: {name} is none of our names{near(name, UNITS)}; {EXPECTED}")
     if "box_force" not in connect or not set(connect) & set(MOTION):
         raise InputError(f"connect: {', '.join(connect) or 'nothing'} alone; {EXPECTED}")
-    links = {}
+    links: dict[str, Link] = {}
     for ours, theirs in connect.items():
         sign, name = (-1.0, theirs[1:]) if theirs.startswith("-") else (1.0, theirs)
         causality = "input" if ours in FORCE else "output"

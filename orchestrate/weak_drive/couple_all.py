@@ -21,14 +21,7 @@ from ..model.structure import Structure
 from ..response.labels import variable
 from ..running.options import Running
 from ..running.runner import gather
-from . import averaged, own_resonance
-from .couple import (
-    CoupleJob,
-    couple_job,
-    require_motor,
-    schedule_from_arguments,
-    scheme_from_arguments,
-)
+from . import averaged, couple, own_resonance
 
 KINDS = ("bonded", "delaminated")
 System = tuple[Structure, Drive]
@@ -53,18 +46,18 @@ def couple_job_from_numbers(
     eta0: tuple[float, float] | None,
     back: bool,
     step: float | None,
-) -> CoupleJob:
+) -> couple.CoupleJob:
     """Build the job of one coupled run from non-dimensional voltages and rate."""
     structure, drive = system
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
-    require_motor(drive)
+    couple.require_motor(drive)
     volts, omega = drive.volts(structure), structure.omega
     first, last = voltage_range(structure.as_bonded(), drive) if eta0 is None else eta0
-    schedule = schedule_from_arguments(
+    schedule = couple.schedule_from_arguments(
         structure, drive, (first * volts, last * volts), rate=rate * volts * omega, back=back
     )
-    scheme = scheme_from_arguments(structure, None if step is None else step / omega)
-    job = couple_job(structure, drive, schedule, scheme)
+    scheme = couple.scheme_from_arguments(structure, None if step is None else step / omega)
+    job = couple.couple_job(structure, drive, schedule, scheme)
     return replace(job, name=f"couple_{name}_{kind}_{rate:g}")
 
 

@@ -1,11 +1,7 @@
 """Balance the energies of a coupled run: motor work, losses and the coupling's energy defect.
 
-The shaker's FMU keeps its own account. What the structure has lost, in dampers and impacts, follows
-from the work that the box's acceleration did on it, as it was told it, less the energy it has
-stored: the momentum P of the masses is known at both ends of a step with its rate and mean, so the
-integral of P times acceleration is.
-
-The defect of a step is the difference between the work that one side gives and the other takes.
+What the structure loses follows from the work of the box's acceleration on its momentum, less what
+it stores. A step's defect is the work that one side gives less that which the other takes.
 """
 
 from __future__ import annotations

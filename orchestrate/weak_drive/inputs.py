@@ -47,7 +47,7 @@ class Inputs:
 
     def run(self, master: Master, steps: range, h: float) -> Record:
         """Run both FMUs over some steps of one length."""
-        numbers = np.arange(steps.start, steps.stop)
+        numbers = np.arange(steps.start, steps.stop, dtype=np.float64)
         rows = self.at((numbers + 0.5) * h)
         if master.connection.recorded:
             rows = np.hstack([rows, self.at((numbers + 1.0) * h)])

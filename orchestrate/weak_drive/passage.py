@@ -25,14 +25,8 @@ from ..response.labels import variable
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
+from . import couple
 from .controllers import Controller
-from .couple import (
-    CoupleJob,
-    couple_job,
-    require_motor,
-    schedule_from_arguments,
-    scheme_from_arguments,
-)
 from .revolutions import COLUMNS
 from .run import Run
 from .schedule import Schedule, check
@@ -62,7 +56,7 @@ KEPT = "sampled "  # before the names of samples in a table that has revolutions
 class PassageJob(Job):
     """Run the coupled FMUs and keep the state after every communication step."""
 
-    run: CoupleJob
+    run: couple.CoupleJob
     around: float | None  # time before and after each jump that is kept, s; all where there is none
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
@@ -173,15 +167,15 @@ def passage(
     >>> found.x1.dims, found.sizes["time"], found.speed.attrs["units"]
     (('time',), 1000, 'rad/s')
     """
-    require_motor(drive)
+    couple.require_motor(drive)
     if around is not None:
         check("around", around, "s", low=0.0, exclusive=True)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     settings = (duration, rate, settle, 0.0, back, spin_up)
-    schedule = schedule_from_arguments(structure, drive, voltage, *settings)
-    scheme = scheme_from_arguments(structure, step, sampled=True)
-    run = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
+    schedule = couple.schedule_from_arguments(structure, drive, voltage, *settings)
+    scheme = couple.scheme_from_arguments(structure, step, sampled=True)
+    run = couple.couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     name = run.name.replace("couple", "passage")
     return answer(PassageJob(name, run, around), running, finder(running))
 

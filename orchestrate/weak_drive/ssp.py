@@ -14,16 +14,21 @@ from __future__ import annotations
 
 import zipfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 from os import PathLike
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+from ..errors import InputError
 from ..files import write_whole
 from ..fmu.description import Description, describe
-from ..fmu.models import OSCILLATOR, SHAKER
+from ..fmu.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
 from ..model.drive import Drive
+from ..model.shaker import Shaker
 from ..model.structure import Structure
+from .connection import checked_links
+from .cosimulate import checked_parameters
 from .run import oscillator_start
 from .schedule import check
 
@@ -33,19 +38,30 @@ NAMESPACES = {
     "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
     "oms": "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd",
 }
-MODELS = {"oscillator": OSCILLATOR, "shaker": SHAKER}
-INPUTS = {"oscillator": ("box_acceleration", "box_jerk"), "shaker": ("box_force",)}
-OUTPUTS = {
-    "oscillator": ("box_force", "x1", "x2", "x_rel", "impact_energy"),
-    "shaker": ("box_acceleration", "box_jerk", "box_position", "speed", "angle", "motor_energy"),
-}
-CONNECTIONS = (
-    ("oscillator", "shaker", "box_force"),
-    ("shaker", "oscillator", "box_acceleration"),
-    ("shaker", "oscillator", "box_jerk"),
-)
+OSCILLATES = ("box_force", "x1", "x2", "x_rel", "impact_energy")  # outputs
+MOTOR_GIVES = ("box_acceleration", "box_jerk", "box_position", "speed", "angle", "motor_energy")
 SET = "initialValues"  # some tools apply sets by their name: the same for both components
 Values = Mapping[str, float | bool]
+
+
+@dataclass(frozen=True)
+class Component:
+    """One FMU of the package: its file, what is connected or shown of it, its start values."""
+
+    path: Path
+    fmu: Description
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    values: Values
+
+    def unit(self, port: str) -> str:
+        """Return the unit of an input or output that the FMU defines; empty without one."""
+        name = str(self.fmu.variable(port).unit or "")
+        return name if name in self.fmu.units else ""
+
+
+Components = Mapping[str, Component]  # "oscillator" and "shaker"
+Links = Mapping[str, str]  # the shaker's variables by the oscillator's
 
 
 def qualified_tag(prefix: str, name: str) -> str:
@@ -67,16 +83,15 @@ def parameter_file_path(component: str) -> str:
     return f"resources/{component}.ssv"
 
 
-def connector_units(fmus: Mapping[str, Description], name: str) -> list[str]:
-    """Return the units of a component's inputs and outputs, from its FMU."""
-    ports = (*INPUTS[name], *OUTPUTS[name])
-    return [str(fmus[name].variable(port).unit) for port in ports]
-
-
-def add_units(root: ET.Element, fmus: Mapping[str, Description]) -> None:
+def add_units(root: ET.Element, components: Components) -> None:
     """Add the definitions of all used units to the XML document."""
     parent = ET.SubElement(root, qualified_tag("ssd", "Units"))
-    used = {unit: fmus[name].units[unit] for name in MODELS for unit in connector_units(fmus, name)}
+    used = {
+        one.unit(port): one.fmu.units[one.unit(port)]
+        for one in components.values()
+        for port in (*one.inputs, *one.outputs)
+        if one.unit(port)
+    }
     for unit, powers in sorted(used.items()):
         element = ET.SubElement(parent, qualified_tag("ssc", "Unit"), name=unit)
         ET.SubElement(
@@ -84,21 +99,20 @@ def add_units(root: ET.Element, fmus: Mapping[str, Description]) -> None:
         )
 
 
-def add_component(elements: ET.Element, name: str, units: Sequence[str]) -> None:
+def add_component(elements: ET.Element, name: str, one: Component) -> None:
     """Add one FMU with its connectors and parameter file to the XML document."""
-    source, kind = f"resources/{MODELS[name]}.fmu", "application/x-fmu-sharedlibrary"
+    source, kind = f"resources/{one.path.name}", "application/x-fmu-sharedlibrary"
     component = ET.SubElement(
         elements, qualified_tag("ssd", "Component"), name=name, type=kind, source=source
     )
     connectors = ET.SubElement(component, qualified_tag("ssd", "Connectors"))
-    ports = [("input", port) for port in INPUTS[name]] + [
-        ("output", port) for port in OUTPUTS[name]
-    ]
-    for (kind, port), unit in zip(ports, units, strict=True):
-        connector = ET.SubElement(
-            connectors, qualified_tag("ssd", "Connector"), name=port, kind=kind
-        )
-        ET.SubElement(connector, qualified_tag("ssc", "Real"), unit=unit)
+    for kind, ports in (("input", one.inputs), ("output", one.outputs)):
+        for port in ports:
+            connector = ET.SubElement(
+                connectors, qualified_tag("ssd", "Connector"), name=port, kind=kind
+            )
+            unit = {"unit": one.unit(port)} if one.unit(port) else {}
+            ET.SubElement(connector, qualified_tag("ssc", "Real"), unit)
     bindings = ET.SubElement(component, qualified_tag("ssd", "ParameterBindings"))
     ET.SubElement(
         bindings, qualified_tag("ssd", "ParameterBinding"), source=parameter_file_path(name)
@@ -126,7 +140,7 @@ def add_master(system: ET.Element, step: float) -> None:
 
 
 def system_description(
-    description: str, stop_time: float, step: float, fmus: Mapping[str, Description]
+    description: str, stop_time: float, step: float, components: Components, links: Links
 ) -> bytes:
     """Build the XML file that describes both FMUs and their connections."""
     root = ET.Element(
@@ -136,19 +150,19 @@ def system_description(
         root, qualified_tag("ssd", "System"), name="WeakDrive", description=description
     )
     elements = ET.SubElement(system, qualified_tag("ssd", "Elements"))
-    for name in MODELS:
-        add_component(elements, name, connector_units(fmus, name))
-    links = ET.SubElement(system, qualified_tag("ssd", "Connections"))
-    for start, end, port in CONNECTIONS:
-        places = {
-            "startElement": start,
-            "startConnector": port,
-            "endElement": end,
-            "endConnector": port,
-        }
-        ET.SubElement(links, qualified_tag("ssd", "Connection"), places)
+    for name, one in components.items():
+        add_component(elements, name, one)
+    connections = ET.SubElement(system, qualified_tag("ssd", "Connections"))
+    for ours, theirs in links.items():
+        ends = [("oscillator", ours), ("shaker", theirs)]
+        if ours in components["oscillator"].inputs:
+            ends.reverse()
+        (start, output), (end, taken) = ends
+        places = {"startElement": start, "startConnector": output}
+        places |= {"endElement": end, "endConnector": taken}
+        ET.SubElement(connections, qualified_tag("ssd", "Connection"), places)
     add_master(system, step)
-    add_units(root, fmus)
+    add_units(root, components)
     ET.SubElement(
         root, qualified_tag("ssd", "DefaultExperiment"), startTime="0.0", stopTime=repr(stop_time)
     )
@@ -180,9 +194,11 @@ def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
 def write_ssp(
     path: str | PathLike[str],
     structure: Structure,
-    drive: Drive,
+    drive: Drive | Shaker | str | PathLike[str],
     *,
-    voltage: float,
+    voltage: float | None = None,
+    connect: Links | None = None,
+    parameters: Values | None = None,
     speed_start: float | None = None,
     stop_time: float | None = None,
     step: float | None = None,
@@ -196,9 +212,15 @@ def write_ssp(
         Such as ``weak_drive.ssp``.
     structure : Structure
         Bonded or delaminated, as it is; the package says which.
-    drive : Drive
+    drive : Drive, Shaker or path-like
+        Or anybody's FMU, of FMI 2.0 for most tools.
     voltage : float
-        V.
+        Of a motor, V.
+    connect : mapping of str to str, optional
+        The drive's names by ``box_acceleration`` and ``box_force``, as for
+        :func:`orchestrate.cosimulate`; tools know no other sign and unit.
+    parameters : mapping of str to float, optional
+        Start values of other drives, of their inputs too.
     speed_start : float, optional
         Of the motor, rad/s; by default its no-load speed.
     stop_time : float, optional
@@ -207,7 +229,7 @@ def write_ssp(
         Communication step that OMSimulator takes, s; 0.001/omega by default. Other tools have no
         place for one in a package.
     fmus : sequence of path-like, optional
-        Of structure and shaker; by default those of FMI 2.0, which most tools read.
+        Of structure and drive; by default those of FMI 2.0, which most tools read.
 
     Returns
     -------
@@ -232,28 +254,79 @@ def write_ssp(
     >>> names[:3]
     ['SystemStructure.ssd', 'resources/oscillator.ssv', 'resources/shaker.ssv']
     """
-    from ..fmu.exported import find
-
-    check("voltage", voltage, "V")
-    speed = voltage / drive.motor_constant if speed_start is None else speed_start
-    check("speed_start", speed, "rad/s")
     stop = 100.0 / structure.omega if stop_time is None else stop_time
     check("stop_time", stop, "s", low=0.0)
     length = 1e-3 / structure.omega if step is None else step
     check("step", length, "s", low=0.0, exclusive=True)
+    own, other = (Path(fmu) for fmu in fmus) if fmus else (None, None)
+    if isinstance(drive, Drive):
+        shaker, links, text = motor_component(drive, other, voltage, speed_start)
+    else:
+        shaker, links = drive_component(drive, other, connect, parameters)
+        text = shaker.fmu.name
     state = "bonded (undamaged)" if structure.bonded else "delaminated"
-    starts: dict[str, Values] = {
-        "oscillator": oscillator_start(structure),
-        "shaker": {**drive.parameters(), "speed_start": speed, "voltage": voltage},
-    }
-    text = f"Motor and box with a {state} structure, at {voltage:g} V"
-    paths = [Path(fmu) for fmu in fmus or (find(model, "fmi2").path for model in MODELS.values())]
-    known = {name: describe(fmu) for name, fmu in zip(MODELS, paths, strict=True)}
-    system = system_description(text, float(stop), float(length), known)
+    path_of_own = own or fmu_path(OSCILLATOR)
+    inputs = tuple(name for name in links if name not in OSCILLATES)
+    start = oscillator_start(structure)
+    oscillator = Component(path_of_own, describe(path_of_own), inputs, OSCILLATES, start)
+    components = {"oscillator": oscillator, "shaker": shaker}
+    text = f"{text} with a {state} structure"
+    system = system_description(text, float(stop), float(length), components, links)
     files = {"SystemStructure.ssd": system}
-    files |= {
-        parameter_file_path(name): parameter_values(values) for name, values in starts.items()
-    }
-    for model, fmu in zip(MODELS.values(), paths, strict=True):
-        files[f"resources/{model}.fmu"] = fmu.read_bytes()
+    for name, one in components.items():
+        files[parameter_file_path(name)] = parameter_values(one.values)
+    files |= {f"resources/{one.path.name}": one.path.read_bytes() for one in components.values()}
     return write_whole(path, lambda temporary: write_archive(temporary, files))
+
+
+def fmu_path(model: str) -> Path:
+    """Return the path of an own FMU of FMI 2.0."""
+    from ..fmu.exported import find
+
+    return find(model, "fmi2").path
+
+
+def motor_component(
+    drive: Drive, fmu: Path | None, voltage: float | None, speed: float | None
+) -> tuple[Component, Links, str]:
+    """Return the motor's component, its connections, and words for the title."""
+    if voltage is None:
+        raise InputError("voltage: expected with a motor, in V")
+    check("voltage", voltage, "V")
+    speed = voltage / drive.motor_constant if speed is None else speed
+    check("speed_start", speed, "rad/s")
+    path = fmu or fmu_path(SHAKER)
+    values = {**drive.parameters(), "speed_start": speed, "voltage": voltage}
+    links = {name: name for name in ("box_force", "box_acceleration", "box_jerk")}
+    component = Component(path, describe(path), ("box_force",), MOTOR_GIVES, values)
+    return component, links, f"Motor and box at {voltage:g} V"
+
+
+def drive_component(
+    drive: Shaker | str | PathLike[str],
+    fmu: Path | None,
+    connect: Links | None,
+    parameters: Values | None,
+) -> tuple[Component, Links]:
+    """Return another drive's component and connections; raise where tools could not have them."""
+    values = dict(parameters or {})
+    if isinstance(drive, Shaker):
+        path, values = fmu or fmu_path(ELECTRODYNAMIC_SHAKER), {**drive.parameters(), **values}
+    else:
+        path = Path(drive)
+    description, needed = describe(path), ("box_force", "box_acceleration")
+    if connect is None and isinstance(drive, Shaker):
+        connect = {name: name for name in needed}
+    links = checked_links(connect or {}, description)
+    if sorted(links) != sorted(needed):
+        raise InputError(f"connect: {', '.join(links)}; expected {' and '.join(needed)}")
+    for ours, link in links.items():
+        if link.scale != 1.0:
+            raise InputError(
+                f"connect: {ours} is {link.scale:g} times {link.theirs}; expected a variable of "
+                "the same sign and unit, since most tools convert neither"
+            )
+    start = dict(checked_parameters(values, description))
+    force, acceleration = (links[name].theirs for name in needed)
+    component = Component(path.resolve(), description, (force,), (acceleration,), start)
+    return component, {"box_force": force, "box_acceleration": acceleration}

@@ -1,4 +1,4 @@
-"""Write the records of the manual's tutorial: three beams on one shaker, as CSV files."""
+"""Write the records of the manual's tutorial: beams on one shaker, as CSV files."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
+from scipy.signal import butter, sosfiltfilt
 
+from .beam import DelaminatedBeam
 from .bench import Bench
 from .excitation import Swept
 from .lumped import Clamp, Faces, Halves
@@ -41,6 +44,14 @@ Channel 1;Base, on the shaker's table
 Channel 2;Acc 1, on the face of the beam, 2,0 kHz
 """
 COLUMNS = "Time [s];Base [g];Acc 1 [g]\n"
+LASER_BEAM = DelaminatedBeam(first=0.15, share=0.45)  # of finite elements
+LASER_BENCH = Bench(
+    excitation=Swept(first=15.0, last=55.0, duration=20.0, level=4.0),
+    box=Sensor(noise=0.01),
+    face1=Sensor(noise=0.01, gain=1.01),
+    rate=1024.0,
+    steps=30.0,
+)
 
 
 @dataclass(frozen=True)
@@ -71,12 +82,27 @@ def format_record(record: xr.Dataset, name: str) -> str:
     return (head + COLUMNS + rows).replace(".", ",")
 
 
+def format_laser_record(record: xr.Dataset) -> str:
+    """Return beam D's record as it is often met: base in volts, velocity upside down, no units."""
+    rate = LASER_BENCH.rate
+    drifting = cumulative_trapezoid(record.acceleration1.values, dx=1.0 / rate, initial=0.0)
+    velocity = sosfiltfilt(butter(2, 2.0, "highpass", fs=rate, output="sos"), drifting)
+    volts = 0.1 * record.box_acceleration.values / GRAVITY
+    columns = (record.time.values, volts, -1e3 * velocity)
+    rows = "".join("{:.5g},{:.5g},{:.5g}\n".format(*row) for row in zip(*columns, strict=True))
+    return f"Time,Table,Laser tip\n{rows}"
+
+
 def write_records(folder: Path = FOLDER, bench: Bench = BENCH) -> list[Path]:
-    """Shake the three beams and write their records; return the paths."""
+    """Shake the beams and write their records; return the paths."""
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for stem, beam in BEAMS.items():
         record, _ = bench.measure(beam.system(), beam.seed)
         paths.append(folder / f"{stem}.csv")
         paths[-1].write_text(format_record(record, beam.name), encoding="utf-8", newline="\n")
+    system = LASER_BEAM.system(Faces(), 0.008, modes=12, sensor=LASER_BEAM.length)
+    record, _ = LASER_BENCH.measure(system, 74)
+    paths.append(folder / "beam_d.csv")
+    paths[-1].write_text(format_laser_record(record), encoding="utf-8", newline="\n")
     return paths

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 import orchestrate
 from orchestrate import cli
 from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spectra
-from tools.pictures import beam, cards, fmu, theory
+from tools.pictures import beam, cards, fmu, level, theory
 from tools.pictures.small import save_small, write_small
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -119,6 +119,7 @@ PICTURES: dict[str, Callable[[], Figure]] = {
     "states": draw_states,
     "certificate": theory.draw_certificate,
     "spectra": draw_spectra,
+    "level": level.draw_controlled_sweep,
     "branches": draw_branches,
     "borders": draw_borders,
 }

@@ -5,37 +5,28 @@ from __future__ import annotations
 import numpy as np
 
 from ...dynamics.lyapunov import CHAOTIC
+from .. import reading
 from ..cases import CASES
 from ..claims import Claim, Measured
 from ..datasets import Datasets
-from ..reading import (
-    Region,
-    between,
-    decreases,
-    impact_runs,
-    impacts_in_response,
-    impacts_in_turn,
-    relative_peak,
-    runs,
-)
 
 
 def impacts_decrease(data: Datasets, claim: Claim) -> Measured:
     """Count the impacts of T-periodic responses from 0.43 to 0.9."""
-    steps = impacts_in_turn(between(data.up("elastic"), 0.43, 0.9)) or [0]
+    steps = reading.impacts_in_turn(reading.between(data.up("elastic"), 0.43, 0.9)) or [0]
     text = f"T-periodic with {', '.join(map(str, steps))} impacts in turn"
-    return Measured(text, [steps[0] > steps[-1], decreases(steps)])
+    return Measured(text, [steps[0] > steps[-1], reading.decreases(steps)])
 
 
 def interchange(data: Datasets, claim: Claim) -> Measured:
     """Find T-periodic responses from 0.43 to 0.89, and what is between them."""
-    settled = between(data.settled("elastic"), 0.43, 0.89)
-    windows = runs(settled.multiplicity.values == 1)
+    settled = reading.between(data.settled("elastic"), 0.43, 0.89)
+    windows = reading.runs(settled.multiplicity.values == 1)
     chaotic, neutral = data.shares("elastic", 0.43, 0.89)
     text = (
         "T-periodic with so many impacts: "
-        f"{', '.join(run.text() for run in impact_runs(settled))}; {100 * chaotic:.0f} % of all "
-        f"frequencies chaotic, {100 * neutral:.0f} % neutral"
+        f"{', '.join(run.text() for run in reading.impact_runs(settled))}; {100 * chaotic:.0f} % "
+        f"of all frequencies chaotic, {100 * neutral:.0f} % neutral"
     )
     return Measured(text, [len(windows) > 2, neutral > chaotic])
 
@@ -55,7 +46,7 @@ def no_influence(data: Datasets, claim: Claim) -> Measured:
 
 def nearly_2t(data: Datasets, claim: Claim) -> Measured:
     """Measure at how many frequencies samples differ less than half as much after 2T as after T."""
-    samples = between(data.up("elastic"), 1.07, 1.367).xi_rel.values
+    samples = reading.between(data.up("elastic"), 1.07, 1.367).xi_rel.values
     one, two = (np.square(samples[:, n:] - samples[:, :-n]).mean(axis=1) for n in (1, 2))
     share = float(np.mean(np.sqrt(two) < 0.5 * np.sqrt(one)))
     text = (
@@ -67,11 +58,13 @@ def nearly_2t(data: Datasets, claim: Claim) -> Measured:
 
 def coexisting(data: Datasets, claim: Claim) -> Measured:
     """Count frequencies from 1.07 to 1.37 with several attractors, and where sweeps differ."""
-    found = between(data.attractors(), 1.07, 1.37)
-    up, down = (between(one, 1.0701, 1.3699) for one in (data.up("elastic"), data.down("elastic")))
+    found = reading.between(data.attractors(), 1.07, 1.37)
+    up, down = (
+        reading.between(one, 1.0701, 1.3699) for one in (data.up("elastic"), data.down("elastic"))
+    )
     several = found.eta.values[found.number.values > 1]
     periodic = int(((found.multiplicity.values > 0).sum(axis=1) > 1).sum())
-    differ = int((impacts_in_response(up) != impacts_in_response(down)).sum())
+    differ = int((reading.impacts_in_response(up) != reading.impacts_in_response(down)).sum())
     text = (
         f"two or more attractors at {len(several)} of {found.sizes['eta']} frequencies, two "
         f"periodic at {periodic}; up and down differ at {differ}"
@@ -86,7 +79,7 @@ def coexisting(data: Datasets, claim: Claim) -> Measured:
 
 def irregular_impacts(data: Datasets, claim: Claim) -> Measured:
     """Measure how many responses from 1.07 to 1.37 do not repeat."""
-    n = between(data.settled("elastic"), 1.07, 1.367).multiplicity.values
+    n = reading.between(data.settled("elastic"), 1.07, 1.367).multiplicity.values
     text = (
         f"at {100 * np.mean(n == 0):.0f} % of the frequencies impacts do not repeat; at "
         f"{100 * np.mean(n == 2):.0f} % they repeat after 2T, at {100 * np.mean(n > 2):.0f} % "
@@ -99,8 +92,8 @@ def one_impact_beside(data: Datasets, claim: Claim) -> Measured:
     """Measure the share of responses with one impact in the windows beside the second region."""
     text, parts = [], []
     for n, low, high in ((1, 1.37, 2.61), (2, 3.77, 4.74)):
-        part = between(data.settled("elastic"), low, high)
-        one = (part.multiplicity.values == n) & (impacts_in_response(part) == 1)
+        part = reading.between(data.settled("elastic"), low, high)
+        one = (part.multiplicity.values == n) & (reading.impacts_in_response(part) == 1)
         text.append(f"{low} to {high}: {100 * one.mean():.1f} % of {len(one)} frequencies")
         parts.append(bool(one.all()))
     return Measured("; ".join(text), parts)
@@ -125,8 +118,8 @@ def irregularities(data: Datasets, claim: Claim) -> Measured:
     settled, exponents = data.settled("elastic"), data.exponent("elastic")
     text, inside, outside = [], 0, 0
     for low, high, name in (region for region in data.regions("elastic") if not region.is_window):
-        irregular = between(settled, low, high).multiplicity.values == 0
-        chaotic = between(exponents, low, high).verdict.values == CHAOTIC
+        irregular = reading.between(settled, low, high).multiplicity.values == 0
+        chaotic = reading.between(exponents, low, high).verdict.values == CHAOTIC
         count, sure = int(irregular.sum()), int((irregular & chaotic).sum())
         if name.split(" to ")[0].endswith("T/1"):
             inside += count
@@ -142,7 +135,7 @@ def irregularities(data: Datasets, claim: Claim) -> Measured:
 
 def hidden_impacts(data: Datasets, claim: Claim) -> Measured:
     """Count the numbers of impacts that T-periodic responses have."""
-    kinds = np.unique([run.impacts for run in impact_runs(data.up("elastic"))] or [0])
+    kinds = np.unique([run.impacts for run in reading.impact_runs(data.up("elastic"))] or [0])
     text = (
         f"T-periodic responses, one line each in Figure 6, have {kinds.min()} to {kinds.max()} "
         f"impacts in T, {len(kinds)} different numbers"
@@ -161,7 +154,7 @@ def impulse_peak(data: Datasets, claim: Claim) -> Measured:
 def decay(data: Datasets, claim: Claim) -> Measured:
     """Measure by which factors gap and closing velocity fall from peak to peak."""
     up, speed = data.up("elastic"), data.impacts("elastic").closing_max
-    etas = [float(up.xi_rel_max.idxmax()), *(relative_peak(up, n) for n in (1, 2, 3))]
+    etas = [float(up.xi_rel_max.idxmax()), *(reading.relative_peak(up, n) for n in (1, 2, 3))]
     if None in etas:
         return Measured("a window without a relative peak", [])
     sizes = up.xi_rel_max, speed
@@ -210,7 +203,7 @@ def region_rows(data: Datasets) -> list[dict[str, str]]:
                     "region": f"{region.low:.5f} to {region.high:.5f} ({region.name})",
                     "chaotic": f"{100 * chaotic:.0f} %",
                     "neutral": f"{100 * neutral:.0f} %",
-                    "count": str(between(data.settled(case), *region[:2]).sizes["eta"]),
+                    "count": str(reading.between(data.settled(case), *region[:2]).sizes["eta"]),
                     "largest": largest_text(data, case, region),
                     "verdict": next(word for word, share in kinds.items() if share > 0.01),
                 }
@@ -218,10 +211,12 @@ def region_rows(data: Datasets) -> list[dict[str, str]]:
     return rows
 
 
-def largest_text(data: Datasets, case: str, region: Region) -> str:
+def largest_text(data: Datasets, case: str, region: reading.Region) -> str:
     """Return a region's largest exponent with its error and place, from long runs."""
     # an exponent of which less than half is left there is named: its chaos has ended
-    part, first = (between(one, *region[:2]) for one in (data.largest(case), data.exponent(case)))
+    part, first = (
+        reading.between(one, *region[:2]) for one in (data.largest(case), data.exponent(case))
+    )
     best = part.isel(eta=int(part.exponent.values.argmax()))
     text = f"{float(best.exponent):.4f} ± {float(best.standard_error):.4f} at {float(best.eta):.3f}"
     for one in (part.isel(eta=k) for k in range(part.sizes["eta"])):

@@ -5,22 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from .. import reading
 from ..cases import CASES
 from ..claims import Claim, Measured
 from ..curves import CONTACT, FLIGHT, SEQUENCE
 from ..datasets import Datasets
-from ..reading import (
-    between,
-    decreases,
-    edges_around,
-    impact_runs,
-    impacts_in_response,
-    impacts_in_turn,
-    relative_peak,
-    runs,
-    separated,
-    window_edges,
-)
 
 NOTHING = 1e-6  # of the largest gap or velocity
 
@@ -104,7 +93,7 @@ def many_loops(data: Datasets, claim: Claim) -> Measured:
         and np.abs(gap[in_contact]).max() < NOTHING * size
         and np.abs(rate[in_contact][1:]).max(initial=0.0) < NOTHING * speed
     )
-    released = len([run for run in runs(in_contact) if run[1] < len(kinds) - 1])
+    released = len([run for run in reading.runs(in_contact) if run[1] < len(kinds) - 1])
     loops = len(jumps)  # each ends at an impact; after a contact one begins without
     text = (
         f"{loops} loops in T, each ends at an impact, a jump of the velocity alone: {at_zero}; "
@@ -139,7 +128,7 @@ def enough_periods(data: Datasets, claim: Claim) -> Measured:
     later, latest = data.later(first), data.later(most, 100)
     text, parts = [], []
     for low, high in ((float(up.eta.min()), end), (end, float(up.eta.max()))):
-        part = between(later, low, high)
+        part = reading.between(later, low, high)
         others, kinds = count_changes(up, part)
         total = part.sizes["eta"]
         text.append(f"{others} of {total} frequencies from {low:.3f} to {high:.3f}{kinds}")
@@ -174,7 +163,7 @@ def count_changes(swept: xr.Dataset, later: xr.Dataset) -> tuple[int, str]:
 
 def no_contact_above(data: Datasets, claim: Claim) -> Measured:
     """Count frequencies above the limit of contact that chatter into contact."""
-    part = between(data.up("elastic"), 0.43, 8.0)
+    part = reading.between(data.up("elastic"), 0.43, 8.0)
     again = part.eta.values[part.permanent_contact.values == 1]
     low, ends = (again < 2.6).sum(), f" up to {again.max():.3f}" if len(again) else ""
     text = f"{low} frequencies from 0.43 to 2.6, {len(again) - low} above{ends}"
@@ -184,12 +173,12 @@ def no_contact_above(data: Datasets, claim: Claim) -> Measured:
 def windows_in_order(data: Datasets, claim: Claim) -> Measured:
     """Find the windows nT with one impact, irregular responses between them, and exact limits."""
     up = data.up("elastic")
-    edges, names = window_edges(up), ["T/1", "2T/1", "3T/1", "4T/1"]
+    edges, names = reading.window_edges(up), ["T/1", "2T/1", "3T/1", "4T/1"]
     text = "; ".join(f"{n}T: {a[1]:.3f} to {b[0]:.3f}" for n, (a, b) in enumerate(edges, 1))
     middles = [0.5 * (a[1] + b[0]) for a, b in edges]
     exact = [data.window("elastic", *which) for which in zip(names, middles, strict=True)]
     text += "; exact: " + "; ".join(f"{w.low:.5f} to {w.high:.5f}" for w in exact)
-    return Measured(text, separated(up))
+    return Measured(text, reading.separated(up))
 
 
 def one_impact_at_peaks(data: Datasets, claim: Claim) -> Measured:
@@ -206,9 +195,11 @@ def one_impact_at_peaks(data: Datasets, claim: Claim) -> Measured:
 
 def one_impact_everywhere(data: Datasets, claim: Claim) -> Measured:
     """Measure the share of periodic responses above 1.37 that have one impact in their period."""
-    settled, up = (between(one, 1.37, 8.0) for one in (data.settled("elastic"), data.up("elastic")))
+    settled, up = (
+        reading.between(one, 1.37, 8.0) for one in (data.settled("elastic"), data.up("elastic"))
+    )
     one, swept = (
-        float(np.mean(impacts_in_response(part)[part.multiplicity.values > 0] == 1))
+        float(np.mean(reading.impacts_in_response(part)[part.multiplicity.values > 0] == 1))
         if (part.multiplicity > 0).any()
         else np.nan
         for part in (settled, up)
@@ -224,7 +215,7 @@ def impact_distance(data: Datasets, claim: Claim) -> Measured:
     """Measure the times between impacts at the windows' relative peaks."""
     up, texts, parts = data.up("elastic"), [], []
     for n in range(1, 4):
-        eta = relative_peak(up, n)
+        eta = reading.relative_peak(up, n)
         row = data.impacts("elastic").sel(eta=eta or 0.0, method="nearest")
         low, high = float(row.distance_min), float(row.distance_max)
         texts.append(f"{low:.3f} to {high:.3f} T at {eta or np.nan:.3f}")
@@ -243,28 +234,28 @@ def relative_peaks(data: Datasets, claim: Claim) -> Measured:
 def other_regions(data: Datasets, claim: Claim) -> Measured:
     """Find the further irregular regions, each between two windows."""
     up = data.up("elastic")
-    edges = window_edges(up)[1:]
+    edges = reading.window_edges(up)[1:]
     text = "; ".join(
         f"{a[1][0]:.3f} to {b[0][1]:.3f}, from {n}T to {n + 1}T"
         for n, (a, b) in enumerate(zip(edges, edges[1:], strict=False), 2)
     )
-    return Measured(text, separated(up)[1:])
+    return Measured(text, reading.separated(up)[1:])
 
 
 def all_periodic(data: Datasets, claim: Claim, case: str, low: float, high: float) -> Measured:
     """Measure the share of T-periodic responses between two frequencies."""
-    part = between(data.up(case), low, high)
+    part = reading.between(data.up(case), low, high)
     share = float(np.mean(part.multiplicity.values == 1))
     return Measured(f"{100 * share:.1f} % of {part.sizes['eta']} frequencies", [share == 1.0])
 
 
 def alternation(data: Datasets, claim: Claim, case: str, low: float, high: float) -> Measured:
     """Find windows nT with one impact and irregular responses between them, as in section 3."""
-    steady, part = between(data.impacts(case), low, high), data.up(case)
+    steady, part = reading.between(data.impacts(case), low, high), data.up(case)
     distances = np.array([steady.distance_min.values, steady.distance_max.values])
-    simple, between_them = bool((np.abs(distances - 1.0) < 0.01).all()), separated(part)
+    simple, between_them = bool((np.abs(distances - 1.0) < 0.01).all()), reading.separated(part)
     ends = "; ".join(
-        f"{n}T {a[1]:.3f} to {b[0]:.3f}" for n, (a, b) in enumerate(window_edges(part), 1)
+        f"{n}T {a[1]:.3f} to {b[0]:.3f}" for n, (a, b) in enumerate(reading.window_edges(part), 1)
     )
     begin, end = data.window(case, "T/1", 2.0).high, data.window(case, "2T/1", 4.2).low
     chaotic, neutral = data.shares(case, begin, end)
@@ -278,16 +269,17 @@ def alternation(data: Datasets, claim: Claim, case: str, low: float, high: float
 
 def seven_to_two(data: Datasets, claim: Claim) -> Measured:
     """Count impacts of the damped case from 0.48 to 0.85."""
-    part = between(data.up("damped"), 0.48, 0.85)
-    steps = impacts_in_turn(part) or [0]
-    text = f"{', '.join(map(str, steps))}; {', '.join(run.text() for run in impact_runs(part))}"
-    return Measured(text, [steps[0] == 7, steps[-1] == 2, decreases(steps)])
+    part = reading.between(data.up("damped"), 0.48, 0.85)
+    steps = reading.impacts_in_turn(part) or [0]
+    runs = ", ".join(run.text() for run in reading.impact_runs(part))
+    text = f"{', '.join(map(str, steps))}; {runs}"
+    return Measured(text, [steps[0] == 7, steps[-1] == 2, reading.decreases(steps)])
 
 
 def sweeps_differ(data: Datasets, claim: Claim, case: str, low: float, high: float) -> Measured:
     """Count frequencies between two at which up- and down-sweep differ in their impacts."""
-    up, down = (between(one, low, high) for one in (data.up(case), data.down(case)))
-    etas = up.eta.values[impacts_in_response(up) != impacts_in_response(down)]
+    up, down = (reading.between(one, low, high) for one in (data.up(case), data.down(case)))
+    etas = up.eta.values[reading.impacts_in_response(up) != reading.impacts_in_response(down)]
     text = f" from {etas.min():.3f} to {etas.max():.3f}" if len(etas) else ""
     return Measured(f"up and down differ at {len(etas)} frequencies{text}", [len(etas) > 0])
 
@@ -308,7 +300,7 @@ def only_first_eliminated(data: Datasets, claim: Claim) -> Measured:
     """Measure what of both irregular regions is left in the damped case."""
     regions = (0.48, 1.37), (2.61, 3.77)
     first, second = (
-        float(np.mean(between(data.up("damped"), *ends).multiplicity.values == 0))
+        float(np.mean(reading.between(data.up("damped"), *ends).multiplicity.values == 0))
         for ends in regions
     )
     text = "; ".join(
@@ -321,7 +313,7 @@ def only_first_eliminated(data: Datasets, claim: Claim) -> Measured:
 def more_contact(data: Datasets, claim: Claim) -> Measured:
     """Compare the ranges of permanent contact for e = 0.7 and 0.3."""
     ends = [
-        edges_around(up := data.up(case), up.permanent_contact.values == 1, 0.40)[1][0]
+        reading.edges_around(up := data.up(case), up.permanent_contact.values == 1, 0.40)[1][0]
         for case in ("elastic", "plastic")
     ]
     text = f"up to {ends[0]:.3f} at e = 0.7, to {ends[1]:.3f} at e = 0.3"

@@ -183,7 +183,9 @@ def test_another_guess_has_files_of_its_own(run):
         words = ["diagnose", str(folder / "parted.csv"), "--structure", "beam", "--set", setting]
         arguments = make_parser().parse_args(words)
         names.add(
-            diagnosis.file_stem(arguments.records[0], read_structure_options(arguments), arguments)
+            diagnosis.file_stem(
+                diagnosis.Sweep(arguments.records[0]), read_structure_options(arguments), arguments
+            )
         )
     assert len(names) == 2
 

@@ -333,3 +333,52 @@ def test_what_does_not_fit_is_refused_before_anything_is_computed(ask, tmp_path,
     ask(*FEW, "--overlay", path).complaint(path, "an answer of sweep; expected one of branch")
     levels = ("resonance", "--hz", "0.4,0.41", "--g", "0.1,0.2", "--overlay", window)
     ask(*levels).complaint("--overlay", "several levels, --g 0.1,0.2; expected one")
+
+
+# -- first steps -----------------------------------------------------------------------------------
+
+
+def test_all_bifurcations_of_a_branch_and_a_map_under_them(ask, folder, tmp_path):
+    path, none = tmp_path / "window.nc", ("--plot", "none")
+    ask("branch", "--eta", "2.6", "--limits", "2.5:2.7", "--store", path, *none).success()
+    limits = ("--limits", "2.5:2.7,0.69:0.71", "--longest", "0.5")
+    done = ask("border", "--start", path, "--bifurcation", "all", *limits).success()
+    assert "Neimark-Sacker" in done.out and len(list(folder.glob("border_all*.png"))) == 1
+    (curve,) = folder.glob("border_window*.nc")
+    few = ("map", "--eta", "2.6,2.7", "--over", "e", "--values", "0.69,0.71", "--samples", "4")
+    ask(*few, "--transient", "5", "--overlay", f"{curve},{curve}").success()
+    assert shows_something(next(folder.glob("map_*_over_*.png")))
+    ask(*few, "--overlay", path).complaint("--overlay", "of branch; expected one of border")
+    ask(*few, "--set", "D=0.1", "--overlay", curve).complaint("another structure", "d1 = ")
+    ask("border", "--start", path, "--bifurcation", "one", *limits).complaint("a number, or all")
+
+
+def test_structures_without_units_have_ratios(ask, folder):
+    done = ask("attractors", "--eta", "1.32", "--starts", "4", "--units", "eta").success()
+    assert " m" not in done.out.replace("multiplicity", "") and "number  share" in done.out
+    assert shows_something(next(folder.glob("attractors*.png")))
+    done = ask("simulate", "--eta", "1.32", "--periods", "2", "--plot", "none").success()
+    assert "gap x2 - x1 + clearance: 0 to 0." in done.out and not re.search(
+        r"\d m(/s)?2?\b", done.out
+    )
+
+
+def test_levels_have_both_structures_and_where_they_open(ask, folder):
+    beam = ("--structure", "beam", "--set", "preload=20um", "--hz", "10,12.5", *SHORT)
+    done = ask("resonance", *beam, "--g", "0.002,0.02", "--size", "16:9").success()
+    title, low, high = done.out.splitlines()[:3]
+    assert "bonded x1" in title and "delaminated x1" in title and "opens at" in title
+    assert low.endswith("  12.5 Hz") and high.count(" at 12.5 Hz") == 2 and "0.02 " in high
+    picture = image.imread(next(folder.glob("*_16-9.png")))
+    assert picture.shape[:2] == (1080, 1920)
+    ask("resonance", *beam, "--g", "0.02", "--size", "wide").complaint("--size wide", "16:9")
+
+
+def test_a_plan(ask, folder):
+    test = ("--hz", "10:15:1", "--g", "0.002,0.02", "--noise", "1e-3", "--range", "1e-3")
+    done = ask("plan", "--structure", "beam", "--set", "zeta=2%", *test).success()
+    assert done.out.startswith("sweep 1") and "preload=20um" in done.out
+    assert done.out.count("overload") == 2 and shows_something(next(folder.glob("plan_*.png")))
+    done = ask("plan", "--structure", "beam", *test, "--units", "rpm,m/s2").success()
+    assert "rpm at 0.0196 m/s2" in done.out and " g" not in done.out.splitlines()[0]
+    ask("plan", "--structure", "beam", "--hz", "10").complaint("frequencies", "two at least")

@@ -7,6 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import orchestrate
+from orchestrate.diagnosis.curve_evidence import CurveData
+from orchestrate.diagnosis.hypotheses import Bonded
 
 from .records import BEAM, guess
 
@@ -117,3 +119,17 @@ def test_intervals_of_curves_hold_the_truth():
         answer = orchestrate.fit(curve, guess(), **LIMIT)
         inside.append(abs(answer.value.values - truth) < 1.96 * answer.standard_error.values)
     assert np.mean(inside) >= 0.9
+
+
+@pytest.mark.parametrize("phases", [np.asarray, np.abs])
+def test_some_points_of_a_curve_have_the_residuals_that_they_have_among_all(phases):
+    hertz = np.linspace(28.0, 40.0, 25)
+    ratio = phases(transmissibility(hertz, 33.8, 0.02))
+    curve = orchestrate.resonance_curve(frequency=hertz, level=LEVEL, amplitude1=ratio, unit="1")
+    whole, chosen = CurveData.from_curve(curve, BEAM).evidence(), hertz < 33.0
+    motion = Bonded().displacements({"f": 34.0, "log_zeta": -4.0}, whole, None)
+    part, expected = (
+        one.order_residuals(one.orders_of_motion(motion))
+        for one in (whole.at_windows(chosen), whole)
+    )
+    np.testing.assert_allclose(part, expected[..., chosen], rtol=1e-9)

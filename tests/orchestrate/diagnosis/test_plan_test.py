@@ -131,9 +131,24 @@ def test_noise_is_that_of_least_squares_in_a_window():
         ({"structure": HALVES.as_bonded()}, "bonded"),
         ({"threshold": 0.0}, "threshold"),
         ({"store": "plan.nc"}, "store"),
+        ({"g": 0.1}, "levels and g: expected one"),
+        ({"levels": None, "g": [-1.0]}, "g = "),
     ],
 )
 def test_mistakes_are_one_line(wrong, text):
     asked = {"sensor": SENSOR, "levels": [1.0], "frequencies": [40.0, 50.0], **wrong}
     with pytest.raises(InputError, match=text):
         orchestrate.plan_test(asked.pop("structure", HALVES), **asked)
+
+
+def test_usual_sensor_levels_and_frequencies(exported):
+    """Levels in g are those in m/s2; without any, nine from 0.01 to 1 g around the resonances."""
+    few = {"frequencies": [42.0, 47.0, 52.0], "progress": False}
+    in_g, in_si = (
+        orchestrate.plan_test(HALVES, **few, **level)
+        for level in ({"g": 0.1}, {"levels": 0.980665})
+    )
+    assert np.array_equal(in_g.distance, in_si.distance)
+    usual = orchestrate.plan_test(HALVES, progress=False)
+    assert np.allclose(usual.level[[0, -1]] / 9.80665, [0.01, 1.0]) and usual.sizes["level"] == 9
+    assert np.allclose(usual.frequency[[0, -1]], [0.8 * 42.0, 1.2 * 52.0])

@@ -70,9 +70,11 @@ def test_two_answers_are_two_periodic_motions_of_one_beam_at_one_frequency():
     assert float(abs(up - down).max()) > 0.1  # its diagram shows two colours
 
 
-def test_chaos_has_a_positive_exponent():
+def test_chaos_has_a_positive_exponent_that_lasts():
+    """Not so at 2.9: after thousands of periods responses are on a stable orbit of 14."""
     stop = STOPS["chaos"]
-    found = orchestrate.lyapunov(stop.structure, eta=stop.eta, progress=False)
+    more = {"transient": 60_000, "progress": False}
+    found = orchestrate.lyapunov(stop.structure, eta=stop.eta, **more)
     assert found.exponent.item() > 5.0 * found.standard_error.item() > 0.0
     assert settled("chaos")[2] == "irregular"
 

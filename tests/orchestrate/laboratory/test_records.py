@@ -583,3 +583,192 @@ def test_repeated_extreme_values_are_those_of_a_saturated_channel():
         assert clipped_share(limited[1]) == pytest.approx(
             np.mean(np.abs(limited[1]) == 0.5 * peak), rel=0.02
         )
+
+
+# -- channels as they are -------------------------------------------------------------------------
+
+
+def swept(count=4000, rate=1000.0):
+    """Acceleration, velocity and displacement of a sine swept from 20 to 60 Hz, in SI."""
+    time = np.arange(count) / rate
+    phase = np.pi * 2.0 * (20.0 * time + 5.0 * time**2)
+    speed = 2.0 * np.pi * (20.0 + 10.0 * time)  # of the phase; it grows by 20 pi rad/s2
+    velocity = 0.1 * np.cos(phase) * speed
+    acceleration = -0.1 * np.sin(phase) * speed**2 + 0.1 * np.cos(phase) * 20.0 * np.pi
+    return time, acceleration, velocity, 0.1 * np.sin(phase)
+
+
+def table_file(path, heading, *columns):
+    rows = "".join(
+        ",".join(f"{one:.12g}" for one in row) + "\n" for row in zip(*columns, strict=True)
+    )
+    path.write_text(f"{heading}\n{rows}")
+    return path
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_velocities_displacements_and_voltages_become_accelerations(tmp_path):
+    time, acceleration, velocity, displacement = swept()
+    heading = "t [s],Tisch [mV],Aufnehmer 1 [mm/s],mass 2 [um]"
+    columns = (time, 100.0 * acceleration / G, 1e3 * velocity, 1e6 * displacement)
+    path = table_file(tmp_path / "a.csv", heading, *columns)
+    for sensitivity in ("base=100 mV/g", {"base": "0.1 V/g"}, "base=10,197162 mV/(m/s²)"):
+        data = read_record(path, sensitivity=sensitivity)
+        for name in CHANNELS:
+            error = np.abs(data[name].values - acceleration)[20:-20]
+            assert error.max() < 2e-3 * np.abs(acceleration).max(), name
+    assert "face 2: displacement, differentiated" in data.attrs["converted"]
+    assert "base" not in data.attrs["converted"]
+    turned = read_record(path, sensitivity="base=-100 mV/g", scale={"face2": 2.0}, delay="face1=0")
+    assert np.allclose(turned.box_acceleration, -data.box_acceleration, rtol=1e-6)
+    assert (turned.acceleration2.values == 2.0 * data.acceleration2.values).all()
+    stated = path.read_text().replace("\n", "\n,100 mV/g,,\n", 1)
+    path.write_text(stated)
+    assert np.allclose(read_record(path).box_acceleration, -turned.box_acceleration)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({}, 'column "base": in mV, without a sensitivity; expected one such as 100 mV/g'),
+        ({"sensitivity": "100 g/V"}, "sensitivity '100 g/V'; expected one such as 100 mV/g"),
+        ({"sensitivity": "tip=1 V/g"}, "sensitivity: no channel 'tip'; expected base, box"),
+        ({"unit": "base=g", "sensitivity": "base=1 V/g"}, "expected volts: a sensitivity does not"),
+        ({"unit": "base=N"}, "unit = 'N'; expected one such as m/s2, g, mm/s, um, V"),
+        ({"unit": "g", "scale": "base=x"}, "scale = 'base=x': expected numbers, such as face1=-1"),
+    ],
+)
+def test_mistaken_units_and_sensitivities_are_one_line(tmp_path, options, words):
+    path = table_file(tmp_path / "a.csv", "t [s],base [mV]", *swept(50)[:2])
+    with pytest.raises(InputError) as error:
+        read_record(path, **options)
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_uneven_times_are_resampled_on_request_but_not_over_gaps():
+    time, acceleration, *_ = swept()
+    uneven = time + np.random.default_rng(4).uniform(-2e-4, 2e-4, len(time))
+    true = np.interp(uneven, time, acceleration)
+    from orchestrate.laboratory.record import Reading, checked_record
+
+    with pytest.raises(InputError, match="expected equal steps: resample= makes them"):
+        record(time=uneven, box_acceleration=true)
+    resampled = Reading(resample=True)
+    even = checked_record(uneven, {"box_acceleration": true}, None, {}, resampled)
+    assert np.ptp(np.diff(even.time)) < 1e-12
+    assert "jitter 0.00012 s, 0.12 step" in even.attrs["time_base"]
+    expected = np.interp(even.time, time, acceleration)
+    assert np.abs(even.box_acceleration.values - expected)[5:-5].max() < 0.02 * acceleration.max()
+    gap = np.delete(np.arange(len(time)), slice(1000, 1009))
+    with pytest.raises(InputError, match="row 1000: .*samples are lost, cut the record there"):
+        checked_record(uneven[gap], {"box_acceleration": true[gap]}, None, {}, resampled)
+
+
+NAMES = [
+    ("Zeit / s;Aufnehmer Spitze / g;Tisch / g", (2, 1)),
+    ("time [s];Acc shaker [g];beam [g]", (1, 2)),
+    ("temps [s];poutre [g];socle [g]", (2, 1)),
+    ("t [s];left [g];table [g]", (2, 1)),
+    ("tiempo [s];mesa [g];viga [g]", (1, 2)),
+]
+
+
+@pytest.mark.parametrize(("heading", "places"), NAMES)
+def test_names_of_columns_in_several_languages(tmp_path, heading, places):
+    path = tmp_path / "a.csv"
+    path.write_bytes((heading + "\n0;1;5\n1;2;3\n2;9;7\n3;4;8\n").encode("cp1252"))
+    columns = np.array([[0, 1, 5], [1, 2, 3], [2, 9, 7], [3, 4, 8]]).T
+    data = read_record(path)
+    assert np.allclose(data.box_acceleration, G * columns[places[0]])
+    assert np.allclose(data.acceleration1, G * columns[places[1]])
+
+
+def test_labviews_streams_have_rates_and_units(tmp_path):
+    from nptdms import ChannelObject, TdmsWriter
+
+    _, acceleration, velocity, _ = swept(500)
+    path = tmp_path / "a.tdms"
+    common = {"wf_increment": 1e-3, "wf_start_offset": 0.0}
+    units = {"unit_string": "V", "sensitivity": "100 mV/g"}, {"unit_string": "mm/s"}
+    with TdmsWriter(path) as file:
+        file.write_segment(
+            [
+                ChannelObject("run", "Table", 0.1 * acceleration / G, common | units[0]),
+                ChannelObject("run", "Tip", 1e3 * velocity, common | units[1]),
+            ]
+        )
+    data = read_record(path)
+    assert np.allclose(data.box_acceleration, acceleration)
+    assert np.allclose(data.acceleration1[20:-20], acceleration[20:-20], atol=15.0)
+    assert data.attrs["sample_rate"] == 1000.0 and 'face 1 "Tip"' in data.attrs["columns"]
+    path.write_bytes(path.read_bytes()[:90])
+    with pytest.raises(InputError, match=r"a\.tdms: .*"):
+        read_record(path)
+
+
+LVM = """LabVIEW Measurement\t
+Writer_Version\t2
+Reader_Version\t2
+Separator\tTab
+Decimal_Separator\t,
+Multi_Headings\tNo
+X_Columns\tOne
+***End_of_Header***\t
+
+Channels\t2\t\t
+Samples\t5\t5\t
+Y_Unit_Label\tg\tg\t
+X0\t0,0\t0,0\t
+Delta_X\t0,0005\t0,0005\t
+***End_of_Header***\t\t
+X_Value\tTisch\tSpitze\tComment
+0,0000\t0,1\t-0,1
+0,0005\t0,2\t2,0
+0,0010\t-0,3\t3,5
+0,0015\t0,0\t4,0
+0,0020\t0,5\t1,0
+"""
+
+
+def test_labviews_text_is_read_and_no_pickle_beside_it(tmp_path, monkeypatch):
+    path = tmp_path / "a.lvm"
+    path.write_text(LVM)
+    (tmp_path / "a.lvm.pkl").write_bytes(b"cos\nsystem\n(S'touch forged'\ntR.")
+    monkeypatch.chdir(tmp_path)
+    data = read_record(path)
+    assert not (tmp_path / "forged").exists() and data.attrs["sample_rate"] == 2000.0
+    assert np.allclose(data.box_acceleration, G * np.array([0.1, 0.2, -0.3, 0.0, 0.5]))
+    assert np.allclose(data.acceleration1, G * np.array([-0.1, 2.0, 3.5, 4.0, 1.0]))
+    monkeypatch.setitem(sys.modules, "lvm_read", None)
+    with pytest.raises(InputError, match=r"expected the package lvm_read: pip install 'vibroimp"):
+        read_record(path)
+
+
+def test_nested_structures_of_matlab(tmp_path):
+    """As Simcenter exports signals, and a structure with units beside its vectors."""
+    _, acceleration, velocity, _ = swept(300)
+
+    def signal(name, values, unit):
+        axis = {"start_value": 0.0, "increment": 1e-3, "number_of_values": 300.0}
+        quantity = {"quantity": {"label": unit}, "values": values}
+        return {"x_values": axis, "y_values": quantity, "function_record": {"name": name}}
+
+    path = tmp_path / "a.mat"
+    two = {
+        "Signal_0": signal("Table", acceleration / G, "g"),
+        "Signal_1": signal("Tip", velocity, "m/s"),
+    }
+    scipy.io.savemat(path, two)
+    data = read_record(path)
+    assert np.allclose(data.box_acceleration, acceleration)
+    assert np.allclose(data.acceleration1[20:-20], acceleration[20:-20], atol=15.0)
+    flat = {"run": {"fs": 1000.0, "unit": "g", "base": acceleration / G, "face1": acceleration / G}}
+    scipy.io.savemat(path, flat)
+    with pytest.warns(UserWarning, match="the same values"):
+        assert np.allclose(read_record(path).acceleration1, acceleration)
+    frf = {"run": {"frequency": np.arange(9.0), "H1": np.arange(9.0) * 1j}}
+    scipy.io.savemat(path, frf)
+    with pytest.raises(
+        InputError, match=r"a frequency response or a spectrum \(run.H1\); expected"
+    ):
+        read_record(path)

@@ -196,3 +196,13 @@ def test_mistakes_in_halves(changes, words):
 def test_thicknesses_are_two_numbers_above_zero(thicknesses):
     with pytest.raises(InputError, match="thicknesses = .*expected two numbers > 0"):
         Structure.from_bonded(mass=1.0, f=10.0, thicknesses=thicknesses)
+
+
+def test_a_structure_is_a_line_and_in_notebooks_a_table():
+    beam = Structure.from_halves(m1=1.5, m2=1.4, f1=11.9, f2=13.5, zeta1=0.005, zeta2=0.007, e=0.6)
+    line = str(beam.replace(clearance=-2e-5))
+    assert line.startswith(
+        "delaminated: masses 1.5 and 1.4 kg, natural frequencies 11.9 and 13.5 Hz"
+    )
+    assert "damping 0.5 and 0.7 %, e 0.6, clearance -2e-05 m" in line
+    assert "<td>bonded</td>" in beam.as_bonded()._repr_html_()

@@ -53,8 +53,8 @@ def test_what_does_not_repeat_is_run_on_and_irregular_in_the_end(data):
 
 def test_chattering_shrinks_by_the_restitution_and_has_no_end(data, monkeypatch):
     """Each factor of gamma gives as many impacts more as its logarithm over that of e says."""
-    monkeypatch.setattr("orchestrate.paper.datasets.RESTITUTIONS", (0.05, 0.8, 1.0))
-    monkeypatch.setattr("orchestrate.paper.datasets.STICKING_GAMMAS", (1e-4, 1e-6))
+    monkeypatch.setattr("orchestrate.paper.cases.RESTITUTIONS", (0.05, 0.8, 1.0))
+    monkeypatch.setattr("orchestrate.paper.cases.STICKING_GAMMAS", (1e-4, 1e-6))
     found = data.chattering()
     assert found.sticks.values.tolist() == [[1.0, 1.0], [1.0, 1.0], [0.0, 0.0]]
     assert found.ratio_error.sel(e=[0.05, 0.8], gamma=1e-6).max() < 1e-6
@@ -72,6 +72,6 @@ def test_masses_that_are_alike_do_not_knock(data):
 
 
 def test_the_limit_of_permanent_contact_does_not_depend_on_gamma(data, monkeypatch):
-    monkeypatch.setattr("orchestrate.paper.datasets.CONTACT_RANGES", {"elastic": (0.415, 0.421)})
-    monkeypatch.setattr("orchestrate.paper.datasets.GAMMAS", (1e-4, 1e-2))
+    monkeypatch.setattr("orchestrate.paper.cases.CONTACT_RANGES", {"elastic": (0.415, 0.421)})
+    monkeypatch.setattr("orchestrate.paper.cases.GAMMAS", (1e-4, 1e-2))
     assert data.last_contact("elastic").tolist() == [0.417, 0.417]

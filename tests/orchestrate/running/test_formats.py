@@ -11,6 +11,7 @@ from scipy.io import loadmat
 
 from orchestrate.errors import InputError, StoreError
 from orchestrate.running import formats
+from orchestrate.units import with_units
 
 
 def metres(dims, values):
@@ -91,3 +92,18 @@ def test_whole_or_not_at_all(data, tmp_path, ending):
     with pytest.raises(StoreError, match="cannot be written"):
         formats.write(data[["x"]], place)
     assert [path.name for path in tmp_path.iterdir()] == [place.name]
+
+
+def test_a_frequency_stands_once_and_without_the_digits_of_a_conversion(tmp_path):
+    turns = np.array([30.0, 30.1]) * (2.0 * np.pi)
+    data = xr.Dataset(
+        {"x": ("frequency", [1.0, 2.0], {"units": "m"})},
+        {
+            "frequency": ("frequency", turns, {"units": "rad/s"}),
+            "hertz": ("frequency", turns / (2.0 * np.pi), {"units": "Hz"}),
+        },
+    )
+    (path,) = formats.write(with_units(data, "Hz"), tmp_path / "a.csv")
+    assert path.read_text().split() == ["frequency", "[Hz],x", "[m]", "30.0,1.0", "30.1,2.0"]
+    (path,) = formats.write(data, tmp_path / "b.csv")
+    assert path.read_text().startswith("frequency [rad/s],x [m],hertz [Hz]")

@@ -1,4 +1,5 @@
-"""Run an SSP package in a tool: ``run_ssp.py TOOL FILE STEP COUNT`` prints x1, x2 and the speed.
+"""Run an SSP package in a tool: ``run_ssp.py TOOL FILE STEP COUNT NAME`` prints x1, x2 and what
+the shaker calls so.
 
 Exit code 3: the tool is not installed.
 """
@@ -8,7 +9,7 @@ import json
 import sys
 from importlib import metadata
 
-PLACES = (("oscillator", "x1"), ("oscillator", "x2"), ("shaker", "speed"))
+PLACES = [("oscillator", "x1"), ("oscillator", "x2")]
 
 
 def with_fmpy(path, step, count):
@@ -59,7 +60,8 @@ def with_libcosimpy(path, step, count):
 
 
 if __name__ == "__main__":
-    tool, file, length, number = sys.argv[1:]
+    tool, file, length, number, shown = sys.argv[1:]
+    PLACES.append(("shaker", shown))
     try:
         values = globals()[f"with_{tool}"](file, float(length), int(number))
     except (ImportError, OSError) as error:

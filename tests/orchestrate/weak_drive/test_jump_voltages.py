@@ -5,7 +5,8 @@ import pytest
 
 from orchestrate import InputError, jump_voltages
 from orchestrate.weak_drive.averaged import folds
-from orchestrate.weak_drive.jump_voltages import first_past
+from orchestrate.weak_drive.couple import schedule_from_arguments, scheme_from_arguments
+from orchestrate.weak_drive.jump_voltages import SLOTS, JumpVoltagesJob, first_past
 
 from .coupled import QUICK
 
@@ -34,12 +35,31 @@ def test_quick():
     assert (np.diff(bonded.voltage.sel(jump="up")) > 0.0).all()  # the faster the later
 
 
+def test_over_a_parameter_the_bonded_structure_is_computed_once():
+    ramps = tuple(
+        schedule_from_arguments(*QUICK, (1.3, 1.6), None, r, None, 0.0, False) for r in (1, 2)
+    )
+    scheme = scheme_from_arguments(QUICK[0], 0.2)
+    job = JumpVoltagesJob("x", *QUICK, ramps, scheme, "clearance", (0.0, 0.01))
+    structures = [structure for structure, _ in job.items()]
+    assert [one.bonded for one in structures] == 2 * [True, False, False]
+    assert [one.clearance for one in structures[1:3]] == [0.0, 0.01]
+    jumps = np.arange(6.0)[:, None, None] + np.zeros((6, 3, 2))
+    how, shown = np.full((6, 2), "by held voltages"), np.full((6, 2, SLOTS, 2), np.nan)
+    data = job.dataset({"jumps": jumps, "decided": how, "shown": shown})
+    assert data.jumps.dims == ("structure", "clearance", "jump")
+    assert data.jumps.sel(jump="up").values.tolist() == [[0.0, 0.0], [1.0, 2.0]]
+
+
 @pytest.mark.parametrize(
     ("arguments", "parts"),
     [
         ({"rates": []}, ["rates = []", "one or more"]),
         ({"rates": [1e-4, -1e-4]}, ["rate = -0.0001", "> 0"]),
         ({"voltage": 1.4}, ["voltage = 1.4", "duration"]),
+        ({"over": "m1", "values": [1.0]}, ["over = 'm1'", "expected clearance"]),
+        ({"over": "e"}, ["over and values", "both"]),
+        ({"over": "e", "values": [2.0]}, ["e = 2.0"]),
     ],
 )
 def test_mistakes(arguments, parts):

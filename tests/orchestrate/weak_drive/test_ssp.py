@@ -8,16 +8,21 @@ from pathlib import Path
 from xml.dom import minidom
 
 import fmpy
+import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from lxml import etree
+from pythonfmu import FmuBuilder
 
+from orchestrate import Shaker, Structure, cosimulate
 from orchestrate.errors import InputError, StoreError
+from orchestrate.weak_drive.connection import OURS
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.ssp import NAMESPACES, write_ssp
 
 from ...sparing import ordinary
 from .coupled import QUICK, master, rest
+from .drives import table
 
 VOLTAGE, SPEED, TIME = 1.5, 1.25, 20.0
 TOOLS = ("fmpy", "ecospy", "libcosimpy")
@@ -28,10 +33,10 @@ def write(folder, system, name="drive.ssp"):
     return write_ssp(folder / name, *system, voltage=VOLTAGE, speed_start=SPEED)
 
 
-def run(tool, path, step):
-    """x1, x2 and the speed at TIME, as a tool finds them."""
+def run(tool, path, step, shown="speed", end=TIME):
+    """x1, x2 and an output of the shaker at the end, as a tool finds them."""
     program = Path(__file__).with_name("run_ssp.py")
-    line = [sys.executable, program, tool, path, repr(step), str(round(TIME / step))]
+    line = [sys.executable, program, tool, path, repr(step), str(round(end / step)), shown]
     done = subprocess.run([*map(str, line)], capture_output=True, text=True, timeout=120)
     if done.returncode == 3:
         pytest.skip(f"{tool} cannot be used here: {done.stderr.strip()}")
@@ -46,6 +51,8 @@ def truth(system):
         return [m["x1"], m["x2"], m["speed"]]
 
 
+BEAM = Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
+SHAKER = Shaker.from_file("shaker_1kN")
 SYSTEMS = {
     **{"bonded": QUICK.as_bonded(), "delaminated": QUICK},
     "pressed": QUICK.with_structure(clearance=-1.0),
@@ -70,6 +77,30 @@ def test_tools(case, tool):
         assert coarse < 8.0 * STEPS[0] * value
         assert 1.6 < coarse / fine < 2.5
     assert errors[1][0] > 0.01 * expected[0]  # far too large a step for a tool that holds inputs
+
+
+CASES = [("Shaker", tool) for tool in TOOLS] + [("theirs", tool) for tool in TOOLS[:2]]
+
+
+@pytest.mark.parametrize(("kind", "tool"), ordinary(CASES, CASES[:3], several_names=True))
+def test_drives_of_others_in_tools(exported, tmp_path, kind, tool):
+    """Started by a constant voltage. libcosimpy does not come back from an FMU by pythonfmu."""
+    command, drive, fine, connect = "command", SHAKER, OURS, None
+    if kind == "theirs":
+        drive, command = FmuBuilder.build_FMU(table.__file__, dest=tmp_path), "volts"
+        connect = {"box_force": "specimen_force", "box_acceleration": "table_acc"}
+        fine = {**connect, "box_velocity": "table_vel"}
+    path, end, started = tmp_path / "drive.ssp", 0.4, {command: 3.0}
+    write_ssp(path, BEAM, drive, connect=connect, parameters=started, step=1e-3)
+    more = {"inputs": started, "duration": end, "progress": False}
+    h = 2e-4 if connect is None else 1e-3
+    truth = cosimulate(BEAM, drive, connect=fine, estimate=False, step=h, **more)
+    expected = [float(truth[name][-1]) for name in ("x1", "x2")]
+    shown = connect["box_acceleration"] if connect else "box_acceleration"
+    found = [run(tool, path, h, shown, end)[:2] for h in (5e-4, 2.5e-4)]
+    errors = [np.abs(np.subtract(one, expected)).max() for one in found]
+    assert truth.sizes["impact"] > 2 and errors[0] < 0.1 * abs(truth.x1).max()
+    assert errors[0] > 1.5 * errors[1] > 0.0
 
 
 def test_package(case, tmp_path):
@@ -153,6 +184,15 @@ def test_mistakes(tmp_path):
         write_ssp(tmp_path / "x.ssp", *QUICK, voltage=1.0, step=0.0)
     with pytest.raises(InputError, match="voltage = nan V: expected a finite number"):
         write_ssp(tmp_path / "x.ssp", *QUICK, voltage=float("nan"))
+    names = {"box_force": "box_force", "box_acceleration": "box_acceleration"}
+    for connect, text in (
+        ({**names, "box_force": "-box_force"}, "box_force is -1 times box_force; expected a"),
+        ({**names, "box_velocity": "box_velocity"}, "box_velocity; expected box_force and box_acc"),
+    ):
+        with pytest.raises(InputError, match=text):
+            write_ssp(tmp_path / "x.ssp", BEAM, SHAKER, connect=connect)
+    with pytest.raises(InputError, match="voltage: expected with a motor"):
+        write_ssp(tmp_path / "x.ssp", *QUICK)
     with pytest.raises(StoreError, match="nowhere"):
         write(tmp_path / "nowhere", QUICK)
     assert not list(tmp_path.iterdir())

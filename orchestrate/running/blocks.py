@@ -1,0 +1,71 @@
+"""Arrays larger than memory, block by block: read lazily, written and summed in their order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+BLOCK = 2**21  # values in memory at once
+CHUNK = 2**17  # values compressed together in a file, whole rows
+
+Index = tuple[int | slice, ...]
+
+
+def chunk_rows(shape: tuple[int, ...]) -> int:
+    """Return how many rows along the first axis make up a chunk of a file."""
+    return max(1, CHUNK // max(1, int(np.prod(shape[1:], dtype=float))))
+
+
+def chunk_shape(shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the shape of a file's chunks: some whole rows along the last axis but one."""
+    if len(shape) == 1:
+        return (min(CHUNK, shape[0]),)
+    return (*([1] * (len(shape) - 2)), min(chunk_rows(shape[-2:]), shape[-2]), shape[-1])
+
+
+def blocks(shape: tuple[int, ...]) -> Iterator[Index]:
+    """Yield indices of blocks that make up an array in C order; one for all if it is small."""
+    size = int(np.prod(shape, dtype=float))
+    if size <= BLOCK:
+        yield ()
+        return
+    if size // shape[0] > BLOCK:
+        for i in range(shape[0]):
+            for rest in blocks(shape[1:]):
+                yield (i, *rest)
+        return
+    step = BLOCK // CHUNK * chunk_rows(shape)
+    for first in range(0, shape[0], step):
+        yield (slice(first, min(first + step, shape[0])),)
+
+
+def lazy_rows(
+    leading: tuple[int, ...], width: int, read: Callable[[NDArray[np.intp]], NDArray[np.float64]]
+) -> Any:
+    """Return data of an xarray variable (*leading, width) whose rows are read where indexed.
+
+    ``read`` returns the rows (n, width) of given numbers, counted along the leading axes.
+    """
+    from xarray.backends import BackendArray
+    from xarray.core import indexing
+
+    class Rows(BackendArray):
+        """Array that xarray indexes before it is read."""
+
+        shape = (*leading, width)
+        dtype = np.dtype(float)
+
+        def __getitem__(self, key: Any) -> Any:
+            support = indexing.IndexingSupport.BASIC
+            return indexing.explicit_indexing_adapter(key, self.shape, support, self.read)
+
+        def read(self, key: Index) -> NDArray[np.float64]:
+            """Return the values at integers and slices, one an axis."""
+            numbers = np.arange(int(np.prod(leading))).reshape(leading)[key[:-1]]
+            values = read(numbers.ravel()).reshape(*numbers.shape, width)
+            return np.asarray(values[(..., key[-1])])
+
+    return indexing.LazilyIndexedArray(Rows())

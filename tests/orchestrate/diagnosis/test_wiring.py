@@ -1,0 +1,185 @@
+"""Wiring errors of a sound beam's record: each is named with what mends it, none on a clean one."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from orchestrate import InputError, detect, read_record, record, signs
+from orchestrate.diagnosis.orders import sensor_channels
+from orchestrate.diagnosis.sweeps import split_sweeps
+from orchestrate.diagnosis.undamaged import SoundStructure
+from orchestrate.diagnosis.wiring import wiring_notes
+from orchestrate.laboratory.analysis.channels import Channels
+from orchestrate.laboratory.conversion import differentiated
+from orchestrate.model import Structure
+
+RATE, COUNT = 1024.0, 20_480
+BASE, FACE = "box_acceleration", "acceleration1"
+
+
+def sweep(participation=1.3, seed=5, noise=0.01):
+    """A beam of 45 Hz, read at a place with this participation factor; 20 to 80 Hz in 20 s."""
+    time, rng = np.arange(COUNT) / RATE, np.random.default_rng(seed)
+    base = 4.0 * np.sin(2.0 * np.pi * (20.0 * time + 1.5 * time**2))
+    made = Channels(time, RATE, (BASE,), base[None], "sweep")
+    face = base + participation * (SoundStructure(45.0, 0.01).acceleration(made) - base)
+    return {
+        name: values + rng.normal(0.0, noise * values.std(), COUNT)
+        for name, values in ((BASE, base), (FACE, face))
+    }
+
+
+def notes(channels, rate=RATE):
+    return wiring_notes(sensor_channels(record(sample_rate=rate, **channels)))
+
+
+def lost(channels):
+    kept = np.delete(np.arange(COUNT), slice(9000, 9037))
+    return {name: values[kept] for name, values in channels.items()}
+
+
+def with_hum(channels, name):
+    line = 0.4 * np.sin(2.0 * np.pi * 50.02 * np.arange(COUNT) / RATE)
+    return {**channels, name: channels[name] + line}
+
+
+def changed(**faces):
+    return lambda one: {**one, FACE: faces["face"](one[FACE])}
+
+
+def late(values, delay):
+    return differentiated(values, RATE, 0, -delay)
+
+
+ERRORS = {
+    "polarity": (
+        changed(face=np.negative),
+        r"moves -\S+ times the base at 20.* scale=\"face1=-1\"",
+    ),
+    "unit": (changed(face=lambda one: one / 9.80665), r'unit="face1=g", or unit="base=m/s2"'),
+    "scale": (changed(face=lambda one: 5.0 * one), r'moves \S+ times .* scale="face1=0.2"'),
+    "delay": (changed(face=lambda one: late(one, 0.002)), r'(2|2.1) ms .* delay="face1=0.0021?"'),
+    "swapped": (lambda one: {BASE: one[FACE], FACE: one[BASE]}, "exchange both in columns="),
+    "dead": (
+        changed(face=lambda one: np.random.default_rng(1).normal(0.0, 0.05, COUNT)),
+        "is its cable dead",
+    ),
+    "clipped": (changed(face=lambda one: one.clip(-60.0, 60.0)), "saturated in .* wider range"),
+    "lost samples": (lost, "phase jumps by .* rad at 8.78"),
+    "hum": (lambda one: with_hum(one, FACE), "face 1 has a line of 0.39 m/s2 at 50 Hz"),
+}
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.parametrize("kind", ERRORS)
+def test_each_error_is_named_alone_with_what_mends_it(kind):
+    change, words = ERRORS[kind]
+    (note,) = notes(change(sweep()))
+    assert note.kind == kind and re.search(words, note.text)
+
+
+@pytest.mark.parametrize("participation", [0.3, 0.8, 1.6])
+def test_a_clean_record_has_no_note(participation):
+    assert notes(sweep(participation)) == []
+    assert notes(with_hum(sweep(noise=0.05), BASE)) != []
+
+
+def test_few_samples_are_named_and_a_short_sweep_above_the_resonance_says_nothing():
+    few = {name: values[::4] for name, values in sweep().items()}
+    assert [note.kind for note in notes(few, RATE / 4)] == ["sampling"]
+    above = {name: values[9000:] for name, values in sweep().items()}
+    assert notes(changed(face=np.negative)(above)) == []
+
+
+def test_a_dead_base_is_told_from_swapped_columns():
+    still = np.random.default_rng(2).normal(0.0, 0.02, COUNT)
+    (note,) = notes({**sweep(), BASE: still})
+    assert note.kind == "dead" and "base's cable" in note.text
+    guess = Structure.from_halves(m1=1.0, m2=1.0, f1=40.0, f2=50.0, zeta1=0.01)
+    with pytest.raises(InputError, match="no sine.*; .*is the base's cable dead"):
+        detect(record(sample_rate=RATE, **{**sweep(), BASE: still}), guess)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_what_a_note_says_mends_the_record(tmp_path):
+    """Velocity in mm/s upside down and late, the base in volts, times of five digits."""
+    channels, path = sweep(), tmp_path / "laser.csv"
+    speed = np.cumsum(channels[FACE] - channels[FACE].mean()) / RATE
+    volts = channels[BASE] / 9.80665 * 0.1
+    rows = zip(np.arange(COUNT) / RATE, volts, -1e3 * late(speed, 0.0015), strict=True)
+    path.write_text(
+        "Time,Table,Laser tip\n" + "".join(f"{t:.5g},{b:.6g},{v:.6g}\n" for t, b, v in rows)
+    )
+    options = {}
+    for said in ('"Table": no unit.*unit=', '"Table": in V, without a sens.*sensitivity="?'):
+        with pytest.raises(InputError, match=said):
+            read_record(path, **options)
+        if "unit" in options:
+            options["sensitivity"] = "base=100 mV/g"
+        options["unit"] = "base=V,face=mm/s"
+    first = notes_of(path, options)
+    assert [note.kind for note in first] == ["polarity", "delay"]
+    for note in first:
+        option, value = re.search(r'(\w+)="(\w+=[-.\d]+)"', note.text).groups()
+        options[option] = value
+    assert notes_of(path, options) == []
+    read = read_record(path, **options)
+    assert read.attrs["time_base"] == "rounded to 0.001 s, taken as 1024 Hz"
+    assert read.attrs["converted"] == "face 1: velocity, differentiated by its spectrum"
+    inner = slice(2000, -2000)
+    error = read.acceleration1.values[inner] - channels[FACE][inner]
+    assert np.abs(error).max() < 0.25 * np.abs(channels[FACE]).max()
+
+
+def notes_of(path, options):
+    return wiring_notes(sensor_channels(read_record(path, **options)))
+
+
+def test_sweeps_at_several_levels_are_split_at_pauses_and_at_jumps_of_the_frequency():
+    one = sweep()
+    silence = {name: np.random.default_rng(9).normal(0.0, 0.01, 2048) for name in one}
+    parts = (one, {name: 0.3 * values for name, values in one.items()})
+    for pause in ((), (silence,)):
+        both = {
+            name: np.concatenate([part[name] for part in (parts[0], *pause, parts[1])])
+            for name in one
+        }
+        found = split_sweeps(record(sample_rate=RATE, **both))
+        assert [data.attrs["title"] for data in found] == ["Record, sweep 1", "Record, sweep 2"]
+        for data, part in zip(found, parts, strict=True):
+            assert float(np.abs(data.time[-1] - data.time[0])) == pytest.approx(20.0, abs=1.0)
+            assert float(data[BASE].std()) == pytest.approx(part[BASE].std(), rel=0.05)
+    alone = record(sample_rate=RATE, **one)
+    assert split_sweeps(alone) == [alone]
+
+
+def test_signs_need_no_base_and_a_verdict_without_one_is_refused(tmp_path):
+    """A shaker with a force cell whose own order 2 a sound beam passes on, then no cell."""
+    time, rng = np.arange(COUNT) / RATE, np.random.default_rng(3)
+    phase = 2.0 * np.pi * (20.0 * time + 1.5 * time**2)
+    force = 10.0 * np.sin(phase) + 0.3 * np.sin(2.0 * phase)
+    made = Channels(time, RATE, (BASE,), force[None], "force")
+    face = 0.7 * (SoundStructure(45.0, 0.01).acceleration(made) - force)
+    rattling = face + 0.05 * np.abs(face) + rng.normal(0.0, 0.01 * face.std(), COUNT)
+    path = tmp_path / "shaker.csv"
+    rows = zip(time, 0.022 * force, face + rng.normal(0.0, 0.01 * face.std(), COUNT), strict=True)
+    lines = "".join(f"{t:.12g},{f:.12g},{a:.12g}\n" for t, f, a in rows)
+    path.write_text(f"t [s],force cell [V],tip [m/s2]\n{lines}")
+    excited = read_record(path, sensitivity="force=22 mV/N")
+    assert excited.force.attrs["units"] == "N" and np.allclose(excited.force, force)
+    sound = signs(excited, seeds=2).isel(channel=0)
+    assert abs(float(sound.sound_f) - 45.0) < 0.2 and sound.attrs["reference"] == "force"
+    assert not (sound.exceeds == 1).any() and sound.exceeds.sel(sign="order_2") == 0
+    opened = record(sample_rate=RATE, acceleration1=rattling, force=force)
+    assert signs(opened, seeds=2).exceeds.sel(sign="order_2").item() == 1
+    alone = signs(record(sample_rate=RATE, acceleration1=rattling), seeds=2).isel(channel=0)
+    own = alone.sel(sign="order_2")
+    assert float(own.value) > 5.0 * float(own.floor) and (alone.exceeds == -1).all()
+    guess = Structure.from_halves(m1=1.0, m2=1.0, f1=40.0, f2=50.0, zeta1=0.01)
+    with pytest.raises(InputError, match="excited by a force; a verdict needs it: measure a swept"):
+        detect(opened, guess)
+    with pytest.raises(InputError, match="what excites it is unknown; .*orchestrate.signs does"):
+        detect(opened.drop_vars("force"), guess)

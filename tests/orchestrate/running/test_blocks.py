@@ -1,0 +1,63 @@
+"""Results larger than memory: read, summed and written in blocks, with the same contents."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from orchestrate.errors import StoreError
+from orchestrate.model import Structure
+from orchestrate.response.sweep import sweep
+from orchestrate.running import blocks, store
+
+PAPER = Structure.nondimensional()
+SHORT = {"transient": 5, "samples": 20, "progress": False, "jobs": 1}
+ETAS = np.append(np.linspace(1.0, 2.0, 120), [0.9, 0.5])  # two chunks, not in order
+
+
+@pytest.fixture
+def small(monkeypatch):
+    """Blocks of some rows, and files of any size opened lazily; how many rows were read at once."""
+    counts = []
+    rows = store.StoredRows.rows
+
+    def counted(stored, chosen):
+        counts.append(len(chosen))
+        return rows(stored, chosen)
+
+    monkeypatch.setattr(blocks, "BLOCK", 400)
+    monkeypatch.setattr(blocks, "CHUNK", 100)
+    monkeypatch.setattr(store, "MIN_COMPRESSED", 100)
+    monkeypatch.setattr(store, "MAX_LOADED", 1000)
+    monkeypatch.setattr(store.StoredRows, "rows", counted)
+    return counts
+
+
+@pytest.mark.parametrize("direction", ["down", "both", "given"])
+def test_a_sweep_in_blocks_is_that_of_memory(exported, tmp_path, small, direction):
+    arguments = {"eta": ETAS, "direction": direction, **SHORT}
+    whole = sweep(PAPER, **arguments)
+    assert not small
+    for _ in range(2):  # computed, and read again
+        stored = sweep(PAPER, store=tmp_path / "a.nc", **arguments)
+        assert stored.equals(whole) and stored.xi_rel.attrs == whole.xi_rel.attrs
+    assert small and max(small) <= 20 and sum(small) >= 2 * len(ETAS)
+
+
+def test_a_damaged_block_is_seen(exported, tmp_path, small):
+    path = tmp_path / "a.nc"
+    sweep(PAPER, eta=ETAS, store=path, **SHORT).close()
+    data = xr.load_dataset(path)
+    data.xi_rel[7, 3] += 1e-12
+    data.to_netcdf(path)
+    with pytest.raises(StoreError, match="checksum"):
+        sweep(PAPER, eta=ETAS, store=path, **SHORT)
+
+
+@pytest.mark.parametrize("shape", [(), (0,), (7, 3), (5000,), (30, 50), (3, 41, 20), (900, 2, 3)])
+def test_blocks_make_up_an_array_in_its_order(tmp_path, small, shape):
+    values = np.random.default_rng(1).normal(size=shape)
+    parts = [values[block].ravel() for block in blocks.blocks(shape)]
+    assert np.array_equal(np.concatenate(parts), values.ravel())
+    assert all(len(part) <= 400 for part in parts)
+    data = xr.Dataset({"x": ([f"d{i}" for i in range(len(shape))], values)})
+    assert store.load(store.write_netcdf(data, tmp_path / "a.nc")).equals(data)
