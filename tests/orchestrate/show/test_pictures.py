@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-import orchestrate
 from orchestrate.errors import StoreError
 from orchestrate.show import (
     colours,
@@ -25,11 +24,6 @@ from orchestrate.show.style import XI_REL, make_panels
 
 from . import made
 from .made import legend_texts
-
-HERE = {"progress": False, "jobs": 1}
-HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
-BEAM = orchestrate.Structure.from_halves(**HALVES)
-
 
 # -- files ----------------------------------------------------------------------------------------
 
