@@ -249,7 +249,7 @@ class Findings:
         if self.is_opening_seen:
             other = f'the model "{self.delaminated}" has {self.delaminated_misfit:.3g}'
             enough = f"{self.deciding_ratio:g} times is enough to decide"
-            misfit += f", {other}: that is {self.ratio:.2g} times as large, where {enough}"
+            misfit += f", {other}: that is {self.ratio:.3g} times as large, where {enough}"
         sentences.append(f"{misfit}.")
         stops = [one.otherwise for one in self.stops]
         return " ".join([*sentences, MISFIT_MEANING, *stops, *self.imperfection()])

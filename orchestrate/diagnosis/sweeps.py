@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..laboratory.pieces import Floats
 from .orders import sensor_channels, sine_windows
@@ -38,7 +39,7 @@ def split_sweeps(record: xr.Dataset) -> list[xr.Dataset]:
     ]
 
 
-def is_sweep(group: Floats, time: Floats, frequency: Floats) -> bool:
+def is_sweep(group: NDArray[np.int_], time: Floats, frequency: Floats) -> bool:
     """Return whether a group of windows lasts long enough and covers enough frequencies."""
     if len(group) < 2:
         return False

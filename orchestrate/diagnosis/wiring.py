@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
@@ -245,7 +246,7 @@ def hum_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator[No
     middle = channels.time[starts] + 0.5 * HUM_WINDOW
     swept = np.interp(middle, orders.windows.time, orders.windows.frequency)
     for mains in MAINS:
-        away = (np.abs(np.outer(HUM_ORDERS, swept) - mains) > HUM_AWAY).all(axis=0)
+        away = np.all(np.abs(np.outer(HUM_ORDERS, swept) - mains) > HUM_AWAY, axis=0)
         if away.sum() < settings.fewest:
             continue
         lines = np.stack(
@@ -262,10 +263,10 @@ def hum_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator[No
 
 
 def line_amplitudes(
-    channels: Channels, row: int, starts: Floats, count: int, hertz: float
+    channels: Channels, row: int, starts: NDArray[np.int_], count: int, hertz: float
 ) -> Complexes:
     """Return the complex amplitude of a line in windows with Hann weights, m/s2."""
     weights = np.hanning(count) * 2.0 / np.hanning(count).sum()
     turn = np.exp(-1j * TURN * hertz * channels.time)
     values = channels.values[row] * turn
-    return np.array([weights @ values[begin : begin + count] for begin in starts.astype(int)])
+    return np.array([weights @ values[begin : begin + count] for begin in starts])

@@ -112,7 +112,7 @@ class Section:
         present = self.present(keys)
         if len(present) > 1:
             raise self.error(
-                present[1], f"conflicts with {present[0]}; give only one of {', '.join(keys)}"
+                present[1], f"conflicts with {present[0]}; expected only one of {', '.join(keys)}"
             )
         return present[0] if present else None
 

@@ -5,7 +5,7 @@ module                  idea
 ======================  ============================================================
 :mod:`.polynomials`     polynomials over one communication step
 :mod:`.connection`      any drive's variables by our names, checked
-:mod:`.inputs`          the drive's other inputs, step by step: courses, and a control
+:mod:`.inputs`          the drive's other inputs: courses over time, and a controlled one
 :mod:`.master`          the one master: what a step is, and where its length is chosen
 :mod:`.compiled`        the same steps in compiled code, with the same bits
 :mod:`.record`          what a run leaves of its steps, by columns
