@@ -5,10 +5,8 @@ import zipfile
 import pytest
 from fmpy.validation import validate_fmu
 
-from fmu_src.export import compiler, pythonfmu_form
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS, export
-from fmu_src.export.source_code import kernel_source
 from tools import importers
 
 from ..fmu.programs.driver import COMMON, harmonic
@@ -78,25 +76,6 @@ def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(
     own = importers.Importer(importer_of("fmi3").program, binary, "fmi3")
     expected = importer_of("fmi3").simulate(COMMON, times, **harmonic(1.13))
     assert own.simulate(COMMON, times, **harmonic(1.13)) == expected
-
-
-@pytest.mark.slow  # compiles for 4 s
-def test_a_compiler_that_changes_bits_does_not_make_the_pythonfmu_kernel(
-    hide, monkeypatch, tmp_path, caplog
-):
-    """It fuses; the native forms refuse to be instantiated, this one runs in Python."""
-    hide("ziglang")
-    if importers.own_compiler() is None:
-        pytest.skip("the machine has no C compiler of its own")
-    lines = kernel_source("oscillator").splitlines(keepends=True)
-    changed = b"".join(line for line in lines if not line.startswith(b"#pragma"))
-    monkeypatch.setattr(pythonfmu_form, "kernel_source", lambda _: changed)
-    monkeypatch.setattr(compiler, "FLAGS", ("-O2", "-mfma", "-ffp-contract=fast"))
-    fmu = export(MODEL, "fmi2-python", tmp_path)
-    (line,) = [line for line in caplog.messages if "pure Python" in line]
-    assert "changes the kernel's last digits" in line
-    with zipfile.ZipFile(fmu) as archive:
-        assert not [name for name in archive.namelist() if "kernel-" in name]
 
 
 @pytest.mark.slow  # compiles for 5 s

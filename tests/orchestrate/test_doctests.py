@@ -15,8 +15,9 @@ MODULES = [
     if ">>> " in path.read_text(encoding="utf-8")
 ]
 LONG = {
-    "orchestrate.diagnosis.detect_all",
-    "orchestrate.dynamics.borders",
+    *(f"orchestrate.diagnosis.{name}" for name in ("detect_all", "detect", "fit", "signs")),
+    *(f"orchestrate.dynamics.{name}" for name in ("borders", "orbits", "branches", "manifolds")),
+    *("orchestrate.dynamics.stable_windows", "orchestrate.show.report"),
     "orchestrate.laboratory.run_up",
     *(f"orchestrate.weak_drive.{name}" for name in ("couple_all", "drive_branch", "jump_voltages")),
 }

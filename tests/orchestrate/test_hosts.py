@@ -14,6 +14,7 @@ CELLS = (
 )
 
 
+@pytest.mark.slow
 def test_a_notebook(exported, tmp_path):
     nbformat = pytest.importorskip("nbformat")
     nbclient = pytest.importorskip("nbclient")

@@ -138,26 +138,6 @@ def test_pictures_are_in_the_units_asked_for_and_in_no_other():
         assert any("rpm" in word for word in words), kind
 
 
-def test_curves_move_with_their_axes():
-    answer = answers()["resonance_levels"]
-    pictures = [orchestrate.plot(answer, units=u) for u in ("Hz, mm, g", "rpm, um, m/s2", "eta")]
-    lines = [[axes.lines[0].get_xydata() for axes in figure.axes] for figure in pictures]
-    np.testing.assert_allclose(lines[0][0][:, 0], HERTZ)
-    np.testing.assert_allclose(lines[1][0][:, 0], 60.0 * HERTZ)
-    np.testing.assert_allclose(lines[2][0][:, 0], HERTZ / 42.0)
-    np.testing.assert_allclose(lines[1][1][:, 1], 1000.0 * lines[0][1][:, 1])
-    np.testing.assert_allclose(lines[1][2][:, 1], G * lines[0][2][:, 1])
-    assert pictures[2].axes[-1].get_xlabel() == r"$\eta$"
-    motion = answers()["simulate"]
-    for units, last in (("s", float(motion.time[-1])), ("periods", float(motion.periods_done[-1]))):
-        (axes,) = (
-            one
-            for one in orchestrate.plot(motion, units=units).axes
-            if one.get_xlabel().startswith(f"time in {units}")
-        )
-        assert axes.get_xlim()[1] == pytest.approx(last)
-
-
 def test_a_page_has_them_too(tmp_path):
     answer = answers()["resonance_levels"]
     page = orchestrate.report(answer, output=tmp_path / "a.html", units="rpm, um, g")

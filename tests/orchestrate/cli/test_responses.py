@@ -305,6 +305,7 @@ def window(ask, tmp_path):
     return path
 
 
+@pytest.mark.slow
 def test_a_branch_over_a_sweep(ask, folder, window):
     ask(*FEW, "--plot", "none").success()
     done = ask(*FEW, "--overlay", window).success()

@@ -1,15 +1,12 @@
 """Commands that begin with a stored result take its structure, or say that it is another."""
 
-import argparse
 import functools
 import json
-import math
 
 import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate.cli.answer import display_units
 from orchestrate.model import Structure
 
 BEAM = Structure.from_file("beam")
@@ -89,44 +86,6 @@ def test_a_file_without_a_structure_is_refused(ask, tmp_path):
     xr.Dataset({"x": ("t", [1.0])}, attrs={"call": "analyse(...)"}).to_netcdf(path)
     done = ask("branch", "--start", path, *HERTZ)
     done.complaint(f"--start {path}", "a result of analyse", "expected an orbit or a branch")
-
-
-@pytest.mark.parametrize(
-    ("over", "limits", "in_rad_s"),
-    [
-        ("hz,e", "14:18,0.6:0.8", 2.0 * math.pi),
-        ("rpm,e", "840:1080,0.6:0.8", 2.0 * math.pi / 60.0),
-        ("frequency,e", "88:113,0.6:0.8", 1.0),
-        (" hz , e", "14:18, 0.6:0.8", 2.0 * math.pi),
-    ],
-)
-def test_border_reads_the_frequencies_that_branch_reads(ask, path, asked, over, limits, in_rad_s):
-    ask("border", "--start", path, "--over", over, "--limits", limits)
-    name, ends = over.split(",")[0].strip(), limits.split(",")[0]
-    ask("branch", "--start", path, "--over", name, "--limits", ends)
-    (_, border), (_, branch) = asked
-    assert border["over"] == ("frequency", "e") and branch["over"] == "frequency"
-    assert border["limits"] == (branch["limits"], (0.6, 0.8))
-    first, last = map(float, ends.split(":"))
-    assert branch["limits"] == pytest.approx((first * in_rad_s, last * in_rad_s))
-
-
-@pytest.mark.parametrize(
-    ("over", "limits", "words"),
-    [
-        ("hz", "14:18,1:2", ["--over hz", "two names"]),
-        ("hz,e", "14:18", ["--limits 14:18", "a range for each"]),
-        ("g,e", "1:2,0.6:0.8", ["--over g", "--over amplitude"]),
-    ],
-)
-def test_border_says_what_is_wrong_with_its_parameters(ask, path, over, limits, words):
-    ask("border", "--start", path, "--over", over, "--limits", limits).complaint(*words)
-
-
-def test_border_says_frequencies_in_the_unit_of_the_question(path):
-    for over, unit in (("hz,e", "Hz"), ("rpm,e", "rpm"), ("frequency,e", "rad/s"), ("e,hz", "Hz")):
-        arguments = argparse.Namespace(command="border", over=over, structure=None, units="")
-        assert display_units(arguments, {"over": ("frequency", "e")}).frequency == unit
 
 
 def test_the_explorer_draws_branches_over_the_diagram_of_their_structure(

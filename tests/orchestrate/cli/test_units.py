@@ -152,6 +152,7 @@ def test_prints_are_in_the_units_asked_for_and_in_no_other(ask, command):
     assert re.search(r" [mu]m\b", plain) and not re.search(r"\d m\b| m\b", plain)
 
 
+@pytest.mark.slow
 def test_the_same_question_shown_in_other_units_has_the_same_bits(ask, tmp_path):
     folder, stored, columns = tmp_path / "results", set(), {}
     for units in ("Hz,mm,g", ""):

@@ -65,6 +65,7 @@ def cells(text):
     return {tuple(row[:2]): row[2:] for row in parts}
 
 
+@pytest.mark.slow
 def test_couple_tells_jumps_beside_where_the_ramp_shows_them(ask, folder):
     options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--one-way", "--only", "delaminated")
     done = ask("couple", *options, *SHORT).success()

@@ -38,6 +38,7 @@ def test_the_fmu_runs_through_orbits_and_its_map_has_their_multipliers(structure
         assert float(found.multiplier_product) == pytest.approx(expected)
 
 
+@pytest.mark.slow
 def test_a_branch_over_the_slope_ends_where_its_limits_are_and_is_run_through():
     """From e at all speeds on, point by point as the orbits that are computed alone."""
     structure = SLOWER.replace(e_slope=0.0)

@@ -136,7 +136,7 @@ def test_where_nothing_can_be_made_one_line_says_why(maker, places):
     with pytest.raises(InputError) as error:
         find(OSCILLATOR)
     line = str(error.value)
-    assert REASON in line and f"FMU {OSCILLATOR}: there is none" in line and "\n" not in line
+    assert REASON in line and f"FMU {OSCILLATOR}: none matches" in line and "\n" not in line
 
 
 def test_an_own_fmu_is_taken_as_it_is(maker, tmp_path, real):

@@ -193,17 +193,17 @@ WRONG = [
     (f"{S}k1 = 1.0\nomega_hz = 1.0", ["structure.omega_hz = 1.0: beside k1", "one kind"]),
     (f"{S}D = 0.1\nD1 = 0.1", ["structure.D1 = 0.1: beside D", "one kind: D, or D1, D2"]),
     (f"{S}D1 = 0.1", ["structure.D2: missing", "expected all of D1, D2"]),
-    (f"{S}omega_hz = 1\nomega_rpm = 60", ["structure.omega_rpm = 60: beside omega_hz"]),
+    (f"{S}omega_hz = 1\nomega_rpm = 60", ["structure.omega_rpm = 60: conflicts with omega_hz"]),
     (f"{S}omega_hz = 1e20", ["[structure]:", "omega = 6.28", "k1 = 3.9", "expected 1e-30 <= k1"]),
     (f"{S}mu = 1e20\nD = 1e20", ["[structure]:", "mu = 1e+20", "D = 1e+20", "d2 = 2e+40"]),
     (f"{X}amplitude = 1", ["[excitation]: expected one of frequency_hz", "eta"]),
     (f"{X}frequency_hz = 1", ["[excitation]: expected one of amplitude, acceleration_g"]),
     (f"{X}frequency = 1\namplitude = 1", ["excitation.frequency = 1: no key", "frequency_"]),
-    (f"{X}frequency_hz = 1\neta = 1", ["excitation.eta = 1: beside frequency_hz"]),
+    (f"{X}frequency_hz = 1\neta = 1", ["excitation.eta = 1: conflicts with frequency_hz"]),
     (f"{X}frequency_hz = 1\namplitude = -1", ["excitation.amplitude = -1.0 m: expected 0 <="]),
     (
         f"{X}frequency_hz = 1\namplitude = 1\nacceleration_g = 1",
-        ["excitation.acceleration_g = 1: beside amplitude"],
+        ["excitation.acceleration_g = 1: conflicts with amplitude"],
     ),
     (f"{S}{X}eta = 0", ["excitation.eta = 0.0: expected 1e-06 <= eta <= 1e+06"]),
     (f"{M}{MOTOR}", ["no section [box]; expected [motor] and [box] together"]),
@@ -249,7 +249,7 @@ def test_mistakes_are_one_line(file, text, words):
         read(path)
     line = str(error.value)
     assert line.startswith(f"{path}: ") and "\n" not in line
-    assert "expected" in line or "give only one" in line
+    assert "expected" in line
     assert all(word in line for word in words), line
 
 

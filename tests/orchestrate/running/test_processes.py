@@ -54,6 +54,7 @@ def start(script: str, store: Path, *arguments: object) -> subprocess.Popen[str]
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "at_work"), [(signal.SIGKILL, True), (signal.SIGINT, False)])
 def test_workers_end_with_the_process_they_work_for(tmp_path, number, at_work):
     """At work: they have computed a chunk; else they begin."""

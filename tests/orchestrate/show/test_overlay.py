@@ -7,7 +7,6 @@ import pytest
 
 from orchestrate.constants import GRAVITY
 from orchestrate.dynamics.branches import branch
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.response import resonance as curves
 from orchestrate.response.sweep import sweep
@@ -79,29 +78,3 @@ def test_displacements_and_gaps_lie_over_resonance_curves():
         assert there * factor == pytest.approx(float(settled), rel=2e-3)
         assert of_orbit in window()
     assert {line.get_label() for line in axes[2].get_lines()} & {"stable", "unstable"} == set()
-
-
-@pytest.mark.parametrize(
-    ("structure", "box", "name", "words"),
-    [
-        (PAPER, {"eta": [2.4, 2.5]}, "e", "a branch along e; expected one along eta"),
-        (
-            PAPER.replace(e=0.3),
-            {"eta": [2.4, 2.5]},
-            "eta",
-            "another structure, e = 0.7; .* e = 0.3",
-        ),
-        (PAPER, {"eta": 2.6, "over": "e", "values": [0.66, 0.7]}, "e", "eta = 2.5; .* eta = 2.6"),
-        (
-            PAPER.replace(clearance=1e-3),
-            {"frequency": [2.48, 2.5], "amplitude": 0.1},
-            "gap",
-            "0.1 m",
-        ),
-    ],
-)
-def test_what_does_not_belong_together_is_refused(structure, box, name, words):
-    responses = sweep(structure, **box, **SHORT)
-    with pytest.raises(InputError, match=f"overlay: .*{words}") as caught:
-        plot(responses, window() if name == "eta" else over(name))
-    assert "\n" not in str(caught.value)

@@ -11,30 +11,19 @@ import numpy as np
 import pytest
 import xarray as xr
 
-import orchestrate
-from orchestrate.constants import GRAVITY
 from orchestrate.errors import StoreError
 from orchestrate.show import (
     colours,
     histories,
-    labels,
     lines,
-    planes,
     resonance,
     scales,
-    weak_drive,
 )
 from orchestrate.show.files import save
 from orchestrate.show.style import XI_REL, make_panels
-from orchestrate.units import with_units
 
 from . import made
 from .made import legend_texts
-
-HERE = {"progress": False, "jobs": 1}
-HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
-BEAM = orchestrate.Structure.from_halves(**HALVES)
-
 
 # -- files ----------------------------------------------------------------------------------------
 
@@ -171,42 +160,7 @@ def test_an_attractor_is_drawn_as_far_as_it_exists():
     np.testing.assert_array_equal(shares[1], [nan, nan, 0.7, 1.0])
 
 
-def test_starts_from_rest_have_their_kind_the_border_and_how_sure_it_is():
-    data = made.capture()
-    (panel,) = weak_drive.draw_capture({"bonded": data}).axes
-    assert panel.get_ylabel() == "rotor inertia in kg m$^2$"
-    kinds = {"captured", "passes", "undecided", "border", "undecided between"}
-    assert kinds == {*legend_texts(panel)}
-    each = {name: data.isel(rotor_inertia=i) for i, name in enumerate(("bonded", "delaminated"))}
-    shown, doubtful = (set(legend_texts(one)) for one in weak_drive.draw_capture(each).axes)
-    assert {"border, 1.0500 ± 0.0030 V", "fold, averaged theory"} < shown
-    assert {"undecided", "undecided between"}.isdisjoint(shown)
-    assert {"undecided", "undecided between", "border, 1.150 ± 0.070 V"} < doubtful
-    assert "fold, averaged theory" not in doubtful  # it lies outside of what was tried
-
-
 # -- planes ---------------------------------------------------------------------------------------
-
-
-def test_maps_have_a_row_each_and_say_where_there_is_none():
-    one, two = made.mapped(False), made.mapped(False)
-    figure = planes.draw_map(one.assign_coords(e=[0.01, 0.02, 0.04, 0.08, 0.16]), two)
-    bars = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
-    panels = [axes for axes in figure.axes if axes.get_xlabel() and axes not in bars]
-    assert len(panels) == 8 and panels[0].get_ylabel() == "$e$"
-    assert [plane.get_yscale() for plane in panels[::4]] == ["log", "linear"]
-    assert bars[0].get_xlabel() == "grey: none" and bars[2].get_xlabel() == ""
-    figure.canvas.draw()
-    assert bars[0].get_position().x1 < panels[1].get_position().x0
-
-
-def test_a_basin_names_all_that_is_in_it():
-    figure = planes.draw_basin(made.plane(False), "here", ("gap", ""))
-    (axes,) = figure.axes
-    assert axes.get_xlabel() == "gap" and axes.get_ylabel().endswith(" in m/s")
-    texts = legend_texts(figure)
-    assert len(texts) == len(planes.BASINS) + 2
-    assert texts[-2:] == ["25.0%: 2 others", "no states: the gap would be below 0"]
 
 
 # -- time histories and spectra -------------------------------------------------------------------
@@ -228,37 +182,4 @@ def test_a_motion():
     assert "no impacts" in [text.get_text() for legend in legends for text in legend.get_texts()]
 
 
-def test_two_structures_have_one_unit_on_an_axis(exported):
-    """The bonded one's spectrum was in m/s2 on an axis in g."""
-    turn = 2.0 * np.pi * 50.0
-    shaken = {"frequency": turn, "amplitude": 5.0 / turn**2, "transient": 50, "periods": 4}
-    answers = [orchestrate.simulate(one, **shaken, **HERE) for one in (BEAM, BEAM.as_bonded())]
-    tops = []
-    for units in ("m/s2", "g"):
-        figure = histories.draw_motion(with_units(answers[0], units), bonded=answers[1])
-        (panel,) = (one for one in figure.axes if one.get_ylabel().startswith("acceleration"))
-        assert panel.get_ylabel().endswith({"m/s2": "in m/s$^2$", "g": "in g"}[units])
-        stems = [each.get_segments() for each in panel.collections]
-        tops.append([max(top for (_, _), (_, top) in lines) for lines in stems if len(lines)])
-    assert len(tops[0]) == 3
-    assert np.allclose(tops[0], GRAVITY * np.array(tops[1]))
-
-
 # -- titles and numbers ---------------------------------------------------------------------------
-
-
-def test_titles_have_the_level_in_the_unit_asked_for(exported):
-    turn = 2.0 * np.pi * 50.0
-    shaken = {"frequency": turn, "amplitude": 0.5 * GRAVITY / turn**2}
-    data = orchestrate.simulate(BEAM, **shaken, periods=1, **HERE)
-    assert r"$a\,\Omega^2$ = 0.5 g" in labels.title_from_attributes(with_units(data, "g"))
-    assert "$a$ = 0.04968 mm" in labels.title_from_attributes(with_units(data, "mm"))
-    turns = list(np.array([45.0, 50.0]) * 2.0 * np.pi)
-    data = orchestrate.map(BEAM, frequency=turns, level=0.5 * GRAVITY, e=[0.4, 0.5], **HERE)
-    figure = planes.draw_map(with_units(data, "Hz, mm, g"))
-    assert r"$a\,\Omega^2$ = 0.5 g" in figure.get_suptitle()
-    titled = {one.get_title(loc="left"): one for one in figure.axes}
-    panel = titled["largest gap $x_2 - x_1$ in mm"]
-    lengths = data.xi_rel_max * 0.5e3 * GRAVITY / BEAM.omega**2
-    shown = panel.collections[0].get_array()
-    assert np.allclose(np.sort(np.ravel(shown)), np.sort(lengths.values.ravel()))

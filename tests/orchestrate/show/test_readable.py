@@ -140,6 +140,7 @@ def ramps(exported):
     return {False: data, True: jumped}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jumps", [False, True])
 def test_the_weak_drive_says_its_jumps_and_draws_them_over_time(ramps, jumps):
     runs = {"bonded": ramps[jumps], "delaminated": ramps[jumps]}

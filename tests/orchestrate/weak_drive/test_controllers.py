@@ -65,6 +65,7 @@ def test_speed_control():
     assert found.speed[-200:].mean() == pytest.approx(1.5, abs=2e-3)
 
 
+@pytest.mark.slow
 def test_speed_gradient():
     law = Swing(SWING, 8.73, 0.1 / 75.0)
     found = agrees(WEAK.as_bonded(), SWING, law, 8.73, 6.0)

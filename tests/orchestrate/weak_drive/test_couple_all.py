@@ -34,16 +34,6 @@ def test_each_run_is_that_of_couple(found):
     assert whole.speed.units == "rad/s" and whole.rate.units == "1"
 
 
-def test_each_run_is_a_file(found):
-    _, folder = found
-    names = sorted(path.name for path in folder.glob("*.nc"))
-    assert len(names) == 4 and names[0] == "couple_one_delaminated_0.0004.nc"
-    stamps = {path: path.stat().st_mtime_ns for path in folder.glob("*.nc")}
-    more = couple_all({"one": SETS["one"]}, **FEW, store=folder)
-    assert more.sizes["run"] == 2
-    assert stamps == {path: path.stat().st_mtime_ns for path in folder.glob("*.nc")}
-
-
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [

@@ -63,6 +63,7 @@ def upper():
     )
 
 
+@pytest.mark.slow
 def test_neimark_sacker_point(upper):
     """The upper branch of `beam` is lost before its fold; by the averaged theory's growth rates."""
     (expected,) = averaged.neimark_sacker_points(*BEAM.as_bonded())

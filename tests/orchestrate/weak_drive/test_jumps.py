@@ -9,6 +9,7 @@ from .coupled import BEAM, QUICK
 from .test_couple import run
 
 
+@pytest.mark.slow
 def test_a_run_that_began_beyond_the_resonance():
     """The motor starts at the speed of the first voltage, on the upper branch, and stays there."""
     found = run(QUICK.as_bonded(), (1.45, 1.65), 4e-4, back=False, spin_up=0.0)

@@ -50,6 +50,7 @@ def test_a_course_with_holds_and_steps():
     assert course.trend(np.array([10.0, 120.0, 200.0])).tolist() == [1, 0, -1]
 
 
+@pytest.mark.slow
 def test_a_course_from_a_file(tmp_path):
     """The same run as the ramp that it describes."""
     path = tmp_path / "course.csv"
