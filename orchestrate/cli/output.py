@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..lazy import xr
-from ..running.options import Running
 from .grammar import floats
 from .table import Group
 
 if TYPE_CHECKING:
     from ..model import Structure
+    from ..running.options import Running
     from ..units import Units
 
 FORMATS = ("nc", "csv", "mat", "xlsx")

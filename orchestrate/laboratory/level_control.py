@@ -48,12 +48,10 @@ class LevelControl(InputControl):
         Phase and level, m/s2, over time.
     start, limit : float
         Amplitude of the command at the beginning, and the largest, V or A.
-    averaging, compression : float
+    averaging, compression, patience, rise : float
         Periods.
     fastest, tolerance : float
         Factors, > 1.
-    patience, rise : float
-        Periods.
 
     Raises
     ------

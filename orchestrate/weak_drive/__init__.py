@@ -9,7 +9,6 @@ module                  idea
 :mod:`.master`          the one master: what a step is, and where its length is chosen
 :mod:`.compiled`        the same steps in compiled code, with the same bits
 :mod:`.record`          what a run leaves of its steps, by columns
-:mod:`.inputs`          the drive's inputs over the steps, given or controlled
 :mod:`.extremes`        largest displacements within a communication step
 :mod:`.energy_balance`  where energies are balanced, and the coupling's energy defect
 :mod:`.schedule`        the voltage over time

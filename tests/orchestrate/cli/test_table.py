@@ -6,6 +6,7 @@ import argparse
 import inspect
 import os
 import re
+import shlex
 import subprocess
 import sys
 
@@ -110,7 +111,7 @@ def test_help_has_quantities_and_examples_that_can_be_typed(capsys, monkeypatch,
         lines = [line.strip() for line in text.splitlines() if line.startswith(f"  {program} ")]
         assert lines, command
         for line in lines:
-            words = line.removeprefix(program).split("   ")[0].split()
+            words = shlex.split(line.removeprefix(program).split("   ")[0])
             assert words[0] == command
             assert callable(parsers[command].parse_args(cli.join_negative_values(words[1:])).run)
 
