@@ -1,10 +1,13 @@
 """Write hostile FMU archives, each from a seeded random generator."""
 
+from __future__ import annotations
+
 import functools
 import io
 import random
 import re
 import struct
+import warnings
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +16,7 @@ Files = dict[str, bytes]
 XML = "modelDescription.xml"
 LINK = 0o120777 << 16
 BOMB = 5 << 28  # bytes that come out of one
+CROWD = 70_000  # files
 ESCAPES = (  # behind some "../"
     *(
         "{}escaped",
@@ -52,6 +56,11 @@ def add_path_traversal(files: Files, chance: random.Random) -> None:
     files[chance.choice(ESCAPES).format("../" * chance.randint(1, 12))] = b"escaped"
 
 
+def add_crowd(files: Files, chance: random.Random) -> None:
+    """Add more files than any model has."""
+    files.update({f"resources/{i:x}": b"" for i in range(CROWD)})
+
+
 def add_entities(files: Files, chance: random.Random) -> None:
     """Let the XML grow as it is parsed, or include other files."""
     depth = chance.randint(7, 11)
@@ -71,6 +80,28 @@ def set_bad_name(files: Files, chance: random.Random) -> None:
     attribute, value = chance.choice(ATTRIBUTES), chance.choice(NAMES)
     pattern, text = rf'(\b{attribute}=")[^"]*', files[XML].decode()
     files[XML] = re.sub(pattern, lambda match: match[1] + value, text, count=1).encode()
+
+
+def nest(files: Files, chance: random.Random) -> None:
+    """Nest elements deeply, or add an attribute that is huge."""
+    depth = chance.choice((1000, 100_000))
+    nested = b"<a>" * depth + b"</a>" * depth
+    body = chance.choice((nested, b'<a b="' + b"x" * (depth * 1000) + b'"/>'))
+    files[XML] = files[XML].replace(b"<ModelVariables>", b"<ModelVariables>" + body)
+
+
+def take_parts(files: Files, chance: random.Random) -> None:
+    """Leave out the description or the binaries, or fill them with noise."""
+    kind = chance.randrange(4)
+    noise = chance.choice((b"", b"<", b"\xff\xfe<a/>", b"<html/>", b"\0" * 1000))
+    for name in list(files):
+        if kind == 0 and name == XML or kind == 1 and name.startswith("binaries/"):
+            del files[name]
+        elif kind == 2 and "binaries" in name:
+            files[name] = chance.randbytes(99)
+    if kind == 3:
+        files.clear()
+        files[XML] = noise
 
 
 def write_link(fmu: Path, place: Path, chance: random.Random) -> None:
@@ -120,15 +151,29 @@ def write_damaged(fmu: Path, place: Path, chance: random.Random) -> None:
     place.write_bytes(data)
 
 
+def write_name_twice(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Write an FMU with two model descriptions of the same name."""
+    files = read_archive(fmu)
+    other = files[XML].replace(b'modelName="', b'modelName="Another')
+    write_archive(place, files)
+    with zipfile.ZipFile(place, "a") as archive, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        archive.writestr(XML, chance.choice((other, files[XML])))
+
+
 ALTER: dict[str, Callable[[Files, random.Random], None]] = {
     "path traversal": add_path_traversal,
+    "crowd of files": add_crowd,
     "entities": add_entities,
     "name in the description": set_bad_name,
+    "nesting": nest,
+    "no FMU": take_parts,
 }
 WRITE: dict[str, Callable[[Path, Path, random.Random], None]] = {
     "link": write_link,
     "bomb": write_bomb,
     "damaged archive": write_damaged,
+    "a name twice": write_name_twice,
 }
 KINDS = (*ALTER, *WRITE)
 

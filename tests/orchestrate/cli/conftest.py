@@ -13,7 +13,7 @@ from .commands import Commands, Done
 Ask = Callable[..., Done]
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="package", autouse=True)
 def _exported(exported: Path) -> Iterator[None]:
     """The FMUs are there before the first command asks for them, and pictures are coarse."""
     with pytest.MonkeyPatch.context() as patch:

@@ -1,5 +1,7 @@
 """An FMU that an enemy made is refused before anything of it is unpacked."""
 
+from __future__ import annotations
+
 import random
 
 import pytest
