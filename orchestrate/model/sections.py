@@ -111,7 +111,8 @@ class Section:
         """Return which one of the keys the section has, or None; raise if it has several."""
         present = self.present(keys)
         if len(present) > 1:
-            raise self.error(present[1], f"conflicts with {present[0]}; expected one of {', '.join(keys)}")
+            expected = f"expected one of {', '.join(keys)}"
+            raise self.error(present[1], f"conflicts with {present[0]}; {expected}")
         return present[0] if present else None
 
     def exactly_one(self, keys: Collection[str]) -> str:
