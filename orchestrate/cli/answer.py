@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError, StoreError
+from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
 from .notes import print_frequency_notes, trivial_notes
 from .output import (
@@ -23,8 +24,6 @@ from .output import (
 from .table import Question
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Structure
 
 UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}

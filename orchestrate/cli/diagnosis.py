@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..constants import GRAVITY
 from ..errors import InputError
+from ..lazy import xr
 from ..units import Units, range_text, text_of, with_readable_lengths, with_units
 from .grammar import parse_values, with_option_names
 from .options import read_structure_options, structure_group
@@ -31,8 +32,6 @@ from .table import Command, Group, Question, values_of
 from .text import columns_of, parameter_column, table
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Structure
 
 log = logging.getLogger(__name__)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..lazy import xr
 from ..units import text_of, with_units
 from .answer import answer, read_earlier_result
 from .grammar import floats, parse_breakpoints, positive_number, read_pairs
@@ -39,8 +40,6 @@ from .table import Command, Group, Question, parse_options, values_of
 from .text import Columns, columns_of, extents, impact_lines, table
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Structure
 
 KINDS = {  # of excitation: the class, its own options, and which of them it needs

@@ -26,10 +26,6 @@ class Sampled(ExcitationSignal):
         Samples from time 0 on, m/s2; at least four.
     sample_rate : float
         Hz.
-
-    Raises
-    ------
-    InputError
     """
 
     acceleration: tuple[float, ...]

@@ -32,10 +32,6 @@ class Shock(ExcitationSignal):
     duration : float, optional
         Of all, s; by default twenty lengths after the pulse's beginning.
 
-    Raises
-    ------
-    InputError
-
     Notes
     -----
     The box keeps the pulse's change of velocity: a shaker adds pulses before and after.

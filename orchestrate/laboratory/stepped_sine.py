@@ -38,10 +38,6 @@ class SteppedSine(Sine):
         At each frequency: cycles before what is measured, and those measured. A free vibration with
         a damping ratio of zeta falls to a thousandth within ``1.1/zeta`` cycles.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> stepped = SteppedSine(frequencies=(40.0, 41.0, 42.0), acceleration=4.9, settle_cycles=150)

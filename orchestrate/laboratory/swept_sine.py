@@ -37,10 +37,6 @@ class SweptSine(signals.Sine):
     spacing : str
         ``"linear"`` or ``"log"``.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> sweep = SweptSine(first=20.0, last=90.0, rate=1.0, spacing="log", acceleration=4.9)
