@@ -5,8 +5,6 @@ import { Pauses, PIECE } from "./pauses.js";
 import { lengthOf, periodOf } from "./structure.js";
 
 /**
- * @typedef {import("./kernel.js").Oscillator} Oscillator
- * @typedef {import("./structure.js").Point} Point
  * @typedef {{transient: number, samples: number, tolerance: number}} Settings
  * @typedef {{states: Float64Array, gaps: Float64Array, peak: number, impacts: number,
  *   contact: boolean, multiplicity: number, start: number[], end: number[]}} Response

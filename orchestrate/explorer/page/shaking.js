@@ -8,8 +8,6 @@ import { lengthOf, rescaled } from "./structure.js";
 import { frequencyName, frequencyUnit, levelFrom, levelShown, ownNames, ownUnit, ratioFrom } from "./units.js";
 
 /**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./excitation.js").Level} Level
  * @typedef {{choose: (eta: number, exactly: boolean) => void,
  *   change: (structure: Structure, level: Level) => void}} Acts
  */
@@ -23,7 +21,7 @@ const OMEGA = 2 * Math.PI * 40; // of a first beam of one's own, rad/s
 export class Shaking {
   /**
    * @param {(id: string) => HTMLElement} at
-   * @param {import("./structure.js").Units} units
+   * @param {Units} units
    * @param {Structure} structure
    * @param {Level} level
    * @param {Acts} acts

@@ -2,11 +2,7 @@
 
 import { periodOf } from "./structure.js";
 
-/**
- * @typedef {import("./kernel.js").Oscillator} Oscillator
- * @typedef {import("./structure.js").Point} Point
- * @typedef {{order: Float64Array, amplitude: Float64Array}} Spectrum lines over the excitation's
- */
+/** @typedef {{order: Float64Array, amplitude: Float64Array}} Spectrum lines over the excitation's */
 
 const PIECE = 4096; // samples
 

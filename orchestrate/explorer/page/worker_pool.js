@@ -1,9 +1,6 @@
 /** The workers: tasks are handed to them, parts of answers come back, tasks can be called off. */
 
-/**
- * @typedef {import("./kernel.js").Compiled} Compiled
- * @typedef {{cancel: () => void, done: Promise<void>}} Order
- */
+/** @typedef {{cancel: () => void, done: Promise<void>}} Order */
 
 export class WorkerPool {
   /**
