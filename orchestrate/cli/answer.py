@@ -7,7 +7,7 @@ import json
 from collections.abc import Collection, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError, StoreError
 from ..lazy import xr
@@ -21,10 +21,7 @@ from .output import (
     read_units,
     result_name,
 )
-from .table import Question
-
-if TYPE_CHECKING:
-    from ..model import Structure
+from .table import Question, Structure
 
 UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}
 UNIT_OF_KEY = {  # of a structure's file

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ..constants import GRAVITY
 from ..errors import InputError
@@ -28,11 +28,8 @@ from .output import (
     result_name,
     unit_note,
 )
-from .table import Command, Group, Question, values_of
+from .table import Command, Group, Question, Structure, values_of
 from .text import columns_of, parameter_column, table
-
-if TYPE_CHECKING:
-    from ..model import Structure
 
 log = logging.getLogger(__name__)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them

@@ -7,7 +7,7 @@ import ast
 import math
 from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError
 from ..flags import flag_words
@@ -32,7 +32,7 @@ from .options import (
 )
 from .output import Files, read_running_options, result_groups, result_name
 from .stored import read_structure_and_question
-from .table import Command, Group, Question
+from .table import Command, Group, Question, Structure
 from .text import (
     MOST_ROWS,
     attractor_table,
@@ -51,9 +51,6 @@ from .text import (
     varied_parameter,
     without_unit,
 )
-
-if TYPE_CHECKING:
-    from ..model import Structure
 
 
 def ask_along_parameter(arguments: argparse.Namespace) -> tuple[Structure, Question]:

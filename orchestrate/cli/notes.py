@@ -7,14 +7,12 @@ import logging
 import math
 import warnings
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..constants import TURN
 from ..lazy import xr
 from ..units import text_of
-
-if TYPE_CHECKING:
-    from ..model import Structure
+from .table import Structure
 
 FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
 NEAR = 0.1  # of a frequency: so far beside its own ones a structure is still asked about

@@ -7,7 +7,6 @@ import itertools
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..flags import flag_words
@@ -33,7 +32,7 @@ from .options import (
     varied_arguments,
 )
 from .output import Files, digest, read_running_options, result_groups
-from .table import Command, Group, Question
+from .table import Command, Group, Question, Structure
 from .text import (
     MOST_ROWS,
     Columns,
@@ -51,9 +50,6 @@ from .text import (
     table_of_one,
     varied_parameter,
 )
-
-if TYPE_CHECKING:
-    from ..model import Structure
 
 
 def simulate_summary(data: xr.Dataset) -> Iterator[str]:

@@ -5,16 +5,14 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError
 from ..lazy import xr
 from ..model.ranges import STRUCTURE
 from .grammar import parse_changes
 from .options import print_assumptions, read_structure_options
-
-if TYPE_CHECKING:
-    from ..model import Structure
+from .table import Structure
 
 MOST_NAMED = 3  # parameters that a line on two structures names
 READING = (KeyError, TypeError, ValueError)  # of attributes

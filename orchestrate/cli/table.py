@@ -17,7 +17,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import PLACES
 from .grammar import (
@@ -54,6 +54,11 @@ READERS: dict[str, Reader[Any]] = {  # of values whose mistakes are told in one 
     "PSD": parse_breakpoints,
     "X1,X2,V1,V2": parse_state,
 }
+if TYPE_CHECKING:
+    from ..model import Structure
+else:
+    Structure = None  # a name in annotations alone: help loads nothing numerical
+
 DEBUG = "--debug  show where in the program an error occurred"
 Question = dict[str, Any]
 

@@ -82,11 +82,7 @@ export class Instance {
 
 /** `TwoMassImpactOscillator`. */
 export class Oscillator extends Instance {
-  /**
-   * Begin at phase 0.
-   * @param {Point} point
-   * @param {Iterable<number>} start
-   */
+  /** Begin at phase 0. @param {Point} point @param {Iterable<number>} start */
   begin(point, start) {
     const [x1, x2, v1, v2] = fromRest(start, point.structure);
     this.initialize({

@@ -5,12 +5,7 @@ import { pointAt } from "./excitation.js";
 import { scaleOf } from "./scale.js";
 import { gapUnit } from "./units.js";
 
-/**
- * Draws them.
- * @param {import("./payload.js").Table} table
- * @param {DiagramView} view
- * @returns {Draw}
- */
+/** Draws them. @param {import("./payload.js").Table} table @param {DiagramView} view @returns {Draw} */
 export function overlayOf({ branches, bifurcations, structure }, view) {
   return (pen, size, theme) => {
     const [left, top, width, height] = panels(size).gaps;

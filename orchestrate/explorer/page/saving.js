@@ -24,11 +24,7 @@ function madeBy(swept) {
   return names.flatMap((name) => document.getElementById(name)?.textContent ?? []).join("; ");
 }
 
-/**
- * Save a picture or its numbers; says so.
- * @param {string} words what, and the kind of file
- * @param {App} page
- */
+/** Save a picture or its numbers; says so. @param {string} words what, and the kind of file @param {App} page */
 export function saveShown(words, { eta, regions, inspector, basin, drive }) {
   const [name, kind] = words.split(".");
   const { found, choice, section, spectra, pictures, animation } = inspector;

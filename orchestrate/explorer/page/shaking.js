@@ -19,13 +19,7 @@ const FINE = 9; // of a frequency in Hz
 const OMEGA = 2 * Math.PI * 40; // of a first beam of one's own, rad/s
 
 export class Shaking {
-  /**
-   * @param {(id: string) => HTMLElement} at
-   * @param {Units} units
-   * @param {Structure} structure
-   * @param {Level} level
-   * @param {Acts} acts
-   */
+  /** @param {(id: string) => HTMLElement} at @param {Units} units @param {Structure} structure @param {Level} level @param {Acts} acts */
   constructor(at, units, structure, level, acts) {
     /** @param {string} id */
     const input = (id) => /** @type {HTMLInputElement} */ (at(id));
