@@ -58,7 +58,6 @@ class Random(signals.ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Frequency band and level, for titles."""
         return f"random {self.psd[0][0]:g} to {self.psd[-1][0]:g} Hz, {self.rms:.4g} m/s2 rms"
 
     @property

@@ -81,7 +81,6 @@ class Sampled(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Number of samples and sampling rate, for titles."""
         return f"{len(self.acceleration)} samples at {self.sample_rate:g} Hz"
 
     @property

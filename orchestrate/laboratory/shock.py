@@ -56,7 +56,6 @@ class Shock(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Shape, peak and length, for titles."""
         return f"{self.shape} shock, {self.peak:.4g} m/s2 for {1e3 * self.length:.4g} ms"
 
     @property

@@ -173,12 +173,10 @@ class SumOfSignals(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Labels of all parts."""
         return " + ".join(part.label for part in self.parts)
 
     @property
     def description(self) -> str:
-        """Descriptions of all parts."""
         return " + ".join(part.description for part in self.parts)
 
     @property
