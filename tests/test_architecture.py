@@ -299,7 +299,7 @@ def definitions(tree: ast.AST) -> Iterator[ast.AST]:
 OVERRIDDEN = {  # methods of base classes: that of a derived class has the same docstring
     *("items", "count", "dataset", "call_text", "get_state", "set_state"),
     *("voltage", "trend", "duration", "begin", "point", "limits", "usual_rate"),
-    "location_tolerances",
+    *("label", "description", "frequency", "phase", "level", "location_tolerances"),
 }
 
 

@@ -112,9 +112,7 @@ def set_up_logging() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line on a list of arguments; print errors in one line; return the exit
-    code.
-    """
+    """Run the command line on a list of arguments; print errors; return the exit code."""
     try:
         with safe_outputs() as output:
             code = run_command(sys.argv[1:] if arguments is None else arguments)
@@ -185,7 +183,6 @@ def print_warnings_in_one_line() -> Iterator[None]:
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
-        """Print a ``UserWarning`` in one line; pass other warnings to Python's usual printer."""
         if category is UserWarning:
             print_error(f"warning: {message}")
         else:
@@ -202,15 +199,7 @@ def print_error(line: str) -> None:
 
 
 def printable(text: str, max_length: int = 1000) -> str:
-    r"""Return a text as one line with control characters escaped; cut a long one in its middle.
-
-    Examples
-    --------
-    >>> printable("one\ntwo\x1b[2J")
-    'one\\ntwo\\x1b[2J'
-    >>> printable("123456789", max_length=4)
-    '12 ... 89'
-    """
+    r"""Return a text as one line with control characters escaped; cut a long one in its middle."""
     plain = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
     half = max_length // 2
     return plain if len(plain) <= max_length else f"{plain[:half]} ... {plain[-half:]}"

@@ -7,9 +7,10 @@ import json
 from collections.abc import Collection, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError, StoreError
+from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
 from .notes import print_frequency_notes, trivial_notes
 from .output import (
@@ -20,12 +21,7 @@ from .output import (
     read_units,
     result_name,
 )
-from .table import Question
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from ..model import Structure
+from .table import Question, Structure
 
 UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}
 UNIT_OF_KEY = {  # of a structure's file

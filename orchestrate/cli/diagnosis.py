@@ -9,10 +9,11 @@ import math
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ..constants import GRAVITY
 from ..errors import InputError
+from ..lazy import xr
 from ..units import Units, range_text, text_of, with_readable_lengths, with_units
 from .grammar import parse_values, with_option_names
 from .options import read_structure_options, structure_group
@@ -27,13 +28,8 @@ from .output import (
     result_name,
     unit_note,
 )
-from .table import Command, Group, Question, values_of
+from .table import Command, Group, Question, Structure, values_of
 from .text import columns_of, parameter_column, table
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from ..model import Structure
 
 log = logging.getLogger(__name__)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them

@@ -7,10 +7,11 @@ import ast
 import math
 from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError
 from ..flags import flag_words
+from ..lazy import xr
 from ..units import range_text, text_of, units_of, with_units
 from .answer import answer, answer_question, display_units, is_curve, read_earlier_result
 from .grammar import parse, plain_int
@@ -31,7 +32,7 @@ from .options import (
 )
 from .output import Files, read_running_options, result_groups, result_name
 from .stored import read_structure_and_question
-from .table import Command, Group, Question
+from .table import Command, Group, Question, Structure
 from .text import (
     MOST_ROWS,
     attractor_table,
@@ -50,11 +51,6 @@ from .text import (
     varied_parameter,
     without_unit,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from ..model import Structure
 
 
 def ask_along_parameter(arguments: argparse.Namespace) -> tuple[Structure, Question]:
@@ -164,14 +160,11 @@ POINCARE = Command(
     poincare_summary,
 )
 
-IRREGULAR_PERIODS = 60  # that are drawn of an irregular attractor
-MAX_VALUES_IN_FULL = 5  # values up to which every attractor is printed
-
 
 def attractors_summary(data: xr.Dataset) -> Iterator[str]:
     """Yield the attractors at one parameter value, or the ranges where there are several."""
     name = varied_parameter(data)
-    if data.sizes[name] <= MAX_VALUES_IN_FULL:
+    if data.sizes[name] <= 5:  # values up to which every attractor is printed
         for i in range(data.sizes[name]):
             at = data.isel({name: i})
             count, where = int(at.number), format_parameter(data, name, at[name])
@@ -212,7 +205,7 @@ def draw_coexisting(data: xr.Dataset) -> Any:
         structure = structure.replace(**{name: float(at[name])})
     motions = []
     for state, n in zip(at.state.values, at.multiplicity.values, strict=True):
-        periods = int(n) or IRREGULAR_PERIODS
+        periods = int(n) or 60  # that are drawn of an irregular attractor
         box: Question = {"frequency": float(at.frequency), "amplitude": float(at.amplitude)}
         motions.append(orchestrate.simulate(structure, **box, start=state, periods=periods))
     return draw_motions(at, [with_units(motion, units_of(data)) for motion in motions])
@@ -244,8 +237,6 @@ alone may miss one whose basin is small.""",
     draw_coexisting,
 )
 
-FEWEST_STARTS = 32  # along a side, for entropies
-
 
 def basin_summary(data: xr.Dataset) -> Iterator[str]:
     """Yield a basin result: the plane, its attractors with their shares, the basin entropy."""
@@ -262,7 +253,7 @@ def basin_summary(data: xr.Dataset) -> Iterator[str]:
     yield from attractor_table(data)
     if overlapping:
         yield f"{overlapping} starts left out: there the masses would overlap"
-    if data.sizes["attractor"] > 1 and min(labels.shape) >= FEWEST_STARTS:
+    if data.sizes["attractor"] > 1 and min(labels.shape) >= 32:  # along a side, for entropies
         import orchestrate
 
         mixed = orchestrate.basin_entropy(data)

@@ -33,9 +33,7 @@ SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # 
 
 
 def check_digits(text: str) -> None:
-    """Raise ``ValueError`` unless a text has plain digits: no ``1_000``, no other scripts'
-    digits.
-    """
+    """Raise ``ValueError`` unless a text has plain digits, neither ``1_000`` nor other scripts'."""
     if not text.isascii() or "_" in text:
         raise ValueError(text)
 
@@ -69,7 +67,6 @@ def floats(
     """Return a reader of numbers between separators: as many as one of ``counts``, if given."""
 
     def split(text: str) -> tuple[float, ...]:
-        """Split a text into numbers; raise ``ValueError`` for a wrong count or sign."""
         numbers = tuple(plain_float(part) for part in text.split(separator))
         if counts and len(numbers) not in counts:
             raise ValueError(text)
@@ -113,7 +110,6 @@ def parse_plane_side(option: str, text: str) -> AxisSpec:
     """Parse one side of a basin's plane, ``NAME,FIRST,LAST,COUNT``."""
 
     def split(text: str) -> AxisSpec:
-        """Split the text into name, two numbers and a count; raise ``ValueError`` otherwise."""
         name, first, last, count = (part.strip() for part in text.split(","))
         return name, plain_float(first), plain_float(last), plain_int(count)
 
@@ -124,7 +120,6 @@ def parse_breakpoints(option: str, text: str) -> tuple[tuple[float, float], ...]
     """Parse ``HZ:VALUE,HZ:VALUE,...`` into pairs of frequency and value."""
 
     def split(text: str) -> tuple[tuple[float, float], ...]:
-        """Split the text into pairs of finite numbers; raise ``ValueError`` otherwise."""
         pairs = [tuple(map(plain_float, part.split(":"))) for part in text.split(",")]
         if not all(len(pair) == 2 and all(map(math.isfinite, pair)) for pair in pairs):
             raise ValueError(text)
@@ -151,19 +146,9 @@ def read_pairs(option: str, texts: Iterable[str], expected: str) -> dict[str, st
 
 
 def with_option_names(message: str, chosen: argparse.Namespace) -> str:
-    """Return a message in which keywords are options: ``--unit`` for ``unit=`` without a value.
-
-    Examples
-    --------
-    >>> chosen = argparse.Namespace(sample_rate=None, columns=None)
-    >>> with_option_names("expected columns=, sample_rate= or e=, not columns=3", chosen)
-    'expected --columns, --sample-rate or e=, not columns=3'
-    >>> with_option_names('polarity? columns="0,2,1"', chosen)
-    'polarity? --columns "0,2,1"'
-    """
+    """Return a message in which keywords are options: ``--unit`` for ``unit=`` without a value."""
 
     def option(keyword: re.Match[str]) -> str:
-        """Return the option's spelling of a matched keyword, if it is one."""
         name = keyword["name"]
         spelling = f"--{name.replace('_', '-')}{' ' if keyword['quoted'] else ''}"
         return spelling if name in vars(chosen) else keyword[0]

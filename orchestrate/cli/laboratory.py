@@ -8,9 +8,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError
+from ..lazy import xr
 from ..units import text_of, with_units
 from .answer import answer, read_earlier_result
 from .grammar import floats, parse_breakpoints, positive_number, read_pairs
@@ -35,13 +36,8 @@ from .output import (
     result_groups,
     unit_note,
 )
-from .table import Command, Group, Question, parse_options, values_of
+from .table import Command, Group, Question, Structure, parse_options, values_of
 from .text import Columns, columns_of, extents, impact_lines, table
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from ..model import Structure
 
 KINDS = {  # of excitation: the class, its own options, and which of them it needs
     "swept_sine": ("SweptSine", ("duration", "rate", "spacing", "g", "acceleration"), ""),

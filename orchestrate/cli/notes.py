@@ -7,17 +7,14 @@ import logging
 import math
 import warnings
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..constants import TURN
 from ..lazy import xr
 from ..units import text_of
-
-if TYPE_CHECKING:
-    from ..model import Structure
+from .table import Structure
 
 FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
-FAR_LEVEL = 200.0  # times the level from which a clearance is hardly meant
 NEAR = 0.1  # of a frequency: so far beside its own ones a structure is still asked about
 OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
     "frequency": (1.0 / TURN, "rad/s", "--hz"),
@@ -104,7 +101,7 @@ def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset)
     if ratio <= 1.0:
         return
     opens = structure.clearance < 0.0
-    if ratio > FAR_LEVEL:
+    if ratio > 200.0:  # times the level from which a clearance is hardly meant
         warnings.warn(
             f"clearance = {structure.clearance:g} m: {ratio:.3g} times what this level moves; is "
             "it in m (20 um is 2e-5)?",

@@ -7,7 +7,7 @@ import math
 import textwrap
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
@@ -20,10 +20,7 @@ from .grammar import (
     positive_number,
 )
 from .output import result_groups
-from .table import Group
-
-if TYPE_CHECKING:
-    from ..model import Structure
+from .table import Group, Structure
 
 SETS = Path(__file__).resolve().parents[1] / "model" / "sets"
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options

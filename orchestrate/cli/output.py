@@ -28,7 +28,6 @@ FORMATS = ("nc", "csv", "mat", "xlsx")
 PLOTS = ("png", "pdf", "svg")
 SIZE = floats("W:H such as 16:9", ":", (2,), positive=True)
 DIGITS = 6  # of the digest in a file's name
-PREPARE_AFTER = 1.0  # s: after so much computing, a picture is prepared beside it
 OWN_NAME = re.compile(rf"[a-z-]+_(.+)_[0-9a-f]{{{DIGITS}}}")  # of a result's file
 
 # -- options --------------------------------------------------------------------------------------
@@ -186,16 +185,7 @@ def check_output(folder: Path, option: str = "--output") -> None:
 def result_name(
     command: str, structure_file: str, structure: Structure, question: Mapping[str, Any]
 ) -> str:
-    """Return a result's file name: command, the structure's name, and a digest of all.
-
-    Examples
-    --------
-    >>> from orchestrate.model import Structure
-    >>> result_name("simulate", "own/beam.toml", Structure(), {"eta": 0.4, "periods": 2})[:-6]
-    'simulate_beam_'
-    >>> result_name("border", "branch_beam_7ed5cb.nc", Structure(), {})[:-6]
-    'border_beam_'
-    """
+    """Return a result's file name: command, the structure's name, and a digest of all."""
     stem = Path(structure_file).stem
     own = OWN_NAME.fullmatch(stem)
     digits = digest(structure.parameters(), question)
@@ -206,7 +196,6 @@ def digest(*arguments: Any) -> str:
     """Return the first hexadecimal digits of a SHA-256 over arguments, for a file name."""
 
     def other(value: Any) -> str:  # a stored result is the question that it answers
-        """Return the text for a value JSON cannot hold: a dataset's question, or its repr."""
         identity = getattr(value, "attrs", {}).get("identity")
         return json.dumps(json.loads(identity)["question"]) if identity else repr(value)
 
@@ -311,13 +300,12 @@ def importing_matplotlib(needed: bool) -> Iterator[None]:
     """Import the drawing code in a thread while the ``with`` block computes."""
 
     def prepare() -> None:
-        """Import Matplotlib and draw a small figure; ignore any error."""
         from ..show.files import warm_up_matplotlib
 
         with suppress(Exception):  # it comes again where the picture is drawn
             warm_up_matplotlib()
 
-    timer = threading.Timer(PREPARE_AFTER, prepare)
+    timer = threading.Timer(1.0, prepare)  # a shorter computation is not disturbed
     if needed:
         timer.start()
     try:

@@ -75,10 +75,7 @@ BUILD = Command(
 
 
 def read_diagram(arguments: argparse.Namespace, branches: xr.Dataset | None) -> Any:
-    """Return the sweep of RESULT, or else the structure: asked for, of ``--branches``, the paper's.
-
-    A printed line says so if the branches are of another structure.
-    """
+    """Return the sweep of RESULT, or else the structure: asked for, of ``--branches``, or usual."""
     drawn = None if branches is None else structure_of("--branches", arguments.branches, branches)
     data: Any
     if arguments.result is not None:

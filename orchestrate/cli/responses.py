@@ -7,10 +7,10 @@ import itertools
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..flags import flag_words
+from ..lazy import xr
 from ..units import is_in_ratios, text_of, with_units
 from .answer import OVERLAY, answer, answer_question, is_curve
 from .drive import DRIVE, drive_units, read_drive_options
@@ -32,7 +32,7 @@ from .options import (
     varied_arguments,
 )
 from .output import Files, digest, read_running_options, result_groups
-from .table import Command, Group, Question
+from .table import Command, Group, Question, Structure
 from .text import (
     MOST_ROWS,
     Columns,
@@ -50,11 +50,6 @@ from .text import (
     table_of_one,
     varied_parameter,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from ..model import Structure
 
 
 def simulate_summary(data: xr.Dataset) -> Iterator[str]:
@@ -359,8 +354,6 @@ Repeat the command to resume an interrupted run. A finished result is left as it
     has_picture=is_curve,
 )
 
-MAX_MULTIPLICITY = 4  # that is printed
-
 
 def ask_map(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     """Return structure and keywords of ``map``; exactly two parameters are lists."""
@@ -390,7 +383,7 @@ def map_summary(data: xr.Dataset) -> Iterator[str]:
     counts = {n: int((kinds == n).sum()) for n in sorted(set(kinds.tolist()))}
     shares = [format_share(count, kinds.size, f"after {int(n)} T") for n, count in counts.items()]
     if shares:
-        yield f"they repeat: {', '.join(shares[:MAX_MULTIPLICITY])}"
+        yield f"they repeat: {', '.join(shares[:4])}"
     top = data.isel(data.xi_rel_max.argmax(...))
     names = map(str, data.xi_rel_max.dims)
     where = ", ".join(format_parameter(data, name, top[name]) for name in names)

@@ -5,18 +5,15 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError
 from ..lazy import xr
 from ..model.ranges import STRUCTURE
 from .grammar import parse_changes
 from .options import print_assumptions, read_structure_options
+from .table import Structure
 
-if TYPE_CHECKING:
-    from ..model import Structure
-
-SAME = 1e-9  # relative: numbers that are nearer than this are one
 MOST_NAMED = 3  # parameters that a line on two structures names
 READING = (KeyError, TypeError, ValueError)  # of attributes
 
@@ -24,12 +21,7 @@ READING = (KeyError, TypeError, ValueError)  # of attributes
 def read_structure_and_question(
     arguments: argparse.Namespace,
 ) -> tuple[Structure, dict[str, Any]]:
-    """Return the structure and the keywords of a command that may begin with a stored result.
-
-    The structure is that of ``--structure``, else that of the result of ``--start``, else the
-    paper's, with ``--set``. If the result was computed for another structure than the one asked
-    for, a printed line says so.
-    """
+    """Return the structure and the keywords of a command that may begin with a stored result."""
     if arguments.start is None:
         arguments.structure = arguments.structure or "paper"
         return read_structure_options(arguments), arguments.row.keywords(arguments)
@@ -66,14 +58,7 @@ def print_difference(option: str, path: Path, stored: Structure, asked: Structur
 
 
 def explain_difference(stored: Structure, asked: Structure) -> str:
-    """Return which parameters of two structures differ, as a text; empty if none does.
-
-    Examples
-    --------
-    >>> from orchestrate.model import Structure
-    >>> explain_difference(Structure(), Structure().replace(e=0.3))
-    'e = 0.7 there, 0.3 here'
-    """
+    """Return which parameters of two structures differ, as a text; empty if none does."""
     pairs = [
         (name, float(getattr(stored, name)), float(getattr(asked, name)))
         for name in (*STRUCTURE, "bonded")
@@ -81,7 +66,7 @@ def explain_difference(stored: Structure, asked: Structure) -> str:
     texts = [
         f"{name} = {there:.6g} there, {here:.6g} here"
         for name, there, here in pairs
-        if not math.isclose(there, here, rel_tol=SAME)
+        if not math.isclose(there, here, rel_tol=1e-9)
     ]
     left = len(texts) - MOST_NAMED
     return "; ".join(texts[:MOST_NAMED] + [f"and {left} more parameters"] * (left > 0))

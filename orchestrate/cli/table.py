@@ -17,7 +17,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import PLACES
 from .grammar import (
@@ -54,6 +54,11 @@ READERS: dict[str, Reader[Any]] = {  # of values whose mistakes are told in one 
     "PSD": parse_breakpoints,
     "X1,X2,V1,V2": parse_state,
 }
+if TYPE_CHECKING:
+    from ..model import Structure
+else:
+    Structure = None  # a name in annotations alone: help loads nothing numerical
+
 DEBUG = "--debug  show where in the program an error occurred"
 Question = dict[str, Any]
 
@@ -82,14 +87,7 @@ Lines = str | tuple[str, ...]
 
 @functools.cache
 def parse_options(lines: Lines) -> tuple[Option, ...]:
-    """Return the options that lines of one or more texts describe.
-
-    Examples
-    --------
-    >>> (jobs,) = parse_options("--jobs N = 2  workers at once")
-    >>> jobs.details["default"], jobs.details["help"]
-    (2, 'workers at once (default: %(default)s)')
-    """
+    """Return the options that lines of one or more texts describe."""
     texts = (lines,) if isinstance(lines, str) else lines
     blocks = (re.split(r"\n(?=\S)", inspect.cleandoc(text)) for text in texts if text.strip())
     return tuple(parse_option(entry) for block in blocks for entry in block)
@@ -246,13 +244,7 @@ def default_of(function: str, name: str) -> Any:
 
 
 def documentation_of(function: str, name: str) -> tuple[str, str]:
-    """Return an argument's type and description from the function's numpydoc docstring.
-
-    Examples
-    --------
-    >>> documentation_of("poincare", "transient")
-    ('int', 'Excitation periods dropped.')
-    """
+    """Return an argument's type and description from the function's numpydoc docstring."""
     text = ast.get_docstring(source_of(function)[0]) or ""
     section = text.partition("\nParameters\n----------\n")[2].partition("\n\n")[0]
     for entry in re.split(r"\n(?=\S)", section):
@@ -266,13 +258,7 @@ def documentation_of(function: str, name: str) -> tuple[str, str]:
 
 
 def help_text(meaning: str) -> str:
-    """Return the first sentence of an argument's description as help text for ``argparse``.
-
-    Examples
-    --------
-    >>> help_text("Whether to compute :func:`orchestrate.lyapunov` too. More.")
-    'compute lyapunov too'
-    """
+    """Return the first sentence of an argument's description as help text for ``argparse``."""
     plain = MARKUP.sub(lambda match: match[1] or match[2], meaning).partition(". ")[0].rstrip(".")
     plain = plain.removeprefix("Whether to ")
     return (plain[:1].lower() + plain[1:]).replace("%", "%%")

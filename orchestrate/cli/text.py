@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..flags import flag_words
+from ..lazy import xr
 from ..units import (
     as_shown,
     is_in_ratios,
@@ -20,9 +21,6 @@ from ..units import (
     with_units,
 )
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 LENGTHS = ("m", "m/s", "m/s2")
 MOST_ROWS = 10  # of a table that is printed
 Columns = dict[str, list[str]]  # of a table: cells by title
@@ -31,13 +29,7 @@ Columns = dict[str, list[str]]  # of a table: cells by title
 
 
 def table(columns: Mapping[str, Iterable[str]], most: int = MOST_ROWS) -> Iterator[str]:
-    """Yield the lines of a table, titles first, at most as many rows.
-
-    Examples
-    --------
-    >>> list(table({"kind": ["fold", "flip"], "eta": ["1.2", "1.25"]}))
-    ['  kind  eta', '  fold  1.2', '  flip  1.25']
-    """
+    """Yield the lines of a table, titles first, at most as many rows."""
     rows = list(zip(*columns.values(), strict=True))
     shown = [tuple(columns), *rows[:most]]
     widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
@@ -196,13 +188,7 @@ def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
 
 
 def runs_of(flags: Any) -> list[tuple[int, int]]:
-    """Return first and last index of each run of true flags.
-
-    Examples
-    --------
-    >>> runs_of([True, True, False, True])
-    [(0, 1), (3, 3)]
-    """
+    """Return first and last index of each run of true flags."""
     runs: list[tuple[int, int]] = []
     for index, holds in enumerate(flags):
         if holds and runs and runs[-1][1] == index - 1:
@@ -228,21 +214,13 @@ def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) 
 
 
 def format_share(count: int, whole: int, word: str = "") -> str:
-    """Format a number of responses with its share.
-
-    Examples
-    --------
-    >>> format_share(4582, 7901, "repeat")
-    '4,582 repeat (58 %)'
-    """
+    """Format a number of responses with its share."""
     number = f"{count:,} {word}".rstrip()
     return f"{number} ({100.0 * count / whole:.0f} %)"
 
 
 def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
-    """Format a response's largest gap over a eta^2 and, where the box's motion is known, as
-    length.
-    """
+    """Format a response's largest gap over a eta^2, as length too if the box's motion is known."""
     ratio, length = float(data.xi_rel_max), length_of_ratio(data)
     parts = [f"xi_Rel = {ratio:{form}}"]
     if length is not None and math.isfinite(float(length)) and not is_in_ratios(data):

@@ -144,17 +144,9 @@ STEPS = (
 
 
 def in_units(text: str, shown: Mapping[str, str]) -> str:
-    """Return a text of the tour with its numbers in the units of a page.
-
-    Examples
-    --------
-    >>> rpm = {"frequency": "rpm", "length": "um", "acceleration": "m/s2"}
-    >>> in_units("shut at {30 Hz} and {0.5 g}", rpm)
-    'shut at 1800 rpm and 4.903 m/s²'
-    """
+    """Return a text of the tour with its numbers in the units of a page."""
 
     def convert(match: re.Match[str]) -> str:
-        """Return one or two numbers and their unit, in that of the page."""
         number, unit = match.groups()
         sizes = FACTORS[KINDS[unit]]
         word = shown[KINDS[unit]]

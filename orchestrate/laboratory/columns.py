@@ -121,13 +121,7 @@ class Columns:
 
 
 def split_heading(heading: str) -> tuple[str, str]:
-    """Split a column's heading; return its name and its unit, an empty string without one.
-
-    Examples
-    --------
-    >>> split_heading("Acc 1 [g]"), split_heading("base / m/s²"), split_heading("time")
-    (('Acc 1', 'g'), ('base', 'm/s²'), ('time', ''))
-    """
+    """Split a column's heading; return its name and its unit, an empty string without one."""
     plain = heading.strip().strip('"').strip()
     parts = HEADING.fullmatch(plain)
     if parts is None and (quotient := QUOTIENT.fullmatch(plain)) and is_unit(quotient["unit"]):
@@ -171,11 +165,7 @@ def converted_channels(
     unit: ByChannel = None,
     sensitivity: ByChannel = None,
 ) -> tuple[Floats | None, dict[str, Channel], dict[str, str]]:
-    """Convert a file's columns to SI: return times in s or None, channels, how they were read.
-
-    How they were read are attributes of a record: ``columns``, which column was taken for what;
-    ``unit`` of the channels; and ``unit_in_file``, where ``unit`` was taken in its place.
-    """
+    """Convert a file's columns to SI: return times in s or None, channels, how they were read."""
     known = channels_by_name(table) if columns is None else {}
     places = known or channel_places(table, columns)
     check_counters(table, places)
@@ -232,14 +222,7 @@ def taken_text(table: Columns, places: Mapping[str, int]) -> str:
 
 
 def column_taken(attributes: Mapping[Any, Any], channel: str) -> str:
-    """Return what a record's attribute ``columns`` says a channel was read from, or its name.
-
-    Examples
-    --------
-    >>> read_as = {"columns": 'time "t", base "shaker table", face 1 "left"'}
-    >>> column_taken(read_as, "box_acceleration"), column_taken({}, "box_acceleration")
-    ('base "shaker table"', 'box_acceleration')
-    """
+    """Return what a record's attribute ``columns`` says a channel was read from, or its name."""
     word = re.escape(SHORT_NAMES.get(channel, channel))
     ends = "|".join(map(re.escape, ("time", *SHORT_NAMES.values())))
     pattern = rf'(?:^|, )({word} ".*?")(?=, (?:{ends}) "|, by their order|$)'
@@ -270,10 +253,7 @@ def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
 def channel_places(
     table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
 ) -> dict[str, int]:
-    """Return the column index of each channel and of the time, as asked for or by their order.
-
-    The order is time, base, face 1, face 2; without time where the file says the sampling rate.
-    """
+    """Return the column index of each channel and of the time, as asked for or by their order."""
     wanted = (*(() if table.sample_rate else ("time",)), *CHANNELS)[: 3 + (not table.sample_rate)]
     if columns is None:
         return places_by_order(table, wanted)

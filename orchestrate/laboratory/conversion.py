@@ -51,25 +51,13 @@ ByChannel = str | float | Mapping[str, Any] | None  # as an argument: of all, or
 
 
 def plain_unit(text: str) -> str:
-    """Return a unit in the spelling of the tables of units.
-
-    Examples
-    --------
-    >>> plain_unit("m/s\u00b2"), plain_unit("M/S^2"), plain_unit("m/s**2"), plain_unit(" G ")
-    ('m/s2', 'm/s2', 'm/s2', 'g')
-    """
+    """Return a unit in the spelling of the tables of units."""
     plain = text.strip().lower().replace("\u00b2", "2").replace("\u207b", "-")
     return plain.translate(str.maketrans("", "", "^*_. \u00b7[]()"))
 
 
 def by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[str, Any]:
-    """Return an argument by channel: of all, a mapping, or a text ``base=V,face=mm/s``.
-
-    Examples
-    --------
-    >>> by_channel("unit", "face=mm/s, base=V", ["box_acceleration", "acceleration1"])
-    {'acceleration1': 'mm/s', 'box_acceleration': 'V'}
-    """
+    """Return an argument by channel: of all, a mapping, or a text ``base=V,face=mm/s``."""
     if argument is None:
         return {}
     if isinstance(argument, str) and "=" in argument:
@@ -102,13 +90,7 @@ def number_by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -
 def unit_factor(
     label: str, unit: str, sensitivity: str = "", known: Tables = OF_MOTIONS
 ) -> tuple[float, int]:
-    """Return the factor from a column's unit to SI, and how many derivatives make acceleration.
-
-    Examples
-    --------
-    >>> unit_factor("face", "mm/s"), unit_factor("base", "mV", "100 mV/m/s2")
-    ((0.001, 1), (0.01, 0))
-    """
+    """Return the factor from a column's unit to SI, and how many derivatives make acceleration."""
     plain = plain_unit(unit)
     if plain in VOLTAGES or (not plain and sensitivity):
         return factor_of_voltage(label, unit or "V", sensitivity, known)
@@ -138,18 +120,7 @@ def factor_of_voltage(label: str, unit: str, sensitivity: str, known: Tables) ->
 
 
 def differentiated(values: Floats, rate: float, derivatives: int, delay: float = 0.0) -> Floats:
-    """Return a channel's derivative of an order, earlier by a delay in s, by its spectrum.
-
-    The straight line between its ends is taken out, and the rest is continued oddly at both ends:
-    its spectrum has no jump there, and every frequency below half the sampling rate is exact.
-
-    Examples
-    --------
-    >>> time = np.arange(2000) / 1000.0
-    >>> made = differentiated(np.sin(300.0 * time), 1000.0, 1)
-    >>> bool(np.abs(made - 300.0 * np.cos(300.0 * time))[20:-20].max() < 1.0)
-    True
-    """
+    """Return a channel's derivative of an order, earlier by a delay in s, by its spectrum."""
     from scipy.fft import irfft, rfft, rfftfreq
 
     if not derivatives and not delay:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import InputError
+from ..lazy import xr
 from .columns import (
     ANGLES,
     CURVE_NAMES,
@@ -31,11 +31,6 @@ from .record_csv import read_csv
 from .record_files import check_file, file_kind
 from .resonance_curve import CurveColumns, acceleration_factor, made_curve
 from .signals import LEVEL, checked
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-MOST_DEGREES = 7.0  # a phase without a unit that goes beyond it, 2 pi and some, is in degrees
 
 
 def read_curve(
@@ -186,7 +181,8 @@ def base_level(
 
 def phase_in_rad(table: Columns, column: Column) -> Floats:
     """Convert a column of phases to rad; without a unit, large numbers are in degrees."""
-    degrees = np.nanmax(np.abs(column.values), initial=0.0) > MOST_DEGREES
+    # a phase without a unit beyond 2 pi and some
+    degrees = np.nanmax(np.abs(column.values), initial=0.0) > 7.0
     return scaled_column(table, column, "deg" if degrees else "rad", ANGLES)
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..constants import TURN
 from ..errors import InputError
+from ..lazy import xr
 from ..model import Shaker, Structure
 from ..model.arguments import checked_positive
 from ..response.equations import absolute_accelerations
@@ -21,11 +22,7 @@ from ..weak_drive.cosimulate import cosimulate
 from ..weak_drive.polynomials import Cubic
 from .signals import Sine
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 POSITIVE = ("start", "averaging", "compression", "tolerance", "patience", "rise")
-STEPS_A_PERIOD = 32.0  # of the highest frequency, and of the structure's own
 RECORDED = ("current", "voltage", "power")
 
 
@@ -52,10 +49,6 @@ class LevelControl(InputControl):
         Periods.
     fastest, tolerance : float
         Factors, > 1.
-
-    Raises
-    ------
-    InputError
 
     Examples
     --------
@@ -157,7 +150,7 @@ def shake_on(
     sine, control = controlled(structure, excitation, shaker)
     rate = checked_positive("sample_rate", sample_rate or sine.usual_rate)
     own = math.sqrt(max(structure.k1 / structure.m1, structure.k2 / structure.m2)) / TURN
-    every = math.ceil(STEPS_A_PERIOD * max(own, 0.05 * sine.usual_rate) / rate)
+    every = math.ceil(32.0 * max(own, 0.05 * sine.usual_rate) / rate)
     count = math.floor(sine.duration * rate * (1.0 + 1e-14))
     run = cosimulate(
         structure,

@@ -89,13 +89,7 @@ def equal_nodes(first: float, last: float, longest: float) -> Floats:
 
 
 def subdivided(nodes: Floats, parts: NDArray[np.int_]) -> Floats:
-    """Cut each piece between two nodes into equal parts; return all nodes.
-
-    Examples
-    --------
-    >>> subdivided(np.array([0.0, 1.0, 2.0]), np.array([2, 1]))
-    array([0. , 0.5, 1. , 2. ])
-    """
+    """Cut each piece between two nodes into equal parts; return all nodes."""
     piece = np.repeat(np.arange(len(parts)), parts)
     part = np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)
     inner = nodes[piece] + np.diff(nodes)[piece] * (part / parts[piece])

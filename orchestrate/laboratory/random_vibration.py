@@ -34,10 +34,6 @@ class Random(signals.ExcitationSignal):
     seed : int
         Of the phases.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> shaking = Random(psd=[(20.0, 0.5), (200.0, 0.5)], duration=8.0, seed=1)
@@ -62,7 +58,6 @@ class Random(signals.ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Frequency band and level, for titles."""
         return f"random {self.psd[0][0]:g} to {self.psd[-1][0]:g} Hz, {self.rms:.4g} m/s2 rms"
 
     @property
@@ -100,7 +95,6 @@ class Random(signals.ExcitationSignal):
         step = self.duration / count
 
         def signal_at(shift: float, weights: Any = 1.0) -> NDArray[np.float64]:
-            """Return the signal at a fixed time after each node."""
             return np.fft.irfft(weights * lines * np.exp(1j * omega * shift), count) * count
 
         values = np.stack([signal_at(point * step) for point in POINTS], axis=1)

@@ -20,8 +20,6 @@ from .pieces import Floats, Pieces
 
 Flags = NDArray[np.bool_]
 SHORT = 0.1  # of a cell times the highest natural frequency, rad
-LOOKS = 16  # at the contact force in a cell: it bends little there
-ROUNDING = 1e-13
 ORDER = 7  # derivatives of an acceleration kept: the next is below SHORT^7/7! = 2e-11 of it
 
 
@@ -155,8 +153,8 @@ def first_fall(derivatives: Floats, scale: float, length: float) -> float | None
 
     factors = derivatives / np.array([math.factorial(n) for n in range(len(derivatives))])
     series = np.polynomial.Polynomial(factors)
-    mesh = np.linspace(0.0, length, 1 + LOOKS)
-    below = np.flatnonzero(series(mesh) < -ROUNDING * scale)
+    mesh = np.linspace(0.0, length, 1 + 16)
+    below = np.flatnonzero(series(mesh) < -1e-13 * scale)
     if not len(below):
         return None
     last = int(below[0])

@@ -5,21 +5,19 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
+from ..lazy import xr
 from ..response.labels import variable
 from .conversion import MOTIONS, differentiated
 from .pieces import Floats
 from .record_checks import doubtful_channels
 from .signals import HERTZ, checked
 from .time_base import checked_times, interpolated
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 ACCELERATIONS = {  # long names
     "box_acceleration": "acceleration of the box",

@@ -11,22 +11,13 @@ from .pieces import Floats
 
 PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
 CLIPPED = 1e-4  # share of samples at repeated extremes from which a channel is saturated
-CONSTANT = 0.02  # share of the samples, in a row, from which one value is no reading
-FEWEST_CONSTANT = 20  # samples
-MOVING = 0.1  # rms over the usual one from which another channel moves there
-SAME = 1e-9  # of the peak: two sensors never differ so little
-COUNTING = 0.9  # share of equal steps in a counter
-BAND = 1e-3  # of the peak-to-peak value: readings so close to an extreme are at it
 PLATEAU = 3  # samples in a row at an extreme that no sine has
 
 
 def doubtful_channels(
     time: Floats, accelerations: Mapping[str, Floats], channels: Mapping[str, Floats]
 ) -> list[tuple[str, str, str]]:
-    """Return what makes channels, the base first, doubtful: (channel, what it is, what to do).
-
-    Channels are as they were read, which saturate; accelerations are what they were made.
-    """
+    """Return what makes channels, the base first, doubtful: (channel, what it is, what to do)."""
     doubts = []
     for name, values in channels.items():
         other = next((one for key, one in channels.items() if key != name), values)
@@ -44,7 +35,8 @@ def doubtful_channels(
             doubts.append((name, text, "expected a reading: look for a loose cable"))
     for first, second in combinations(channels, 2):
         values, off = channels[first], np.abs(channels[first] - channels[second])
-        if np.ptp(values) > 0.0 and off.max() <= SAME * np.abs(values).max():
+        # two sensors never differ so little
+        if np.ptp(values) > 0.0 and off.max() <= 1e-9 * np.abs(values).max():
             doubts.append((second, f"the same values as {first}", "expected a channel each"))
     return doubts
 
@@ -68,9 +60,9 @@ def constant_part(values: Floats, other: Floats) -> slice | None:
     ends = np.concatenate([[0], changes, [len(values)]])
     longest = int(np.argmax(np.diff(ends)))
     part = slice(int(ends[longest]), int(ends[longest + 1]))
-    if part.stop - part.start < max(CONSTANT * len(values), FEWEST_CONSTANT):
+    if part.stop - part.start < max(0.02 * len(values), 20):
         return None
-    return part if other[part].std() > MOVING * other.std() else None
+    return part if other[part].std() > 0.1 * other.std() else None
 
 
 def ascends(values: Floats) -> bool:
@@ -80,14 +72,11 @@ def ascends(values: Floats) -> bool:
 
 
 def first_hole(values: Floats) -> int | None:
-    """Return the row after which a counter goes on that misses some; None if it is none, or whole.
-
-    A counter has equal steps up in nine of ten rows or more; where it falls it begins again.
-    """
+    """Return the row where a counter (nine equal steps of ten) skips numbers, or None."""
     steps = np.diff(values)
     usual = float(np.median(steps)) if len(steps) else 0.0
     equal = np.abs(steps - usual) <= 0.5 * usual
-    if not usual > 0.0 or equal.mean() < COUNTING:
+    if not usual > 0.0 or equal.mean() < 0.9:
         return None
     holes = np.flatnonzero(steps > 1.5 * usual)
     return int(holes[0]) + 1 if len(holes) else None
@@ -114,7 +103,7 @@ def clipped_share(values: Floats) -> float:
     steps = np.diff(ordered)
     if not spread > 0.0:
         return 0.0
-    band = max(BAND * spread, 0.999 * float(steps[steps > 1e-9 * spread].min()))
+    band = max(1e-3 * spread, 0.999 * float(steps[steps > 1e-9 * spread].min()))
     median, share = float(ordered[len(ordered) // 2]), 0.0
     for extreme in (ordered[0], ordered[-1]):
         distance = np.abs(values - extreme)

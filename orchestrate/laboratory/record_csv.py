@@ -28,7 +28,6 @@ POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?
 COMMA = re.compile(r"[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.I)
 NUMBERS = {".": POINT, ",": COMMA}
 TEXT = re.compile("|".join((r".*[^\W\d_].*", TEXTS["a clock time"], TEXTS["a date"])))
-TEXT_LINES = 10  # lines after the first that have texts in the same columns
 BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 
@@ -106,13 +105,10 @@ def dialect_of(path: Path, lines: list[str]) -> Dialect:
 
 
 def dialect_texts(dialect: Dialect, lines: list[str], has_texts: bool) -> frozenset[int] | None:
-    """Return which columns of the row in a table are texts; None if the first line is no row.
-
-    Numbers alone are a row; texts have to be in the same columns of the lines after it, too.
-    """
+    """Return which columns of the row in a table are texts; None if the first line is no row."""
     if dialect.separator == dialect.decimal and '"' not in lines[0]:
         return None
-    more = [line for line in lines[1:] if line.strip()][: TEXT_LINES if has_texts else 0]
+    more = [line for line in lines[1:] if line.strip()][: 10 if has_texts else 0]
     rows = [[one.strip() for one in dialect.fields(line)] for line in (lines[0], *more)]
     number, row = NUMBERS[dialect.decimal], rows[0]
     texts = [{i for i, one in enumerate(r) if one and not number.fullmatch(one)} for r in rows]

@@ -8,12 +8,12 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import InputError
 from ..files import check_path_encoding, write_whole
+from ..lazy import xr
 from .columns import Column, Columns, converted_channels
 from .conversion import ByChannel, number_by_channel
 from .record import CHANNELS, Reading, checked_record, unit_of_channel
@@ -21,9 +21,6 @@ from .record_csv import read_csv, write_csv
 from .record_labview import read_lvm, read_tdms, unreadable
 from .record_mat import read_mat, write_mat
 from .record_uff import read_uff, write_uff
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MOST_BYTES = 1 << 30  # a file is read into the memory as a whole
 ENDINGS = {

@@ -74,12 +74,7 @@ def load_arrays(path: Path) -> dict[str, NDArray[Any]]:
 
 
 def read_mat(path: Path) -> Columns:
-    """Read vectors of a MAT file, and columns of matrices as ``name[0]``, ``name[1]`` ...
-
-    Fields of structures are named ``structure.field``. Where a structure states the start and the
-    increment of its abscissa, or a rate, these are the times; a unit, a name and a sensitivity
-    stand beside the vector, in its structure or in one above it.
-    """
+    """Read vectors of a MAT file, and columns of matrices as ``name[0]``, ``name[1]`` ..."""
     arrays = load_arrays(path)
     texts = {
         name.lower(): str(one.ravel()[0]).strip()
@@ -113,7 +108,6 @@ def mat_column(name: str, values: Floats, texts: dict[str, str]) -> Column:
     """Return a vector as a column, with the name, unit and sensitivity that stand nearest to it."""
 
     def nearest(*words: str) -> str:
-        """Return the text of a field with one of these names, from the vector's structure up."""
         parents = name.lower().split(".")
         for depth in range(len(parents) - 1, -1, -1):
             above = ".".join([*parents[:depth], ""]) if depth else ""

@@ -106,13 +106,7 @@ def time_values(one: Dataset) -> Floats:
 
 
 def rounded_rate(step: float) -> float:
-    """Return the roundest sampling rate whose step is equal to this one to six digits.
-
-    Examples
-    --------
-    >>> rounded_rate(1.95312e-04), rounded_rate(2.26757e-05), rounded_rate(0.001)
-    (5120.0, 44100.0, 1000.0)
-    """
+    """Return the roundest sampling rate whose step is equal to this one to six digits."""
     if not 0.0 < step < math.inf:
         raise InputError(f"abscissa increment {step!r}; expected a number > 0")
     half = 0.5001 * 10.0 ** (math.floor(math.log10(step)) - 5)

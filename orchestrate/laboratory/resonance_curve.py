@@ -5,20 +5,18 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..errors import InputError
+from ..lazy import xr
 from ..response.labels import variable
 from .columns import RATIOS
 from .conversion import ACCELERATIONS, LENGTHS, SPEEDS, plain_unit
 from .pieces import Floats
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FACES = ("acceleration1", "acceleration2")
 CURVE_ORDERS = (1.0, 2.0, 3.0)
@@ -286,13 +284,7 @@ def direction_of(frequency: Floats, direction: str | None) -> str:
 
 
 def power_of(unit: str) -> int:
-    """Return the power of the frequency that makes a unit's quantity an acceleration.
-
-    Examples
-    --------
-    >>> power_of("g"), power_of("mm/s"), power_of("mm"), power_of("1")
-    (0, 1, 2, 0)
-    """
+    """Return the power of the frequency that makes a unit's quantity an acceleration."""
     return next((n for n, units in enumerate(QUANTITIES) if plain_unit(unit) in units), 0)
 
 
@@ -309,10 +301,7 @@ def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) 
 
 
 def lagging_phases(first: Floats, phase: Floats) -> tuple[Floats, str]:
-    """Return phases that are negative where a face lags, and what was done with their sign.
-
-    A structure takes up work, so that in a mean over the largest amplitudes a face lags.
-    """
+    """Return phases that are negative where a face lags, and what was done with their sign."""
     wrapped = np.angle(np.exp(1j * phase))
     if not np.isfinite(phase).any():
         return wrapped, ""

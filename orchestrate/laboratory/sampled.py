@@ -26,10 +26,6 @@ class Sampled(ExcitationSignal):
         Samples from time 0 on, m/s2; at least four.
     sample_rate : float
         Hz.
-
-    Raises
-    ------
-    InputError
     """
 
     acceleration: tuple[float, ...]
@@ -85,7 +81,6 @@ class Sampled(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Number of samples and sampling rate, for titles."""
         return f"{len(self.acceleration)} samples at {self.sample_rate:g} Hz"
 
     @property

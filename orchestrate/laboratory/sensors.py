@@ -59,10 +59,6 @@ class Sensor:
         a uniform cantilever 1.57 at the tip, 0.53 in the middle and 1 at 0.73 of the length. Has
         no effect on the box.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> Sensor(bandwidth=10e3, noise=0.01, range=500.0).sample_rate
@@ -164,10 +160,6 @@ def measure(
         A record, see :func:`orchestrate.record`. The attribute ``reconstruction_error`` in m/s2 is
         the largest distance of a mass's acceleration, solved from one sample of the history to
         the next, from that sample.
-
-    Raises
-    ------
-    InputError
 
     Notes
     -----

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, PLAYED, Player
+from ..lazy import Unpack, xr
 from ..model import Shaker, Structure
 from ..model.arguments import checked_positive
 from ..response.equations import absolute_accelerations
@@ -26,9 +27,6 @@ from .pieces import Pieces
 from .signals import ExcitationSignal
 
 if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
     from ..running.options import Running
 
 MOST_SAMPLES = 100_000_000
@@ -121,11 +119,7 @@ class ShakeJob(Question):
 
 
 def transient_time(structure: Structure) -> float:
-    """Return how long the slowest free vibration takes to decay to a thousandth, s.
-
-    Of either mass alone and of both together; infinite without damping, and where a damper is so
-    strong that it creeps, by the slower of both roots.
-    """
+    """Return how long the slowest free vibration takes to decay to a thousandth, s."""
     both = (structure.m1 + structure.m2, structure.k1 + structure.k2, structure.d1 + structure.d2)
     alone = ((structure.m1, structure.k1, structure.d1), (structure.m2, structure.k2, structure.d2))
     oscillators = (both,) if structure.bonded else (*alone, both)

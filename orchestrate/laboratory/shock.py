@@ -32,10 +32,6 @@ class Shock(ExcitationSignal):
     duration : float, optional
         Of all, s; by default twenty lengths after the pulse's beginning.
 
-    Raises
-    ------
-    InputError
-
     Notes
     -----
     The box keeps the pulse's change of velocity: a shaker adds pulses before and after.
@@ -60,7 +56,6 @@ class Shock(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Shape, peak and length, for titles."""
         return f"{self.shape} shock, {self.peak:.4g} m/s2 for {1e3 * self.length:.4g} ms"
 
     @property

@@ -70,13 +70,7 @@ def checked_level(name: str, given: object, low: float, high: float) -> float | 
 
 
 def format_level(level: float | Profile) -> str:
-    """Format a peak acceleration; of a profile its lowest and its highest one.
-
-    Examples
-    --------
-    >>> format_level(0.19613), format_level(((9.0, 0.1), (16.0, 0.5)))
-    ('0.1961 m/s2', '0.1 m/s2 to 0.5 m/s2')
-    """
+    """Format a peak acceleration; of a profile its lowest and its highest one."""
     values = [level] if isinstance(level, float) else [value for _, value in level]
     return " to ".join(f"{end:.4g} m/s2" for end in dict.fromkeys((min(values), max(values))))
 
@@ -120,18 +114,7 @@ class ExcitationSignal(ABC):
 
     @abstractmethod
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """Return the acceleration as cubic pieces.
-
-        Parameters
-        ----------
-        accuracy : float
-            Largest error wanted, relative to the peak.
-
-        Returns
-        -------
-        Pieces
-            With the bound of the error that they have, m/s2.
-        """
+        """Return the acceleration as cubic pieces."""
 
     def __add__(self, other: ExcitationSignal) -> SumOfSignals:
         """Return the sum of both signals."""
@@ -190,12 +173,10 @@ class SumOfSignals(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Labels of all parts."""
         return " + ".join(part.label for part in self.parts)
 
     @property
     def description(self) -> str:
-        """Descriptions of all parts."""
         return " + ".join(part.description for part in self.parts)
 
     @property

@@ -38,10 +38,6 @@ class SteppedSine(Sine):
         At each frequency: cycles before what is measured, and those measured. A free vibration with
         a damping ratio of zeta falls to a thousandth within ``1.1/zeta`` cycles.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> stepped = SteppedSine(frequencies=(40.0, 41.0, 42.0), acceleration=4.9, settle_cycles=150)
@@ -76,7 +72,6 @@ class SteppedSine(Sine):
 
     @property
     def label(self) -> str:
-        """Frequencies and duration, for titles."""
         first, last, count = self.frequencies[0], self.frequencies[-1], len(self.frequencies)
         over = f"{first:g} to {last:g} Hz in {count} steps" if count > 1 else f"{first:g} Hz"
         return f"stepped sine {over} and {self.duration:.4g} s"
@@ -96,18 +91,15 @@ class SteppedSine(Sine):
         return np.searchsorted(changes, np.asarray(time, dtype=float), side="right")
 
     def frequency(self, time: ArrayLike) -> Floats:
-        """Return the frequency at a time, Hz."""
         return np.array(self.frequencies)[self._step_at(time)]
 
     def phase(self, time: ArrayLike) -> Floats:
-        """Return the phase at a time, rad."""
         t = np.asarray(time, dtype=float)
         times, phases = self._changes()
         step = self._step_at(t)
         return np.asarray(phases[step] + TURN * self.frequency(t) * (t - times[step]))
 
     def level(self, time: ArrayLike) -> Floats:
-        """Return the peak acceleration at a time, m/s2."""
         if isinstance(self.acceleration, float):
             return np.full(np.shape(time), self.acceleration)
         return along_profile(self.acceleration, np.array(self.frequencies))[self._step_at(time)]

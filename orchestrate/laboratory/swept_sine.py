@@ -37,10 +37,6 @@ class SweptSine(signals.Sine):
     spacing : str
         ``"linear"`` or ``"log"``.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> sweep = SweptSine(first=20.0, last=90.0, rate=1.0, spacing="log", acceleration=4.9)
@@ -85,7 +81,6 @@ class SweptSine(signals.Sine):
 
     @property
     def label(self) -> str:
-        """Frequencies and duration, for titles."""
         return f"swept sine {self.first:g} to {self.last:g} Hz in {self.duration:.4g} s"
 
     @property
@@ -100,14 +95,12 @@ class SweptSine(signals.Sine):
         return math.log(self.last / self.first) / self.duration
 
     def frequency(self, time: ArrayLike) -> Floats:
-        """Return the frequency at a time, Hz."""
         t = np.asarray(time, dtype=float)
         if self.spacing == "linear":
             return np.asarray(self.first + self._growth * t)
         return np.asarray(self.first * np.exp(self._growth * t))
 
     def phase(self, time: ArrayLike) -> Floats:
-        """Return the phase at a time, rad."""
         t = np.asarray(time, dtype=float)
         if self.spacing == "linear":
             return np.asarray(TURN * t * (self.first + 0.5 * self._growth * t))
@@ -128,7 +121,6 @@ class SweptSine(signals.Sine):
         return np.asarray(np.log1p(growth * turns / self.first) / growth)
 
     def level(self, time: ArrayLike) -> Floats:
-        """Return the peak acceleration at a time, m/s2."""
         if isinstance(self.acceleration, float):
             return np.full(np.shape(time), self.acceleration)
         low, high = self.acceleration[0][0], self.acceleration[-1][0]

@@ -8,11 +8,6 @@ from ..errors import InputError
 from .pieces import Floats
 
 UNEVEN = 0.05  # largest distance of a time from equal steps, parts of a step
-LAST_TIMES = 20  # which show to how many digits times are rounded: the late ones have fewest
-ROUNDED_STEPS = 10.0  # steps that times may be rounded to: beyond it lost samples hide
-FEWEST_UNEQUAL = 3  # steps that rounding makes: one or two may be lost samples
-ROUNDING = 1.05  # range of rounded times around equal steps, over the last digit
-LARGEST_GAP = 3.0  # usual steps: a longer one is lost samples, which no spline knows
 
 
 def checked_times(
@@ -49,7 +44,8 @@ def resampled_times(times: Floats, first_row: int, resample: bool) -> tuple[Floa
     """Return equal times in place of uneven ones and their jitter; raise unless that is wanted."""
     steps = np.diff(times)
     usual = float(np.median(steps))
-    falling, gaps = np.flatnonzero(steps <= 0.0), np.flatnonzero(steps > LARGEST_GAP * usual)
+    # beyond three steps samples are lost, which no spline knows
+    falling, gaps = np.flatnonzero(steps <= 0.0), np.flatnonzero(steps > 3.0 * usual)
     if resample and not len(falling) and not len(gaps):
         count = np.arange(len(times))
         step, start = np.polyfit(count, times, 1)
@@ -77,11 +73,11 @@ def roundest_rate(times: Floats, resolution: float) -> float | None:
     count, steps = np.arange(len(times)), np.diff(times)
     step = float(np.polyfit(count, times, 1)[0])
     unequal = np.abs(steps - np.median(steps)) > 0.05 * resolution
-    if not 0.0 < resolution <= ROUNDED_STEPS * step or unequal.sum() < FEWEST_UNEQUAL:
+    if not 0.0 < resolution <= 10.0 * step or unequal.sum() < 3:
         return None
     for digits in range(1, 11):
         rate = float(f"{1.0 / step:.{digits}g}")
-        if np.ptp(times - count / rate) <= ROUNDING * resolution:
+        if np.ptp(times - count / rate) <= 1.05 * resolution:
             return rate
     return None
 
@@ -93,14 +89,8 @@ def rounding_error(resolution: float, step: float) -> float:
 
 
 def time_resolution(times: Floats) -> float:
-    """Return the power of ten that the last times are multiples of, s; 0 if there is none.
-
-    Examples
-    --------
-    >>> time_resolution(np.array([9.9998, 10.001, 10.002])), time_resolution(np.arange(4) / 3.0)
-    (0.001, 0.0)
-    """
-    last = times[-min(LAST_TIMES, len(times) // 2 + 1) :]
+    """Return the power of ten that the last times are multiples of, s; 0 if there is none."""
+    last = times[-min(20, len(times) // 2 + 1) :]  # late ones have the fewest digits
     for digits in range(10):
         scaled = last * 10.0**digits
         if np.abs(scaled - np.round(scaled)).max() < 1e-4:

@@ -21,8 +21,6 @@ Results = dict[str, xr.Dataset]  # by label
 Reader = Callable[[xr.Dataset], xr.DataArray]
 CHANNELS = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 COLOURS = (BLUE, RED, BLACK, ORANGE, GREEN, PURPLE)
-FEW = 300.0  # largest over smallest value of an axis that has plain numbers
-DEGREES = 180.0 / np.pi
 PHASE = {"ylim": (-280.0, 100.0), "yticks": (-270, -180, -90, 0, 90)}  # an axis in degrees
 
 
@@ -99,13 +97,13 @@ def limit_log_axis(axes: Axes, values: list[np.ndarray], decades: int = 6) -> No
         top = float(every.max())
         low = max(0.7 * float(every.min()), 10.0**-decades * top)
         axes.set_ylim(min(low, 0.5 * top), 1.5 * top)
-        if top < FEW * low:
+        if top < 300.0 * low:
             use_plain_log(axes)
 
 
 def phase_in_degrees(phase: xr.DataArray) -> xr.DataArray:
     """Convert a phase from rad to degrees in -270 to 90; NaN where the drawn line would jump."""
-    degrees = (DEGREES * phase.values + 270.0) % 360.0 - 270.0
+    degrees = ((180.0 / np.pi) * phase.values + 270.0) % 360.0 - 270.0
     degrees[np.flatnonzero(np.abs(np.diff(degrees)) > 180.0)] = np.nan
     return phase.copy(data=degrees)
 

@@ -16,7 +16,6 @@ from .page import Section, Table, format_number
 from .plot import function_name, plot
 
 WORDS = {-1: "not in this record", 0: "no", 1: "yes"}
-MOST_ROWS = 60
 MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
 MOVED += "{0.moved_by.values}."
 PACKAGES = ("numpy", "scipy", "xarray", "fmpy", "lmfit", "matplotlib")
@@ -55,7 +54,7 @@ def scalar_table(answer: xr.Dataset) -> Table:
             value = format_number(float(array), str(array.attrs.get("units", "")), 5)
             meaning = str(array.attrs.get("long_name", ""))
             rows.append((str(name), meaning, flag_word(array) or value))
-    return Table(("name", "what it is", "value"), rows[:MOST_ROWS])
+    return Table(("name", "what it is", "value"), rows[:60])
 
 
 def flag_word(array: xr.DataArray) -> str:

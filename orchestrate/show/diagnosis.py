@@ -25,16 +25,11 @@ FITS = (BLUE, ORANGE, GREEN)  # of the delaminated, of the best sound structure,
 PARTED, BONDED = "delaminated", "bonded"  # names of hypotheses begin so
 LIMIT = 2.0  # times what noise and a sound structure show, from which a sign stands out
 FEWEST_DECADES = (0.2, 10.0)  # of the signs' axis, at least
-HEIGHT = 0.8  # of all bars of a sign
-LINE = 100  # letters of a line above the legend
 
 
 @styled
 def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw delamination signs as bars relative to noise and to a sound structure's values.
-
-    Signs that no sensor has are named below the bars.
-    """
+    """Draw delamination signs as bars relative to noise and to a sound structure's values."""
     known = (data.exceeds >= 0).any("channel")
     left_out = [str(text) for text in data.meaning.values[~known.values]]
     title, data = title or plain_title(str(data.attrs["title"])), data.isel(sign=known)
@@ -42,7 +37,7 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     figure, (axes,) = make_panels(1, 1, size, title)
     ratio = (data.value / np.fmax(data.floor, data.sound_highest)).where(data.exceeds >= 0)
     channels = [str(channel) for channel in data.channel.values]
-    share, signs = HEIGHT / len(channels), np.arange(data.sizes["sign"])
+    share, signs = 0.8 / len(channels), np.arange(data.sizes["sign"])
     for number, channel in enumerate(channels):
         positions = signs + share * (number - 0.5 * (len(channels) - 1))
         values, label = ratio.sel(channel=channel).values, CHANNELS.get(channel, channel)
@@ -58,7 +53,7 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
     axes.set_xlabel("sign over what noise and a sound structure show of it")
-    lacking = textwrap.fill(f"not in this record: {', '.join(left_out)}", LINE)
+    lacking = textwrap.fill(f"not in this record: {', '.join(left_out)}", 100)
     legend_below(figure, [axes], 4, title=lacking if left_out else None)
     return figure
 

@@ -61,7 +61,6 @@ def save(
         target = Path(f"{path}.{ending}")
 
         def write(temporary: Path, ending: str = ending) -> None:
-            """Save the figure in one format to a temporary path."""
             with style_context():
                 figure.savefig(temporary, format=ending, metadata=UNDATED.get(ending), **options)
 

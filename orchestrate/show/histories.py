@@ -29,9 +29,7 @@ GLUED["label"] = "both, bonded"
 STEM_WIDTHS = {GREY: 5.0, BLUE: 2.6, RED: 1.0}  # a thin line lies on a wide one
 SPECTRUM_FLOOR = 1e-5  # of the largest line: the lower end of the axis
 MIN_PERIODS = 4  # periods that a spectrum takes
-HIGHEST = 20.0  # frequency of a spectrum, over that of the box
 COLUMNS = 400  # of an envelope
-SHORT = 5000  # points that are drawn as a line
 
 
 @styled
@@ -111,7 +109,7 @@ def draw_spectrum(
     for number, style in masses:
         moved = data[f"x{number}"].values[1:]
         frequency, amplitude = acceleration_spectrum(moved, time[1] - time[0])
-        shown = (frequency > 0.25 * base) & (frequency <= HIGHEST * base)
+        shown = (frequency > 0.25 * base) & (frequency <= 20.0 * base)
         # a window widens lines: of each, its largest amplitude
         peaks = shown & np.append(True, np.diff(amplitude) > 0.0)
         peaks &= np.append(np.diff(amplitude) <= 0.0, True)
@@ -190,7 +188,7 @@ def draw_box_gap_impacts(data: xr.Dataset, box: Axes, gap: Axes, impacts: Axes) 
 def draw_signal(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
     """Draw a signal as a line, or as the band between its extremes if it is long."""
     time, values = data.time.values, data[name].values / factor
-    if len(time) <= SHORT:
+    if len(time) <= 5000:
         axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})
     else:
         axes.fill_between(*local_extremes(time, values), linewidth=0.4, **style)

@@ -62,11 +62,7 @@ def join(parts: Iterable[str]) -> str:
 
 
 def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ()) -> str:
-    """Return a title with a dataset's structure and excitation: e, D and unusual parameters.
-
-    A structure that is not in the paper's units is described by its halves: frequencies in Hz,
-    damping ratios at them in per cent.
-    """
+    """Return a title with a dataset's structure and excitation: e, D and unusual parameters."""
     known = {name: float(value) for name, value in data.attrs.items() if is_finite_number(value)}
     shown = {*map(str, data.dims), *shown_elsewhere}
     by_halves = paper_ratios(known).get("omega", 1.0) != 1.0 and not shown & HALF_PARAMETERS
@@ -86,10 +82,7 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
 
 
 def branch_title(data: xr.Dataset, over: Iterable[str]) -> str:
-    """Return a title with the structure, and what of the box's motion all points share.
-
-    Of a structure in the paper's units its usual excitation, a eta^2 = 1, is not named.
-    """
+    """Return a title with the structure, and what of the box's motion all points share."""
     varied = set(over)
     name = "frequency" if has_frequency_unit(data) else "eta"
     points = {key: data[key] for key in (name, "amplitude") if key in data.coords}

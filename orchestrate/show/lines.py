@@ -30,9 +30,6 @@ SHADES = ((1, 0.35), (3, 0.6), (8, 1.0))  # from so many samples in a cell on: o
 VERDICTS = {1: (RED, "o"), 0: (BLUE, "s"), -1: (BLACK, ".")}  # chaotic, neutral, periodic
 KINDS = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW)
 IRREGULAR, OTHER = "irregular", "other periodic"
-MIN_LOG_RATIO = 4.0  # a parameter that grows by more is shown in equal ratios
-MAX_MARKED = 60  # values up to which each has a mark; of more, those alone have one
-EXPONENT = 2.0 / 3.0  # of the rate, along which jump voltages are a line
 
 
 class MarkStyle(NamedTuple):
@@ -270,7 +267,7 @@ def draw_attractors(data: xr.Dataset, title: str = "") -> Figure:
     bottom.step(x, data.number, line, where="mid", markersize=3, linewidth=1.0)
     bottom.set(ylabel="attractors", xlabel=name, ylim=(0, float(data.number.max()) + 0.5))
     bottom.yaxis.set_major_locator(MaxNLocator(integer=True))
-    if len(x) > 1 and x.min() > 0.0 and x.max() > MIN_LOG_RATIO * x.min():
+    if len(x) > 1 and x.min() > 0.0 and x.max() > 4.0 * x.min():
         bottom.set_xscale("log")
         bottom.xaxis.set_major_locator(LogLocator(subs=(1.0, 1.5, 2.0, 3.0, 5.0, 7.0)))
         bottom.xaxis.set_major_formatter("{x:g}")
@@ -302,7 +299,7 @@ def draw_attractor(
         draw_line(panel, x, of_kind, "-", colours[word], 1.4)
         there = np.isfinite(np.concatenate([[np.nan], of_kind, [np.nan]]))
         alone = there[1:-1] & ~there[:-2] & ~there[2:]  # to which no line leads
-        marked = of_kind if len(x) <= MAX_MARKED else np.where(alone, of_kind, np.nan)
+        marked = of_kind if len(x) <= 60 else np.where(alone, of_kind, np.nan)
         marker = "D" if word == IRREGULAR else "o"
         panel.plot(x, marked, marker, color=colours[word], markersize=3.5, markeredgewidth=0.0)
 
@@ -350,7 +347,7 @@ def draw_jump_voltages(data: xr.Dataset, title: str = "") -> Figure:
 
 def draw_jumps_over_rate(panel: Axes, data: xr.Dataset, structure: str) -> None:
     """Draw one structure's voltages of one jump and, where it is known, the line to rate 0."""
-    lag, end = data.rate.values**EXPONENT, float(data.jumps)
+    lag, end = data.rate.values ** (2.0 / 3.0), float(data.jumps)
     colour, finite = STRUCTURES[structure], np.isfinite(data.voltage.values)
     count = int(finite.sum())
     text = f"{structure}: {count} rate{'s' * (count != 1)}" if count else f"{structure}: no jump"

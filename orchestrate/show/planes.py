@@ -41,7 +41,6 @@ BORDERS = {
     **{"grazing of an impact": GREEN, "grazing of a flight": BLACK, "earlier release": PURPLE},
 }
 MARKERS = ("*", "D", "o", "s", "^", "P", "v", "X", "<", ">", "h")  # by number of the point's kind
-LEAST_HALF = 0.05  # of an axis of a section, over its middle
 SHARES = {0.0: "0", 0.25: "π/2", 0.5: "π", 0.75: "3π/2", 1.0: "2π"}  # of a turn
 STATES = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent contact
 
@@ -80,10 +79,7 @@ def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] =
 
 
 def shown_values(data: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
-    """Return a quantity and its label; gaps and impulses in SI, or in the unit asked for.
-
-    They stay ratios where neither the structure is in SI nor a unit of length is asked for.
-    """
+    """Return a quantity and its label; gaps and impulses in SI, or in the unit asked for."""
     in_si = has_frequency_unit(data) or units_of(data).length
     unit = length_of_ratio(data) if name in ("xi_rel_max", "impulse_max") and in_si else None
     if unit is None:
@@ -291,7 +287,7 @@ def widen_narrow_limits(plane: Axes) -> None:
         (*plane.get_ylim(), plane.set_ylim),
     ):
         middle = 0.5 * (low + high)
-        half = max(0.5 * (high - low), LEAST_HALF * abs(middle))
+        half = max(0.5 * (high - low), 0.05 * abs(middle))
         put(middle - half, middle + half)
 
 

@@ -40,7 +40,6 @@ NAMES = {
     "x_rel_max": "largest gap in {}",
 }
 LENGTHS = {"x1_max": "xi1_max", "x2_max": "xi2_max", "x_rel_max": "xi_rel_max"}  # of an orbit
-FEW = 8  # levels that have a legend entry each; more have a colour bar
 
 
 @styled
@@ -201,7 +200,7 @@ def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
     length, letter = length_scale(data, float(gaps.max()) or 1.0)
     x = axis_values(data, "frequency")
     for number, colour in enumerate(colours):
-        label = f"{level[number] / factor:.4g} {unit}" if len(level) <= FEW else None
+        label = f"{level[number] / factor:.4g} {unit}" if len(level) <= 8 else None
         curve = size.isel(level=number).sel(structure="delaminated")
         draw_line(axes[0], x.values, curve, "-", colour, 1.4, label)
         draw_line(axes[1], x.values, gaps.isel(level=number) / length, "-", colour, 1.4)

@@ -15,7 +15,6 @@ from .labels import format_frequency, has_frequency_unit, title_from_attributes
 from .scales import acceleration_scale, frequency_scale
 from .style import legend_below, make_panels, styled
 
-MAX_STEMS = 80  # of a spectrum, in full width
 FLOOR = 1e-6  # of a motor's spectra: the lower end of the axis over the largest amplitude
 SIDES: tuple[dict[str, tuple[str, float, str]], ...] = (  # a thin line lies on a wide one
     {"bonded": (BLUE, 2.6, "bonded")},
@@ -32,7 +31,7 @@ def draw_stems(
     """Draw a spectrum's lines as stems on a logarithmic axis that begins at a floor."""
     axes.set_yscale("log")
     shown = amplitudes > floor
-    thin = min(1.0, (MAX_STEMS / (1 + int(shown.sum()))) ** 0.5)
+    thin = min(1.0, (80 / (1 + int(shown.sum()))) ** 0.5)
     axes.vlines(x[shown], floor, amplitudes[shown], linewidth=width * thin, **style)
 
 

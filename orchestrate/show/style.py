@@ -47,8 +47,6 @@ STYLE: dict[str, Any] = {
     "svg.hashsalt": "vibroimpact",  # the same picture is the same bytes
 }
 XI_REL, XI_REL_RATE = r"$\xi_{\mathrm{Rel}}$", r"$\xi'_{\mathrm{Rel}}$"
-LETTERS_AN_INCH = 14  # of a title
-UNDER = -0.16  # of a panel's height: below the name of its horizontal axis
 NO_BREAK_SPACE = "\xa0"  # a space that no line breaks at
 
 Arguments = ParamSpec("Arguments")
@@ -83,7 +81,7 @@ def make_panels(
 def set_title(figure: Figure, title: str) -> None:
     """Write a title above all panels, broken after commas into lines that fit."""
     if title:
-        letters = int(LETTERS_AN_INCH * figure.get_figwidth())
+        letters = int(14 * figure.get_figwidth())
         parts = title.replace(" ", NO_BREAK_SPACE).replace(f",{NO_BREAK_SPACE}", ", ")
         lines = textwrap.fill(parts, letters, break_long_words=False)
         figure.suptitle(lines.replace(NO_BREAK_SPACE, " "), x=0.01, ha="left")
@@ -110,7 +108,7 @@ def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more:
 def legend_under(axes: Axes, columns: int = 3) -> None:
     """Draw one panel's legend below the panel."""
     if axes.get_legend_handles_labels()[0]:
-        below: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, UNDER), "frameon": False}
+        below: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.16), "frameon": False}
         axes.legend(ncols=columns, **below)
 
 

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..constants import TURN
+from ..lazy import xr
 from ..units import scale_of, units_of, with_units
 from .diagnosis import PARTED, draw_detect, draw_misfit
 from .page import MISSING, Section, Table, Verdict, format_number, format_with_error
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 TONES = {"delaminated": "bad", "no opening seen": "good", "not described": "unclear"}
 ALWAYS_ASSUMED = (
@@ -25,14 +22,10 @@ NAMES_OF_CHANNELS = (
     "called box_acceleration in Python and in files of this package. Face 1 and face 2 are the "
     "outer faces of both halves, with sensor 1 and sensor 2: acceleration1 and acceleration2."
 )
-BEST = 3  # hypotheses in the table of parameters
 
 
 def make_verdict(answer: xr.Dataset) -> Verdict:
-    """Return the verdict of a ``detect`` result: its word and one sentence.
-
-    What is sound is never called so: no opening was seen.
-    """
+    """Return the verdict of a ``detect`` result: its word and one sentence."""
     word = str(answer.verdict.values)
     sentences = {
         "delaminated": delaminated_statement,
@@ -231,7 +224,7 @@ def parameter_section(answer: xr.Dataset) -> Section | None:
     """Return a section with the parameters and errors that are stated; None without any."""
     if "value" not in answer or "parameter" not in answer.dims:
         return None
-    shown = [one for one in sort_by_misfit(answer) if np.isfinite(one.value).any()][:BEST]
+    shown = [one for one in sort_by_misfit(answer) if np.isfinite(one.value).any()][:3]
     names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
     rows = []
     for name in map(str, answer.parameter.values):

@@ -31,7 +31,6 @@ from .style import (
 )
 
 IMPACT_REVOLUTIONS = 10  # revolutions that impacts are averaged over
-TIME_AROUND_JUMP = 500.0  # time shown before and after a jump, in 1/omega
 THEORY = "averaged theory, bonded"
 MARKS = {  # of bifurcations
     **{"fold": "o", "Neimark-Sacker": "s", "period doubling": "^"},
@@ -91,7 +90,7 @@ def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
             if has_jump(data, jump):
                 at = data.sel(jump=jump)
                 time = data.time.values - float(at.jump_time)
-                near = np.abs(time) < TIME_AROUND_JUMP / omega_of(data)
+                near = np.abs(time) < 500.0 / omega_of(data)
                 label = f"{name}, {float(at.jumps):.4f} V"
                 values = data[what].values[near]
                 panel.plot(time[near], values, color=STRUCTURES[name], label=label)

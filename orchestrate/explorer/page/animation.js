@@ -3,12 +3,6 @@
 import { Picture } from "./picture.js";
 import { gapOffset } from "./clearance.js";
 
-/**
- * @typedef {import("./motion.js").Motion} Motion
- * @typedef {import("./structure.js").Point} Point
- * @typedef {import("./pen.js").Pen} Pen
- */
-
 const FLASH = 0.04; // of a period
 
 export class Animation {
@@ -77,7 +71,7 @@ export class Animation {
     });
   }
 
-  /** @param {Pen} pen @param {import("./picture.js").Size} size @param {import("./theme.js").Theme} theme */
+  /** @param {Pen} pen @param {Size} size @param {Theme} theme */
   draw(pen, { width, height }, theme) {
     const { motion } = this;
     if (!motion) return;

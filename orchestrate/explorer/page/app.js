@@ -25,13 +25,6 @@ import { omegaOf, sameStructure } from "./structure.js";
 import { TourPart } from "./tour_part.js";
 import { frequencyUnit, showIn, unitsOption, wordsOf } from "./units.js";
 
-/**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./structure.js").Point} Point
- * @typedef {import("./excitation.js").Level} Level
- * @typedef {import("./link.js").View} View
- */
-
 const FIRST_ETA = 0.7; // of the motion that the page opens with, where its diagram has it
 const REST = [0, 0, 0, 0];
 
@@ -333,7 +326,7 @@ export class App {
     this.computeBasin();
   }
 
-  /** A measured record over the model's spectrum, whose axis then is in Hz. @param {import("./record.js").Measured} measured */
+  /** A measured record over the model's spectrum, whose axis then is in Hz. @param {Measured} measured */
   lay(measured) {
     this.inspector.measured = measured;
     if (!inHertz(this.level)) this.change(...this.shaking.converted(true));

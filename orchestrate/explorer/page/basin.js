@@ -5,8 +5,6 @@ import { gapOffset } from "./clearance.js";
 import { lengthOf, omegaOf } from "./structure.js";
 
 /**
- * @typedef {import("./kernel.js").Oscillator} Oscillator
- * @typedef {import("./structure.js").Point} Point
  * @typedef {{side: number, gap: number, speed: number, mean: [number, number]}} Plane
  *   gap from 0 and gap velocity to both sides, over a eta^2; means of displacements, velocities
  * @typedef {{multiplicity: number, samples: Float64Array, impacts: number}} Attractor

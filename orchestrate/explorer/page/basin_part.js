@@ -10,7 +10,7 @@ const FEW = [6, 19, 32, 45, 58]; // columns and rows of the cells that are tried
 export class BasinPart {
   /**
    * @param {(id: string) => HTMLElement} at
-   * @param {import("./worker_pool.js").WorkerPool} pool
+   * @param {WorkerPool} pool
    * @param {{choose: (start: number[]) => void, seen: () => void, others: () => void}} acts
    *   `others`: it is known by now whether there are other motions
    */
@@ -19,14 +19,14 @@ export class BasinPart {
     this.pool = pool;
     this.choose = choose;
     this.view = new BasinView(/** @type {HTMLCanvasElement} */ (at("basin")), choose);
-    /** @type {import("./worker_pool.js").Order | null} */
+    /** @type {Order | null} */
     this.order = null;
     this.told = others;
-    /** @type {import("./basin.js").Attractor | null} */
+    /** @type {Attractor | null} */
     this.shown = null; // the motion on the page
-    /** @type {import("./basin.js").Attractor[]} */
+    /** @type {Attractor[]} */
     this.few = []; // to which a few starts lead
-    /** @type {import("./worker_pool.js").Order | null} */
+    /** @type {Order | null} */
     this.trial = null;
     this.tried = false; // whether all of the few have come
     this.about = ""; // the point that is shown
@@ -40,7 +40,7 @@ export class BasinPart {
     new IntersectionObserver(watch, { threshold: 0.4 }).observe(at("basin"));
   }
 
-  /** Nothing is known of another point. @param {import("./structure.js").Point} point */
+  /** Nothing is known of another point. @param {Point} point */
   leave(point) {
     this.trial?.cancel();
     this.trial = null;
@@ -78,7 +78,7 @@ export class BasinPart {
     return differ && !this.tried ? "There may be another motion at this frequency." : "";
   }
 
-  /** A motion is shown: mark it, and try a few starts. @param {import("./inspector.js").Choice} choice @param {import("./response.js").Response} response */
+  /** A motion is shown: mark it, and try a few starts. @param {Choice} choice @param {import("./response.js").Response} response */
   meet({ point }, response) {
     this.shown = attractorOf(response);
     if (this.point) this.tell(this.at("basins").dataset.complete === "true");
@@ -97,7 +97,7 @@ export class BasinPart {
     });
   }
 
-  /** Unless it is there. @param {import("./inspector.js").Choice} choice @param {import("./response.js").Response} response */
+  /** Unless it is there. @param {Choice} choice @param {import("./response.js").Response} response */
   compute({ point, level }, response) {
     if (this.point === JSON.stringify(point)) return;
     this.order?.cancel();
@@ -145,7 +145,7 @@ function shownNow() {
   return Object.assign(words, { className: "now", textContent: "shown now" });
 }
 
-/** The plane of starts around a response. @param {import("./structure.js").Point} point @param {import("./response.js").Response} response @returns {import("./basin.js").Plane} */
+/** The plane of starts around a response. @param {Point} point @param {import("./response.js").Response} response @returns {Plane} */
 function planeOf({ eta }, { peak, end }) {
   const reach = Math.max(peak, 1e-3) * 3;
   return { side: SIDE, gap: reach, speed: reach * Math.max(eta, 1), mean: [(end[0] + end[1]) / 2, (end[2] + end[3]) / 2] };

@@ -9,12 +9,6 @@ import { omegaOf } from "./structure.js";
 import { channels } from "./theme.js";
 import { gapUnit, wordsOf } from "./units.js";
 
-/**
- * @typedef {import("./basin.js").Plane} Plane
- * @typedef {import("./basin.js").Attractor} Attractor
- * @typedef {import("./structure.js").Point} Point
- */
-
 export const SAME = 0.03; // relative distance up to which two motions are one
 const COLOURS = ["#5b8ff9", "#e8a33d", "#5ad8a6", "#d9468f", "#9270ca", "#7a7a7a"];
 
@@ -84,7 +78,7 @@ export class BasinView {
     this.picture.redraw();
   }
 
-  /** @param {Point} point @param {Plane} plane @param {import("./excitation.js").Level} level */
+  /** @param {Point} point @param {Plane} plane @param {Level} level */
   begin(point, plane, level) {
     this.level = level;
     Object.assign(this, { point, plane, attractors: [], examples: [] });
@@ -127,7 +121,7 @@ export class BasinView {
     return inside ? [column, row] : null;
   }
 
-  /** @param {import("./pen.js").Pen} pen @param {import("./picture.js").Size} size @param {import("./theme.js").Theme} theme */
+  /** @param {Pen} pen @param {Size} size @param {Theme} theme */
   draw(pen, size, theme) {
     const place = areaOf(size);
     const { plane } = this;

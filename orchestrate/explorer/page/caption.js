@@ -10,7 +10,7 @@ const LINE = 16; // px
 const LETTER = 6.2; // px, the mean width of one
 const LEFT = 10; // px
 
-/** A beam and how it is shaken, in the units of the page. @param {import("./structure.js").Point} point @param {import("./excitation.js").Level} level */
+/** A beam and how it is shaken, in the units of the page. @param {Point} point @param {Level} level */
 export function beamWords(point, level) {
   const { structure, eta } = point;
   const { e, mu, kappa, D, xi0, f1, f2, mass1, mass2, zeta, gap } = numbersIn(structure);
@@ -43,7 +43,7 @@ export function wrapped(texts, width) {
 /** @param {string[]} lines */
 export const heightOf = (lines) => LINE * lines.length + LINE / 2;
 
-/** @param {import("./pen.js").Pen} pen @param {string[]} lines @param {number} top @param {import("./theme.js").Theme} theme */
+/** @param {Pen} pen @param {string[]} lines @param {number} top @param {Theme} theme */
 export function drawCaption(pen, lines, top, theme) {
   lines.forEach((line, i) => pen.text(LEFT, top + LINE * (i + 0.5), line, { anchor: "start", size: SIZE, fill: i ? theme.soft : theme.ink }));
 }

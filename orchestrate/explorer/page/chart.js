@@ -3,9 +3,6 @@
 import { scaleOf, shown, tickText, ticksOf } from "./scale.js";
 
 /**
- * @typedef {import("./pen.js").Pen} Pen
- * @typedef {import("./scale.js").Axis} Axis
- * @typedef {import("./theme.js").Theme} Theme
  * @typedef {{x: ArrayLike<number>, y: ArrayLike<number>, colour: keyof Theme, dots?: number,
  *   label?: string, alpha?: number, width?: number}} Series
  * @typedef {{x: Axis, y: Axis, series: Series[], spans?: [number, number][]}} Chart
@@ -16,13 +13,13 @@ import { scaleOf, shown, tickText, ticksOf } from "./scale.js";
 const CONTACT = "stuck together"; // what the spans are
 const MARGIN = { left: 72, right: 18, top: 20, bottom: 38 };
 
-/** The plotting area of a picture. @param {import("./picture.js").Size} size @returns {Place} */
+/** The plotting area of a picture. @param {Size} size @returns {Place} */
 export function areaOf({ width, height }) {
   const { left, right, top, bottom } = MARGIN;
   return [left, top, Math.max(width - left - right, 10), Math.max(height - top - bottom, 10)];
 }
 
-/** @param {Pen} pen @param {import("./picture.js").Size} size @param {Theme} theme @param {Chart} chart */
+/** @param {Pen} pen @param {Size} size @param {Theme} theme @param {Chart} chart */
 export function drawChart(pen, size, theme, chart) {
   const place = areaOf(size);
   const [left, top, width, height] = place;

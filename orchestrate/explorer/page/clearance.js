@@ -1,9 +1,6 @@
 /** The gap between the faces: open, closed or pressed where the springs are unloaded. */
 
-/**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {[number, number]} Places
- */
+/** @typedef {[number, number]} Places */
 
 const TOUCHING = 2 ** -50; // relative: no more than the rounding of displacements
 const TO_WHOLE = 1.5 * 2 ** 52; // added and taken away it leaves a whole number, ties to even

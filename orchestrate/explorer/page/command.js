@@ -4,12 +4,6 @@ import { givenHertz, GRAVITY } from "./excitation.js";
 import { omegaOf } from "./structure.js";
 import { unitsOption } from "./units.js";
 
-/**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./structure.js").Point} Point
- * @typedef {import("./diagram.js").Diagram} Diagram
- */
-
 const PROGRAM = "python -m orchestrate";
 const REST = [0, 0, 0, 0];
 
@@ -39,7 +33,7 @@ export function diagramCommand(diagram, usual) {
     .join("\n");
 }
 
-/** Where the first response of a direction begins. @param {import("./diagram.js").Lane} lane */
+/** Where the first response of a direction begins. @param {Lane} lane */
 function startOf({ from, starts, direction }) {
   if (from || !starts) return from ?? REST;
   const place = direction === "up" ? 0 : starts.length - 4;

@@ -6,8 +6,6 @@ import { numbersIn, withNumber } from "./structure.js";
 import { ownUnit } from "./units.js";
 
 /**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./excitation.js").Level} Level
  * @typedef {[name: string, label: string, low: number, high: number, step?: number]} Entry
  *   with a slider where there is a step
  */
@@ -50,7 +48,7 @@ export class Controls {
   /**
    * @param {(id: string) => HTMLElement} at
    * @param {Structure} structure
-   * @param {{ranges: Record<string, [number, number]>, units: import("./structure.js").Units}} table
+   * @param {{ranges: Record<string, [number, number]>, units: Units}} table
    *   of the SI numbers
    * @param {(structure: Structure) => void} changed
    */

@@ -1,7 +1,6 @@
 /** Structure and motor coupled as by the project's master, in fixed steps. */
 
 /**
- * @typedef {import("./kernel.js").Instance} Instance
  * @typedef {[number, number, number, number]} Cubic value and three derivatives at the beginning
  * @typedef {Record<string, number>} Outputs
  * @typedef {{structure: Record<string, number>, drive: Record<string, number>, h: number}} Start

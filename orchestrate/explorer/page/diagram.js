@@ -6,17 +6,14 @@ import { niceStep } from "./scale.js";
 import { lengthOf, omegaOf } from "./structure.js";
 
 /**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./structure.js").Point} Point
  * @typedef {"up" | "down" | "both"} Direction
  * @typedef {{index: number, gaps: Float64Array, peak: number, impacts: number, contact: boolean,
  *   multiplicity: number, start: number[], end: number[]}} Found
  * @typedef {{direction: "up" | "down", found: (Found | undefined)[], starts: Float64Array | null, from: number[] | null}} Lane
  *   `starts`: where each response begins, if that is known beforehand; `from`: where a chain does
- * @typedef {import("./excitation.js").Level} Level
  * @typedef {{low: number, high: number, direction: Direction, level: Level}} Region frequency ratios
  * @typedef {Region & {structure: Structure, points: Point[], lanes: Lane[],
- *   settings: import("./response.js").Settings}} Diagram
+ *   settings: Settings}} Diagram
  */
 
 export const LOWEST = 1e-5; // gaps below are drawn in the strip of zero
@@ -49,7 +46,7 @@ export function lanesOf(direction) {
  * @param {Structure} structure
  * @param {Region} region
  * @param {number} count of frequencies, at most
- * @param {import("./response.js").Settings} settings
+ * @param {Settings} settings
  * @returns {Diagram}
  */
 export function empty(structure, { low, high, direction, level }, count, settings) {

@@ -1,7 +1,6 @@
 /** Mouse, finger and keyboard on the orbit diagram: choose a frequency, drag a region. */
 
 /**
- * @typedef {import("./diagram_view.js").DiagramView} DiagramView
  * @typedef {{choose: (eta: number) => void, zoom: (low: number, high: number) => void,
  *   move: (steps: number) => void, back: () => void, forth: () => void, whole: () => void}} Acts
  */

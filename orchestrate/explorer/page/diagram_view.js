@@ -7,16 +7,6 @@ import { scaleOf } from "./scale.js";
 import { channels } from "./theme.js";
 import { frequencyUnit, gapUnit, wordsOf } from "./units.js";
 
-/**
- * @typedef {import("./diagram.js").Diagram} Diagram
- * @typedef {import("./diagram.js").Found} Found
- * @typedef {import("./picture.js").Size} Size
- * @typedef {import("./theme.js").Theme} Theme
- * @typedef {import("./pen.js").Pen} Pen
- * @typedef {import("./chart.js").Place} Place
- * @typedef {import("./scale.js").Axis} Axis
- */
-
 export const STRIP = 16; // px
 const SHARE = 0.72; // of the height, for the gaps
 

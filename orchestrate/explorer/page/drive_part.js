@@ -17,22 +17,22 @@ const SWEEP = 2e-4; // V/s of a ramp, times the largest voltage
 /** @typedef {{time: number, voltage: number, speed: number, amplitude: number, impacts: number}} Row */
 
 export class DrivePart {
-  /** @param {(id: string) => HTMLElement} at @param {import("./worker_pool.js").WorkerPool} pool @param {import("./coupled.js").Start} start */
+  /** @param {(id: string) => HTMLElement} at @param {WorkerPool} pool @param {Start} start */
   constructor(at, pool, start) {
     this.at = at;
     this.pool = pool;
     this.start = start;
     this.voltage = /** @type {HTMLInputElement} */ (at("voltage"));
     this.bonded = /** @type {HTMLInputElement} */ (at("drive-bonded"));
-    this.omega = omegaOf(/** @type {import("./structure.js").Structure} */ (/** @type {unknown} */ (start.structure)));
+    this.omega = omegaOf(/** @type {Structure} */ (/** @type {unknown} */ (start.structure)));
     this.picture = new Picture(/** @type {HTMLCanvasElement} */ (at("drive")), (pen, size, theme) => this.draw(pen, size, theme));
     this.running = false;
     this.ramp = 0; // sign of the voltage's change
-    /** @type {import("./coupled.js").Run | null} */
+    /** @type {Run | null} */
     this.state = null;
     /** @type {Row[]} */
     this.rows = [];
-    /** @type {import("./worker_pool.js").Order | null} */
+    /** @type {Order | null} */
     this.order = null;
     at("drive-go").addEventListener("click", () => this.run(!this.running));
     at("ramp-up").addEventListener("click", () => this.drift(1));
@@ -104,7 +104,7 @@ export class DrivePart {
     });
   }
 
-  /** @param {{rows: Row[], run: import("./coupled.js").Run}} part */
+  /** @param {{rows: Row[], run: Run}} part */
   take({ rows, run }) {
     this.state = run;
     this.rows = [...this.rows, ...rows].slice(-KEPT);
@@ -118,7 +118,7 @@ export class DrivePart {
     this.picture.redraw();
   }
 
-  /** @param {import("./pen.js").Pen} pen @param {import("./picture.js").Size} size @param {import("./theme.js").Theme} theme */
+  /** @param {Pen} pen @param {Size} size @param {Theme} theme */
   draw(pen, size, theme) {
     const [low, high] = [Number(this.voltage.min), Number(this.voltage.max)];
     const unit = this.start.drive.motor_constant * this.omega;

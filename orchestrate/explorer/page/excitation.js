@@ -2,11 +2,7 @@
 
 import { omegaOf } from "./structure.js";
 
-/**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./structure.js").Point} Point
- * @typedef {{unit: "paper" | "g" | "mm", value: number}} Level acceleration in g, or amplitude in mm
- */
+/** @typedef {{unit: "paper" | "g" | "mm", value: number}} Level acceleration in g, or amplitude in mm */
 
 export const GRAVITY = 9.80665; // m/s²
 /** @type {Level} */

@@ -16,18 +16,15 @@ import { Sound } from "./audio.js";
 import { averageWords, exponentWords, numbersOf, sentenceOf } from "./words_of.js";
 
 /**
- * @typedef {import("./structure.js").Point} Point
  * @typedef {import("./response.js").Response} Response
- * @typedef {import("./response.js").Settings} Settings
- * @typedef {import("./motion.js").Motion} Motion
- * @typedef {{point: Point, start: number[], settings: Settings, level: import("./excitation.js").Level}} Choice
+ * @typedef {{point: Point, start: number[], settings: Settings, level: Level}} Choice
  */
 
 const POINTS = 200; // a period
 const LONG = 20000; // periods of a section that runs on
 
 export class Inspector {
-  /** @param {(id: string) => HTMLElement} at @param {import("./worker_pool.js").WorkerPool} pool @param {() => void} told */
+  /** @param {(id: string) => HTMLElement} at @param {WorkerPool} pool @param {() => void} told */
   constructor(at, pool, told) {
     this.at = at;
     this.pool = pool;
@@ -39,15 +36,15 @@ export class Inspector {
     this.pitch = 4; // periods a second that are heard
     /** @type {Choice | null} */
     this.choice = null;
-    /** @type {import("./worker_pool.js").Order[]} */
+    /** @type {Order[]} */
     this.orders = [];
     /** @type {{response: Response, motion: Motion} | null} */
     this.found = null;
     /** @type {any} */
     this.spectra = null;
-    /** @type {import("./lyapunov.js").Exponent | undefined} */
+    /** @type {Exponent | undefined} */
     this.exponent = undefined;
-    /** @type {import("./record.js").Measured | null} */
+    /** @type {Measured | null} */
     this.measured = null;
     /** @type {Motion | null} */
     this.bonded = null;
@@ -229,7 +226,7 @@ export class Inspector {
 /** The same without its delamination. @param {Point} point @returns {Point} */
 const undamaged = (point) => ({ ...point, structure: { ...point.structure, bonded: 1 } });
 
-/** Let the axes of a chart hold all of its curves; time stays as it is. @param {import("./chart.js").Chart} chart */
+/** Let the axes of a chart hold all of its curves; time stays as it is. @param {Chart} chart */
 function widen(chart) {
   const curves = chart.series.filter(({ dots }) => !dots);
   chart.y = axisAround(curves.map(({ y }) => y), chart.y.label ?? "");

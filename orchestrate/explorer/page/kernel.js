@@ -7,7 +7,6 @@ import { fromRest } from "./clearance.js";
  *   [name: string]: number}} Slots
  * @typedef {{module: WebAssembly.Module, slots: Slots, starts: Record<string, number>}} Compiled
  * @typedef {[number, number, number, number]} State x1, x2 in m, v1, v2 in m/s
- * @typedef {import("./structure.js").Point} Point
  */
 
 const ROOM = 200; // states that a step can keep
@@ -83,11 +82,7 @@ export class Instance {
 
 /** `TwoMassImpactOscillator`. */
 export class Oscillator extends Instance {
-  /**
-   * Begin at phase 0.
-   * @param {Point} point
-   * @param {Iterable<number>} start
-   */
+  /** Begin at phase 0. @param {Point} point @param {Iterable<number>} start */
   begin(point, start) {
     const [x1, x2, v1, v2] = fromRest(start, point.structure);
     this.initialize({

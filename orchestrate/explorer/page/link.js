@@ -3,8 +3,6 @@
 import { LEVELS, PAPER } from "./excitation.js";
 
 /**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./excitation.js").Level} Level
  * @typedef {{structure: Structure, level: Level, low: number, high: number,
  *   direction: "up" | "down" | "both", eta: number | null, start: number[] | null}} View
  * @typedef {Record<string, [number, number]>} Ranges of the numbers of a structure

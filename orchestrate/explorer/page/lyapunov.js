@@ -3,11 +3,7 @@
 import { gapBetween, gapOffset } from "./clearance.js";
 import { lengthOf, omegaOf, periodOf } from "./structure.js";
 
-/**
- * @typedef {import("./kernel.js").Oscillator} Oscillator
- * @typedef {import("./structure.js").Point} Point
- * @typedef {{value: number, error: number}} Exponent per unit of tau
- */
+/** @typedef {{value: number, error: number}} Exponent per unit of tau */
 
 const SLICE = 20; // periods between two pauses
 const BLOCKS = 8; // parts of the whole whose growths are samples of the mean

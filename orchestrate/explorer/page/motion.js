@@ -4,8 +4,6 @@ import { Pauses } from "./pauses.js";
 import { periodOf } from "./structure.js";
 
 /**
- * @typedef {import("./kernel.js").Oscillator} Oscillator
- * @typedef {import("./structure.js").Point} Point
  * @typedef {{time: Float64Array, states: Float64Array, contact: Uint8Array,
  *   impactTime: Float64Array, impactSpeed: Float64Array, impactPlace: Float64Array,
  *   impactEnergy: Float64Array, period: number, first: number, points: number}} Motion

@@ -7,15 +7,7 @@ import { Picture } from "./picture.js";
 import { peaksUpTo } from "./record.js";
 import { scaleAt, wordsOf } from "./units.js";
 
-/**
- * @typedef {import("./motion.js").Motion} Motion
- * @typedef {import("./excitation.js").Level} Level
- * @typedef {import("./structure.js").Point} Point
- * @typedef {import("./chart.js").Series} Series
- * @typedef {import("./chart.js").Chart} Chart
- * @typedef {import("./spectrum.js").Spectrum} Spectrum
- * @typedef {"history" | "phase" | "section" | "spectrum"} Name
- */
+/** @typedef {"history" | "phase" | "section" | "spectrum"} Name */
 
 const FEW = 24; // places of a section that are drawn as larger dots
 
@@ -109,7 +101,7 @@ export function phaseChart(motion, point, level) {
   };
 }
 
-/** In which of 200 equal parts of an axis a value lies. @param {number} value @param {import("./scale.js").Axis} axis */
+/** In which of 200 equal parts of an axis a value lies. @param {number} value @param {Axis} axis */
 const cell = (value, { low, high }) => Math.round((200 * (value - low)) / (high - low));
 
 /** Stroboscopic section of gap and gap velocity. @param {ArrayLike<number>} states @param {Point} point @param {Level} level @returns {Chart} */
@@ -126,7 +118,7 @@ export function sectionChart(states, point, level) {
   return { ...axes, series: [{ x, y, colour: "ink", dots, alpha: 0.8 }] };
 }
 
-/** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @param {import("./record.js").Measured | null} measured @returns {Chart} */
+/** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @param {Measured | null} measured @returns {Chart} */
 export function spectrumChart({ delaminated, bonded }, point, level, measured) {
   const { line, acceleration } = scaleAt(point, level);
   const words = wordsOf(level);

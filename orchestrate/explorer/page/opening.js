@@ -5,13 +5,6 @@ import { GRAVITY, inHertz } from "./excitation.js";
 import { shown } from "./scale.js";
 import { frequencyName, frequencyUnit, levelShown } from "./units.js";
 
-/**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./structure.js").Point} Point
- * @typedef {import("./diagram.js").Diagram} Diagram
- * @typedef {import("./excitation.js").Level} Level
- */
-
 const MOST = 3; // ranges that are named
 
 /**

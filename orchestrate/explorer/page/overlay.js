@@ -5,18 +5,13 @@ import { pointAt } from "./excitation.js";
 import { scaleOf } from "./scale.js";
 import { gapUnit } from "./units.js";
 
-/**
- * Draws them.
- * @param {import("./payload.js").Table} table
- * @param {import("./diagram_view.js").DiagramView} view
- * @returns {import("./picture.js").Draw}
- */
+/** Draws them. @param {import("./payload.js").Table} table @param {DiagramView} view @returns {Draw} */
 export function overlayOf({ branches, bifurcations, structure }, view) {
   return (pen, size, theme) => {
     const [left, top, width, height] = panels(size).gaps;
     const px = scaleOf(view.axes.x, left, left + width);
     const scale = scaleOf(view.axes.gaps, top + height - STRIP, top);
-    const { level, lanes } = /** @type {import("./diagram.js").Diagram} */ (view.diagram);
+    const { level, lanes } = /** @type {Diagram} */ (view.diagram);
     const colour = lanes.length > 1 ? theme.ink : theme.two; // not one of the sweeps'
     /** @param {number} gap @param {number} eta */
     const py = (gap, eta) => scale(gap * gapUnit(pointAt(structure, eta, level), level));

@@ -1,7 +1,5 @@
 /** Pauses in a long computation, counted by its work: a worker may do other things there. */
 
-/** @typedef {import("./kernel.js").Instance} Instance */
-
 const MOST = 10000; // impacts and steps between two pauses: a few milliseconds
 export const PIECE = 100; // periods of one step of a transient, at most
 

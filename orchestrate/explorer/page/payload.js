@@ -1,13 +1,12 @@
 /** What the page carries: the compiled kernel, tables, and where the responses of a sweep begin. */
 
 /**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {{slots: import("./kernel.js").Slots, starts: Record<string, number>}} Kernel
- * @typedef {{oscillator: Kernel, shaker: Kernel, drive: import("./coupled.js").Start,
- *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>, units: import("./structure.js").Units,
- *   settings: import("./response.js").Settings, directions: ("up" | "down")[], count: number,
+ * @typedef {{slots: Slots, starts: Record<string, number>}} Kernel
+ * @typedef {{oscillator: Kernel, shaker: Kernel, drive: Start,
+ *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>, units: Units,
+ *   settings: Settings, directions: ("up" | "down")[], count: number,
  *   low: number, high: number, level: ["paper" | "g" | "mm", number],
- *   shown: import("./units.js").Asked, tour: Record<string, string>,
+ *   shown: Asked, tour: Record<string, string>,
  *   branches: {x: number[], y: number[], stable: boolean}[],
  *   bifurcations: {eta: number, gap: number, kind: string}[]}} Table
  */
@@ -41,7 +40,7 @@ export async function load() {
  * The sweep that the page was made of; null where it was made of none.
  * @param {Table} table
  * @param {Float64Array} data eta, frequency, amplitude, then four numbers a start for each direction
- * @returns {import("./diagram.js").Diagram | null}
+ * @returns {Diagram | null}
  */
 function shipped({ structure, settings, directions, count, low, high, level: [unit, value] }, data) {
   if (!count) return null;

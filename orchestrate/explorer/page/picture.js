@@ -6,8 +6,6 @@ import { CanvasPen, SvgPen } from "./pen.js";
 import { themeOf } from "./theme.js";
 
 /**
- * @typedef {import("./pen.js").Pen} Pen
- * @typedef {import("./theme.js").Theme} Theme
  * @typedef {{width: number, height: number}} Size
  * @typedef {(pen: Pen, size: Size, theme: Theme) => void} Draw
  */

@@ -9,7 +9,7 @@ const FIELDS = ["speed", "pitch", "periods", "beside"];
 export class Player {
   /**
    * @param {(id: string) => HTMLElement} at
-   * @param {import("./inspector.js").Inspector} inspector
+   * @param {Inspector} inspector
    * @param {{tell: (text: string) => void, changed: () => void}} acts
    */
   constructor(at, inspector, { tell, changed }) {

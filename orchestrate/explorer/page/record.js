@@ -23,11 +23,7 @@ const TIME_NAMES = ["time", "t", "zeit"];
 const NAMES = ["acceleration1", "mass1", "a1", "acc1", "accel1", "a1abs"]; // else the first column
 const EXPECTED = "expected columns of numbers under a heading such as t [s], a1 [g]";
 
-/**
- * What a text says, or in one line why it cannot be read.
- * @param {string} text
- * @returns {Reading}
- */
+/** What a text says, or in one line why it cannot be read. @param {string} text @returns {Reading} */
 export function readRecord(text) {
   const lines = text.split(/\r\n|\r|\n/).filter((line) => line.trim());
   const found = tableOf(lines);

@@ -4,12 +4,10 @@ import { shown } from "./scale.js";
 
 const LARGEST = 60e6; // bytes
 
-/** @typedef {import("./record.js").Measured} Measured */
-
 /**
  * Take files that are dropped anywhere on the page, or chosen.
  * @param {(id: string) => HTMLElement} at
- * @param {import("./worker_pool.js").WorkerPool} pool
+ * @param {WorkerPool} pool
  * @param {(measured: Measured) => void} take
  */
 export function acceptRecords(at, pool, take) {
@@ -24,7 +22,7 @@ export function acceptRecords(at, pool, take) {
   });
 }
 
-/** @param {File} file @param {import("./worker_pool.js").WorkerPool} pool @param {(measured: Measured) => void} take @param {(words: string) => void} say */
+/** @param {File} file @param {WorkerPool} pool @param {(measured: Measured) => void} take @param {(words: string) => void} say */
 function read(file, pool, take, say) {
   if (file.size > LARGEST) return say(`${file.name}: ${shown(file.size / 1e6, 3)} MB; expected at most ${LARGEST / 1e6}`);
   say(`${file.name} …`);

@@ -7,12 +7,6 @@ import { USUAL } from "./response.js";
 import { sameLevel } from "./excitation.js";
 import { sameStructure } from "./structure.js";
 
-/**
- * @typedef {import("./diagram.js").Diagram} Diagram
- * @typedef {import("./diagram.js").Region} Region
- * @typedef {import("./structure.js").Structure} Structure
- */
-
 const QUICK = { transient: 100, samples: 40, tolerance: 1e-2 };
 const FINE = 7900; // steps over the paper's range, as `orchestrate sweep` has them
 const LEAST = 1e-6; // width of a region
@@ -20,7 +14,7 @@ const LEAST = 1e-6; // width of a region
 export class Regions {
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {import("./worker_pool.js").WorkerPool} pool
+   * @param {WorkerPool} pool
    * @param {Diagram | null} shipped
    * @param {{low: number, high: number}} whole
    * @param {(complete: boolean) => void} told when something has come
@@ -35,7 +29,7 @@ export class Regions {
     this.seen = [];
     this.place = -1;
     this.complete = false;
-    /** @type {import("./worker_pool.js").Order | null} */
+    /** @type {Order | null} */
     this.order = null;
     this.timer = 0;
     /** @type {Diagram | null} */
@@ -100,7 +94,7 @@ export class Regions {
     this.complete = false;
     this.view.show(diagram, parent && parent !== diagram ? parent : null);
     const began = performance.now();
-    /** @type {import("./requests.js").Take} */
+    /** @type {Take} */
     const take = (lane, found) => {
       this.view.add(lane.direction, found.index, found);
       this.first ??= performance.now() - began;
@@ -136,7 +130,7 @@ export class Regions {
     this.told(true);
   }
 
-  /** Follow parameters that are being changed: quickly now, in full once they rest. @param {Structure} structure @param {import("./excitation.js").Level} level @param {number} held factor of frequency ratios */
+  /** Follow parameters that are being changed: quickly now, in full once they rest. @param {Structure} structure @param {Level} level @param {number} held factor of frequency ratios */
   follow(structure, level, held) {
     const { direction } = this.diagram;
     const [low, high] = [this.diagram.low * held, this.diagram.high * held];

@@ -3,14 +3,7 @@
 import { startAt, startFrom } from "./diagram.js";
 import { columnsAt } from "./structure.js";
 
-/**
- * @typedef {import("./worker_pool.js").WorkerPool} WorkerPool
- * @typedef {import("./worker_pool.js").Order} Order
- * @typedef {import("./diagram.js").Diagram} Diagram
- * @typedef {import("./diagram.js").Lane} Lane
- * @typedef {import("./diagram.js").Found} Found
- * @typedef {(lane: Lane, found: Found) => void} Take
- */
+/** @typedef {(lane: Lane, found: Found) => void} Take */
 
 /** Indices of a list, coarse ones first. @param {number} count */
 export function coarseFirst(count) {

@@ -5,8 +5,6 @@ import { Pauses, PIECE } from "./pauses.js";
 import { lengthOf, periodOf } from "./structure.js";
 
 /**
- * @typedef {import("./kernel.js").Oscillator} Oscillator
- * @typedef {import("./structure.js").Point} Point
  * @typedef {{transient: number, samples: number, tolerance: number}} Settings
  * @typedef {{states: Float64Array, gaps: Float64Array, peak: number, impacts: number,
  *   contact: boolean, multiplicity: number, start: number[], end: number[]}} Response
@@ -96,12 +94,7 @@ export function overSize(states, frequency, gap) {
   return rows.map((row) => [...row.slice(0, 4).map((value) => value / size), row[4] / ofGap, row[5] / ofRate]);
 }
 
-/**
- * @param {number[][]} states
- * @param {number} first
- * @param {number} shift
- * @param {number} tolerance
- */
+/** @param {number[][]} states @param {number} first @param {number} shift @param {number} tolerance */
 function repeats(states, first, shift, tolerance) {
   for (let i = first; i + shift < states.length; i++) {
     if (states[i].some((value, k) => Math.abs(states[i + shift][k] - value) > tolerance)) return false;

@@ -24,18 +24,14 @@ function madeBy(swept) {
   return names.flatMap((name) => document.getElementById(name)?.textContent ?? []).join("; ");
 }
 
-/**
- * Save a picture or its numbers; says so.
- * @param {string} words what, and the kind of file
- * @param {import("./app.js").App} page
- */
+/** Save a picture or its numbers; says so. @param {string} words what, and the kind of file @param {App} page */
 export function saveShown(words, { eta, regions, inspector, basin, drive }) {
   const [name, kind] = words.split(".");
   const { found, choice, section, spectra, pictures, animation } = inspector;
   const file = `${name}_eta${Number.isFinite(eta) ? Number(eta.toPrecision(7)) : ""}`;
   if (!found && (name === "frame" || name in pictures.pictures)) return NOTHING; // what is seen is the motion before
   if (kind !== "csv") {
-    /** @type {Record<string, import("./picture.js").Picture>} */
+    /** @type {Record<string, Picture>} */
     const shown = { ...pictures.pictures, diagram: regions.view.picture, basin: basin.view.picture, drive: drive.picture, frame: animation.picture };
     const caption = [TITLES[name]];
     if (name === "drive") caption.push("A lighter beam, the parameter set quick");

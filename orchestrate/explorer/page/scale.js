@@ -1,8 +1,6 @@
 /** Axes: from numbers to pixels, and the ticks between. */
 
-/**
- * @typedef {{low: number, high: number, log?: boolean, label?: string}} Axis
- */
+/** @typedef {{low: number, high: number, log?: boolean, label?: string}} Axis */
 
 /** @param {Axis} axis @param {number} from @param {number} to @returns {(value: number) => number} */
 export function scaleOf({ low, high, log }, from, to) {

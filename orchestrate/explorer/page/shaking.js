@@ -8,8 +8,6 @@ import { lengthOf, rescaled } from "./structure.js";
 import { frequencyName, frequencyUnit, levelFrom, levelShown, ownNames, ownUnit, ratioFrom } from "./units.js";
 
 /**
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./excitation.js").Level} Level
  * @typedef {{choose: (eta: number, exactly: boolean) => void,
  *   change: (structure: Structure, level: Level) => void}} Acts
  */
@@ -21,13 +19,7 @@ const FINE = 9; // of a frequency in Hz
 const OMEGA = 2 * Math.PI * 40; // of a first beam of one's own, rad/s
 
 export class Shaking {
-  /**
-   * @param {(id: string) => HTMLElement} at
-   * @param {import("./structure.js").Units} units
-   * @param {Structure} structure
-   * @param {Level} level
-   * @param {Acts} acts
-   */
+  /** @param {(id: string) => HTMLElement} at @param {Units} units @param {Structure} structure @param {Level} level @param {Acts} acts */
   constructor(at, units, structure, level, acts) {
     /** @param {string} id */
     const input = (id) => /** @type {HTMLInputElement} */ (at(id));

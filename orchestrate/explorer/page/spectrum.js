@@ -2,11 +2,7 @@
 
 import { periodOf } from "./structure.js";
 
-/**
- * @typedef {import("./kernel.js").Oscillator} Oscillator
- * @typedef {import("./structure.js").Point} Point
- * @typedef {{order: Float64Array, amplitude: Float64Array}} Spectrum lines over the excitation's
- */
+/** @typedef {{order: Float64Array, amplitude: Float64Array}} Spectrum lines over the excitation's */
 
 const PIECE = 4096; // samples
 
@@ -53,11 +49,7 @@ export function windowed(values) {
   values.forEach((value, i) => (values[i] = (value - mean) * (0.5 - 0.5 * Math.cos((2 * Math.PI * i) / values.length))));
 }
 
-/**
- * Fast Fourier transform in place; the length is a power of two.
- * @param {Float64Array} real
- * @param {Float64Array} imaginary
- */
+/** Fast Fourier transform in place; the length is a power of two. @param {Float64Array} real @param {Float64Array} imaginary */
 export function transform(real, imaginary) {
   const count = real.length;
   for (let i = 1, j = 0; i < count; i++) {

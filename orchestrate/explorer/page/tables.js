@@ -2,12 +2,6 @@
 
 import { accelerations } from "./motion.js";
 
-/**
- * @typedef {import("./diagram.js").Diagram} Diagram
- * @typedef {import("./motion.js").Motion} Motion
- * @typedef {import("./structure.js").Point} Point
- */
-
 /** Samples of all responses that have come. @param {Diagram} diagram */
 export function diagramCsv({ points, lanes, settings }) {
   function* rows() {
@@ -47,13 +41,13 @@ export function sectionCsv(states) {
   return { head: ["x1", "x2", "v1", "v2"], rows };
 }
 
-/** @param {{delaminated: import("./spectrum.js").Spectrum, bonded: import("./spectrum.js").Spectrum}} found */
+/** @param {{delaminated: Spectrum, bonded: Spectrum}} found */
 export function spectrumCsv({ delaminated, bonded }) {
   const rows = Array.from(delaminated.order, (order, i) => [order, delaminated.amplitude[i], bonded.amplitude[i]]);
   return { head: ["order", "delaminated", "bonded"], rows };
 }
 
-/** Revolutions of the motor. @param {import("./drive_part.js").Row[]} revolutions */
+/** Revolutions of the motor. @param {Row[]} revolutions */
 export function driveCsv(revolutions) {
   const rows = revolutions.map((row) => [row.time, row.voltage, row.speed, row.amplitude, row.impacts]);
   return { head: ["time", "voltage", "speed", "amplitude", "impacts"], rows };

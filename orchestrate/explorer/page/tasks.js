@@ -10,14 +10,7 @@ import { spectrumOf } from "./spectrum.js";
 import { periodOf, pointOf } from "./structure.js";
 import { waveform } from "./waveform.js";
 
-/**
- * @typedef {import("./kernel.js").Oscillator} Oscillator
- * @typedef {import("./kernel.js").Instance} Instance
- * @typedef {import("./structure.js").Point} Point
- * @typedef {import("./structure.js").Columns} Columns
- * @typedef {import("./response.js").Settings} Settings
- * @typedef {import("./response.js").Response} Response
- */
+/** @typedef {import("./response.js").Response} Response */
 
 const REST = [0, 0, 0, 0];
 const EXPONENT = { periods: 400, most: 12800, distance: 1e-7 };
@@ -107,9 +100,9 @@ function* sound(instance, { point, start, periods, pitch, rate }) {
 /**
  * Some revolutions of the motor and the structure in its box, from where they were left.
  * @param {Oscillator} instance
- * @param {{run: import("./coupled.js").Run | null, start: import("./coupled.js").Start,
+ * @param {{run: Run | null, start: Start,
  *   voltages: number[]}} asked a voltage for each step
- * @param {import("./kernel.js").Instance} shaker
+ * @param {Instance} shaker
  */
 function* drive(instance, { run, start, voltages }, shaker) {
   const coupled = run ? Coupled.resumed(instance, shaker, run) : Coupled.begun(instance, shaker, start);
@@ -125,7 +118,7 @@ function* drive(instance, { run, start, voltages }, shaker) {
 /**
  * Where the cells of a plane lead to.
  * @param {Oscillator} instance
- * @param {{point: Point, plane: import("./basin.js").Plane, cells: [number, number][]}} asked
+ * @param {{point: Point, plane: Plane, cells: [number, number][]}} asked
  */
 function* basin(instance, { point, plane, cells }) {
   for (const [column, row] of cells) {

@@ -5,9 +5,6 @@ import { shown } from "./scale.js";
 import { lengthOf, omegaOf, periodOf } from "./structure.js";
 
 /**
- * @typedef {import("./excitation.js").Level} Level
- * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./structure.js").Point} Point
  * @typedef {{frequency: "Hz" | "rpm" | "rad/s" | "eta", length: "m" | "mm" | "um",
  *   acceleration: "g" | "m/s2", time: "" | "s" | "periods"}} Asked of a beam of one's own; a time
  *   that is named is for the paper's beam too

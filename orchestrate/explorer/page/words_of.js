@@ -5,7 +5,6 @@ import { shown } from "./scale.js";
 import { scaleAt, wordsOf } from "./units.js";
 
 /**
- * @typedef {import("./lyapunov.js").Exponent} Exponent
  * @typedef {import("./response.js").Response} Response
  * @typedef {"chaotic" | "converging" | "undecided"} Kind
  */
@@ -31,7 +30,7 @@ export function exponentWords(exponent, repeats) {
 /** How many periods a motion of so many samples is compared over. @param {number} samples */
 const comparedOver = (samples) => Math.max(1, Math.floor(samples / 4));
 
-/** How a beam of one's own is shaken, and how far it opens. @param {number} peak @param {import("./structure.js").Point} point @param {import("./excitation.js").Level} level @returns {Record<string, string>} */
+/** How a beam of one's own is shaken, and how far it opens. @param {number} peak @param {Point} point @param {Level} level @returns {Record<string, string>} */
 function ownNumbers(peak, point, level) {
   const [scale, words] = [scaleAt(point, level), wordsOf(level)];
   const { eta, frequency, amplitude } = point;
@@ -43,7 +42,7 @@ function ownNumbers(peak, point, level) {
   };
 }
 
-/** Numbers of a response for people. @param {Response} response @param {import("./structure.js").Point} point @param {import("./excitation.js").Level} level @returns {Record<string, string>} */
+/** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @returns {Record<string, string>} */
 export function numbersOf({ peak, impacts, contact, multiplicity, gaps }, point, level) {
   /** @type {Record<string, string>} */
   const first = inHertz(level) ? ownNumbers(peak, point, level) : { "frequency ratio η": shown(point.eta, 6), "largest gap ξ": shown(peak, 6) };

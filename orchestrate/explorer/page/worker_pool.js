@@ -1,16 +1,9 @@
 /** The workers: tasks are handed to them, parts of answers come back, tasks can be called off. */
 
-/**
- * @typedef {import("./kernel.js").Compiled} Compiled
- * @typedef {{cancel: () => void, done: Promise<void>}} Order
- */
+/** @typedef {{cancel: () => void, done: Promise<void>}} Order */
 
 export class WorkerPool {
-  /**
-   * @param {string} source of the worker
-   * @param {{oscillator: Compiled, shaker: Compiled}} compiled
-   * @param {number} size
-   */
+  /** @param {string} source of the worker @param {{oscillator: Compiled, shaker: Compiled}} compiled @param {number} size */
   constructor(source, compiled, size) {
     const place = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
     this.number = 0;

@@ -31,10 +31,6 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
         ``skewness`` (0 for a symmetric density), ``kurtosis`` (3 for a Gaussian one, 1.5 for a
         sine), ``skewness_error`` and ``kurtosis_error``.
 
-    Raises
-    ------
-    InputError
-
     Notes
     -----
     Standard errors come from 16 parts of the record: the standard deviation of the parts' values

@@ -57,10 +57,6 @@ def frf(
         and ``excited``, whether that is a hundredth of its largest value at least (0 Hz is not);
         scalars ``averages`` and ``resolution``.
 
-    Raises
-    ------
-    InputError
-
     Notes
     -----
     H1 is right where the noise is on the response, H2 where it is on the box's channel, Hv where

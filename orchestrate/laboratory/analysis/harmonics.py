@@ -42,10 +42,6 @@ def harmonics(
         ``distortion_and_noise`` (THD+N), the same with all that is in no order; ``ratio``, over
         ``order`` too, each order over the first. ``sweep_rate`` in Hz/s.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> import orchestrate

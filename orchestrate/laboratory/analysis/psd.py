@@ -36,10 +36,6 @@ def psd(
         its integral, over ``channel``; scalars ``random_error`` (standard deviation of a line
         relative to it), ``averages`` and ``resolution``.
 
-    Raises
-    ------
-    InputError
-
     Notes
     -----
     Welch's method; mean values are removed from each segment.

@@ -42,10 +42,6 @@ def shock_spectrum(
         acceleration in space of the oscillator during the record; ``residual``, the largest one
         after it; ``maximax``, the larger of both. Scalar ``damping``.
 
-    Raises
-    ------
-    InputError
-
     Notes
     -----
     The recursion is exact for a base acceleration that is straight between samples (ramp-invariant,

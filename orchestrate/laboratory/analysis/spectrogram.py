@@ -46,10 +46,6 @@ def spectrogram(
         ``frequency`` in Hz: a steady sine on a line has its amplitude there, not its root mean
         square; scalar ``resolution``.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> import orchestrate
