@@ -82,7 +82,6 @@ def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[
     times = reference.times()
 
     def inputs(time: float) -> dict[str, float]:
-        """Return the inputs at a time as keywords."""
         return dict(zip(reference.inputs, reference.input_at(time), strict=True))
 
     with Instance(fmu) as instance:

@@ -95,7 +95,9 @@ class Findings:
         )
         if usable and (delaminated or not_seen):
             return DELAMINATED if delaminated else NOT_SEEN
-        return UNDECIDED if self.is_described or not usable else NOT_DESCRIBED
+        described = self.sound_misfit <= self.settings.sound
+        described |= self.delaminated_misfit <= self.largest_misfit
+        return UNDECIDED if described or not usable else NOT_DESCRIBED
 
     def record_conditions(self) -> list[Condition]:
         """Return the conditions under which a record decides anything."""
@@ -176,12 +178,6 @@ class Findings:
                 "The same sweep with less noise, or at a higher level.",
             ),
         ]
-
-    @property
-    def is_described(self) -> bool:
-        """Return whether one of the hypotheses describes the record."""
-        delaminated = self.delaminated_misfit <= self.largest_misfit
-        return delaminated or self.sound_misfit <= self.settings.sound
 
     @property
     def stops(self) -> list[Condition]:

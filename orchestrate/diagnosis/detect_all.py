@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..fmu import finder
+from ..lazy import Unpack, xr
 from ..model import Structure
+from ..running.options import Running
 from ..running.runner import gather
 from .detect import DetectJob
 from .evidence import Participation
 from .fit import checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 from .settings import Changes, Settings, checked_settings
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 
 def detect_all(

@@ -28,24 +28,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..fmu import Player
 from ..laboratory.analysis.channels import BOX
 from ..laboratory.pieces import Floats
 from ..laboratory.sampled import Sampled
 from .evidence import Evidence
 from .fitting import Search, difference_step
+from .hypotheses import Hypothesis
 from .linear import LinearModel
 from .misfit import misfit, soft_squares
-from .orders import ORDERS
+from .orders import ORDERS, RecordOrders
 from .settings import SETTINGS, Settings
-
-if TYPE_CHECKING:
-    from ..fmu import Player
-    from .hypotheses import Hypothesis
-    from .orders import RecordOrders
 
 REPLICATES = 16  # motions under more noise of the base
 CURVE_REPLICATES = 100  # of the simulated scatter of a curve's points
@@ -102,11 +98,7 @@ def linear_model_around(search: Search, values: Mapping[str, float]) -> LinearMo
 
 
 def with_shared_damping(values: Mapping[str, float]) -> dict[str, float]:
-    """Raise a damping ratio that is nearly 0, and lower the other one by as much.
-
-    Only the sum of both is well known, and residuals are linear in the ratios themselves: around a
-    logarithm that has run away, differences tell nothing of what the ratio may be.
-    """
+    """Raise a damping ratio that is nearly 0, and lower the other one by as much."""
     names = [name for name in ("log_zeta1", "log_zeta2") if name in values]
     ratios = np.exp([values[name] for name in names])
     least = LEAST_SHARE * ratios.mean() if len(names) == 2 else 0.0
@@ -151,11 +143,7 @@ def estimate_with_covariances(
 def contact_covariance(
     values: Mapping[str, float], beyond: float, settings: Settings = SETTINGS
 ) -> Floats:
-    """Return the covariance of damping and restitution that is due to real contacts.
-
-    A real contact loses energy in another way at each speed, and a fit shares that out between
-    both halves and the impacts.
-    """
+    """Return the covariance of damping and restitution that is due to real contacts."""
     size = min(1.0, math.sqrt(beyond) / settings.contact_misfit)
     damping = {
         name: math.exp(values[name]) for name in ("log_zeta1", "log_zeta2") if name in values
@@ -192,12 +180,7 @@ def simulated_noise_changes(search: Search, values: Mapping[str, float]) -> list
 
 
 def scatter_changes(residuals: Floats) -> list[Floats]:
-    """Simulate the scatter of a curve's points; return the change of the residuals each time.
-
-    A curve has no floor between its orders. Its scatter is what differs from one frequency to the
-    next, of each sensor and order: the second differences of the residuals, of which white noise of
-    variance 1 makes 6.
-    """
+    """Simulate the scatter of a curve's points; return the change of the residuals each time."""
     differences = np.diff(residuals, n=2, axis=-1)
     size = np.sqrt(np.mean(differences**2, axis=-1, keepdims=True) / 6.0)
     rng = np.random.default_rng(SEED)
@@ -218,15 +201,9 @@ def motions_under_base_noise(
     hypothesis, values, player = fit
     size = noise_of_samples(evidence.orders)[BOX]
     for _ in range(count):
-        noisy = with_base_noise(evidence, size * rng.standard_normal(evidence.samples))
-        yield hypothesis.displacements(values, noisy, player)
-
-
-def with_base_noise(evidence: Evidence, noise: Floats) -> Evidence:
-    """Return the evidence with simulated noise added to the base's acceleration."""
-    base = evidence.orders.channels.box + noise
-    pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.rate).pieces()
-    return replace(evidence, pieces=pieces)
+        base = evidence.orders.channels.box + size * rng.standard_normal(evidence.samples)
+        pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.rate).pieces()
+        yield hypothesis.displacements(values, replace(evidence, pieces=pieces), player)
 
 
 def noise_of_samples(orders: RecordOrders) -> dict[str, float]:

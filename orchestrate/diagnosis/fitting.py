@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ..fmu import Player
 from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .hypotheses import Hypothesis
 from .linear import LinearModel
 from .misfit import SOFT_LIMIT, misfit
-
-if TYPE_CHECKING:
-    from ..fmu import Player
 
 STEPS = {  # of the differences that make derivatives; f and common: parts of the resonance's
     **{"common": 3e-4, "f": 1e-4, "split": 3e-3, "e": 0.02, "clearance": 0.01},
@@ -107,17 +105,9 @@ class Search:
         return Solution(hypothesis.name, values, misfit(np.asarray(result.residual)))
 
     def polish(self, start: Solution) -> Solution:
-        """Improve a minimum by linear regressions over clouds of points.
-
-        Impacts that come or stay away make the misfit rugged: a trust region that shrinks after a
-        step that failed ends on the first of its bumps. Here each round computes a cloud, as long
-        as the valley is, and tries the minimum of its linear model with several dampings.
-        """
-        here, shape, size = (
-            start,
-            np.diag([difference_step(self, name) ** 2 for name in start.values]),
-            1.0,
-        )
+        """Improve a minimum by linear regressions over clouds of points."""
+        here, size = start, 1.0
+        shape = np.diag([difference_step(self, name) ** 2 for name in start.values])
         bounds = self.hypothesis.bounds(self.evidence)
         for number in range(self.evidence.settings.rounds):
             model = LinearModel.from_cloud(
@@ -161,11 +151,7 @@ def distinct_minima(solutions: Sequence[Solution]) -> list[Solution]:
 
 
 def without_neighbours(solutions: Sequence[Solution]) -> list[Solution]:
-    """Drop the solutions that have nearly the split and clearance of a better one.
-
-    Halves that change places are another solution, however near each other their frequencies are.
-    Solutions without these numbers all stay.
-    """
+    """Drop the solutions that have nearly the split and clearance of a better one."""
     found: list[Solution] = []
     for one in solutions:
         if not any(is_neighbour(one.values, other.values) for other in found):

@@ -155,15 +155,7 @@ class RecordOrders:
 
 
 def record_orders(record: xr.Dataset) -> RecordOrders:
-    """Compute the orders of a record of a swept or stepped sine.
-
-    Notes
-    -----
-    The phase is that of the base's analytic signal, smoothed by a cubic in each window. In each
-    window a constant and all orders are fitted by least squares with Hann weights; the amplitudes
-    of whole orders may change at a constant rate. A window lasts 0.25 s, longer where the sweep is
-    slow or where it would have less than 8 periods.
-    """
+    """Compute the orders of a record of a swept or stepped sine."""
     return channel_orders(checked_channels(record))
 
 

@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,15 +19,12 @@ from ..laboratory.pieces import Floats
 from ..laboratory.sensors import Sensor, measure, sensor_by_channel
 from ..laboratory.shake import shake
 from ..laboratory.swept_sine import SweptSine
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..response.labels import variable, yes_or_no
 from ..running.options import Running
 from .opening import largest_opening_force, sweep_rate
 from .undamaged import SoundStructure
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
 
 ORDERS = (1.0, 2.0, 3.0)
 SPLITS = (1.0, 0.2)  # parts of the guess's difference between its halves that are computed
@@ -318,8 +315,6 @@ def plan_dataset(
     test: SweepComputation, sweeps: Sequence[Sweep], limit: float, split_distances: Floats
 ) -> xr.Dataset:
     """Assemble the dataset of a plan from a sweep at each level."""
-    import xarray as xr
-
     f, levels = test.frequency, np.array([sweep.level for sweep in sweeps])
     distances = [test.noise.distances(one, f) for one in sweeps]
     first, higher = (np.stack(rows) for rows in zip(*distances, strict=True))

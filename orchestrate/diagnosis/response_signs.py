@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -64,15 +64,10 @@ def response_signs(
     own = signs_of_orders(channels, periods) if swept else signs_of_spectra(channels)
     edge = default_band_edge(channels, own.highest) if high_band is None else high_band
     moments = signs_of_moments(channels, edge)
-    values, floors = coherence_loss(channels, own.noise)
-    return ResponseSigns(
-        {**own.values, **moments[0], "coherence_loss": values},
-        {**own.floors, **moments[1], "coherence_loss": floors},
-        own.frequencies,
-        own.curves,
-        own.noise,
-        own.highest,
-    )
+    loss, loss_floor = coherence_loss(channels, own.noise)
+    values = {**own.values, **moments[0], "coherence_loss": loss}
+    floors = {**own.floors, **moments[1], "coherence_loss": loss_floor}
+    return replace(own, values=values, floors=floors)
 
 
 def default_band_edge(channels: Channels, highest: float) -> float:
@@ -178,15 +173,11 @@ def signs_of_spectra(channels: Channels) -> ResponseSigns:
     """Compute the response at the lines that the box excites; such a record has no orders."""
     frequency, box, rows, cross = spectra(channels)
     excited = excited_lines(frequency, box)
-    density = median_of_columns(rows[:, noise_lines(frequency, channels.sample_rate)])
+    low, high = (part * channels.sample_rate for part in NOISE_LINES)
+    density = median_of_columns(rows[:, (frequency >= low) & (frequency <= high)])
     response = cross[:, excited] / box[excited]
-    curve = Curve(
-        0,
-        float(channels.box.std()),
-        frequency[excited],
-        response,
-        np.full(len(rows), np.nan),
-    )
+    level, unknown = float(channels.box.std()), np.full(len(rows), np.nan)
+    curve = Curve(0, level, frequency[excited], response, unknown)
     noise = np.sqrt(0.5 * channels.sample_rate * density)
     curves = [curve] if excited.sum() >= MIN_WINDOWS else []
     highest = float(frequency[excited].max()) if excited.any() else math.nan
@@ -200,23 +191,13 @@ def spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
     options = averaging(channels, None, "hann", OVERLAP, fewest=2).options
     rows = channels.values[1:]
     frequency, box = welch(channels.box, channels.sample_rate, **options)
-    return (
-        frequency,
-        box,
-        welch(rows, channels.sample_rate, **options)[1],
-        csd(channels.box, rows, channels.sample_rate, **options)[1],
-    )
+    own = welch(rows, channels.sample_rate, **options)[1]
+    return frequency, box, own, csd(channels.box, rows, channels.sample_rate, **options)[1]
 
 
 def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
     """Return a mask of the lines of a spectrum that the base excites."""
     return np.asarray((box >= EXCITED * box.max()) & (frequency > 0.0))
-
-
-def noise_lines(frequency: Floats, rate: float) -> NDArray[np.bool_]:
-    """Return a mask of the lines of a spectrum that are taken for noise."""
-    low, high = NOISE_LINES
-    return np.asarray((frequency >= low * rate) & (frequency <= high * rate))
 
 
 def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
@@ -278,28 +259,22 @@ def sensor_differences(curves: Sequence[Curve], channels: int) -> tuple[Floats, 
 
 
 def curve_difference(one: Curve, other: Curve) -> Floats:
-    """Return the rms difference of two curves over that of the first, of each row.
-
-    It is NaN where they have no frequency in common.
-    """
+    """Return the rms difference of two curves over that of the first, of each row."""
     low, high = other.frequency[0], other.frequency[-1]
     common = (one.frequency >= low) & (one.frequency <= high)
     if common.sum() < MIN_WINDOWS:
         return np.full(len(one.response), np.nan)
     at, first = one.frequency[common], one.response[:, common]
     second = np.array([np.interp(at, other.frequency, row) for row in other.response])
-    rest = np.linalg.norm(second - first, axis=-1) / np.linalg.norm(first, axis=-1)
-    return np.asarray(rest)
+    return np.asarray(np.linalg.norm(second - first, axis=-1) / np.linalg.norm(first, axis=-1))
 
 
 def level_and_direction_differences(
     curves: Sequence[Curve], rows: int
 ) -> Mapping[str, tuple[Floats, Floats]]:
     """Compute the largest differences over level and over direction, and their noise floors."""
-    best = {
-        name: (np.full(rows, np.nan), np.full(rows, np.nan))
-        for name in ("level_dependence", "direction_difference")
-    }
+    unknown, names = np.full(rows, np.nan), ("level_dependence", "direction_difference")
+    best = dict.fromkeys(names, (unknown, unknown))
     for one, other in combinations(curves, 2):
         same_level = 1.0 / SAME_LEVEL < one.level / other.level < SAME_LEVEL
         if one.direction == other.direction and not same_level:

@@ -34,6 +34,7 @@ RESPONSE = "the response"  # reference of the phase where nothing else is known
 UNKNOWN = SoundStructure(math.nan, math.nan)
 EXCEED_FACTOR = 2.0  # times what noise and a sound structure show
 MEANINGS = {-1: "unknown", 0: "no", 1: "yes"}
+NOISE_SOURCES = "lines at 0.36 to 0.44 of the sampling rate", "off-orders 2.37 and 3.37"
 
 
 def signs(
@@ -106,7 +107,7 @@ def signs(
     >>> bool(answer.exceeds.sel(sign="order_2") == 1)
     True
     """
-    others = other_records(other)
+    others = [other] if isinstance(other, xr.Dataset) else list(other or ())
     if is_drive_run(record):
         return signs_of_drive_run(record, others)
     length = checked_number("periods", periods, 2.0, 1e4)
@@ -138,7 +139,7 @@ def signs(
         shown = rows.reshape(len(rows), count, len(names)).transpose(1, 0, 2)
     described = {
         "seeds": f"0 to {count - 1}",
-        "noise_from": "given" if level is not None else noise_source(swept[0]),
+        "noise_from": "given" if level is not None else NOISE_SOURCES[swept[0]],
         "sound_from": "nearest oscillator" if structure is None else "the guess, bonded",
         "reference": reference,
     }
@@ -150,13 +151,6 @@ def signs(
     )
 
 
-def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Dataset]:
-    """Return the records beside the first one as a list."""
-    if other is None:
-        return []
-    return [other] if isinstance(other, xr.Dataset) else list(other)
-
-
 def reference_channels(record: xr.Dataset) -> Channels:
     """Return a record's channels; the force, or the first response, stands for a base without."""
     if not isinstance(getattr(record, "data_vars", None), Mapping) or BOX in record:
@@ -166,11 +160,6 @@ def reference_channels(record: xr.Dataset) -> Channels:
     values = np.asarray(record[FORCE].values, float) if FORCE in record else channels.values[0]
     names, rows = (BOX, *channels.names), np.vstack([values, channels.values])
     return replace(channels, names=names, values=rows, box_label=label)
-
-
-def noise_source(swept: bool) -> str:
-    """Return a phrase that says where the noise is estimated."""
-    return "off-orders 2.37 and 3.37" if swept else "lines at 0.36 to 0.44 of the sampling rate"
 
 
 def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:

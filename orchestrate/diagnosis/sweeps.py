@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ..laboratory.pieces import Floats
+from ..lazy import xr
 from .orders import sensor_channels, sine_windows
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 JUMP = 0.2  # relative change of the frequency from window to window that begins another sweep
 PAUSE = 1.0  # s without a sine that end one

@@ -51,17 +51,14 @@ class SoundStructure:
         measured = channels.responses()[1]
 
         def made(logs: Floats) -> SoundStructure:
-            """Return the oscillator for logarithms of f and zeta."""
             one = cls(*np.exp(logs).tolist())
             return one.under_force(frequency, response) if force else one
 
         def response_residuals(logs: Floats) -> Floats:
-            """Return the residuals of the transmissibility for logarithms of f and zeta."""
             rest = (made(logs).response(frequency) - response).ravel()
             return np.concatenate([rest.real, rest.imag])
 
         def record_residuals(logs: Floats) -> Floats:
-            """Return the residuals of the acceleration over time for these logarithms."""
             return np.asarray((made(logs).acceleration(channels) - measured).ravel())
 
         low, high = math.log(0.2 * frequency[0]), math.log(5.0 * frequency[-1])
@@ -77,10 +74,7 @@ class SoundStructure:
         return np.outer(self.gains, moved - 1.0) if self.gains else moved
 
     def acceleration(self, channels: Channels) -> Floats:
-        """Compute the absolute acceleration under the box, or the force, of a record, m/s2.
-
-        It is exact for a box that is straight between the samples.
-        """
+        """Compute the absolute acceleration under the box, or the force, of a record, m/s2."""
         from scipy.signal import lfilter
 
         filters = ramp_invariant(self.f, self.zeta, channels.sample_rate)

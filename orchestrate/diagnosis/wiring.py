@@ -172,7 +172,6 @@ class LowResponse:
         hertz, measured = frequency[low], response[low]
 
         def residuals(numbers: Floats) -> Floats:
-            """Return the relative residuals of factor, delay in ms, G and resonance over peak."""
             factor, late, mode, ratio = numbers
             square = (hertz / (ratio * peak)) ** 2
             model = factor * np.exp(-1e-3j * TURN * hertz * late)

@@ -225,7 +225,6 @@ def contact_durations(
         return np.zeros(0)
 
     def force(time: Floats, *begin: Floats) -> Floats:
-        """Return the contact force (18) a time after permanent contact has begun."""
         return form.force(*form.common_motion(time, *begin))
 
     periods = form.fastest * float(spans.max()) / (2.0 * math.pi)

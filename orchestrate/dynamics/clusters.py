@@ -67,10 +67,7 @@ class SettledResponse(NamedTuple):
 def run_until_settled(
     instance: Instance, point: Point, starts: ArrayLike, settings: AttractorSettings
 ) -> list[SettledResponse]:
-    """Simulate from states at phase 0 until samples repeat or the limit; return the responses.
-
-    All starts are run together, then those that do not repeat yet as long again.
-    """
+    """Simulate from states at phase 0 until samples repeat or the limit; return the responses."""
     ends, converged = np.reshape(np.asarray(starts, dtype=float), (-1, 4)), settings.converged
     loop, loose = response_loop(instance), settings.apart * converged
     dropped = transient_periods(

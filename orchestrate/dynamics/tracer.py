@@ -91,7 +91,6 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         return True
 
     def location_tolerances(self, length: float) -> dict[str, float]:
-        """Return the tolerances of Brent's method (xtol, rtol) in a step of this length."""
         return {"xtol": ACCURACY, "rtol": ACCURACY}
 
     def end_before(self, step: BranchStep[Point]) -> tuple[str, Iterable[Point]]:
@@ -225,7 +224,6 @@ class BranchStep(Generic[Point]):
         self.known = {0.0: self.before, self.length: self.after}
 
     def point(self, position: float) -> Point:
-        """Return the branch's point at an arclength into the step, by Newton's method (cached)."""
         if position not in self.known:
             tracer = self.tracer
             self.known[position] = tracer.point(tracer.stepper.root_after(position))

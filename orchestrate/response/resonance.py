@@ -5,28 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import REST
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, positive
 from ..model.outcomes import IRREGULAR
 from ..running.job import Table
+from ..running.options import Running
 from .labels import Variable, make_dataset, parameter_variable, variable, yes_or_no
 from .questions import Point, Series, ask, excitation_numbers, make_series
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, response_variables
 from .threshold import threshold_variables
 from .turns_and_jumps import inside_irregular, jump_indices, prominent_maxima
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
 DIMENSIONS = ("structure", "direction")
@@ -58,13 +54,11 @@ class ResonanceJob(SweepJob):
         return len(KINDS) * super().independent_series()
 
     def items(self) -> Sequence[Point]:
-        """Return the operating points of all responses, the bonded structure's first."""
         both = self.structure.as_bonded(), self.structure.as_delaminated()
         points = super().items()
         return [Point(structure, point.excitation) for structure in both for point in points]
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the resonance curves with their peaks and jumps."""
         ordered = {name: self.in_order(values) for name, values in table.items()}
         title = f"Resonance curves: {self.structure.label()}"
         curves = make_dataset(self.variables(ordered), self.coordinates(), title)
@@ -211,13 +205,9 @@ class ResonanceLevelsJob(ResonanceJob):
         return len(self.level) * super().independent_series()
 
     def items(self) -> Sequence[Point]:
-        """Return the operating points of all responses, level by level."""
         return [point for job in self.level_jobs for point in job.items()]
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of all curves, with ``level`` as first dimension."""
-        import xarray as xr
-
         parts = {name: np.split(values, len(self.level_jobs)) for name, values in table.items()}
         curves = [
             job.dataset({name: parts[name][i] for name in parts})

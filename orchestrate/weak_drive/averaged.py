@@ -175,7 +175,6 @@ def neimark_sacker_points(
     from scipy.optimize import brentq
 
     def hurwitz_product(Omega: float) -> float:
-        """Return the product of all sums of two growth rates; it is 0 at a bifurcation."""
         roots = growth_rates(structure, drive, Omega)
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)

@@ -142,10 +142,7 @@ class Master:
         return self.run([inputs], h)
 
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
-        """Run an interval for each row of the drive's inputs, held constant; return the record.
-
-        Where something is recorded, inputs at the interval's end follow those over it in a row.
-        """
+        """Run an interval for each row of the drive's inputs, held constant; return the record."""
         values = np.asarray(inputs, dtype=float)
         rows = values.reshape(len(values), self.width)
         return self.run_controlled(rows.tolist(), len(values), h)

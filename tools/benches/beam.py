@@ -131,10 +131,7 @@ class DelaminatedBeam:
 
     @cached_property
     def matrices(self) -> tuple[Floats, Floats, Floats]:
-        """Return stiffness, mass matrix and base excitation of the free displacements.
-
-        The pull is the inertia times a unit displacement of base and beam.
-        """
+        """Return stiffness, mass matrix and base excitation of the free displacements."""
         size = 3 * len(self.node_numbers)
         stiffness, inertia = np.zeros((size, size)), np.zeros((size, size))
         sections, inside = self.sections(), self.is_inside(self.nodes)

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orchestrate import record
+from orchestrate.lazy import xr
 
 from .excitation import Excitation
 from .integrator import highest_stiffness, integrate
 from .sensors import Sensor
 from .system import Floats, ModalSystem, Motion
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 STEPS = 60.0  # in a period of the fastest oscillation, contacts closed
 PIECE = 100_000  # numbers that are computed at once

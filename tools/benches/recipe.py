@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orchestrate import Structure
+from orchestrate.lazy import xr
 
 from .beam import DelaminatedBeam
 from .bench import Bench
@@ -26,9 +26,6 @@ from .lumped import (
 )
 from .sensors import Sensor
 from .system import ModalSystem, Motion
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 OPENED = 1e-6  # m: a gap that counts; a penalty lets go of less where nothing opens
 FIRST, LAST, DURATION = 20.0, 90.0, 40.0  # Hz, Hz, s
@@ -314,13 +311,9 @@ def draw_sensor(rng: np.random.Generator, noise: float, bandwidth: float) -> Sen
 
 
 def draw_guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure:
-    """Draw a guess: true masses and frequencies with relative errors, damping by up to 2.
-
-    Of a sound beam the guess has two halves a little apart, as one who asks has to assume.
-    """
+    """Draw a guess: true masses and frequencies with relative errors, damping by up to 2."""
 
     def near(value: float) -> float:
-        """Return a value changed by a random relative error of at most ``off``."""
         return value * float(rng.uniform(1.0 - off, 1.0 + off))
 
     f1, f2 = own.f1, min(own.f2, MOST_APART * own.f1)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 from scipy.signal import butter, sosfiltfilt
+
+from orchestrate.lazy import xr
 
 from .beam import DelaminatedBeam
 from .bench import Bench
@@ -17,9 +18,6 @@ from .excitation import Swept
 from .lumped import Clamp, Faces, Halves
 from .sensors import Sensor
 from .system import ModalSystem
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "records"
 GRAVITY = 9.80665  # m/s2

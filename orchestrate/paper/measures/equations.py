@@ -42,7 +42,6 @@ def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndar
     rate = START[1] + D * alpha - ETA * (b * math.cos(phase) - a * math.sin(phase))
 
     def motion(tau: np.ndarray) -> np.ndarray:
-        """Return the displacement at non-dimensional times."""
         angle = ETA * (tau + BEGAN)
         free = alpha * np.cos(frequency * tau) + rate / nu * np.sin(frequency * tau)
         return a * np.cos(angle) + b * np.sin(angle) + np.exp(-damping * tau) * free
