@@ -40,12 +40,8 @@ from .settings import SETTINGS, Settings
 
 Numbers = tuple[float | None, ...]
 Kind = TypeVar("Kind")
-MEASURED_CYCLES = 10  # at each frequency: they separate the orders 0.5, 1 and 1.37
-SETTLED = 0.01  # of a step between two frequencies that is left where it is measured
 SETTLE_CYCLES = (30, 200)  # fewest and most cycles before
-USUAL_FLOOR = 0.01  # of order 1, where none is given: what a shaker makes of order 2
-COARSE_POINTS, COARSE_SAMPLES = 30, 7.0  # most points of a coarse search, samples in a period
-HALF_POWER = 0.5**0.5
+COARSE_SAMPLES = 7.0  # in a period of the highest frequency, for a coarse search
 
 
 @dataclass(frozen=True)
@@ -107,7 +103,7 @@ class CurveData:
     @property
     def settle_cycles(self) -> int:
         """Number of cycles after which the motion has settled at a new frequency."""
-        cycles = -math.log(SETTLED) / (2.0 * math.pi * self.damping)
+        cycles = -math.log(0.01) / (2.0 * math.pi * self.damping)  # 1 % of a step is left
         return round(min(max(cycles, SETTLE_CYCLES[0]), SETTLE_CYCLES[1]))
 
     def evidence(self) -> CurveEvidence:
@@ -119,7 +115,7 @@ class CurveData:
         whole, frequency = self.evidence(), np.array(self.frequency)
         low, high = min(whole.peaks) * COARSE_RANGE[0], max(whole.peaks) * COARSE_RANGE[1]
         near = np.flatnonzero((frequency > low) & (frequency < high))
-        some = self.select(near[:: math.ceil(len(near) / COARSE_POINTS)])
+        some = self.select(near[:: math.ceil(len(near) / 30)])  # most points of a coarse search
         chosen = some if len(some.frequency) >= FEWEST_POINTS else self
         settle = max(SETTLE_CYCLES[0], self.settle_cycles // 2)
         return curve_evidence(chosen, settle, COARSE_SAMPLES)
@@ -168,7 +164,7 @@ def half_power_damping(curve: xr.Dataset) -> float:
     ordered = curve.sortby("frequency")
     ratio = (ordered.amplitude.sel(order=1.0) / ordered.level).max("channel").values
     frequency, top = ordered.frequency.values, int(np.argmax(ratio))
-    below = np.flatnonzero(ratio < HALF_POWER * ratio[top])
+    below = np.flatnonzero(ratio < 0.5**0.5 * ratio[top])
     low = frequency[max(below[below < top], default=0)]
     high = frequency[min(below[below > top], default=len(frequency) - 1)]
     return float((high - low) / (2.0 * frequency[top]))
@@ -177,12 +173,9 @@ def half_power_damping(curve: xr.Dataset) -> float:
 def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> CurveEvidence:
     """Build the evidence of a curve: its orders, and the stepped sine that measured it."""
     ordered = sorted(zip(data.frequency, data.level, strict=True))
-    sine = SteppedSine(
-        frequencies=(data.frequency[0], *data.frequency),  # twice as long at the first
-        acceleration=tuple(ordered),
-        settle_cycles=settle,
-        measured_cycles=MEASURED_CYCLES,
-    )
+    frequencies = (data.frequency[0], *data.frequency)  # twice as long at the first
+    cycles = {"settle_cycles": settle, "measured_cycles": 10}  # to separate orders 0.5, 1, 1.37
+    sine = SteppedSine(frequencies=frequencies, acceleration=tuple(ordered), **cycles)
     rate = samples_per_period * max(data.frequency)
     time = np.arange(math.ceil(sine.duration * rate) + 2) / rate
     box = np.asarray(sine(time))
@@ -200,7 +193,8 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
     every[0] = 0.0
     every[0, 0] = level
     floor = np.array(data.floor, dtype=float)
-    floor = np.where(np.isfinite(floor), floor, USUAL_FLOOR * amplitude[:, 0])
+    # where none is given: what a shaker makes of order 2
+    floor = np.where(np.isfinite(floor), floor, 0.01 * amplitude[:, 0])
     floors = np.concatenate([np.zeros((1, len(level))), floor])
     orders = RecordOrders(windows, channels, every, floors, np.quantile(floors, 0.2, axis=1))
     pieces = Sampled(acceleration=tuple(box), sample_rate=rate).pieces()

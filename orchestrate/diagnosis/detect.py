@@ -29,7 +29,6 @@ from .search_job import SearchJob, cached_orders
 from .settings import Changes, checked_settings
 from .wiring import wiring_notes
 
-ONE_DIRECTION = 0.5  # of the range of frequencies, from first to last: a sweep in one direction
 STATED = {  # numbers of the rule: their names there, units and long names
     "odds": ("odds", "1", "odds that the ratio decides, in records put together of blocks"),
     "ratio": ("ratio", "1", "misfit of sound over that of delaminated"),
@@ -192,7 +191,7 @@ def record_variables(orders: RecordOrders) -> dict[str, Variable]:
 def sweep_direction(frequency: NDArray[np.float64]) -> str:
     """Return in which direction the frequency of a sweep goes: up, down, or up and down."""
     covered = (frequency[-1] - frequency[0]) / max(float(np.ptp(frequency)), 1e-9)
-    if abs(covered) < ONE_DIRECTION:
+    if abs(covered) < 0.5:
         return "up and down"
     return "up" if covered > 0.0 else "down"
 

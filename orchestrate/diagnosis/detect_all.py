@@ -65,11 +65,8 @@ def detect_all(
     """
     if not isinstance(records, Mapping) or not records:
         raise InputError("records: expected one record or more, by names")
-    chosen, structure = checked_free(free), delaminated_guess(guess)
-    jobs = [
-        checked_job(name, checked, structure, chosen, participation, checked_settings(settings))
-        for name, checked in records.items()
-    ]
+    rest = delaminated_guess(guess), checked_free(free), participation, checked_settings(settings)
+    jobs = [checked_job(name, record, *rest) for name, record in records.items()]
     return dict(zip(records, gather(jobs, running, finder(running)), strict=True))
 
 

@@ -31,9 +31,9 @@ def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> tuple[dict[str, float], d
         for one, voltage in ((run, first), (sound, second))
     )
     power, scatter = extra_power(run, sound)
-    return (
-        {"jump_voltage_fall": fall, "extra_power": power},
-        {"jump_voltage_fall": lag, "extra_power": scatter},
+    names = "jump_voltage_fall", "extra_power"
+    return dict(zip(names, (fall, power), strict=True)), dict(
+        zip(names, (lag, scatter), strict=True)
     )
 
 

@@ -11,7 +11,6 @@ from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .orders import Complexes, moving_average
 
-AVERAGED_WINDOWS = 5  # neighbouring windows that are taken together
 # Order 2 of the distance between two faces over their largest distance: the least of 15 benches
 # that opened for a part of each period; they had 0.14 to 0.31
 ORDER_2_OF_OPENING = 0.14
@@ -90,7 +89,7 @@ def size_of_order_1(evidence: Evidence) -> Floats:
 
 def average_over_windows(values: Floats) -> Floats:
     """Return each sensor's values averaged over neighbouring windows."""
-    return np.stack([moving_average(row, AVERAGED_WINDOWS) for row in values])
+    return np.stack([moving_average(row) for row in values])
 
 
 def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:

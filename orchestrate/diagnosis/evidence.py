@@ -34,12 +34,10 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 FITTED_ORDERS = (1.0, 2.0, 3.0)
-NEIGHBOURS = 2  # windows on each side over which that size is the largest
 FITTED_RANGE = (0.62, 1.55)  # of the resonance's frequency: what is fitted of a wide sweep
 COARSE_RANGE = (0.8, 1.28)  # of that of both sensors' resonances: what a coarse search goes by
 MAX_CUT_SHARE = 0.9  # of a record: more of it is not worth to be cut
 START_UP = 1.0  # s at the beginning where the start is not forgotten; at most a tenth of the record
-PARTICIPATION_RANGE = (0.2, 1.7)  # 1.57 at the tip of a uniform cantilever, 0.34 at 0.4 of it
 UNBOUNDED_RESIDUAL = 30.0  # residual of a motion that has no bounds
 SENSORS = ("acceleration1", "acceleration2")
 Participation = float | Mapping[str, float] | None  # as an argument: of all, of some sensors
@@ -121,11 +119,9 @@ class Evidence:
         if len(inside) < MIN_WINDOWS or part.stop - part.start > MAX_CUT_SHARE * self.samples:
             return self
         kept = np.flatnonzero([part.start <= p.start and p.stop <= part.stop for p in parts])
-        pieces = replace(
-            self.pieces,
-            nodes=self.pieces.nodes[part] - self.pieces.nodes[part.start],
-            derivatives=self.pieces.derivatives[part.start : part.stop - 1],
-        )
+        nodes = self.pieces.nodes[part] - self.pieces.nodes[part.start]
+        cubics = self.pieces.derivatives[part.start : part.stop - 1]
+        pieces = replace(self.pieces, nodes=nodes, derivatives=cubics)
         orders = RecordOrders(
             self.orders.windows.select_and_cut(kept, part),
             replace(channels, time=channels.time[part], values=channels.values[:, part]),
@@ -189,9 +185,8 @@ class Evidence:
     def size(self) -> Floats:
         """Largest amplitude of order 1 around each window, shape (sensors, windows), m/s2."""
         size = np.abs(self.measured[:, 0])
-        width = 2 * NEIGHBOURS + 1
-        padded = np.pad(size, ((0, 0), (NEIGHBOURS, NEIGHBOURS)), mode="edge")
-        return np.lib.stride_tricks.sliding_window_view(padded, width, axis=1).max(axis=-1)
+        padded = np.pad(size, ((0, 0), (2, 2)), mode="edge")  # two windows on each side
+        return np.lib.stride_tricks.sliding_window_view(padded, 5, axis=1).max(axis=-1)
 
     @cached_property
     def noise(self) -> Floats:
@@ -274,14 +269,12 @@ class Evidence:
             gain, _, more = self.sensor_solution(row, computed, target)
             more *= allowed.participation_deviation
             participation = 1.0 + more / (1.0 + allowed.gain_deviation * gain)
-            participation = float(np.clip(participation, *PARTICIPATION_RANGE))
+            # 1.57 at the tip of a uniform cantilever, 0.34 at 0.4 of it
+            participation = float(np.clip(participation, 0.2, 1.7))
         read = base + participation * (computed - base)
         gain, delay = self.sensor_solution(row, read, target, 2)
-        return (
-            participation,
-            1.0 + clipped(allowed.gain_deviation * gain, allowed.gain_error),
-            clipped(allowed.delay_deviation * delay, allowed.delay),
-        )
+        gain = 1.0 + clipped(allowed.gain_deviation * gain, allowed.gain_error)
+        return participation, gain, clipped(allowed.delay_deviation * delay, allowed.delay)
 
     def sensor_solution(
         self, row: int, computed: Complexes, target: Complexes, count: int = 3

@@ -36,7 +36,6 @@ DEFAULT_FREE = ("f1", "f2", "zeta1", "zeta2", "e")
 DELAMINATED = "delaminated"
 # arguments for the hypotheses of `SOUND`, in their order
 SHORT_NAMES = ("bonded", "curved", "friction", "stop", "stop on the other side", "two modes")
-SAME_LEVEL = 0.1  # of the largest level: a tone whose level varies less has one
 
 
 def fit(
@@ -132,11 +131,8 @@ def fit(
     chosen = checked_free(free)
     kind = checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
     structure, changed = delaminated_guess(guess), checked_settings(settings)
-    data = (
-        CurveData.from_curve(record, structure, participation, changed)
-        if is_curve(record)
-        else checked_data(record, structure, participation, changed)
-    )
+    read = CurveData.from_curve if is_curve(record) else checked_data
+    data = read(record, structure, participation, changed)
     job = FitJob(
         name=f"fit_{checked_structure(guess).label()}",
         data=data,
@@ -190,11 +186,8 @@ def check_tones(job: FitJob) -> None:
     """Check that fewer numbers are fitted than a record of one tone has: three orders a sensor."""
     evidence, hypothesis = job.evidence, job.hypotheses[-1]
     free, numbers = hypothesis.bounds(evidence), len(FITTED_ORDERS) * len(evidence.masses)
-    if (
-        evidence.is_tone
-        and np.ptp(evidence.level) < SAME_LEVEL * evidence.level.max()
-        and len(free) >= numbers
-    ):
+    is_level = np.ptp(evidence.level) < 0.1 * evidence.level.max()
+    if evidence.is_tone and is_level and len(free) >= numbers:
         text = f"one tone of {evidence.frequency.mean():.4g} Hz has {numbers} numbers"
         expected = "expected a sweep, or fewer in free="
         raise InputError(f"record: {text}, {len(free)} are fitted; {expected}")
@@ -370,10 +363,8 @@ def reported_derivatives(
     columns = []
     for name, value in here.items():
         step = 1e-5 * max(abs(value), 0.1)
-        ends = [
-            list(hypothesis.reported({**here, name: value + sign * step}, evidence).values())
-            for sign in (1.0, -1.0)
-        ]
+        moved = [{**here, name: value + sign * step} for sign in (1.0, -1.0)]
+        ends = [list(hypothesis.reported(one, evidence).values()) for one in moved]
         columns.append((np.array(ends[0]) - np.array(ends[1])) / (2.0 * step))
     return np.stack(columns, axis=1)
 

@@ -21,8 +21,6 @@ STEPS = {  # of the differences that make derivatives; f and common: parts of th
     **{"square": 0.01, "cube": 0.02, "friction": 0.01, "stop": 0.02, "position": 0.02},
     "apart": 3e-3,
 }
-MIN_CLOUD = 0.1  # least size of the clouds' variance
-SAME_MISFIT = 0.03  # relative difference of misfits below which two minima count as one
 MIN_DISTANCES = {"split": 0.04, "clearance": 0.1}  # between two solutions that count as two
 
 
@@ -91,15 +89,13 @@ class Search:
             lambda parameters: self.residuals(parameters.valuesdict()).ravel(),
             hypothesis.parameters(start, self.evidence),
         )
+        settings = self.evidence.settings
+        scales: Any = {"loss": "soft_l1", "f_scale": SOFT_LIMIT, "x_scale": "jac"}
+        ends = {"ftol": settings.tolerance, "xtol": settings.tolerance, "max_nfev": settings.steps}
         result = minimizer.minimize(
             method="least_squares",
-            loss="soft_l1",
-            f_scale=SOFT_LIMIT,
-            x_scale="jac",
-            max_nfev=self.evidence.settings.steps,
-            ftol=self.evidence.settings.tolerance,
-            xtol=self.evidence.settings.tolerance,
             Dfun=lambda parameters: self.derivatives(parameters.valuesdict(), bounds),
+            **(scales | ends),
         )
         values = dict(result.params.valuesdict())
         return Solution(hypothesis.name, values, misfit(np.asarray(result.residual)))
@@ -119,7 +115,7 @@ class Search:
             shape = model.cloud_covariance()
             if best.misfit < (1.0 - self.evidence.settings.gain) * here.misfit:
                 here, size = best, min(1.0, 1.5 * size)
-            elif size > MIN_CLOUD:
+            elif size > 0.1:
                 size *= 0.2
             else:
                 break
@@ -145,7 +141,7 @@ def distinct_minima(solutions: Sequence[Solution]) -> list[Solution]:
     """Return the minima whose misfits differ, the best first."""
     found: list[Solution] = []
     for one in sorted(solutions, key=lambda solution: solution.misfit):
-        if not found or one.misfit > (1.0 + SAME_MISFIT) * found[-1].misfit:
+        if not found or one.misfit > 1.03 * found[-1].misfit:
             found.append(one)
     return found
 

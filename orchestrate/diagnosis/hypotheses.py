@@ -40,8 +40,6 @@ REPORTED = {  # units and long names
 FREE = tuple(REPORTED)[:6]  # of a delaminated structure
 Values = Mapping[str, float]
 DAMPING_RANGE = (3e-4, 0.2)  # damping ratios that are looked for
-MAX_SPLIT = 0.9  # largest |ln(f2/f1)|
-RESTITUTION_RANGE = (0.0, 0.95)
 STARTING_SPLITS = (0.08, -0.08, 0.18, -0.18, 0.3, -0.3, 0.45, -0.45)  # ln(f2/f1) of the scan
 
 
@@ -300,10 +298,10 @@ class Delaminated(Hypothesis):
         f, (low, high) = evidence.resonance, [math.log(zeta) for zeta in DAMPING_RANGE]
         every = {
             "common": ((0.6 * f, 1.6 * f), {"f1", "f2"}),
-            "split": ((-MAX_SPLIT, MAX_SPLIT), {"f1", "f2"}),
+            "split": ((-0.9, 0.9), {"f1", "f2"}),
             "log_zeta1": ((low, high), {"zeta1"}),
             "log_zeta2": ((low, high), {"zeta2"}),
-            "e": (RESTITUTION_RANGE, {"e"}),
+            "e": ((0.0, 0.95), {"e"}),
             "clearance": ((-2.0, 2.0), {"clearance"}),
         }
         return {name: ends for name, (ends, of) in every.items() if of & set(self.free)}

@@ -16,8 +16,6 @@ from ..constants import TURN
 from ..laboratory.pieces import Floats
 from ..model import Structure
 
-POINTS_AROUND = 201  # frequencies around one of a grid
-
 
 def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
     """Return the force amplitude between bonded faces, over the box's acceleration, in kg.
@@ -46,7 +44,7 @@ def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
 def largest_opening_force(structure: Structure, frequency: Floats) -> Floats:
     """Return the largest `opening_force` around each frequency, half way to its neighbours."""
     ends = np.concatenate([frequency[:1], 0.5 * (frequency[1:] + frequency[:-1]), frequency[-1:]])
-    around = np.linspace(ends[:-1], ends[1:], POINTS_AROUND)
+    around = np.linspace(ends[:-1], ends[1:], 201)
     return np.asarray(opening_force(structure, around).max(axis=0))
 
 

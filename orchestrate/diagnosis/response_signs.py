@@ -21,16 +21,8 @@ ORDERS = (0.5, 1.0, 2.0, 2.37, 3.0, 3.37, 4.0, 5.0)
 HARMONICS = (2.0, 3.0, 4.0, 5.0)
 OF_ORDERS = {"order_2": 2.0, "order_3": 3.0, "order_half": 0.5}
 OVERLAP = 0.5
-# Least and usual beginning of the high band, over the highest frequency of the excitation
-BAND_FACTORS = 3.3, 6.0
-# Highest beginning of the high band over the sampling rate: by default, and where it is given
-DEFAULT_EDGE, MAX_EDGE = 0.3, 0.4
-NOISE_LINES = (0.36, 0.44)  # of the sampling rate: lines for the noise where there is no sweep
-SAME_LEVEL = 1.1  # ratio of levels below which two records have the same
+MAX_EDGE = 0.4  # highest beginning of the high band that may be given, over the sampling rate
 MIN_WINDOWS = 4  # windows of a curve
-MIN_SHARE = 0.1  # of all windows: fewer that go one way are noise, or a turn
-MEDIAN_WIDTH = 15  # windows of a running median
-GAUSSIAN_KURTOSIS = 3.0  # kurtosis
 
 
 @dataclass(frozen=True)
@@ -72,9 +64,8 @@ def response_signs(
 
 def default_band_edge(channels: Channels, highest: float) -> float:
     """Return where the high band begins, Hz; NaN where the sampling rate does not reach so far."""
-    lowest, usual = (factor * highest for factor in BAND_FACTORS)
-    edge = min(usual, DEFAULT_EDGE * channels.sample_rate)
-    return edge if edge >= lowest else math.nan
+    edge = min(6.0 * highest, 0.3 * channels.sample_rate)
+    return edge if edge >= 3.3 * highest else math.nan
 
 
 def is_swept(channels: Channels, periods: float) -> bool:
@@ -150,7 +141,7 @@ def curves_by_direction(
     curves = []
     for direction in (1, -1):
         chosen = np.flatnonzero(rate * direction > 0.0)
-        if len(chosen) >= max(MIN_WINDOWS, MIN_SHARE * len(windows)):
+        if len(chosen) >= max(MIN_WINDOWS, 0.1 * len(windows)):  # fewer are noise, or a turn
             chosen = chosen[np.argsort(frequency[chosen])]
             level = math.sqrt(float(np.mean(np.abs(box[chosen]) ** 2)))
             response = rows[:, chosen] / box[chosen]
@@ -162,8 +153,7 @@ def smooth_rate(rate: Floats) -> Floats:
     """Smooth the sweep's rate by a running median: noise on the box moves single windows."""
     from scipy.ndimage import median_filter
 
-    size = min(MEDIAN_WIDTH, len(rate))
-    return np.asarray(median_filter(rate, size=size, mode="nearest"))
+    return np.asarray(median_filter(rate, size=min(15, len(rate)), mode="nearest"))
 
 
 # -- any excitation -------------------------------------------------------------------------------
@@ -173,7 +163,7 @@ def signs_of_spectra(channels: Channels) -> ResponseSigns:
     """Compute the response at the lines that the box excites; such a record has no orders."""
     frequency, box, rows, cross = spectra(channels)
     excited = excited_lines(frequency, box)
-    low, high = (part * channels.sample_rate for part in NOISE_LINES)
+    low, high = 0.36 * channels.sample_rate, 0.44 * channels.sample_rate
     density = median_of_columns(rows[:, (frequency >= low) & (frequency <= high)])
     response = cross[:, excited] / box[excited]
     level, unknown = float(channels.box.std()), np.full(len(rows), np.nan)
@@ -236,7 +226,7 @@ def signs_of_moments(
         unknown = np.full(len(rows), np.nan)
         values[f"kurtosis{ending}"] = kurtosis(band, axis=-1, fisher=False) if moves else unknown
         values[f"skewness{ending}"] = np.abs(skew(band, axis=-1)) if moves else unknown
-    noise = {"kurtosis": GAUSSIAN_KURTOSIS, "skewness": 2.0 * math.sqrt(6.0 / count)}
+    noise = {"kurtosis": 3.0, "skewness": 2.0 * math.sqrt(6.0 / count)}
     floors = {name: np.full(len(rows), noise[name.partition("_")[0]]) for name in values}
     return values, floors
 
@@ -276,7 +266,7 @@ def level_and_direction_differences(
     unknown, names = np.full(rows, np.nan), ("level_dependence", "direction_difference")
     best = dict.fromkeys(names, (unknown, unknown))
     for one, other in combinations(curves, 2):
-        same_level = 1.0 / SAME_LEVEL < one.level / other.level < SAME_LEVEL
+        same_level = 1.0 / 1.1 < one.level / other.level < 1.1
         if one.direction == other.direction and not same_level:
             name = "level_dependence"
         elif one.direction != other.direction and same_level:

@@ -16,7 +16,7 @@ from ..laboratory.analysis.channels import Channels
 from ..laboratory.pieces import Floats
 from ..model import Structure
 from ..running.job import Job, Table
-from .curve_evidence import CurveData
+from .curve_evidence import COARSE_SAMPLES, CurveData
 from .errors import Estimate, estimate
 from .even_orders import even_orders
 from .evidence import Evidence
@@ -26,9 +26,7 @@ from .misfit import misfit
 from .orders import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
 from .settings import SETTINGS, Settings
 
-COARSE_SAMPLES = 7.0  # samples in a period of the highest frequency for a coarse search
-# Rows and columns of tables: solutions, values in each, misfits of minima
-MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 6, 8
+MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 6, 8  # rows and columns of tables
 
 
 @dataclass(frozen=True)
@@ -175,10 +173,9 @@ class SearchJob(Job):
         hypothesis = self.hypotheses[position]
         names = list(hypothesis.bounds(self.evidence))
         rows = table["solutions"][table["place"] == position].reshape(-1, 1 + MAX_NUMBERS)
-        found = [
-            Solution(hypothesis.name, dict(zip(names, row[1:].tolist(), strict=False)), row[0])
-            for row in rows[np.isfinite(rows[:, 0])]
-        ]
+        found = []
+        for size, *numbers in rows[np.isfinite(rows[:, 0])].tolist():
+            found.append(Solution(hypothesis.name, dict(zip(names, numbers, strict=False)), size))
         return sorted(found, key=lambda solution: solution.misfit)
 
     # -- the end of it ----------------------------------------------------------------------------
@@ -317,8 +314,5 @@ def solutions_table(position: int, solutions: Sequence[Solution], evaluations: i
     rows = np.full((1, MAX_SOLUTIONS, 1 + MAX_NUMBERS), np.nan)
     for row, one in zip(rows[0], solutions, strict=False):
         row[: 1 + len(one.values)] = [one.misfit, *one.values.values()]
-    return {
-        "place": np.array([position]),
-        "solutions": rows,
-        "evaluations": np.array([float(evaluations)]),
-    }
+    spent = np.array([float(evaluations)])
+    return {"place": np.array([position]), "solutions": rows, "evaluations": spent}

@@ -121,10 +121,8 @@ def signs(
         edge = checked_number("high_band", edge, 1e-9, highest, "Hz")
     level = None if noise is None else checked_number("noise", noise, 0.0, math.inf, "m/s2", True)
     swept = [is_swept(channels, length) for channels in every]
-    own = [
-        response_signs(channels, sine, length, edge)
-        for channels, sine in zip(every, swept, strict=True)
-    ]
+    pairs = zip(every, swept, strict=True)
+    own = [response_signs(channels, sine, length, edge) for channels, sine in pairs]
     noises = [one.noise if level is None else np.full(len(names), level) for one in own]
     values, floors = all_signs(own, len(names))
     shown = np.full((count, len(values), len(names)), np.nan)
@@ -206,10 +204,8 @@ def all_signs(
     if first.curves:
         value, floor = sensor_differences(first.curves, channels)
         values["sensor_difference"], floors["sensor_difference"] = value, floor
-    return (
-        {name: values.get(name, unknown) for name in INDICATORS},
-        {name: floors.get(name, unknown) for name in INDICATORS},
-    )
+    every = {name: values.get(name, unknown) for name in INDICATORS}
+    return every, {name: floors.get(name, unknown) for name in INDICATORS}
 
 
 # -- results --------------------------------------------------------------------------------------
@@ -230,12 +226,13 @@ def signs_dataset(
     limit = EXCEED_FACTOR * np.fmax(floor, highest)
     known = np.isfinite(value) & np.isfinite(highest)
     exceeds = np.where(known, value > limit, -1)
-    texts = {
-        "meaning": ("long_name", "what the sign is"),
-        "formula": ("formula", "formula"),
-        "source": ("source", "where it is described"),
-        "moved_by": ("moved_by", "what else than delamination moves it"),
-    }
+    texts = (
+        ("meaning", "long_name", "what the sign is"),
+        ("formula", "formula", "formula"),
+        ("source", "source", "where it is described"),
+        ("moved_by", "moved_by", "what else than delamination moves it"),
+    )
+    columns = {name: [getattr(one, of) for one in INDICATORS.values()] for name, of, _ in texts}
     return xr.Dataset(
         {
             "value": variable(over, value, "1", "sign of the record"),
@@ -251,14 +248,7 @@ def signs_dataset(
         {
             "sign": ("sign", np.array(list(INDICATORS)), {"long_name": "sign"}),
             "channel": ("channel", np.array(names), {"long_name": "channel of the record"}),
-            **{
-                name: (
-                    "sign",
-                    np.array([getattr(one, field) for one in INDICATORS.values()]),
-                    {"long_name": text},
-                )
-                for name, (field, text) in texts.items()
-            },
+            **{n: ("sign", np.array(columns[n]), {"long_name": text}) for n, _, text in texts},
         },
         attributes("signs", "Signs", title, **described),
     )
@@ -292,12 +282,9 @@ def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Data
     if len(others) != 1 or not is_drive_run(others[0]):
         raise InputError("other: expected the run of the sound beam on the same drive")
     own, lags = drive_signs(run, others[0])
-    names = ["motor"]
     values = {name: np.array([own.get(name, np.nan)]) for name in INDICATORS}
     floors = {name: np.array([lags.get(name, np.nan)]) for name in INDICATORS}
     itself = [0.0 if name in own else math.nan for name in INDICATORS]  # against itself
-    shown = np.array(itself)[None, :, None]
+    shown, title = np.array(itself)[None, :, None], str(run.attrs.get("title", "run"))
     described = {"seeds": "none", "sound_from": "the run of the sound beam"}
-    return signs_dataset(
-        str(run.attrs.get("title", "run")), names, values, floors, shown, described
-    )
+    return signs_dataset(title, ["motor"], values, floors, shown, described)

@@ -14,8 +14,6 @@ from ..laboratory.analysis.shock_spectrum import ramp_invariant
 from ..laboratory.pieces import Floats
 from ..model import Structure
 
-FIRST_DAMPING = (0.003, 0.02, 0.1)  # ratios that the search for the nearest oscillator begins at
-
 
 @dataclass(frozen=True)
 class SoundStructure:
@@ -63,7 +61,7 @@ class SoundStructure:
 
         low, high = math.log(0.2 * frequency[0]), math.log(5.0 * frequency[-1])
         bounds = ([low, math.log(1e-4)], [high, math.log(0.9)])
-        starts = [(math.log(peak), math.log(ratio)) for ratio in FIRST_DAMPING]
+        starts = [(math.log(peak), math.log(ratio)) for ratio in (0.003, 0.02, 0.1)]
         fits = [least_squares(response_residuals, start, bounds=bounds) for start in starts]
         best = min(fits, key=lambda fitted: float(fitted.cost))
         return made(least_squares(record_residuals, best.x, bounds=bounds, x_scale=(0.01, 1.0)).x)

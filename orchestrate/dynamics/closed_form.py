@@ -272,11 +272,5 @@ def short_openings(
         lambda time, *start: -force(time, *start), bracket, args=tuple(begin[:, row])
     )
     is_open = found.f_x <= 0.0
-    return list(
-        zip(
-            row[is_open].tolist(),
-            bracket[0][is_open].tolist(),
-            found.x[is_open].tolist(),
-            strict=True,
-        )
-    )
+    columns = (values[is_open].tolist() for values in (row, bracket[0], found.x))
+    return list(zip(*columns, strict=True))

@@ -118,14 +118,8 @@ def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[
     """Cluster irregular responses' feature rows by single linkage; return a label per row."""
     table = np.asarray(rows, dtype=float).reshape(-1, len(FEATURES))
     scale = np.maximum(np.abs(table[:, 2]), 1e-300)
-    points = np.column_stack(
-        [
-            np.log(scale),
-            table[:, 3] / scale,
-            table[:, 4] / scale,
-            settings.count_weight * table[:, 1],
-        ]
-    )
+    counts = settings.count_weight * table[:, 1]
+    points = np.column_stack([np.log(scale), table[:, 3] / scale, table[:, 4] / scale, counts])
     return single_linkage(points, settings.alike_irregular)
 
 

@@ -270,13 +270,9 @@ def break_variables(table: Table) -> dict[str, Any]:
     }
     rows = table["breaks"].T
     sides = flags("break", rows[0], "side of the manifold", dict(enumerate(SIDES)))
-    return {
-        "break_side": sides,
-        **{
-            f"break_{name}": variable("break", row, "1", text)
-            for (name, text), row in zip(texts.items(), rows[1:], strict=True)
-        },
-    }
+    columns = zip(texts.items(), rows[1:], strict=True)
+    others = {f"break_{name}": variable("break", row, "1", t) for (name, t), row in columns}
+    return {"break_side": sides, **others}
 
 
 def manifold(

@@ -147,11 +147,8 @@ def pressing_force(
     acceleration = form.field(state, phase, True)[:, 2]
     jerk = form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
     jerk -= form.stiffness[2] * velocity
-    return (
-        -form.force(position, velocity),
-        -form.force_rate(velocity, acceleration),
-        -form.force_rate(acceleration, jerk),
-    )
+    first, second = form.force_rate(velocity, acceleration), form.force_rate(acceleration, jerk)
+    return -form.force(position, velocity), -first, -second
 
 
 def stroboscopic_states(orbit: PeriodicOrbit, phase: float = 0.0) -> Floats:

@@ -326,17 +326,7 @@ class Instance:
     def state_calls(self) -> tuple[str, str, str, str, str]:
         """Return FMPy's method names to get, serialize, deserialize, set and free a state."""
         if self.is_fmi3:
-            return (
-                "getFMUState",
-                "serializeFMUState",
-                "deserializeFMUState",
-                "setFMUState",
-                "freeFMUState",
-            )
-        return (
-            "getFMUstate",
-            "serializeFMUstate",
-            "deSerializeFMUstate",
-            "setFMUstate",
-            "freeFMUstate",
-        )
+            save = "getFMUState", "serializeFMUState"
+            return *save, "deserializeFMUState", "setFMUState", "freeFMUState"
+        save = "getFMUstate", "serializeFMUstate"
+        return *save, "deSerializeFMUstate", "setFMUstate", "freeFMUstate"

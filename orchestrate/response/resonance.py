@@ -116,16 +116,12 @@ class ResonanceJob(SweepJob):
             for index in prominent_maxima(larger, self.prominence):
                 rows.append(curve.isel({self.series.name: index}))
                 noise.append(inside[index])
+        sizes = {name: [float(row[name]) for row in rows] for name in PEAK_QUANTITIES}
         text = "whether it lies inside a range of irregular responses, where a maximum is chance"
         return {
             **self.locations("peak", rows),
             "peak_irregular": yes_or_no("peak", noise, text),
-            **{
-                f"peak_{name}": variable(
-                    "peak", [float(row[name]) for row in rows], *REPORTED[name]
-                )
-                for name in PEAK_QUANTITIES
-            },
+            **{f"peak_{n}": variable("peak", sizes[n], *REPORTED[n]) for n in PEAK_QUANTITIES},
         }
 
     def jumps(self, data: xr.Dataset) -> dict[str, Variable]:
@@ -148,11 +144,10 @@ class ResonanceJob(SweepJob):
 
     def locations(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
         """Return variables of structure, direction and frequency for peaks or jumps."""
+        labels = {name: [str(row[name].values) for row in rows] for name in DIMENSIONS}
         words = {
-            f"{what}_{name}": variable(
-                what, np.array([str(row[name].values) for row in rows], dtype="U11"), "1", name
-            )
-            for name in DIMENSIONS
+            f"{what}_{name}": variable(what, np.array(texts, dtype="U11"), "1", name)
+            for name, texts in labels.items()
         }
         name, text = self.series.name, {"peak": "of the maximum", "jump": "just after the jump"}
         return words | {
@@ -215,22 +210,14 @@ class ResonanceLevelsJob(ResonanceJob):
         ]
         levels = xr.Variable(*parameter_variable("level", "level", self.level))
         whole, *_ = regular = [curve.drop_dims(RAGGED) for curve in curves]
-        joined = xr.concat(
-            regular,
-            dim=xr.DataArray(levels, dims="level", name="level"),
-            data_vars=[
-                str(name) for name, values in whole.data_vars.items() if "structure" in values.dims
-            ],
-            coords=["amplitude"],
-            compat="equals",
-            join="exact",
-        )
-        ragged = [
-            xr.concat(
-                [self.rows_of_level(i, curve, name) for i, curve in enumerate(curves)], dim=name
-            )
-            for name in RAGGED
-        ]
+        kept = [str(name) for name, one in whole.data_vars.items() if "structure" in one.dims]
+        dim = xr.DataArray(levels, dims="level", name="level")
+        alike: Any = {"coords": ["amplitude"], "compat": "equals", "join": "exact"}
+        joined = xr.concat(regular, dim, data_vars=kept, **alike)
+        ragged = []
+        for name in RAGGED:
+            rows = [self.rows_of_level(i, curve, name) for i, curve in enumerate(curves)]
+            ragged.append(xr.concat(rows, dim=name))
         result = xr.merge([joined, *ragged], combine_attrs="drop_conflicts")
         result.attrs["title"] = f"Resonance curves over the level: {self.structure.label()}"
         return result

@@ -108,11 +108,8 @@ class SpectraJob(SeriesQuestion):
         speeds = np.array([point.excitation.frequency for point in self.series.points])
         text = "amplitude of the absolute acceleration"
         kinds = "bonded and delaminated with impulses; delaminated as sampled between impulses"
-        variables = {
-            "acceleration": variable(
-                (along, "kind", "mass", "order"), table["acceleration"], "m/s2", text
-            )
-        }
+        dims = along, "kind", "mass", "order"
+        variables = {"acceleration": variable(dims, table["acceleration"], "m/s2", text)}
         coordinates = {
             **self.series.coordinates(),
             "kind": variable("kind", np.array(KINDS), "1", kinds),

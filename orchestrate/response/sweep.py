@@ -112,15 +112,9 @@ class SweepJob(SeriesQuestion):
         self, fmus: Mapping[str, Path], points: Sequence[Point], starts: ArrayLike, **chain: Any
     ) -> Table:
         """Return a chunk's table: responses one from the other, or each from its own start."""
-        settings = LoopSettings(
-            transient=self.transient,
-            samples=self.samples,
-            tolerance=self.tolerance,
-            decides=True,
-            peak_periods=self.peak_periods,
-            peak_points=POINTS,
-            **chain,
-        )
+        names = ("transient", "samples", "tolerance", "peak_periods")
+        own: Any = {name: getattr(self, name) for name in names}
+        settings = LoopSettings(**own, decides=True, peak_points=POINTS, **chain)
         with Instance(fmus[OSCILLATOR]) as instance:
             results = response_loop(instance).respond(points, starts, settings)
         responses = responses_from(results, points, self.tolerance)

@@ -76,9 +76,8 @@ class Coupling:
         known = dict(zip(self.inputs.names, values, strict=True))
         drive.initialize(**dict(job.start_values), **known)
         recorded = job.record if parts == 1 else ()
-        connection = Connection(
-            links, tuple(self.inputs.names), recorded=recorded, cubic=self.inputs.cubic
-        )
+        more: Any = {"recorded": recorded, "cubic": self.inputs.cubic}
+        connection = Connection(links, tuple(self.inputs.names), **more)
         self.h = job.step / parts
         self.master = create_master(oscillator, drive, Scheme(self.h), connection)
         knows = "box_acceleration" in links
@@ -395,9 +394,8 @@ def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Val
             checked.append((name, bool(value)))
             continue
         check(name, value, str(drive.variable(name).unit or ""))
-        checked.append(
-            (name, float(value) if drive.variable(name).type in REAL_TYPES else int(value))
-        )
+        is_real = drive.variable(name).type in REAL_TYPES
+        checked.append((name, float(value) if is_real else int(value)))
     return tuple(checked)
 
 

@@ -61,12 +61,7 @@ class Bench:
             None if sensor is None else sensor.read(signal, fine, factor, rng)
             for sensor, signal, rng in zip(sensors, signals, rngs, strict=True)
         ]
-        box, face1, face2 = readings
-        measured = record(
-            time=np.arange(len(signals[0][::factor])) / self.rate,
-            box_acceleration=box,
-            acceleration1=face1,
-            acceleration2=face2,
-            source="virtual bench",
-        )
-        return measured, motion
+        names = ("box_acceleration", "acceleration1", "acceleration2")
+        channels = dict(zip(names, readings, strict=True))
+        time = np.arange(len(signals[0][::factor])) / self.rate
+        return record(time=time, **channels, source="virtual bench"), motion

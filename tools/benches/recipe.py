@@ -164,9 +164,8 @@ def draw_delaminated(rng: np.random.Generator, level: float, conditions: Conditi
 
 def draw_with_gap(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
     """Draw a specimen of two halves with a gap of 0.1 to 2 mm at rest."""
-    return two_mass_specimen(
-        draw_halves(rng), draw_contact_law(rng, draw_log_uniform(rng, 1e-4, 2e-3))
-    )
+    own, clearance = draw_halves(rng), draw_log_uniform(rng, 1e-4, 2e-3)
+    return two_mass_specimen(own, draw_contact_law(rng, clearance))
 
 
 def draw_preloaded(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
@@ -336,10 +335,8 @@ def draw(
 ) -> Case:
     """Draw a beam and a bench and measure it; return record, guess and truth as a ``Case``."""
     conditions = conditions or Conditions()
-    level, noise = (
-        draw_log_uniform(rng, *conditions.level),
-        draw_log_uniform(rng, *conditions.noise),
-    )
+    level = draw_log_uniform(rng, *conditions.level)
+    noise = draw_log_uniform(rng, *conditions.noise)
     name, shaker = draw_excitation(rng, conditions.excitation, level)
     count = conditions.sensors or int(rng.integers(1, 3))
     bandwidth = draw_log_uniform(rng, 1000.0, 4000.0)

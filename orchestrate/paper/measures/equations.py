@@ -150,8 +150,6 @@ def next_state(data: Datasets, claim: Claim) -> Measured:
 
 def period(data: Datasets, claim: Claim) -> Measured:
     """Compare eta/2 pi and 2 pi/eta as periods of sin(eta tau)."""
-    printed, right = (
-        float(np.abs(np.sin(ETA * (TAUS + span)) - np.sin(ETA * TAUS)).max())
-        for span in (ETA / (2.0 * np.pi), 2.0 * np.pi / ETA)
-    )
+    spans, here = (ETA / (2.0 * np.pi), 2.0 * np.pi / ETA), np.sin(ETA * TAUS)
+    printed, right = (float(np.abs(np.sin(ETA * (TAUS + span)) - here).max()) for span in spans)
     return compare("change of sin(eta tau) after T", printed, right, "2 pi/eta")
