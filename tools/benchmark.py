@@ -74,11 +74,6 @@ QUESTIONS = {  # the sizes are scaled
 }
 
 
-def harmonic_acceleration(eta: float, time: float) -> float:
-    """Return the acceleration at a time of the paper's box, of amplitude 1/eta^2 m."""
-    return -math.sin(eta * time)
-
-
 def time_periods(fmu: str | PathLike[str], eta: float, count: int) -> tuple[float, int]:
     """Return the seconds and impacts of ``count`` periods in one step, after some to settle."""
     period = 2.0 * math.pi / eta
@@ -176,10 +171,8 @@ def compare_versions(before: Path, scale: float, rounds: int, only: str) -> None
         if only not in name:
             continue
         times = np.array([[measure(0), measure(1)] for _ in range(rounds)]).min(axis=0)
-        ratios, (unit, factor) = (
-            times[0] / times[1],
-            ("s", 1.0) if times[1, 0] > 1e-3 else ("ns", 1e9),
-        )
+        ratios = times[0] / times[1]
+        unit, factor = ("s", 1.0) if times[1, 0] > 1e-3 else ("ns", 1e9)
         text = "".join(f"{value * factor:9.3f} {unit:2}" for value in times[:, 0])
         print(f"{name:36}{text}{ratios[0]:8.3f}", *(f"{r:15.3f}" for r in ratios[1:]), flush=True)
 
@@ -193,14 +186,9 @@ def compare_solvers(count: int) -> None:
         taken, count_of_impacts = min(time_periods(native, eta, count) for _ in range(3))
         seconds, impacts = seconds + taken, impacts + count_of_impacts
         each = taken / count
-        ratios = (
-            time_pure_python(python, eta, 30) / 30 / each,
-            sampled_solver.simulate_from_rest(
-                PAPER, partial(harmonic_acceleration, eta), 10 * TURN / eta
-            )[0]
-            / 10
-            / each,
-        )
+        box = partial(lambda eta, time: -math.sin(eta * time), eta)  # of amplitude 1/eta^2 m
+        solver = sampled_solver.simulate_from_rest(PAPER, box, 10 * TURN / eta)[0] / 10
+        ratios = time_pure_python(python, eta, 30) / 30 / each, solver / each
         row = (eta, each * 1e6, taken / max(count_of_impacts, 1) * 1e9, *ratios)
         print("".join(f"{value:12.4g}" for value in row), flush=True)
     quiet = time_quiet_step(native) * 1e9
@@ -220,9 +208,8 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3, help="the shortest of so many counts")
     arguments = parser.parse_args()
     if arguments.before:
-        compare_versions(
-            arguments.before.resolve(), arguments.scale, arguments.rounds, arguments.only
-        )
+        how = arguments.scale, arguments.rounds, arguments.only
+        compare_versions(arguments.before.resolve(), *how)
     elif arguments.once:
         fmu, eta, count = arguments.once
         print(time_periods(fmu, float(eta), int(count))[0])

@@ -37,10 +37,8 @@ class Signal:
 
     def __add__(self, other: Signal) -> Signal:
         """Return the sum of two signals."""
-        return Signal(
-            self.terms + other.terms,
-            [a + b for a, b in zip(self.polynomial, other.polynomial, strict=True)],
-        )
+        pairs = zip(self.polynomial, other.polynomial, strict=True)
+        return Signal(self.terms + other.terms, [a + b for a, b in pairs])
 
     def __rmul__(self, factor: Any) -> Signal:
         """Return the signal times a number."""
@@ -55,9 +53,8 @@ class Signal:
     def __call__(self, t: Any) -> Any:
         """Return the value at time t, in high precision."""
         t = mp.mpf(t)
-        return mp.re(sum(c * mp.exp(s * t) for c, s in self.terms)) + taylor_polynomial(
-            self.polynomial, t
-        )
+        swinging = mp.re(sum(c * mp.exp(s * t) for c, s in self.terms))
+        return swinging + taylor_polynomial(self.polynomial, t)
 
     def sample(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return values on an array of times in double precision; exactly where terms cancel."""
@@ -81,14 +78,10 @@ def taylor_polynomial(derivatives: Sequence[Any], t: Any) -> Any:
 
 def box_acceleration(values: Mapping[str, float], phase: Any) -> Signal:
     """Return the box's acceleration as a ``Signal``, from the FMU's inputs and a phase, rad."""
-    a, frequency = (
-        mp.mpf(values.get("box_amplitude", 1.0)),
-        mp.mpf(values.get("box_frequency", 0.0)),
-    )
-    cubic = [
-        mp.mpf(values.get(f"box_{name}", 0.0))
-        for name in ("acceleration", "jerk", "snap", "crackle")
-    ]
+    a = mp.mpf(values.get("box_amplitude", 1.0))
+    frequency = mp.mpf(values.get("box_frequency", 0.0))
+    names = ("acceleration", "jerk", "snap", "crackle")
+    cubic = [mp.mpf(values.get(f"box_{name}", 0.0)) for name in names]
     # -a Omega^2 sin
     return Signal([(mp.mpc(0, 1) * a * frequency**2 * mp.expj(phase), mp.mpc(0, frequency))], cubic)
 
@@ -112,10 +105,8 @@ def oscillator_motion(
     # mass q'' + damping q' + stiffness q = -mass p: exact after four rounds, p being a cubic
     for _ in range(4):
         first, second = [*cubic[1:], 0], [*cubic[2:], 0, 0]
-        cubic = [
-            (-mass * p - damping * q1 - mass * q2) / stiffness
-            for p, q1, q2 in zip(acceleration.polynomial, first, second, strict=True)
-        ]
+        rows = zip(acceleration.polynomial, first, second, strict=True)
+        cubic = [(-mass * p - damping * q1 - mass * q2) / stiffness for p, q1, q2 in rows]
     part = Signal(forced, cubic)
     half = damping / (2 * mass)
     split = mp.sqrt(mp.mpc(half * half - stiffness / mass))

@@ -82,7 +82,6 @@ def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[
     times = reference.times()
 
     def inputs(time: float) -> dict[str, float]:
-        """Return the inputs at a time as keywords."""
         return dict(zip(reference.inputs, reference.input_at(time), strict=True))
 
     with Instance(fmu) as instance:
@@ -106,11 +105,8 @@ def write_reference(reference: Reference, rows: Sequence[Sequence[float]]) -> No
     inputs = [[time, *reference.input_at(value)] for time, value in pairs]
     write_csv(folder / f"{reference.model}_in.csv", ["time", *reference.inputs], inputs)
     options = {
-        "StartTime": 0.0,
-        "StopTime": reference.stop,
-        "StepSize": reference.step,
-        "RelTol": 0.0,
-        "OutputIntervalLength": reference.step,
+        **{"StartTime": 0.0, "StopTime": reference.stop, "StepSize": reference.step},
+        **{"RelTol": 0.0, "OutputIntervalLength": reference.step},
     }
     lines = "".join(f"{key}, {value}\n" for key, value in options.items())
     (folder / f"{reference.model}_ref.opt").write_text(lines)

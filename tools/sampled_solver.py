@@ -24,13 +24,11 @@ def equations_of_motion(structure: Structure, acceleration: Acceleration) -> tup
     m, k, d = m1 + m2, k1 + k2, d1 + d2
 
     def flight(t: float, y: np.ndarray) -> list[float]:
-        """Return the rates of the state in flight."""
         box = acceleration(t)
         one = -box - (d1 * y[1] + k1 * y[0]) / m1
         return [y[1], one, y[3], -box - (d2 * y[3] + k2 * y[2]) / m2]
 
     def contact(t: float, y: np.ndarray) -> list[float]:
-        """Return the rates of the state in permanent contact."""
         pull = -acceleration(t) - (d * y[1] + k * y[0]) / m
         return [y[1], pull, y[1], pull]
 
@@ -43,11 +41,9 @@ def event_functions(structure: Structure) -> tuple[Event, Event]:
     spring, damper = s.m2 * s.k1 - s.m1 * s.k2, s.m2 * s.d1 - s.m1 * s.d2
 
     def gap(t: float, y: np.ndarray) -> float:
-        """Return the gap, whose root is an impact."""
         return float(y[2] - y[0])
 
     def pressed(t: float, y: np.ndarray) -> float:
-        """Return the contact force, whose root is the release."""
         return float(spring * y[0] + damper * y[1])
 
     for event, direction in ((gap, -1), (pressed, 1)):

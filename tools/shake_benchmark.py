@@ -38,7 +38,6 @@ def make_acceleration(pieces: Pieces) -> Acceleration:
     nodes, rows = pieces.nodes.tolist(), pieces.derivatives.tolist()
 
     def acceleration(t: float) -> float:
-        """Return the base acceleration at a time, m/s2."""
         index = min(bisect_right(nodes, t), len(rows)) - 1
         a, b, c, d = rows[index]
         t -= nodes[index]

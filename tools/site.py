@@ -60,21 +60,14 @@ class Site:
 
     def external_resources(self) -> list[str]:
         """Return what pages load from other hosts, as ``page: address``."""
-        return [
-            f"{path.name}: {address}"
-            for path, page in self.pages.items()
-            for address in page.taken
-            if urlsplit(address).scheme in ("http", "https") or address.startswith("//")
-        ]
+        every = [(path, address) for path, page in self.pages.items() for address in page.taken]
+        begins = ("http:", "https:", "//")
+        return [f"{path.name}: {one}" for path, one in every if one.lower().startswith(begins)]
 
     def broken_links(self) -> list[str]:
         """Return links, pictures and scripts whose targets are missing, as ``page: address``."""
-        return [
-            f"{path.name}: {address}"
-            for path, page in self.pages.items()
-            for address in (*page.links, *page.taken)
-            if not self.target_exists(path, address)
-        ]
+        every = [(p, one) for p, page in self.pages.items() for one in (*page.links, *page.taken)]
+        return [f"{p.name}: {one}" for p, one in every if not self.target_exists(p, one)]
 
     def target_exists(self, path: Path, address: str) -> bool:
         """Return whether an address of a page exists in the folder, or is elsewhere."""
@@ -84,11 +77,8 @@ class Site:
         target = (path.parent / unquote(urlsplit(file).path)).resolve() if file else path
         if target not in self.pages:
             return target.is_file()
-        return (
-            not anchor
-            or target.name == "explore.html"
-            or unquote(anchor) in self.pages[target].places
-        )
+        is_free = not anchor or target.name == "explore.html"
+        return is_free or unquote(anchor) in self.pages[target].places
 
 
 def build_site(folder: Path) -> None:

@@ -31,9 +31,7 @@ FINER = 4  # samples of the finer grid on which a signal half a period later is 
 
 
 def burst_excess(channels: Channels, highest: float, settings: Settings = SETTINGS) -> float:
-    """Return the power of bursts once a period, over the threshold from which they count as
-    seen.
-    """
+    """Return the power of bursts once a period, over the threshold above which they count."""
     edge = default_band_edge(channels, highest)
     phase = np.maximum.accumulate(measured_phase(channels))
     ends = phase[0] + 2.0 * math.pi * EDGE, phase[-1] - 2.0 * math.pi * EDGE
@@ -84,11 +82,7 @@ def one_sided_rise(
 
 
 def mean_power(signal: Floats, turns: NDArray[np.intp], width: int, most: float) -> Floats:
-    """Return the mean square of a signal in intervals of about ``width`` samples, half overlapping.
-
-    Powers of single periods above their quantile ``most`` count no more than it.
-    Arguments are shape (n,): the signal, and the number of the period of each sample.
-    """
+    """Return mean squares over half overlapping intervals; single loud periods are clipped."""
     count = np.maximum(np.bincount(turns), 1)
     power = np.bincount(turns, signal**2) / count
     begins = turns[np.arange(0, len(signal) - width + 1, max(width // 2, 1))]

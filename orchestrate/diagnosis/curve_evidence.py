@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, TypeVar
+from typing import ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ from ..laboratory.pieces import Floats
 from ..laboratory.resonance_curve import CURVE_ORDERS, FACES, FEWEST_POINTS
 from ..laboratory.sampled import Sampled
 from ..laboratory.stepped_sine import SteppedSine
+from ..lazy import xr
+from ..model import Structure
 from .evidence import (
     COARSE_RANGE,
     FITTED_RANGE,
@@ -36,19 +38,10 @@ from .orders import (
 )
 from .settings import SETTINGS, Settings
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from ..model import Structure
-
 Numbers = tuple[float | None, ...]
 Kind = TypeVar("Kind")
-MEASURED_CYCLES = 10  # at each frequency: they separate the orders 0.5, 1 and 1.37
-SETTLED = 0.01  # of a step between two frequencies that is left where it is measured
 SETTLE_CYCLES = (30, 200)  # fewest and most cycles before
-USUAL_FLOOR = 0.01  # of order 1, where none is given: what a shaker makes of order 2
-COARSE_POINTS, COARSE_SAMPLES = 30, 7.0  # most points of a coarse search, samples in a period
-HALF_POWER = 0.5**0.5
+COARSE_SAMPLES = 7.0  # in a period of the highest frequency, for a coarse search
 
 
 @dataclass(frozen=True)
@@ -88,12 +81,13 @@ class CurveData:
             span = " to ".join(f"{end:g}" for end in FITTED_RANGE)
             text = f"{inside.sizes['frequency']} points from {span} times the resonance's frequency"
             raise InputError(f"resonance curve: {text}; expected {FEWEST_POINTS} or more")
+        sensors = tuple(str(name) for name in inside.channel.values)
         width = half_power_damping(inside)
         guessed = [zeta for zeta in (guess.zeta1, guess.zeta2) if zeta > 0.0]
         return cls(
             frequency=tuple(inside.frequency.values.tolist()),
             level=tuple(inside.level.values.tolist()),
-            sensors=tuple(str(name) for name in inside.channel.values),
+            sensors=sensors,
             amplitude=tuple(
                 tuple(none_for_nan(row) for row in rows)
                 for rows in inside.amplitude.transpose("channel", "order", "frequency").values
@@ -102,16 +96,14 @@ class CurveData:
             floor=tuple(none_for_nan(row) for row in inside.floor.values),
             relative=inside.attrs.get("relative", "false") == "true",
             damping=float(f"{min([width, *guessed]):.2g}"),
-            participation=checked_participation(
-                participation, tuple(str(name) for name in inside.channel.values)
-            ),
+            participation=checked_participation(participation, sensors),
             settings=settings,
         )
 
     @property
     def settle_cycles(self) -> int:
         """Number of cycles after which the motion has settled at a new frequency."""
-        cycles = -math.log(SETTLED) / (2.0 * math.pi * self.damping)
+        cycles = -math.log(0.01) / (2.0 * math.pi * self.damping)  # 1 % of a step is left
         return round(min(max(cycles, SETTLE_CYCLES[0]), SETTLE_CYCLES[1]))
 
     def evidence(self) -> CurveEvidence:
@@ -123,17 +115,15 @@ class CurveData:
         whole, frequency = self.evidence(), np.array(self.frequency)
         low, high = min(whole.peaks) * COARSE_RANGE[0], max(whole.peaks) * COARSE_RANGE[1]
         near = np.flatnonzero((frequency > low) & (frequency < high))
-        some = self.select(near[:: math.ceil(len(near) / COARSE_POINTS)])
+        some = self.select(near[:: math.ceil(len(near) / 30)])  # most points of a coarse search
         chosen = some if len(some.frequency) >= FEWEST_POINTS else self
-        return curve_evidence(
-            chosen, max(SETTLE_CYCLES[0], self.settle_cycles // 2), COARSE_SAMPLES
-        )
+        settle = max(SETTLE_CYCLES[0], self.settle_cycles // 2)
+        return curve_evidence(chosen, settle, COARSE_SAMPLES)
 
     def select(self, points: NDArray[np.intp]) -> CurveData:
         """Return the curve with only the points of these indices."""
 
         def at_points(row: tuple[Kind, ...]) -> tuple[Kind, ...]:
-            """Return the elements of a row at these points."""
             return tuple(row[i] for i in points)
 
         return replace(
@@ -170,30 +160,22 @@ def none_for_nan(row: Floats) -> Numbers:
 
 
 def half_power_damping(curve: xr.Dataset) -> float:
-    """Return the damping ratio by the width of the highest peak at 0.7 of its height.
-
-    The points are coarse: it is no more than a time in which motions settle.
-    """
+    """Return the damping ratio by the width of the highest peak at 0.7 of its height."""
     ordered = curve.sortby("frequency")
     ratio = (ordered.amplitude.sel(order=1.0) / ordered.level).max("channel").values
     frequency, top = ordered.frequency.values, int(np.argmax(ratio))
-    below = np.flatnonzero(ratio < HALF_POWER * ratio[top])
+    below = np.flatnonzero(ratio < 0.5**0.5 * ratio[top])
     low = frequency[max(below[below < top], default=0)]
     high = frequency[min(below[below > top], default=len(frequency) - 1)]
     return float((high - low) / (2.0 * frequency[top]))
 
 
 def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> CurveEvidence:
-    """Build the evidence of a curve: its orders, and the stepped sine under which it was
-    measured.
-    """
+    """Build the evidence of a curve: its orders, and the stepped sine that measured it."""
     ordered = sorted(zip(data.frequency, data.level, strict=True))
-    sine = SteppedSine(
-        frequencies=(data.frequency[0], *data.frequency),  # twice as long at the first
-        acceleration=tuple(ordered),
-        settle_cycles=settle,
-        measured_cycles=MEASURED_CYCLES,
-    )
+    frequencies = (data.frequency[0], *data.frequency)  # twice as long at the first
+    cycles = {"settle_cycles": settle, "measured_cycles": 10}  # to separate orders 0.5, 1, 1.37
+    sine = SteppedSine(frequencies=frequencies, acceleration=tuple(ordered), **cycles)
     rate = samples_per_period * max(data.frequency)
     time = np.arange(math.ceil(sine.duration * rate) + 2) / rate
     box = np.asarray(sine(time))
@@ -211,18 +193,13 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
     every[0] = 0.0
     every[0, 0] = level
     floor = np.array(data.floor, dtype=float)
-    floor = np.where(np.isfinite(floor), floor, USUAL_FLOOR * amplitude[:, 0])
+    # where none is given: what a shaker makes of order 2
+    floor = np.where(np.isfinite(floor), floor, 0.01 * amplitude[:, 0])
     floors = np.concatenate([np.zeros((1, len(level))), floor])
     orders = RecordOrders(windows, channels, every, floors, np.quantile(floors, 0.2, axis=1))
     pieces = Sampled(acceleration=tuple(box), sample_rate=rate).pieces()
-    return CurveEvidence(
-        orders,
-        pieces,
-        participation=data.participation,
-        settings=data.settings,
-        with_phase=np.isfinite(phase),
-        relative_motion=data.relative,
-    )
+    rest = data.participation, data.settings, np.isfinite(phase), data.relative
+    return CurveEvidence(orders, pieces, *rest)
 
 
 def settled_windows(channels: Channels, sine: SteppedSine) -> OrderWindows:

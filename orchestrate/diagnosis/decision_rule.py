@@ -15,7 +15,7 @@ DELAMINATED = "delaminated"
 NOT_SEEN = "no opening seen"
 NOT_DESCRIBED = "not described"
 UNDECIDED = "undecided"
-RESAMPLED, BLOCKS, SEED = 1000, 20, 7
+RESAMPLED = 1000
 MISFIT_MEANING = "A misfit of 1 is as far as noise and the usual error of a good model explain."
 
 
@@ -85,17 +85,14 @@ class Findings:
         - "not described": neither kind of hypothesis has a misfit as small as that.
         - "undecided": all else.
         """
-        usable, delaminated, not_seen = (
-            all(one.holds for one in conditions)
-            for conditions in (
-                self.record_conditions(),
-                self.delaminated_conditions(),
-                self.no_opening_conditions(),
-            )
-        )
+        usable = all(one.holds for one in self.record_conditions())
+        delaminated = all(one.holds for one in self.delaminated_conditions())
+        not_seen = all(one.holds for one in self.no_opening_conditions())
         if usable and (delaminated or not_seen):
             return DELAMINATED if delaminated else NOT_SEEN
-        return UNDECIDED if self.is_described or not usable else NOT_DESCRIBED
+        described = self.sound_misfit <= self.settings.sound
+        described |= self.delaminated_misfit <= self.largest_misfit
+        return UNDECIDED if described or not usable else NOT_DESCRIBED
 
     def record_conditions(self) -> list[Condition]:
         """Return the conditions under which a record decides anything."""
@@ -178,12 +175,6 @@ class Findings:
         ]
 
     @property
-    def is_described(self) -> bool:
-        """Return whether one of the hypotheses describes the record."""
-        delaminated = self.delaminated_misfit <= self.largest_misfit
-        return delaminated or self.sound_misfit <= self.settings.sound
-
-    @property
     def stops(self) -> list[Condition]:
         """Return what stops the verdict: of the record, or of the verdict that is nearest."""
         nearest = (
@@ -257,11 +248,8 @@ class Findings:
 
     def imperfection(self) -> list[str]:
         """Return a sentence on a model that decides but describes the record poorly, if it does."""
-        described = (
-            self.ratio >= self.settings.ratio
-            and self.delaminated_misfit <= self.settings.delaminated
-        )
-        if self.verdict() != DELAMINATED or described:
+        described = self.delaminated_misfit <= self.settings.delaminated
+        if self.verdict() != DELAMINATED or (described and self.ratio >= self.settings.ratio):
             return []
         return [
             "What decides is that the faces move apart: two masses describe this structure only "
@@ -321,9 +309,9 @@ def factor_outside(value: float, low: float, high: float) -> float:
 def resampled_share(sound: Floats, delaminated: Floats, ratio: float) -> float:
     """Return the share of block-bootstrap samples in which the ratio of misfits is exceeded."""
     one, other = (soft_squares(values).mean(axis=(0, 1)) for values in (sound, delaminated))
-    blocks = np.array_split(np.arange(len(one)), min(BLOCKS, len(one)))
+    blocks = np.array_split(np.arange(len(one)), min(20, len(one)))
     sums = np.array([[one[block].sum(), other[block].sum()] for block in blocks])
-    rng = np.random.default_rng(SEED)
+    rng = np.random.default_rng(7)
     chosen = rng.integers(0, len(sums), size=(RESAMPLED, len(sums)))
     first, second = sums[chosen].sum(axis=1).T
     return float(np.mean(np.sqrt(first / second) >= ratio))

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..fmu import finder
 from ..laboratory.record_checks import clipped_share
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Table
+from ..running.options import Running
 from ..running.runner import answer
 from .bursts import burst_excess
 from .decision_rule import DELAMINATED, NOT_SEEN, Findings, resampled_share
@@ -21,21 +24,11 @@ from .even_orders import smallest_openings, thresholds
 from .evidence import Participation
 from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
+from .orders import RecordOrders
 from .search_job import SearchJob, cached_orders
 from .settings import Changes, checked_settings
 from .wiring import wiring_notes
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    import xarray as xr
-    from numpy.typing import NDArray
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-    from .orders import RecordOrders
-
-ONE_DIRECTION = 0.5  # of the range of frequencies, from first to last: a sweep in one direction
 STATED = {  # numbers of the rule: their names there, units and long names
     "odds": ("odds", "1", "odds that the ratio decides, in records put together of blocks"),
     "ratio": ("ratio", "1", "misfit of sound over that of delaminated"),
@@ -154,9 +147,6 @@ class DetectJob(SearchJob):
     """Fit all hypotheses to a record and decide which verdict they give."""
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the verdict, the quantities that it is based on, and all fits as a dataset."""
-        import xarray as xr
-
         results = Results.from_table(self, table)
         findings, even = findings_from_results(results), results.even
         whole = cached_orders(self.data)
@@ -201,16 +191,13 @@ def record_variables(orders: RecordOrders) -> dict[str, Variable]:
 def sweep_direction(frequency: NDArray[np.float64]) -> str:
     """Return in which direction the frequency of a sweep goes: up, down, or up and down."""
     covered = (frequency[-1] - frequency[0]) / max(float(np.ptp(frequency)), 1e-9)
-    if abs(covered) < ONE_DIRECTION:
+    if abs(covered) < 0.5:
         return "up and down"
     return "up" if covered > 0.0 else "down"
 
 
 def stated_hypotheses(results: Results, findings: Findings) -> NDArray[np.bool_]:
-    """Return of each hypothesis whether its numbers are stated: it describes a decided record.
-
-    The errors of a fit that has missed hold nothing.
-    """
+    """Return of each hypothesis whether its numbers are stated: it describes a decided record."""
     word, count = findings.verdict(), len(results.job.sound)
     sound = word == NOT_SEEN and results.misfit[:count] <= findings.settings.sound
     parted = word == DELAMINATED and results.misfit[count:] <= findings.largest_misfit

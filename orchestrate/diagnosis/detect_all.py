@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..fmu import finder
+from ..lazy import Unpack, xr
 from ..model import Structure
+from ..running.options import Running
 from ..running.runner import gather
 from .detect import DetectJob
 from .evidence import Participation
 from .fit import checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 from .settings import Changes, Settings, checked_settings
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 
 def detect_all(
@@ -70,11 +65,8 @@ def detect_all(
     """
     if not isinstance(records, Mapping) or not records:
         raise InputError("records: expected one record or more, by names")
-    chosen, structure = checked_free(free), delaminated_guess(guess)
-    jobs = [
-        checked_job(name, checked, structure, chosen, participation, checked_settings(settings))
-        for name, checked in records.items()
-    ]
+    rest = delaminated_guess(guess), checked_free(free), participation, checked_settings(settings)
+    jobs = [checked_job(name, record, *rest) for name, record in records.items()]
     return dict(zip(records, gather(jobs, running, finder(running)), strict=True))
 
 

@@ -23,16 +23,17 @@ def is_drive_run(data: object) -> bool:
 
 
 def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> tuple[dict[str, float], dict[str, float]]:
-    """Compute the fall of the jump voltage and the extra power of a run against the sound
-    beam's.
-    """
+    """Compute fall of the jump voltage and extra power against the sound beam, and errors."""
     first, second = jump_voltage(run), jump_voltage(sound)
     fall = 1.0 - first / second
-    lag = sum(jump_error(one) / voltage for one, voltage in ((run, first), (sound, second)))
+    lag = sum(  # of the ramps; NaN where it is not known
+        abs(float(one.jump_lag.sel(jump="up"))) / voltage if "jump_lag" in one else math.nan
+        for one, voltage in ((run, first), (sound, second))
+    )
     power, scatter = extra_power(run, sound)
-    return (
-        {"jump_voltage_fall": fall, "extra_power": power},
-        {"jump_voltage_fall": lag, "extra_power": scatter},
+    names = "jump_voltage_fall", "extra_power"
+    return dict(zip(names, (fall, power), strict=True)), dict(
+        zip(names, (lag, scatter), strict=True)
     )
 
 
@@ -41,11 +42,6 @@ def jump_voltage(run: xr.Dataset) -> float:
     if "jumps" not in run or "jump" not in run.coords or "up" not in run.jump.values:
         return math.nan
     return float(run.jumps.sel(jump="up"))
-
-
-def jump_error(run: xr.Dataset) -> float:
-    """Return the voltage by which the ramp delays the jump, V; NaN where that is not known."""
-    return abs(float(run.jump_lag.sel(jump="up"))) if "jump_lag" in run else math.nan
 
 
 def extra_power(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:

@@ -28,36 +28,27 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..fmu import Player
 from ..laboratory.analysis.channels import BOX
 from ..laboratory.pieces import Floats
 from ..laboratory.sampled import Sampled
 from .evidence import Evidence
 from .fitting import Search, difference_step
+from .hypotheses import Hypothesis
 from .linear import LinearModel
 from .misfit import misfit, soft_squares
-from .orders import ORDERS
+from .orders import ORDERS, RecordOrders
 from .settings import SETTINGS, Settings
 
-if TYPE_CHECKING:
-    from ..fmu import Player
-    from .hypotheses import Hypothesis
-    from .orders import RecordOrders
-
-REPLICATES = 16  # motions under more noise of the base
-CURVE_REPLICATES = 100  # of the simulated scatter of a curve's points
-MAX_INCREASE = 1.05  # misfit after the last step over that before: more is a step too far
-BLOCKS = 20  # of windows
 SEED = 20_241
 # Of errors, measured; the halves are alike, so that a number of both has one factor. The errors of
 # both frequencies stay as they are: they hold the truth in 93 of 100 records
 CALIBRATION = {"log_zeta1": 2.9, "log_zeta2": 2.9, "e": 1.35}
 # The same of resonance curves: 40 points have little against which the linear model errs
 CURVE_CALIBRATION = {"common": 3.0, "split": 3.0, "log_zeta1": 5.8, "log_zeta2": 5.8, "e": 2.6}
-LEAST_SHARE = 0.4  # of the mean of both damping ratios, for derivatives of a resonance curve
 
 
 @dataclass(frozen=True)
@@ -78,7 +69,7 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
     model = linear_model_around(search, here)
     moved = model.damped_minima(bounds, here)[0]
     before, after = (misfit(search.residuals(one)) for one in (here, moved))
-    allowed = MAX_INCREASE if search.hypothesis.is_rugged else 1.0
+    allowed = 1.05 if search.hypothesis.is_rugged else 1.0  # more is a step too far
     chosen = moved if after <= allowed * before else here
     lifted = chosen if search.evidence.has_floor else with_shared_damping(chosen)
     if lifted == chosen:
@@ -102,14 +93,10 @@ def linear_model_around(search: Search, values: Mapping[str, float]) -> LinearMo
 
 
 def with_shared_damping(values: Mapping[str, float]) -> dict[str, float]:
-    """Raise a damping ratio that is nearly 0, and lower the other one by as much.
-
-    Only the sum of both is well known, and residuals are linear in the ratios themselves: around a
-    logarithm that has run away, differences tell nothing of what the ratio may be.
-    """
+    """Raise a damping ratio that is nearly 0, and lower the other one by as much."""
     names = [name for name in ("log_zeta1", "log_zeta2") if name in values]
     ratios = np.exp([values[name] for name in names])
-    least = LEAST_SHARE * ratios.mean() if len(names) == 2 else 0.0
+    least = 0.4 * ratios.mean() if len(names) == 2 else 0.0
     if len(names) != 2 or ratios.min() >= least:
         return dict(values)
     shared = np.where(ratios < least, least, ratios.sum() - least)
@@ -131,7 +118,7 @@ def estimate_with_covariances(
     by_noise = influence @ (moved.T @ moved / len(moved)) @ influence.T
     by_noise += influence @ (bumps.T @ bumps / len(bumps)) @ influence.T
     scores = np.einsum("scwp,scw->wp", rows.reshape(model.slopes.shape), residuals)
-    parts = np.array_split(scores, max(min(BLOCKS, len(scores) // 3), count + 2))
+    parts = np.array_split(scores, max(min(20, len(scores) // 3), count + 2))
     sums = np.stack([part.sum(axis=0) for part in parts])
     small = len(sums) / max(len(sums) - count, 1)
     by_blocks = small * influence @ (sums.T @ sums) @ influence.T
@@ -151,11 +138,7 @@ def estimate_with_covariances(
 def contact_covariance(
     values: Mapping[str, float], beyond: float, settings: Settings = SETTINGS
 ) -> Floats:
-    """Return the covariance of damping and restitution that is due to real contacts.
-
-    A real contact loses energy in another way at each speed, and a fit shares that out between
-    both halves and the impacts.
-    """
+    """Return the covariance of damping and restitution that is due to real contacts."""
     size = min(1.0, math.sqrt(beyond) / settings.contact_misfit)
     damping = {
         name: math.exp(values[name]) for name in ("log_zeta1", "log_zeta2") if name in values
@@ -181,7 +164,7 @@ def simulated_noise_changes(search: Search, values: Mapping[str, float]) -> list
     base = evidence.order_residuals(evidence.fitted_orders(motion))
     fit = search.hypothesis, values, search.player
     changes = []
-    for moved in motions_under_base_noise(evidence, fit, REPLICATES, rng):
+    for moved in motions_under_base_noise(evidence, fit, 16, rng):
         search.evaluations += 1
         channels = [sizes[name] * rng.standard_normal(evidence.samples) for name in names]
         read = evidence.windows.amplitudes(np.stack(channels))
@@ -192,16 +175,11 @@ def simulated_noise_changes(search: Search, values: Mapping[str, float]) -> list
 
 
 def scatter_changes(residuals: Floats) -> list[Floats]:
-    """Simulate the scatter of a curve's points; return the change of the residuals each time.
-
-    A curve has no floor between its orders. Its scatter is what differs from one frequency to the
-    next, of each sensor and order: the second differences of the residuals, of which white noise of
-    variance 1 makes 6.
-    """
+    """Simulate the scatter of a curve's points; return the change of the residuals each time."""
     differences = np.diff(residuals, n=2, axis=-1)
     size = np.sqrt(np.mean(differences**2, axis=-1, keepdims=True) / 6.0)
     rng = np.random.default_rng(SEED)
-    return [size * rng.standard_normal(residuals.shape) for _ in range(CURVE_REPLICATES)]
+    return [size * rng.standard_normal(residuals.shape) for _ in range(100)]
 
 
 def motions_under_base_noise(
@@ -218,22 +196,14 @@ def motions_under_base_noise(
     hypothesis, values, player = fit
     size = noise_of_samples(evidence.orders)[BOX]
     for _ in range(count):
-        noisy = with_base_noise(evidence, size * rng.standard_normal(evidence.samples))
-        yield hypothesis.displacements(values, noisy, player)
-
-
-def with_base_noise(evidence: Evidence, noise: Floats) -> Evidence:
-    """Return the evidence with simulated noise added to the base's acceleration."""
-    base = evidence.orders.channels.box + noise
-    pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.rate).pieces()
-    return replace(evidence, pieces=pieces)
+        base = evidence.orders.channels.box + size * rng.standard_normal(evidence.samples)
+        pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.rate).pieces()
+        yield hypothesis.displacements(values, replace(evidence, pieces=pieces), player)
 
 
 def noise_of_samples(orders: RecordOrders) -> dict[str, float]:
     """Return the standard deviation of white noise that makes each channel's floor, m/s2."""
     squares = [np.sum(np.abs(s[:, len(ORDERS) :]) ** 2, axis=0) for s in orders.windows.solutions]
     share = math.sqrt(float(np.nanmean(squares)))
-    return {
-        name: float(size) / share
-        for name, size in zip(orders.channels.names, orders.noise, strict=True)
-    }
+    sizes = zip(orders.channels.names, orders.noise, strict=True)
+    return {name: float(size) / share for name, size in sizes}

@@ -11,7 +11,6 @@ from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .orders import Complexes, moving_average
 
-AVERAGED_WINDOWS = 5  # neighbouring windows that are taken together
 # Order 2 of the distance between two faces over their largest distance: the least of 15 benches
 # that opened for a part of each period; they had 0.14 to 0.31
 ORDER_2_OF_OPENING = 0.14
@@ -66,10 +65,7 @@ def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
 
 
 def thresholds(evidence: Evidence) -> Floats:
-    """Return the ratio of order 2 over order 1 from which it counts as seen, by sensor and window.
-
-    NaN where little moves.
-    """
+    """Return order 2 over order 1 from which it counts, (sensors, windows); NaN if little moves."""
     size, floor, least = size_of_order_1(evidence), evidence.floor, evidence.settings
     noise = least.order2_noise * evidence.noise[:, np.newaxis] / size
     between = least.order2_floor * np.sqrt(average_over_windows(floor**2)) / size
@@ -79,11 +75,7 @@ def thresholds(evidence: Evidence) -> Floats:
 
 
 def smallest_openings(evidence: Evidence, m1: float, m2: float) -> Floats:
-    """Return the smallest opening that would be seen in each window, m; NaN where little moves.
-
-    Of two masses that part, each moves by the other's share of the total mass, and order 2 of the
-    distance is ``ORDER_2_OF_OPENING`` of the largest distance at least.
-    """
+    """Return the smallest opening that would be seen in each window, m; NaN where little moves."""
     shares = np.array([(m2, m1)[mass] for mass in evidence.masses])[:, np.newaxis] / (m1 + m2)
     order2 = thresholds(evidence) * size_of_order_1(evidence)
     moved = order2 / (2.0 * TURN * evidence.frequency) ** 2
@@ -97,15 +89,11 @@ def size_of_order_1(evidence: Evidence) -> Floats:
 
 def average_over_windows(values: Floats) -> Floats:
     """Return each sensor's values averaged over neighbouring windows."""
-    return np.stack([moving_average(row, AVERAGED_WINDOWS) for row in values])
+    return np.stack([moving_average(row) for row in values])
 
 
 def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
-    """Return the difference of two sensors over its threshold, the larger of orders 1 and 2.
-
-    Two faces of one body in one mode move alike, whatever it does. The best gain, delay and ratio
-    of participation factors between the sensors are taken out, as order 1 tells them.
-    """
+    """Return the difference of two sensors over its threshold, the larger of orders 1 and 2."""
     if len(evidence.measured) < 2:
         return np.full(threshold.shape[1], np.nan)
     (one, other), least = evidence.measured, evidence.settings
@@ -120,12 +108,7 @@ def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
     alike = (gain + np.outer((1.0, 2.0), slope) * delay) * other[:2] + share * base
     both = np.nan_to_num(one[:2] - alike)
     first, second = np.sqrt(average_over_windows(np.abs(both) ** 2)) / size
-    order2 = np.sqrt(average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1])) ** 2)).max(
-        axis=0
-    )
-    return np.asarray(
-        np.maximum(
-            first / np.maximum(seen, least.difference),
-            second / np.maximum(2.0**0.5 * seen, least.difference_order2 * order2 / size),
-        )
-    )
+    power = average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1])) ** 2)
+    order2 = np.sqrt(power).max(axis=0)
+    limit = np.maximum(2.0**0.5 * seen, least.difference_order2 * order2 / size)
+    return np.asarray(np.maximum(first / np.maximum(seen, least.difference), second / limit))

@@ -16,6 +16,7 @@ from ..laboratory.analysis.channels import Channels
 from ..laboratory.pieces import Floats, Pieces
 from ..laboratory.sampled import Sampled
 from ..laboratory.sensors import PARTICIPATION
+from ..lazy import xr
 from .orders import (
     MIN_WINDOWS,
     ORDERS,
@@ -30,16 +31,13 @@ from .orders import (
 from .settings import SETTINGS, Settings
 
 if TYPE_CHECKING:
-    import xarray as xr
     from scipy.sparse import csr_array
 
 FITTED_ORDERS = (1.0, 2.0, 3.0)
-NEIGHBOURS = 2  # windows on each side over which that size is the largest
 FITTED_RANGE = (0.62, 1.55)  # of the resonance's frequency: what is fitted of a wide sweep
 COARSE_RANGE = (0.8, 1.28)  # of that of both sensors' resonances: what a coarse search goes by
 MAX_CUT_SHARE = 0.9  # of a record: more of it is not worth to be cut
 START_UP = 1.0  # s at the beginning where the start is not forgotten; at most a tenth of the record
-PARTICIPATION_RANGE = (0.2, 1.7)  # 1.57 at the tip of a uniform cantilever, 0.34 at 0.4 of it
 UNBOUNDED_RESIDUAL = 30.0  # residual of a motion that has no bounds
 SENSORS = ("acceleration1", "acceleration2")
 Participation = float | Mapping[str, float] | None  # as an argument: of all, of some sensors
@@ -63,10 +61,7 @@ def clipped(value: float, most: float) -> float:
 
 
 def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
-    """Cut the channels to the time around the resonance; return them and the highest frequency, Hz.
-
-    The rest is long and holds little: a fit would spend half its time there.
-    """
+    """Cut channels to the time around the resonance; return them and the highest frequency."""
     windows, channels = orders.windows, orders.channels
     ratio = windows.frequency / orders.resonance
     inside = np.flatnonzero((ratio > FITTED_RANGE[0]) & (ratio < FITTED_RANGE[1]))
@@ -124,11 +119,9 @@ class Evidence:
         if len(inside) < MIN_WINDOWS or part.stop - part.start > MAX_CUT_SHARE * self.samples:
             return self
         kept = np.flatnonzero([part.start <= p.start and p.stop <= part.stop for p in parts])
-        pieces = replace(
-            self.pieces,
-            nodes=self.pieces.nodes[part] - self.pieces.nodes[part.start],
-            derivatives=self.pieces.derivatives[part.start : part.stop - 1],
-        )
+        nodes = self.pieces.nodes[part] - self.pieces.nodes[part.start]
+        cubics = self.pieces.derivatives[part.start : part.stop - 1]
+        pieces = replace(self.pieces, nodes=nodes, derivatives=cubics)
         orders = RecordOrders(
             self.orders.windows.select_and_cut(kept, part),
             replace(channels, time=channels.time[part], values=channels.values[:, part]),
@@ -192,9 +185,8 @@ class Evidence:
     def size(self) -> Floats:
         """Largest amplitude of order 1 around each window, shape (sensors, windows), m/s2."""
         size = np.abs(self.measured[:, 0])
-        width = 2 * NEIGHBOURS + 1
-        padded = np.pad(size, ((0, 0), (NEIGHBOURS, NEIGHBOURS)), mode="edge")
-        return np.lib.stride_tricks.sliding_window_view(padded, width, axis=1).max(axis=-1)
+        padded = np.pad(size, ((0, 0), (2, 2)), mode="edge")  # two windows on each side
+        return np.lib.stride_tricks.sliding_window_view(padded, 5, axis=1).max(axis=-1)
 
     @cached_property
     def noise(self) -> Floats:
@@ -224,9 +216,8 @@ class Evidence:
         from scipy.sparse import diags_array
 
         read = 1.0 / np.sinc(np.outer(FITTED_ORDERS, self.frequency) / self.rate) ** 2
-        return (
-            diags_array(read.repeat(2, axis=0).ravel()) @ self.windows.displacement_operator()
-        ).tocsr()
+        weights = diags_array(read.repeat(2, axis=0).ravel())
+        return (weights @ self.windows.displacement_operator()).tocsr()
 
     @cached_property
     def resonance(self) -> float:
@@ -247,20 +238,11 @@ class Evidence:
         return float((size / (TURN * self.frequency) ** 2).max())
 
     def orders_of_motion(self, motion: Floats) -> Complexes:
-        """Compute orders 1, 2, 3 that sensors would read of a motion, shape (sensors, 3, windows).
-
-        Notes
-        -----
-        The second differences of displacements are means of the acceleration over two steps, with
-        the weights of a triangle: they hold the impulses of impacts exactly, and what would come
-        back from around the sampling rate is as small as there the square of the sinc is, by which
-        the orders are divided. The base's orders are added.
-        """
+        """Compute orders 1, 2, 3 that sensors read of a motion, shape (sensors, 3, windows)."""
         chosen = [min(mass, len(motion) - 1) for mass in self.masses]
         parts = {row: self.operator @ motion[row] for row in set(chosen)}
-        found = np.stack([parts[row] for row in chosen]).reshape(
-            len(chosen), len(FITTED_ORDERS), 2, -1
-        )
+        rows = np.stack([parts[row] for row in chosen])
+        found = rows.reshape(len(chosen), len(FITTED_ORDERS), 2, -1)
         return found[:, :, 0] + 1j * found[:, :, 1] + self.base
 
     def fitted_orders(self, motion: Floats) -> Complexes:
@@ -268,11 +250,7 @@ class Evidence:
         return self.corrected_for_sensors(self.orders_of_motion(motion))
 
     def corrected_for_sensors(self, computed: Complexes) -> Complexes:
-        """Return computed orders as each sensor reads them: base + participation (motion - base).
-
-        Participation factor, gain and delay are fitted to order 1. A delay that all channels share
-        is none: the base's is in the input already.
-        """
+        """Return computed orders as sensors read them: base + participation (motion - base)."""
         found = computed.copy()
         for row in range(len(found)):
             participation, gain, delay = self.sensor_error(row, computed[row, 0])
@@ -291,14 +269,12 @@ class Evidence:
             gain, _, more = self.sensor_solution(row, computed, target)
             more *= allowed.participation_deviation
             participation = 1.0 + more / (1.0 + allowed.gain_deviation * gain)
-            participation = float(np.clip(participation, *PARTICIPATION_RANGE))
+            # 1.57 at the tip of a uniform cantilever, 0.34 at 0.4 of it
+            participation = float(np.clip(participation, 0.2, 1.7))
         read = base + participation * (computed - base)
         gain, delay = self.sensor_solution(row, read, target, 2)
-        return (
-            participation,
-            1.0 + clipped(allowed.gain_deviation * gain, allowed.gain_error),
-            clipped(allowed.delay_deviation * delay, allowed.delay),
-        )
+        gain = 1.0 + clipped(allowed.gain_deviation * gain, allowed.gain_error)
+        return participation, gain, clipped(allowed.delay_deviation * delay, allowed.delay)
 
     def sensor_solution(
         self, row: int, computed: Complexes, target: Complexes, count: int = 3
@@ -307,9 +283,7 @@ class Evidence:
         columns = self.sensor_columns(row, computed)[:count]
         missed = (target - computed) / self.error[row, 0]
         normal = (columns @ columns.conj().T).real
-        normal += (
-            np.eye(count) * self.settings.prior_weight**2 * len(missed)
-        )  # none without a reason
+        normal += np.eye(count) * self.settings.prior_weight**2 * len(missed)  # nothing by chance
         return np.asarray(np.linalg.solve(normal, (columns.conj() @ missed).real))
 
     def sensor_columns(self, row: int, computed: Complexes) -> Complexes:
@@ -327,10 +301,7 @@ class Evidence:
         return float(np.ptp(self.frequency)) < 1.0 / longest
 
     def given_participation(self, row: int) -> float | None:
-        """Return a sensor's participation factor if it is not fitted, as given or 1; else None.
-
-        Only how a response changes over the frequency tells the factor from the rest.
-        """
+        """Return a sensor's participation factor if it is not fitted, as given or 1; else None."""
         given = self.participation[row] if self.participation else None
         return 1.0 if given is None and self.is_tone else given
 
@@ -348,21 +319,15 @@ class Evidence:
         return np.full((len(self.masses), 4, len(self.used_windows)), UNBOUNDED_RESIDUAL)
 
     def residuals(self, motion: Floats) -> Floats:
-        """Return the differences of a motion's orders from the measured ones, over the errors.
-
-        The shape is (sensors, 4, windows): order 1 as two numbers, then the sizes of orders 2 and
-        3; 0 where an order is not resolved.
-        """
+        """Return the differences of a motion's orders from the measured ones, over the errors."""
         if not np.isfinite(motion).all():
             return self.unbounded_residuals()
         return self.order_residuals(self.fitted_orders(motion))
 
     def order_residuals(self, computed: Complexes) -> Floats:
         """Return computed less measured orders, over the errors; shape (sensors, 4, windows)."""
-        measured_first = np.stack(
-            [self.first_order(row, one) for row, one in enumerate(computed[:, 0])]
-        )
-        first = (computed[:, 0] - measured_first) / self.error[:, 0]
+        measured = np.stack([self.first_order(row, a) for row, a in enumerate(computed[:, 0])])
+        first = (computed[:, 0] - measured) / self.error[:, 0]
         noise = self.noise[:, None, None]  # adds to both sizes alike
         size, measured_size = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])
         higher = (np.sqrt(size**2 + noise**2) - measured_size) / self.error[:, 1:]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,13 @@ from ..errors import InputError
 from ..fmu import finder
 from ..laboratory.analysis.channels import BOX
 from ..laboratory.pieces import Floats
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked_word
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Table
+from ..running.options import Running
 from ..running.runner import answer
 from .curve_evidence import CurveData
 from .decision_rule import factor_outside
@@ -30,24 +32,10 @@ from .search_job import RecordData, SearchJob
 from .settings import SETTINGS, Changes, Settings, checked_settings
 from .wiring import wiring_notes
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-
 DEFAULT_FREE = ("f1", "f2", "zeta1", "zeta2", "e")
 DELAMINATED = "delaminated"
-SHORT_NAMES = {  # names of the hypotheses as arguments
-    "bonded": 0,
-    "curved": 1,
-    "friction": 2,
-    "stop": 3,
-    "stop on the other side": 4,
-    "two modes": 5,
-}
-SAME_LEVEL = 0.1  # of the largest level: a tone whose level varies less has one
-FITTED_DIMENSIONS = ("hypothesis", "channel", "order", "window")
+# arguments for the hypotheses of `SOUND`, in their order
+SHORT_NAMES = ("bonded", "curved", "friction", "stop", "stop on the other side", "two modes")
 
 
 def fit(
@@ -143,17 +131,14 @@ def fit(
     chosen = checked_free(free)
     kind = checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
     structure, changed = delaminated_guess(guess), checked_settings(settings)
-    data = (
-        CurveData.from_curve(record, structure, participation, changed)
-        if is_curve(record)
-        else checked_data(record, structure, participation, changed)
-    )
+    read = CurveData.from_curve if is_curve(record) else checked_data
+    data = read(record, structure, participation, changed)
     job = FitJob(
         name=f"fit_{checked_structure(guess).label()}",
         data=data,
         guess=structure,
         free=chosen,
-        sound=(0,) if kind in (DELAMINATED, "bonded") else (0, SHORT_NAMES[kind]),
+        sound=(0,) if kind in (DELAMINATED, "bonded") else (0, SHORT_NAMES.index(kind)),
         delaminated=kind == DELAMINATED,
         kind=kind,
     )
@@ -201,11 +186,8 @@ def check_tones(job: FitJob) -> None:
     """Check that fewer numbers are fitted than a record of one tone has: three orders a sensor."""
     evidence, hypothesis = job.evidence, job.hypotheses[-1]
     free, numbers = hypothesis.bounds(evidence), len(FITTED_ORDERS) * len(evidence.masses)
-    if (
-        evidence.is_tone
-        and np.ptp(evidence.level) < SAME_LEVEL * evidence.level.max()
-        and len(free) >= numbers
-    ):
+    is_level = np.ptp(evidence.level) < 0.1 * evidence.level.max()
+    if evidence.is_tone and is_level and len(free) >= numbers:
         text = f"one tone of {evidence.frequency.mean():.4g} Hz has {numbers} numbers"
         expected = "expected a sweep, or fewer in free="
         raise InputError(f"record: {text}, {len(free)} are fitted; {expected}")
@@ -235,9 +217,6 @@ class FitJob(SearchJob):
     kind: str
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the fitted parameters, their errors, and the fitted orders as a dataset."""
-        import xarray as xr
-
         results = Results.from_table(self, table)
         position = len(self.hypotheses) - 1
         every, coordinates = results.comparison()
@@ -308,10 +287,7 @@ class Results:
         return hypothesis.reported(here, evidence), slopes @ covariance @ slopes.T
 
     def parameters(self, stated: NDArray[np.bool_]) -> dict[str, Variable]:
-        """Return values and errors of the hypotheses that are ``stated``, NaN of the others.
-
-        ``asked`` is 1 where one has the parameter.
-        """
+        """Return values and errors of the hypotheses that are ``stated``, NaN of the others."""
         shape = (len(self.values), len(REPORTED))
         value, error, asked = np.full((3, *shape), np.nan)
         for row in range(len(self.values)):
@@ -346,23 +322,18 @@ class Results:
         evidence = self.job.evidence
         floor = evidence.floor[:, None].repeat(len(FITTED_ORDERS), axis=1)
         by_window = np.sqrt(np.mean(self.residuals**2, axis=(1, 2)))
-        over = ("channel", "order", "window")
+        over, windows = ("channel", "order", "window"), ("hypothesis", "window")
+        minima, fitted = ("hypothesis", "minimum"), ("hypothesis", *over)
         variables = {
             "misfit": variable("hypothesis", self.misfit, "1", "misfit over what is expected"),
             "evaluations": variable(
                 "hypothesis", self.evaluations, "1", "motions that were computed"
             ),
-            "minima": variable(
-                ("hypothesis", "minimum"), self.minima, "1", "misfits of the minima that differ"
-            ),
-            "misfit_at": variable(
-                ("hypothesis", "window"), by_window, "1", "misfit in each window"
-            ),
+            "minima": variable(minima, self.minima, "1", "misfits of the minima that differ"),
+            "misfit_at": variable(windows, by_window, "1", "misfit in each window"),
             "measured": variable(over, np.abs(evidence.measured), "m/s2", "amplitude of orders"),
             "floor": variable(over, floor, "m/s2", "amplitude between the orders"),
-            "fitted": variable(
-                FITTED_DIMENSIONS, np.abs(self.fitted), "m/s2", "amplitude of fitted orders"
-            ),
+            "fitted": variable(fitted, np.abs(self.fitted), "m/s2", "amplitude of fitted orders"),
         }
         units, words = zip(*REPORTED.values(), strict=True)
         coordinates = {
@@ -392,10 +363,8 @@ def reported_derivatives(
     columns = []
     for name, value in here.items():
         step = 1e-5 * max(abs(value), 0.1)
-        ends = [
-            list(hypothesis.reported({**here, name: value + sign * step}, evidence).values())
-            for sign in (1.0, -1.0)
-        ]
+        moved = [{**here, name: value + sign * step} for sign in (1.0, -1.0)]
+        ends = [list(hypothesis.reported(one, evidence).values()) for one in moved]
         columns.append((np.array(ends[0]) - np.array(ends[1])) / (2.0 * step))
     return np.stack(columns, axis=1)
 

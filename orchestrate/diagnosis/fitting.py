@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ..fmu import Player
 from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .hypotheses import Hypothesis
 from .linear import LinearModel
 from .misfit import SOFT_LIMIT, misfit
-
-if TYPE_CHECKING:
-    from ..fmu import Player
 
 STEPS = {  # of the differences that make derivatives; f and common: parts of the resonance's
     **{"common": 3e-4, "f": 1e-4, "split": 3e-3, "e": 0.02, "clearance": 0.01},
@@ -23,8 +21,6 @@ STEPS = {  # of the differences that make derivatives; f and common: parts of th
     **{"square": 0.01, "cube": 0.02, "friction": 0.01, "stop": 0.02, "position": 0.02},
     "apart": 3e-3,
 }
-MIN_CLOUD = 0.1  # least size of the clouds' variance
-SAME_MISFIT = 0.03  # relative difference of misfits below which two minima count as one
 MIN_DISTANCES = {"split": 0.04, "clearance": 0.1}  # between two solutions that count as two
 
 
@@ -93,31 +89,21 @@ class Search:
             lambda parameters: self.residuals(parameters.valuesdict()).ravel(),
             hypothesis.parameters(start, self.evidence),
         )
+        settings = self.evidence.settings
+        scales: Any = {"loss": "soft_l1", "f_scale": SOFT_LIMIT, "x_scale": "jac"}
+        ends = {"ftol": settings.tolerance, "xtol": settings.tolerance, "max_nfev": settings.steps}
         result = minimizer.minimize(
             method="least_squares",
-            loss="soft_l1",
-            f_scale=SOFT_LIMIT,
-            x_scale="jac",
-            max_nfev=self.evidence.settings.steps,
-            ftol=self.evidence.settings.tolerance,
-            xtol=self.evidence.settings.tolerance,
             Dfun=lambda parameters: self.derivatives(parameters.valuesdict(), bounds),
+            **(scales | ends),
         )
         values = dict(result.params.valuesdict())
         return Solution(hypothesis.name, values, misfit(np.asarray(result.residual)))
 
     def polish(self, start: Solution) -> Solution:
-        """Improve a minimum by linear regressions over clouds of points.
-
-        Impacts that come or stay away make the misfit rugged: a trust region that shrinks after a
-        step that failed ends on the first of its bumps. Here each round computes a cloud, as long
-        as the valley is, and tries the minimum of its linear model with several dampings.
-        """
-        here, shape, size = (
-            start,
-            np.diag([difference_step(self, name) ** 2 for name in start.values]),
-            1.0,
-        )
+        """Improve a minimum by linear regressions over clouds of points."""
+        here, size = start, 1.0
+        shape = np.diag([difference_step(self, name) ** 2 for name in start.values])
         bounds = self.hypothesis.bounds(self.evidence)
         for number in range(self.evidence.settings.rounds):
             model = LinearModel.from_cloud(
@@ -129,7 +115,7 @@ class Search:
             shape = model.cloud_covariance()
             if best.misfit < (1.0 - self.evidence.settings.gain) * here.misfit:
                 here, size = best, min(1.0, 1.5 * size)
-            elif size > MIN_CLOUD:
+            elif size > 0.1:
                 size *= 0.2
             else:
                 break
@@ -155,17 +141,13 @@ def distinct_minima(solutions: Sequence[Solution]) -> list[Solution]:
     """Return the minima whose misfits differ, the best first."""
     found: list[Solution] = []
     for one in sorted(solutions, key=lambda solution: solution.misfit):
-        if not found or one.misfit > (1.0 + SAME_MISFIT) * found[-1].misfit:
+        if not found or one.misfit > 1.03 * found[-1].misfit:
             found.append(one)
     return found
 
 
 def without_neighbours(solutions: Sequence[Solution]) -> list[Solution]:
-    """Drop the solutions that have nearly the split and clearance of a better one.
-
-    Halves that change places are another solution, however near each other their frequencies are.
-    Solutions without these numbers all stay.
-    """
+    """Drop the solutions that have nearly the split and clearance of a better one."""
     found: list[Solution] = []
     for one in solutions:
         if not any(is_neighbour(one.values, other.values) for other in found):

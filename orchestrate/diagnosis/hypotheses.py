@@ -11,16 +11,15 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..constants import TURN
+from ..fmu import Player
 from ..laboratory.pieces import Floats
 from ..model import Structure
+from .evidence import Evidence
 from .opening import opening_force
 from .single_mass import SingleMass
 
 if TYPE_CHECKING:
     from lmfit import Parameters
-
-    from ..fmu import Player
-    from .evidence import Evidence
 
 REPORTED = {  # units and long names
     "f1": ("Hz", "natural frequency of half 1 alone"),
@@ -41,8 +40,6 @@ REPORTED = {  # units and long names
 FREE = tuple(REPORTED)[:6]  # of a delaminated structure
 Values = Mapping[str, float]
 DAMPING_RANGE = (3e-4, 0.2)  # damping ratios that are looked for
-MAX_SPLIT = 0.9  # largest |ln(f2/f1)|
-RESTITUTION_RANGE = (0.0, 0.95)
 STARTING_SPLITS = (0.08, -0.08, 0.18, -0.18, 0.3, -0.3, 0.45, -0.45)  # ln(f2/f1) of the scan
 
 
@@ -138,7 +135,6 @@ class NonlinearSpring(Sound):
         """Return starts with several cubic stiffnesses that keep the measured resonance."""
         found = []
         for cube in (-0.3, -0.1, 0.0, 0.1, 0.3, 0.7, 1.5):
-            f = evidence.resonance / math.sqrt(1.0 + 0.75 * cube)
             for share in (1.0, 0.5):
                 f = evidence.resonance / math.sqrt(1.0 + 0.75 * cube * share)
                 start = {"f": f, "square": 0.0, "cube": cube}
@@ -160,9 +156,9 @@ class DryFriction(Sound):
 
     def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
         """Return starts with little and much friction, and one that nearly locks the mass."""
-        return [
-            {**one, "friction": size} for one in super().starts(evidence) for size in (0.02, 0.2)
-        ] + [{**super().starts(evidence)[0], "friction": 1.5}]
+        linear = super().starts(evidence)
+        some = [{**one, "friction": size} for one in linear for size in (0.02, 0.2)]
+        return [*some, {**linear[0], "friction": 1.5}]
 
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
         """Build the single mass; its friction is relative to the base's median acceleration."""
@@ -172,10 +168,7 @@ class DryFriction(Sound):
 
 
 class PositiveStop(Sound):
-    """A bonded structure with a stop in the positive direction of the sensor.
-
-    Such as a clamp that rattles, a cable that slackens, or a crack that breathes.
-    """
+    """A bonded structure with a stop in the positive direction of the sensor."""
 
     name = "bonded, with a stop in the positive direction"
     extra = {"stop": (-0.8, 5.0), "position": (-1.0, 1.0)}
@@ -206,10 +199,7 @@ class NegativeStop(PositiveStop):
 
 
 class TwoModes(Sound):
-    """A linear structure with a second mode in the sweep, such as torsion.
-
-    Each sensor reads a share of it beside the first mode, by its place: in closed form by order 1.
-    """
+    """A linear structure with a second mode in the sweep, such as torsion."""
 
     name = "bonded, with two modes"
     extra = {"apart": (-0.35, 0.35)}
@@ -222,10 +212,8 @@ class TwoModes(Sound):
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
         """Compute the sum of both modes at each sensor."""
         second = {**values, "f": values["f"] * math.exp(values["apart"])}
-        first, other = (
-            super(TwoModes, self).displacements(one, evidence, player)[0]
-            for one in (values, second)
-        )
+        first = super().displacements(values, evidence, player)[0]
+        other = super().displacements(second, evidence, player)[0]
         found = np.tile(first, (2, 1))
         if not np.isfinite(first + other).all():
             return np.full_like(found, np.nan)
@@ -309,18 +297,14 @@ class Delaminated(Hypothesis):
         """Return the bounds of the numbers that are free."""
         f, (low, high) = evidence.resonance, [math.log(zeta) for zeta in DAMPING_RANGE]
         every = {
-            "common": (0.6 * f, 1.6 * f),
-            "split": (-MAX_SPLIT, MAX_SPLIT),
-            "log_zeta1": (low, high),
-            "log_zeta2": (low, high),
-            "e": RESTITUTION_RANGE,
-            "clearance": (-2.0, 2.0),
+            "common": ((0.6 * f, 1.6 * f), {"f1", "f2"}),
+            "split": ((-0.9, 0.9), {"f1", "f2"}),
+            "log_zeta1": ((low, high), {"zeta1"}),
+            "log_zeta2": ((low, high), {"zeta2"}),
+            "e": ((0.0, 0.95), {"e"}),
+            "clearance": ((-2.0, 2.0), {"clearance"}),
         }
-        names = {
-            **{"common": {"f1", "f2"}, "split": {"f1", "f2"}, "log_zeta1": {"zeta1"}},
-            **{"log_zeta2": {"zeta2"}, "e": {"e"}, "clearance": {"clearance"}},
-        }
-        return {name: every[name] for name, of in names.items() if of & set(self.free)}
+        return {name: ends for name, (ends, of) in every.items() if of & set(self.free)}
 
     def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
         """Return starts of one split, over common frequency and restitution."""
@@ -372,10 +356,7 @@ class DelaminatedWithClearance(Delaminated):
         return [{"common": part * common, "split": split} for part in (1.0, 0.96, 0.92)]
 
     def pressed(self, evidence: Evidence, guess: Values) -> list[dict[str, float]]:
-        """Return starts whose preload, in closed form, opens where order 2 begins.
-
-        Before, the structure moves as a bonded one: its frequency and damping are known.
-        """
+        """Return starts whose preload, in closed form, opens where order 2 begins."""
         assert self.onset is not None
         zeta = self.onset.log_zeta
         alike = {"common": self.onset.common, "log_zeta1": zeta, "log_zeta2": zeta}

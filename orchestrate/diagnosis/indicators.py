@@ -1,6 +1,4 @@
-"""The model-free signs of the literature: formula, source, and what else than delamination moves
-them.
-"""
+"""The model-free signs of the literature: formula, source, and what else moves them."""
 
 from __future__ import annotations
 

@@ -15,10 +15,6 @@ from ..laboratory.pieces import Floats
 from .misfit import misfit, soft_weights
 
 Bounds = Mapping[str, tuple[float, float]]
-POINTS_PER_NUMBER = 4  # of a cloud, for each number
-SEED = 20_241
-CLOUD_GROWTH = 0.3  # by which part the squares grow in the cloud
-DAMPINGS = (0.0, 0.01, 0.1, 1.0)
 
 
 @dataclass(frozen=True)
@@ -43,9 +39,9 @@ class LinearModel:
     ) -> LinearModel:
         """Compute the residuals at a cloud of points around these values, and their regression."""
         count = len(values)
-        rng = np.random.default_rng([SEED, seed])
+        rng = np.random.default_rng([20_241, seed])
         sizes, axes = np.linalg.eigh(covariance)
-        normal = rng.standard_normal((POINTS_PER_NUMBER * count, count))
+        normal = rng.standard_normal((4 * count, count))
         normal -= normal.mean(axis=0)
         offsets = (normal * np.sqrt(np.maximum(sizes, 0.0))) @ axes.T
         here = np.array(list(values.values()))
@@ -84,16 +80,16 @@ class LinearModel:
         return -np.linalg.pinv(scaled, hermitian=True, rcond=1e-9) / np.outer(size, size)
 
     def cloud_covariance(self) -> Floats:
-        """Return the covariance of a cloud over which squares grow by ``CLOUD_GROWTH``."""
+        """Return the covariance of a cloud over which the squares grow by 30 %."""
         squares = float(np.sum(self.residuals.ravel() ** 2))
-        return np.asarray(-self.influence * CLOUD_GROWTH * squares / len(self.influence))
+        return np.asarray(-self.influence * 0.3 * squares / len(self.influence))
 
     def damped_minima(self, bounds: Bounds, values: Mapping[str, float]) -> list[dict[str, float]]:
         """Return the model's minimum within the bounds, for each damping from none to much."""
         information, slope = self.normal_matrix, self.weighted_slopes.T @ self.residuals.ravel()
         size = np.diag(np.maximum(np.diag(information), 1e-300))
         found = []
-        for damping in DAMPINGS:
+        for damping in (0.0, 0.01, 0.1, 1.0):
             step = np.linalg.lstsq(information + damping * size, -slope, rcond=1e-12)[0]
             moved = zip(values.items(), step.tolist(), strict=True)
             found.append({name: clipped(value + s, bounds[name]) for (name, value), s in moved})

@@ -8,18 +8,13 @@ tell such a structure from a sound one.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..constants import TURN
 from ..laboratory.pieces import Floats
-
-if TYPE_CHECKING:
-    from ..model import Structure
-
-POINTS_AROUND = 201  # frequencies around one of a grid
+from ..model import Structure
 
 
 def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
@@ -47,12 +42,9 @@ def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
 
 
 def largest_opening_force(structure: Structure, frequency: Floats) -> Floats:
-    """Return the largest :func:`opening_force` around each frequency, half way to its neighbours.
-
-    A sweep passes the resonance between two frequencies of a grid, where the faces open first.
-    """
+    """Return the largest `opening_force` around each frequency, half way to its neighbours."""
     ends = np.concatenate([frequency[:1], 0.5 * (frequency[1:] + frequency[:-1]), frequency[-1:]])
-    around = np.linspace(ends[:-1], ends[1:], POINTS_AROUND)
+    around = np.linspace(ends[:-1], ends[1:], 201)
     return np.asarray(opening_force(structure, around).max(axis=0))
 
 

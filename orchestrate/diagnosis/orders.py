@@ -155,15 +155,7 @@ class RecordOrders:
 
 
 def record_orders(record: xr.Dataset) -> RecordOrders:
-    """Compute the orders of a record of a swept or stepped sine.
-
-    Notes
-    -----
-    The phase is that of the base's analytic signal, smoothed by a cubic in each window. In each
-    window a constant and all orders are fitted by least squares with Hann weights; the amplitudes
-    of whole orders may change at a constant rate. A window lasts 0.25 s, longer where the sweep is
-    slow or where it would have less than 8 periods.
-    """
+    """Compute the orders of a record of a swept or stepped sine."""
     return channel_orders(checked_channels(record))
 
 
@@ -254,12 +246,8 @@ def moving_average(values: Floats, width: int = 5) -> Floats:
 def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
     """Find the windows in which the base moves as a sine, and all channels' amplitudes in them."""
     phase = measured_phase(channels)
-    usable = [
-        one
-        for one in overlapping_windows(channels, phase)
-        if one.frequency * channels.duration > 1.0
-    ]
-    usable = [one for one in usable if one.frequency < NYQUIST * channels.sample_rate]
+    every, high = overlapping_windows(channels, phase), NYQUIST * channels.sample_rate
+    usable = [w for w in every if w.frequency * channels.duration > 1.0 and w.frequency < high]
     if len(usable) < MIN_WINDOWS:
         text = f"{EXPECTED}, of {MIN_WINDOWS * MIN_PERIODS / 2:g} periods or more"
         lacking = f"no sine of moving frequency in {channels.duration:.4g} s"
@@ -272,10 +260,8 @@ def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
     windows = assembled_windows(channels, usable, solutions)
     amplitude = windows.amplitudes(channels.values)
     level = np.abs(amplitude[row, 0])
-    rest = [
-        rms_without_order_1(channels.box, one, a)
-        for one, a in zip(usable, amplitude[row].T, strict=True)
-    ]
+    pairs = zip(usable, amplitude[row].T, strict=True)
+    rest = [rms_without_order_1(channels.box, one, a) for one, a in pairs]
     sine = np.asarray(rest) <= MAX_DISTORTION * level * 0.5**0.5
     good = sine & (level >= MIN_LEVEL * np.median(level))
     if good.sum() < max(MIN_WINDOWS, 0.5 * len(good)):

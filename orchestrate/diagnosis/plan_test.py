@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,26 +19,17 @@ from ..laboratory.pieces import Floats
 from ..laboratory.sensors import Sensor, measure, sensor_by_channel
 from ..laboratory.shake import shake
 from ..laboratory.swept_sine import SweptSine
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..response.labels import variable, yes_or_no
 from ..running.options import Running
 from .opening import largest_opening_force, sweep_rate
 from .undamaged import SoundStructure
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-ORDERS = (1.0, 2.0, 3.0)
 SPLITS = (1.0, 0.2)  # parts of the guess's difference between its halves that are computed
-SAMPLES_PER_PERIOD = 20.0  # of the computed records, in a period of the highest frequency
-MAX_DURATION = 120.0  # s of a computed sweep; a lighter damping would ask for more
-LEVEL_MARGIN = 2.0  # of the threshold, that a recommended level has
-RANGE_MARGIN = 0.1  # of the recommended range, on both sides
 BOX = "box_acceleration"
 USUAL_NOISE = 1e-3  # (m/s2)/sqrt(Hz)
 USUAL_LEVELS = tuple(float(f"{level:.2g}") for level in np.geomspace(0.01, 1.0, 9))  # g
-FREQUENCIES = 61
 
 
 @dataclass(frozen=True)
@@ -159,7 +150,7 @@ def plan_test(
         raise InputError("structure: bonded; expected a guess of the delaminated one")
     if frequencies is None:
         low, high = sorted((structure.f1, structure.f2))
-        frequencies = np.linspace(0.8 * low, 1.2 * high, FREQUENCIES)
+        frequencies = np.linspace(0.8 * low, 1.2 * high, 61)
     f = checked_frequencies(frequencies)
     if levels is not None and g is not None:
         raise InputError("levels and g: expected one of them")
@@ -207,31 +198,22 @@ class SweepComputation:
 
     def largest_distances(self, highest: Sweep) -> Floats:
         """Return the largest distance by orders 2 and 3 for each of ``SPLITS``."""
-        sweeps = [
-            highest
-            if part == 1.0
-            else self.simulated_sweep(scale_split(self.structure, part), highest.level)
-            for part in SPLITS
-        ]
-        return np.array(
-            [float(self.noise.distances(one, self.frequency)[1].max()) for one in sweeps]
-        )
+        smaller = [scale_split(self.structure, part) for part in SPLITS[1:]]  # the first is whole
+        sweeps = [highest, *(self.simulated_sweep(one, highest.level) for one in smaller)]
+        distances = (self.noise.distances(one, self.frequency)[1] for one in sweeps)
+        return np.array([float(one.max()) for one in distances])
 
     def simulated_sweep(self, structure: Structure, level: float) -> Sweep:
         """Simulate a sweep over all frequencies at this level, and return its orders."""
         f = self.frequency
-        sine = SweptSine(
-            first=float(f[0]),
-            last=float(f[-1]),
-            duration=min(self.duration, MAX_DURATION),
-            acceleration=level,
-        )
-        rate = SAMPLES_PER_PERIOD * float(f[-1])
+        duration = min(self.duration, 120.0)  # a lighter damping would ask for more
+        first, last = float(f[0]), float(f[-1])
+        sine = SweptSine(first=first, last=last, duration=duration, acceleration=level)
+        rate = 20.0 * float(f[-1])
         history = shake(structure, sine, sample_rate=rate, **self.running)
-        quiet = {
-            name: replace(one, noise=0.0, range=math.inf, resolution=0.0, sample_rate=rate)
-            for name, one in {BOX: next(iter(self.sensors.values())), **self.sensors}.items()
-        }
+        ideal: Any = {"noise": 0.0, "range": math.inf, "resolution": 0.0, "sample_rate": rate}
+        every = {BOX: next(iter(self.sensors.values())), **self.sensors}
+        quiet = {name: replace(one, **ideal) for name, one in every.items()}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit
             channels = Channels.from_record(measure(history, quiet, excitation=sine), (BOX,))
@@ -242,7 +224,7 @@ class SweepComputation:
         rows = np.concatenate([channels.values[:1], responses, linear])
         sound_names = (f"sound {name}" for name in names)
         both = Channels(channels.time, rate, (BOX, *names, *sound_names), rows, channels.title)
-        windows, amplitudes, _ = fit_windows(both, ORDERS, None, self.noise.periods, 0.5)
+        windows, amplitudes, _ = fit_windows(both, (1.0, 2.0, 3.0), None, self.noise.periods, 0.5)
         at = np.array([window.frequency for window in windows])
         found = interpolate_amplitudes(f, at, amplitudes[1:])
         measured, linear_orders = np.split(found, 2)
@@ -318,8 +300,6 @@ def plan_dataset(
     test: SweepComputation, sweeps: Sequence[Sweep], limit: float, split_distances: Floats
 ) -> xr.Dataset:
     """Assemble the dataset of a plan from a sweep at each level."""
-    import xarray as xr
-
     f, levels = test.frequency, np.array([sweep.level for sweep in sweeps])
     distances = [test.noise.distances(one, f) for one in sweeps]
     first, higher = (np.stack(rows) for rows in zip(*distances, strict=True))
@@ -387,12 +367,12 @@ def recommended_sweep(test: SweepComputation, answer: xr.Dataset) -> dict[str, A
     """Recommend a swept sine: the lowest level with a margin, over the frequencies that count."""
     higher, limit = answer.distance_harmonics.values, float(answer.threshold)
     fits = np.flatnonzero(answer.overload.values == 0)
-    enough = [i for i in fits if higher[i].max() >= LEVEL_MARGIN * limit]
+    enough = [i for i in fits if higher[i].max() >= 2.0 * limit]
     row = int(enough[0] if enough else fits[-1] if len(fits) else 0)
     f, curve = test.frequency, higher[row]
     counting = np.flatnonzero(curve >= min(limit, 0.5 * float(curve.max())))
     low, high = float(f[counting[0]]), float(f[counting[-1]])
-    room = RANGE_MARGIN * max(high - low, test.sound.f)
+    room = 0.1 * max(high - low, test.sound.f)
     first, last = max(low - room, float(f[0])), min(high + room, float(f[-1]))
     rate = sweep_rate(test.sound.f, test.sound.zeta)
     duration = max((last - first) / max(rate, 1e-9), 4.0 * test.noise.periods / first)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -21,16 +21,8 @@ ORDERS = (0.5, 1.0, 2.0, 2.37, 3.0, 3.37, 4.0, 5.0)
 HARMONICS = (2.0, 3.0, 4.0, 5.0)
 OF_ORDERS = {"order_2": 2.0, "order_3": 3.0, "order_half": 0.5}
 OVERLAP = 0.5
-# Least and usual beginning of the high band, over the highest frequency of the excitation
-BAND_FACTORS = 3.3, 6.0
-# Highest beginning of the high band over the sampling rate: by default, and where it is given
-DEFAULT_EDGE, MAX_EDGE = 0.3, 0.4
-NOISE_LINES = (0.36, 0.44)  # of the sampling rate: lines for the noise where there is no sweep
-SAME_LEVEL = 1.1  # ratio of levels below which two records have the same
+MAX_EDGE = 0.4  # highest beginning of the high band that may be given, over the sampling rate
 MIN_WINDOWS = 4  # windows of a curve
-MIN_SHARE = 0.1  # of all windows: fewer that go one way are noise, or a turn
-MEDIAN_WIDTH = 15  # windows of a running median
-GAUSSIAN_KURTOSIS = 3.0  # kurtosis
 
 
 @dataclass(frozen=True)
@@ -64,22 +56,16 @@ def response_signs(
     own = signs_of_orders(channels, periods) if swept else signs_of_spectra(channels)
     edge = default_band_edge(channels, own.highest) if high_band is None else high_band
     moments = signs_of_moments(channels, edge)
-    values, floors = coherence_loss(channels, own.noise)
-    return ResponseSigns(
-        {**own.values, **moments[0], "coherence_loss": values},
-        {**own.floors, **moments[1], "coherence_loss": floors},
-        own.frequencies,
-        own.curves,
-        own.noise,
-        own.highest,
-    )
+    loss, loss_floor = coherence_loss(channels, own.noise)
+    values = {**own.values, **moments[0], "coherence_loss": loss}
+    floors = {**own.floors, **moments[1], "coherence_loss": loss_floor}
+    return replace(own, values=values, floors=floors)
 
 
 def default_band_edge(channels: Channels, highest: float) -> float:
     """Return where the high band begins, Hz; NaN where the sampling rate does not reach so far."""
-    lowest, usual = (factor * highest for factor in BAND_FACTORS)
-    edge = min(usual, DEFAULT_EDGE * channels.sample_rate)
-    return edge if edge >= lowest else math.nan
+    edge = min(6.0 * highest, 0.3 * channels.sample_rate)
+    return edge if edge >= 3.3 * highest else math.nan
 
 
 def is_swept(channels: Channels, periods: float) -> bool:
@@ -155,7 +141,7 @@ def curves_by_direction(
     curves = []
     for direction in (1, -1):
         chosen = np.flatnonzero(rate * direction > 0.0)
-        if len(chosen) >= max(MIN_WINDOWS, MIN_SHARE * len(windows)):
+        if len(chosen) >= max(MIN_WINDOWS, 0.1 * len(windows)):  # fewer are noise, or a turn
             chosen = chosen[np.argsort(frequency[chosen])]
             level = math.sqrt(float(np.mean(np.abs(box[chosen]) ** 2)))
             response = rows[:, chosen] / box[chosen]
@@ -167,8 +153,7 @@ def smooth_rate(rate: Floats) -> Floats:
     """Smooth the sweep's rate by a running median: noise on the box moves single windows."""
     from scipy.ndimage import median_filter
 
-    size = min(MEDIAN_WIDTH, len(rate))
-    return np.asarray(median_filter(rate, size=size, mode="nearest"))
+    return np.asarray(median_filter(rate, size=min(15, len(rate)), mode="nearest"))
 
 
 # -- any excitation -------------------------------------------------------------------------------
@@ -178,15 +163,11 @@ def signs_of_spectra(channels: Channels) -> ResponseSigns:
     """Compute the response at the lines that the box excites; such a record has no orders."""
     frequency, box, rows, cross = spectra(channels)
     excited = excited_lines(frequency, box)
-    density = median_of_columns(rows[:, noise_lines(frequency, channels.sample_rate)])
+    low, high = 0.36 * channels.sample_rate, 0.44 * channels.sample_rate
+    density = median_of_columns(rows[:, (frequency >= low) & (frequency <= high)])
     response = cross[:, excited] / box[excited]
-    curve = Curve(
-        0,
-        float(channels.box.std()),
-        frequency[excited],
-        response,
-        np.full(len(rows), np.nan),
-    )
+    level, unknown = float(channels.box.std()), np.full(len(rows), np.nan)
+    curve = Curve(0, level, frequency[excited], response, unknown)
     noise = np.sqrt(0.5 * channels.sample_rate * density)
     curves = [curve] if excited.sum() >= MIN_WINDOWS else []
     highest = float(frequency[excited].max()) if excited.any() else math.nan
@@ -200,23 +181,13 @@ def spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
     options = averaging(channels, None, "hann", OVERLAP, fewest=2).options
     rows = channels.values[1:]
     frequency, box = welch(channels.box, channels.sample_rate, **options)
-    return (
-        frequency,
-        box,
-        welch(rows, channels.sample_rate, **options)[1],
-        csd(channels.box, rows, channels.sample_rate, **options)[1],
-    )
+    own = welch(rows, channels.sample_rate, **options)[1]
+    return frequency, box, own, csd(channels.box, rows, channels.sample_rate, **options)[1]
 
 
 def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
     """Return a mask of the lines of a spectrum that the base excites."""
     return np.asarray((box >= EXCITED * box.max()) & (frequency > 0.0))
-
-
-def noise_lines(frequency: Floats, rate: float) -> NDArray[np.bool_]:
-    """Return a mask of the lines of a spectrum that are taken for noise."""
-    low, high = NOISE_LINES
-    return np.asarray((frequency >= low * rate) & (frequency <= high * rate))
 
 
 def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
@@ -255,7 +226,7 @@ def signs_of_moments(
         unknown = np.full(len(rows), np.nan)
         values[f"kurtosis{ending}"] = kurtosis(band, axis=-1, fisher=False) if moves else unknown
         values[f"skewness{ending}"] = np.abs(skew(band, axis=-1)) if moves else unknown
-    noise = {"kurtosis": GAUSSIAN_KURTOSIS, "skewness": 2.0 * math.sqrt(6.0 / count)}
+    noise = {"kurtosis": 3.0, "skewness": 2.0 * math.sqrt(6.0 / count)}
     floors = {name: np.full(len(rows), noise[name.partition("_")[0]]) for name in values}
     return values, floors
 
@@ -278,30 +249,24 @@ def sensor_differences(curves: Sequence[Curve], channels: int) -> tuple[Floats, 
 
 
 def curve_difference(one: Curve, other: Curve) -> Floats:
-    """Return the rms difference of two curves over that of the first, of each row.
-
-    It is NaN where they have no frequency in common.
-    """
+    """Return the rms difference of two curves over that of the first, of each row."""
     low, high = other.frequency[0], other.frequency[-1]
     common = (one.frequency >= low) & (one.frequency <= high)
     if common.sum() < MIN_WINDOWS:
         return np.full(len(one.response), np.nan)
     at, first = one.frequency[common], one.response[:, common]
     second = np.array([np.interp(at, other.frequency, row) for row in other.response])
-    rest = np.linalg.norm(second - first, axis=-1) / np.linalg.norm(first, axis=-1)
-    return np.asarray(rest)
+    return np.asarray(np.linalg.norm(second - first, axis=-1) / np.linalg.norm(first, axis=-1))
 
 
 def level_and_direction_differences(
     curves: Sequence[Curve], rows: int
 ) -> Mapping[str, tuple[Floats, Floats]]:
     """Compute the largest differences over level and over direction, and their noise floors."""
-    best = {
-        name: (np.full(rows, np.nan), np.full(rows, np.nan))
-        for name in ("level_dependence", "direction_difference")
-    }
+    unknown, names = np.full(rows, np.nan), ("level_dependence", "direction_difference")
+    best = dict.fromkeys(names, (unknown, unknown))
     for one, other in combinations(curves, 2):
-        same_level = 1.0 / SAME_LEVEL < one.level / other.level < SAME_LEVEL
+        same_level = 1.0 / 1.1 < one.level / other.level < 1.1
         if one.direction == other.direction and not same_level:
             name = "level_dependence"
         elif one.direction != other.direction and same_level:

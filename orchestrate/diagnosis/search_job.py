@@ -16,7 +16,7 @@ from ..laboratory.analysis.channels import Channels
 from ..laboratory.pieces import Floats
 from ..model import Structure
 from ..running.job import Job, Table
-from .curve_evidence import CurveData
+from .curve_evidence import COARSE_SAMPLES, CurveData
 from .errors import Estimate, estimate
 from .even_orders import even_orders
 from .evidence import Evidence
@@ -26,9 +26,7 @@ from .misfit import misfit
 from .orders import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
 from .settings import SETTINGS, Settings
 
-COARSE_SAMPLES = 7.0  # samples in a period of the highest frequency for a coarse search
-# Rows and columns of tables: solutions, values in each, misfits of minima
-MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 6, 8
+MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 6, 8  # rows and columns of tables
 
 
 @dataclass(frozen=True)
@@ -55,20 +53,13 @@ class RecordData:
         begin = float(channels.time[0])
         return cls(channels.names, channels.sample_rate, begin, values, participation, settings)
 
-    def to_channels(self) -> Channels:
-        """Return the record as channels, which were checked before."""
-        time = self.begin + np.arange(len(self.channels[0])) / self.sample_rate
-        return Channels(time, self.sample_rate, self.names, np.array(self.channels), "record")
-
-    def evidence(self) -> Evidence:
-        """Return the evidence of the record."""
-        orders, rest = cached_orders(self), (self.participation, self.settings)
-        return Evidence.from_orders(orders, SAMPLES_PER_PERIOD, *rest)
+    def evidence(self, samples: float = SAMPLES_PER_PERIOD) -> Evidence:
+        """Return the evidence of the record, with some samples in a period at least."""
+        return Evidence.from_orders(cached_orders(self), samples, self.participation, self.settings)
 
     def coarse_evidence(self) -> Evidence:
         """Return the evidence near the resonance with fewer samples, for a coarse search."""
-        orders, rest = cached_orders(self), (self.participation, self.settings)
-        return Evidence.from_orders(orders, COARSE_SAMPLES, *rest).near_resonance()
+        return self.evidence(COARSE_SAMPLES).near_resonance()
 
 
 @lru_cache(maxsize=2)
@@ -80,7 +71,9 @@ def cached_evidence(data: RecordData | CurveData) -> Evidence:
 @lru_cache(maxsize=2)
 def cached_orders(data: RecordData) -> RecordOrders:
     """Return the orders of the whole record, computed once per process."""
-    return channel_orders(data.to_channels())
+    time = data.begin + np.arange(len(data.channels[0])) / data.sample_rate
+    values = np.array(data.channels)
+    return channel_orders(Channels(time, data.sample_rate, data.names, values, "record"))
 
 
 @lru_cache(maxsize=2)
@@ -91,11 +84,7 @@ def cached_coarse_evidence(data: RecordData | CurveData) -> Evidence:
 
 @lru_cache(maxsize=2)
 def is_worth_a_search(data: RecordData | CurveData) -> bool:
-    """Return whether the verdict may depend on the delaminated fit, by a short bonded fit.
-
-    It may where faces are seen to part or do not move as one, or where a sound structure does not
-    describe the record.
-    """
+    """Return whether the verdict may depend on the delaminated fit, by a short bonded fit."""
     evidence = cached_evidence(data)
     search = Search(SOUND[0], evidence)
     best = search.minima(search.hypothesis.starts(evidence))[0]
@@ -106,10 +95,7 @@ def is_worth_a_search(data: RecordData | CurveData) -> bool:
 
 @lru_cache(maxsize=2)
 def cached_onset(data: RecordData | CurveData) -> Onset | None:
-    """Return where order 2 begins and what moves before; None where nothing is silent or loud.
-
-    Before, in the windows that are silent, faces that are pressed together move as bonded ones.
-    """
+    """Return where order 2 begins and what moves before; None where nothing is silent or loud."""
     evidence = cached_evidence(data)
     even = even_orders(evidence, np.zeros_like(evidence.measured))
     loud = even.ratio > even.threshold
@@ -153,7 +139,6 @@ class SearchJob(Job):
         return tuple(found)
 
     def items(self) -> Sequence[tuple[int, int]]:
-        """Return the independent searches, (hypothesis, part of its starts), then the end."""
         parts = [1] * len(self.sound)
         if self.delaminated:
             parts += [Delaminated.parts] * (1 + ("clearance" in self.free))
@@ -188,10 +173,9 @@ class SearchJob(Job):
         hypothesis = self.hypotheses[position]
         names = list(hypothesis.bounds(self.evidence))
         rows = table["solutions"][table["place"] == position].reshape(-1, 1 + MAX_NUMBERS)
-        found = [
-            Solution(hypothesis.name, dict(zip(names, row[1:].tolist(), strict=False)), row[0])
-            for row in rows[np.isfinite(rows[:, 0])]
-        ]
+        found = []
+        for size, *numbers in rows[np.isfinite(rows[:, 0])].tolist():
+            found.append(Solution(hypothesis.name, dict(zip(names, numbers, strict=False)), size))
         return sorted(found, key=lambda solution: solution.misfit)
 
     # -- the end of it ----------------------------------------------------------------------------
@@ -213,15 +197,12 @@ class SearchJob(Job):
             made.append((search, self.improved(search, starts, [one for _, one in made], worth)))
         count = len(self.sound)
         best = min(range(count), key=lambda position: made[position][1][0].misfit)
-        rows = [
-            self.hypothesis_result(
-                one, player, position in (0, best) or position >= count and worth
-            )
-            for position, one in enumerate(made)
-        ]
-        for position, result in enumerate(rows):
+        rows = []
+        for position, one in enumerate(made):
+            with_errors = position in (0, best) or position >= count and worth
+            rows.append(self.hypothesis_result(one, player, with_errors))
             spent = previous["evaluations"][previous["place"] == position]
-            result["end_evaluations"] += spent.sum()
+            rows[-1]["end_evaluations"] += spent.sum()
         return {name: np.stack([part[name] for part in rows])[np.newaxis] for name in rows[0]}
 
     def improved(
@@ -235,48 +216,39 @@ class SearchJob(Job):
         hypothesis, contained = search.hypothesis, others[:1]
         if isinstance(hypothesis, Delaminated):
             guessed = hypothesis.values_from_structure(self.guess, self.evidence)
-            starts = [*starts, guessed, with_halves_exchanged(guessed)]
+            dampings = {"log_zeta1": guessed["log_zeta2"], "log_zeta2": guessed["log_zeta1"]}
+            exchanged = {**guessed, "split": -guessed["split"], **dampings}  # both halves
+            starts = [*starts, guessed, exchanged]
             contained = others[len(self.sound) :]
         zero = dict.fromkeys(hypothesis.bounds(self.evidence), 0.0)
         starts = [*starts, *({**zero, **one[0].values} for one in contained)]
         coarse = Search(hypothesis, cached_coarse_evidence(self.data), search.player)
-        best, *rest = without_neighbours(
-            self.sort_by_misfit_and_guess(search, coarse.rank_starts(starts))
-        )
+        ranked = self.sort_by_misfit_and_guess(search, coarse.rank_starts(starts))
+        best, *rest = without_neighbours(ranked)
         if hypothesis.is_rugged and not worth:
             return search.rank_starts([best.values])
         close = [one for one in rest[:1] if one.misfit < self.data.settings.close * best.misfit]
         tried = [best, *close] if hypothesis.is_rugged else [best]
         polished = [coarse.polish(one).values for one in tried]
         search.evaluations += coarse.evaluations
-        best, *rest = self.sort_by_misfit_and_guess(
-            search, search.rank_starts([*polished, *starts[len(starts) - len(contained) :]])
-        )
+        ends = search.rank_starts([*polished, *starts[len(starts) - len(contained) :]])
+        best, *rest = self.sort_by_misfit_and_guess(search, ends)
         return [search.polish(best), *rest]
 
     def sort_by_misfit_and_guess(
         self, search: Search, solutions: Sequence[Solution]
     ) -> list[Solution]:
-        """Sort solutions by misfit, those of two halves with a penalty for distance from the guess.
-
-        Of one sensor's record both halves may change places at nearly the same misfit; what is
-        known of the halves before then decides, as far as a guess may be trusted.
-        """
+        """Sort by misfit, those of two halves with a penalty for distance from the guess."""
         hypothesis, settings = search.hypothesis, self.data.settings
 
         def penalised_misfit(solution: Solution) -> float:
-            """Return the misfit, raised by the distance of f1 and f2 from the guess."""
             if not isinstance(hypothesis, Delaminated):
                 return solution.misfit
             made = hypothesis.structure_from_values(solution.values, self.evidence)
-            off = (
-                math.log(made.get(f) / self.guess.get(f)) / settings.guess_deviation
-                for f in ("f1", "f2")
-            )
-            return solution.misfit * (
-                1.0
-                + settings.guess_weight * min(sum(one**2 for one in off), settings.guess_squares)
-            )
+            off = (math.log(made.get(f) / self.guess.get(f)) for f in ("f1", "f2"))
+            squares = sum((one / settings.guess_deviation) ** 2 for one in off)
+            more = settings.guess_weight * min(squares, settings.guess_squares)
+            return solution.misfit * (1.0 + more)
 
         return sorted(solutions, key=penalised_misfit)
 
@@ -319,11 +291,7 @@ class SearchJob(Job):
 def participations_with_errors(
     search: Search, values: Mapping[str, float], motion: Floats, known: Estimate | None
 ) -> Floats:
-    """Return the sensors' participation factors and their standard errors, shape (2, sensors).
-
-    They follow from the numbers, whose errors they have beside those of a good model; NaN where
-    these are not known, 0 where the factor was given.
-    """
+    """Return the sensors' participation factors and their standard errors, shape (2, sensors)."""
     evidence = search.evidence
     here = evidence.participations(motion)
     if known is None:
@@ -332,21 +300,13 @@ def participations_with_errors(
     slopes = []
     for name, value in values.items():
         step = difference_step(search, name)
-        there = search.hypothesis.displacements(
-            {**values, name: value + step}, evidence, search.player
-        )
+        moved = {**values, name: value + step}
+        there = search.hypothesis.displacements(moved, evidence, search.player)
         slopes.append((evidence.participations(there) - here) / step)
     slope = np.stack(slopes, axis=1)
-    variance = (
-        np.diag(slope @ known.covariance @ slope.T) + (evidence.settings.model_error * here) ** 2
-    )
+    variance = np.diag(slope @ known.covariance @ slope.T)
+    variance = variance + (evidence.settings.model_error * here) ** 2
     return np.stack([here, np.where(free, np.sqrt(variance), 0.0)])
-
-
-def with_halves_exchanged(values: Mapping[str, float]) -> dict[str, float]:
-    """Return the numbers of a delaminated structure whose halves have changed places."""
-    zeta1, zeta2 = values["log_zeta1"], values["log_zeta2"]
-    return {**values, "split": -values["split"], "log_zeta1": zeta2, "log_zeta2": zeta1}
 
 
 def solutions_table(position: int, solutions: Sequence[Solution], evaluations: int) -> Table:
@@ -354,8 +314,5 @@ def solutions_table(position: int, solutions: Sequence[Solution], evaluations: i
     rows = np.full((1, MAX_SOLUTIONS, 1 + MAX_NUMBERS), np.nan)
     for row, one in zip(rows[0], solutions, strict=False):
         row[: 1 + len(one.values)] = [one.misfit, *one.values.values()]
-    return {
-        "place": np.array([position]),
-        "solutions": rows,
-        "evaluations": np.array([float(evaluations)]),
-    }
+    spent = np.array([float(evaluations)])
+    return {"place": np.array([position]), "solutions": rows, "evaluations": spent}

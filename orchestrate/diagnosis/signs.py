@@ -34,6 +34,7 @@ RESPONSE = "the response"  # reference of the phase where nothing else is known
 UNKNOWN = SoundStructure(math.nan, math.nan)
 EXCEED_FACTOR = 2.0  # times what noise and a sound structure show
 MEANINGS = {-1: "unknown", 0: "no", 1: "yes"}
+NOISE_SOURCES = "lines at 0.36 to 0.44 of the sampling rate", "off-orders 2.37 and 3.37"
 
 
 def signs(
@@ -106,7 +107,7 @@ def signs(
     >>> bool(answer.exceeds.sel(sign="order_2") == 1)
     True
     """
-    others = other_records(other)
+    others = [other] if isinstance(other, xr.Dataset) else list(other or ())
     if is_drive_run(record):
         return signs_of_drive_run(record, others)
     length = checked_number("periods", periods, 2.0, 1e4)
@@ -120,10 +121,8 @@ def signs(
         edge = checked_number("high_band", edge, 1e-9, highest, "Hz")
     level = None if noise is None else checked_number("noise", noise, 0.0, math.inf, "m/s2", True)
     swept = [is_swept(channels, length) for channels in every]
-    own = [
-        response_signs(channels, sine, length, edge)
-        for channels, sine in zip(every, swept, strict=True)
-    ]
+    pairs = zip(every, swept, strict=True)
+    own = [response_signs(channels, sine, length, edge) for channels, sine in pairs]
     noises = [one.noise if level is None else np.full(len(names), level) for one in own]
     values, floors = all_signs(own, len(names))
     shown = np.full((count, len(values), len(names)), np.nan)
@@ -138,7 +137,7 @@ def signs(
         shown = rows.reshape(len(rows), count, len(names)).transpose(1, 0, 2)
     described = {
         "seeds": f"0 to {count - 1}",
-        "noise_from": "given" if level is not None else noise_source(swept[0]),
+        "noise_from": "given" if level is not None else NOISE_SOURCES[swept[0]],
         "sound_from": "nearest oscillator" if structure is None else "the guess, bonded",
         "reference": reference,
     }
@@ -150,13 +149,6 @@ def signs(
     )
 
 
-def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Dataset]:
-    """Return the records beside the first one as a list."""
-    if other is None:
-        return []
-    return [other] if isinstance(other, xr.Dataset) else list(other)
-
-
 def reference_channels(record: xr.Dataset) -> Channels:
     """Return a record's channels; the force, or the first response, stands for a base without."""
     if not isinstance(getattr(record, "data_vars", None), Mapping) or BOX in record:
@@ -166,11 +158,6 @@ def reference_channels(record: xr.Dataset) -> Channels:
     values = np.asarray(record[FORCE].values, float) if FORCE in record else channels.values[0]
     names, rows = (BOX, *channels.names), np.vstack([values, channels.values])
     return replace(channels, names=names, values=rows, box_label=label)
-
-
-def noise_source(swept: bool) -> str:
-    """Return a phrase that says where the noise is estimated."""
-    return "off-orders 2.37 and 3.37" if swept else "lines at 0.36 to 0.44 of the sampling rate"
 
 
 def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
@@ -217,10 +204,8 @@ def all_signs(
     if first.curves:
         value, floor = sensor_differences(first.curves, channels)
         values["sensor_difference"], floors["sensor_difference"] = value, floor
-    return (
-        {name: values.get(name, unknown) for name in INDICATORS},
-        {name: floors.get(name, unknown) for name in INDICATORS},
-    )
+    every = {name: values.get(name, unknown) for name in INDICATORS}
+    return every, {name: floors.get(name, unknown) for name in INDICATORS}
 
 
 # -- results --------------------------------------------------------------------------------------
@@ -241,12 +226,13 @@ def signs_dataset(
     limit = EXCEED_FACTOR * np.fmax(floor, highest)
     known = np.isfinite(value) & np.isfinite(highest)
     exceeds = np.where(known, value > limit, -1)
-    texts = {
-        "meaning": ("long_name", "what the sign is"),
-        "formula": ("formula", "formula"),
-        "source": ("source", "where it is described"),
-        "moved_by": ("moved_by", "what else than delamination moves it"),
-    }
+    texts = (
+        ("meaning", "long_name", "what the sign is"),
+        ("formula", "formula", "formula"),
+        ("source", "source", "where it is described"),
+        ("moved_by", "moved_by", "what else than delamination moves it"),
+    )
+    columns = {name: [getattr(one, of) for one in INDICATORS.values()] for name, of, _ in texts}
     return xr.Dataset(
         {
             "value": variable(over, value, "1", "sign of the record"),
@@ -262,14 +248,7 @@ def signs_dataset(
         {
             "sign": ("sign", np.array(list(INDICATORS)), {"long_name": "sign"}),
             "channel": ("channel", np.array(names), {"long_name": "channel of the record"}),
-            **{
-                name: (
-                    "sign",
-                    np.array([getattr(one, field) for one in INDICATORS.values()]),
-                    {"long_name": text},
-                )
-                for name, (field, text) in texts.items()
-            },
+            **{n: ("sign", np.array(columns[n]), {"long_name": text}) for n, _, text in texts},
         },
         attributes("signs", "Signs", title, **described),
     )
@@ -303,12 +282,9 @@ def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Data
     if len(others) != 1 or not is_drive_run(others[0]):
         raise InputError("other: expected the run of the sound beam on the same drive")
     own, lags = drive_signs(run, others[0])
-    names = ["motor"]
     values = {name: np.array([own.get(name, np.nan)]) for name in INDICATORS}
     floors = {name: np.array([lags.get(name, np.nan)]) for name in INDICATORS}
     itself = [0.0 if name in own else math.nan for name in INDICATORS]  # against itself
-    shown = np.array(itself)[None, :, None]
+    shown, title = np.array(itself)[None, :, None], str(run.attrs.get("title", "run"))
     described = {"seeds": "none", "sound_from": "the run of the sound beam"}
-    return signs_dataset(
-        str(run.attrs.get("title", "run")), names, values, floors, shown, described
-    )
+    return signs_dataset(title, ["motor"], values, floors, shown, described)

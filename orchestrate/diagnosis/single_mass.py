@@ -52,9 +52,7 @@ class SingleMass:
         return (*smooth, self.stop, self.position, self.side)
 
     def displacements(self, cubics: Floats, step: float, bound: float = 1e3) -> Floats:
-        """Integrate the motion: relative displacement at each cubic's beginning and at the
-        end, m.
-        """
+        """Return the relative displacement, m, at each cubic's beginning and at the end."""
         stiffest = self.f * math.sqrt(1.0 + max(self.stop, 0.0))
         parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / MAX_STEP_ANGLE))
         found = np.full(len(cubics) + 1, np.nan)
@@ -73,7 +71,6 @@ def run_function() -> Any:
     run.restype = c_ssize_t
 
     def run_compiled(numbers: tuple[float, ...], cubics: Floats, *rest: Any) -> int:
-        """Integrate as :func:`run_in_python` does; return how many cubics were done."""
         *settings, out = rest
         array = np.array(numbers)
         arguments = array.ctypes.data, cubics.ctypes.data, len(cubics), *settings
@@ -89,7 +86,6 @@ def run_in_python(
     stiffness, damping, square, cube, friction, slow, stop, position, side = numbers
 
     def acceleration(base: float, x: float, v: float) -> float:
-        """Return the mass's acceleration relative to the base, m/s2."""
         beyond = side * x - position
         spring = x + square * x * x + cube * x * x * x
         if beyond > 0.0:

@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ..laboratory.pieces import Floats
+from ..lazy import xr
 from .orders import sensor_channels, sine_windows
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-JUMP = 0.2  # relative change of the frequency from window to window that begins another sweep
-PAUSE = 1.0  # s without a sine that end one
-SHORTEST, NARROWEST = 2.0, 0.1  # s, and relative range of frequencies: less is no sweep
 
 
 def split_sweeps(record: xr.Dataset) -> list[xr.Dataset]:
@@ -26,8 +18,8 @@ def split_sweeps(record: xr.Dataset) -> list[xr.Dataset]:
     """
     windows = sine_windows(sensor_channels(record))[0]
     frequency, time = windows.frequency, windows.time
-    jumps = np.abs(np.diff(frequency)) > JUMP * frequency[:-1]
-    ends = np.flatnonzero(jumps | (np.diff(time) > PAUSE)) + 1
+    jumps = np.abs(np.diff(frequency)) > 0.2 * frequency[:-1]
+    ends = np.flatnonzero(jumps | (np.diff(time) > 1.0)) + 1  # s without a sine
     groups = [one for one in np.split(np.arange(len(time)), ends) if is_sweep(one, time, frequency)]
     if len(groups) < 2:
         return [record]
@@ -44,4 +36,4 @@ def is_sweep(group: NDArray[np.intp], time: Floats, frequency: Floats) -> bool:
     if len(group) < 2:
         return False
     own = frequency[group]
-    return bool(np.ptp(time[group]) >= SHORTEST and np.ptp(own) >= NARROWEST * own.mean())
+    return bool(np.ptp(time[group]) >= 2.0 and np.ptp(own) >= 0.1 * own.mean())

@@ -14,8 +14,6 @@ from ..laboratory.analysis.shock_spectrum import ramp_invariant
 from ..laboratory.pieces import Floats
 from ..model import Structure
 
-FIRST_DAMPING = (0.003, 0.02, 0.1)  # ratios that the search for the nearest oscillator begins at
-
 
 @dataclass(frozen=True)
 class SoundStructure:
@@ -51,22 +49,19 @@ class SoundStructure:
         measured = channels.responses()[1]
 
         def made(logs: Floats) -> SoundStructure:
-            """Return the oscillator for logarithms of f and zeta."""
             one = cls(*np.exp(logs).tolist())
             return one.under_force(frequency, response) if force else one
 
         def response_residuals(logs: Floats) -> Floats:
-            """Return the residuals of the transmissibility for logarithms of f and zeta."""
             rest = (made(logs).response(frequency) - response).ravel()
             return np.concatenate([rest.real, rest.imag])
 
         def record_residuals(logs: Floats) -> Floats:
-            """Return the residuals of the acceleration over time for these logarithms."""
             return np.asarray((made(logs).acceleration(channels) - measured).ravel())
 
         low, high = math.log(0.2 * frequency[0]), math.log(5.0 * frequency[-1])
         bounds = ([low, math.log(1e-4)], [high, math.log(0.9)])
-        starts = [(math.log(peak), math.log(ratio)) for ratio in FIRST_DAMPING]
+        starts = [(math.log(peak), math.log(ratio)) for ratio in (0.003, 0.02, 0.1)]
         fits = [least_squares(response_residuals, start, bounds=bounds) for start in starts]
         best = min(fits, key=lambda fitted: float(fitted.cost))
         return made(least_squares(record_residuals, best.x, bounds=bounds, x_scale=(0.01, 1.0)).x)
@@ -77,10 +72,7 @@ class SoundStructure:
         return np.outer(self.gains, moved - 1.0) if self.gains else moved
 
     def acceleration(self, channels: Channels) -> Floats:
-        """Compute the absolute acceleration under the box, or the force, of a record, m/s2.
-
-        It is exact for a box that is straight between the samples.
-        """
+        """Compute the absolute acceleration under the box, or the force, of a record, m/s2."""
         from scipy.signal import lfilter
 
         filters = ramp_invariant(self.f, self.zeta, channels.sample_rate)

@@ -17,12 +17,6 @@ from ..laboratory.record import SHORT_NAMES
 from ..laboratory.record_checks import CLIPPED, clipped_share
 from .orders import Complexes, RecordOrders, assembled_orders, sine_windows
 
-MAX_MODE = 1.8  # participation factor of a sensor
-MAINS = (50.0, 60.0)  # Hz
-HUM_WINDOW, HUM_AWAY, HUM_NEXT = 2.0, 5.0, (-3.0, -2.0, 2.0, 3.0)  # s, Hz, Hz
-HUM_ORDERS = (0.5, 1.0, 2.0, 3.0)
-JUMP_PERIODS = 2.0  # of the lowest frequency: stretches before and after a jump
-
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
@@ -172,7 +166,6 @@ class LowResponse:
         hertz, measured = frequency[low], response[low]
 
         def residuals(numbers: Floats) -> Floats:
-            """Return the relative residuals of factor, delay in ms, G and resonance over peak."""
             factor, late, mode, ratio = numbers
             square = (hertz / (ratio * peak)) ** 2
             model = factor * np.exp(-1e-3j * TURN * hertz * late)
@@ -180,7 +173,7 @@ class LowResponse:
             return np.concatenate([rest.real, rest.imag])
 
         first = float(np.median(measured.real)) or 1.0
-        bounds = ([-np.inf, -12.0, 0.1, 0.75], [np.inf, 12.0, MAX_MODE, 1.25])
+        bounds = ([-np.inf, -12.0, 0.1, 0.75], [np.inf, 12.0, 1.8, 1.25])
         best = least_squares(residuals, (first, 0.0, 1.0, 1.0), bounds=bounds, x_scale="jac")
         factor, late, *_ = best.x
         misfit = float(np.sqrt(2.0 * best.cost / len(hertz)))
@@ -222,7 +215,7 @@ def lost_sample_notes(orders: RecordOrders, settings: Settings) -> Iterator[Note
     from scipy.signal import fftconvolve
 
     channels, windows = orders.channels, orders.windows
-    count = int(JUMP_PERIODS * channels.sample_rate / windows.frequency.min())
+    count = int(2.0 * channels.sample_rate / windows.frequency.min())  # before and after
     row = np.linalg.pinv(np.vander(np.arange(count) + 0.5, 2))[1]  # a line's value at its end
     kernel = np.concatenate([row[::-1], -row])  # as a convolution: later less earlier samples
     phase = measured_phase(channels)
@@ -241,17 +234,16 @@ def lost_sample_notes(orders: RecordOrders, settings: Settings) -> Iterator[Note
 def hum_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator[Note]:
     """Yield a note on a line of the mains in a channel."""
     channels = orders.channels
-    count = int(HUM_WINDOW * channels.sample_rate)
+    count = int(2.0 * channels.sample_rate)
     starts = np.arange(0, len(channels.time) - count, count, dtype=np.intp)
-    middle = channels.time[starts] + 0.5 * HUM_WINDOW
+    middle = channels.time[starts] + 1.0
     swept = np.interp(middle, orders.windows.time, orders.windows.frequency)
-    for mains in MAINS:
-        away = np.abs(np.outer(HUM_ORDERS, swept) - mains).min(axis=0) > HUM_AWAY
+    for mains in (50.0, 60.0):
+        away = np.abs(np.outer((0.5, 1.0, 2.0, 3.0), swept) - mains).min(axis=0) > 5.0
         if away.sum() < settings.fewest:
             continue
-        lines = np.stack(
-            [line_amplitudes(channels, row, starts, count, mains + off) for off in (0.0, *HUM_NEXT)]
-        )
+        beside = (mains + off for off in (0.0, -3.0, -2.0, 2.0, 3.0))  # Hz, itself the first
+        lines = np.stack([line_amplitudes(channels, row, starts, count, hz) for hz in beside])
         size = np.median(np.abs(lines[:, away]), axis=1)
         pairs = away[1:] & away[:-1]
         turned = (lines[0, 1:] * lines[0, :-1].conj())[pairs]

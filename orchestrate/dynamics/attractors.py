@@ -119,12 +119,9 @@ class AttractorsJob(SeriesQuestion):
         """Group all starts' settled motions into attractors, matched along the parameter."""
         points, order = self.series.points, self.order()
         starts = {n: np.split(rows, len(points)) for n, rows in table.items()}
-        matched = continue_attractors(
-            instances,
-            [points[i] for i in order],
-            [{name: rows[i] for name, rows in starts.items()} for i in order],
-            self.settings,
-        )
+        settled = [{name: rows[i] for name, rows in starts.items()} for i in order]
+        ordered = [points[i] for i in order]
+        matched = continue_attractors(instances, ordered, settled, self.settings)
         columns = attractor_columns(matched)
         return {name: rows[np.newaxis, np.argsort(order)] for name, rows in columns.items()}
 
@@ -199,16 +196,10 @@ def attractor_columns(matched: MatchedAttractors) -> Table:
             columns["xi_rel_max"][i, number] = motion.gap / motion.point.length
             columns["multiplier"][i, number] = motion.multiplier
             how[i, number], states[i, number] = motion.decided, motion.states[0]
-            share[i, number] = (
-                np.mean(matched.labels[i] == number) if len(matched.labels[i]) else 0.0
-            )
-    return {
-        **columns,
-        "how": how,
-        "share": share,
-        "state": states,
-        "labels": np.array(matched.labels),
-    }
+            if len(matched.labels[i]):
+                share[i, number] = np.mean(matched.labels[i] == number)
+    labels = np.array(matched.labels)
+    return {**columns, "how": how, "share": share, "state": states, "labels": labels}
 
 
 def attractor_variables(
@@ -274,13 +265,9 @@ def starts_in_both_boxes(
 def attractor_settings(call: Mapping[str, Any]) -> AttractorSettings:
     """Return the ``AttractorSettings`` of a call, with its keywords, which are checked."""
     least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
-    settings: dict[str, Any] = {
-        name: checked_integer(name, call[name], least[name])
-        if name in least
-        else checked_positive(name, call[name])
-        for name in KEYWORDS
-    }
-    return replace(call["settings"] or AttractorSettings(), **settings)
+    whole: dict[str, Any] = {n: checked_integer(n, call[n], low) for n, low in least.items()}
+    others = {n: checked_positive(n, call[n]) for n in KEYWORDS if n not in least}
+    return replace(call["settings"] or AttractorSettings(), **whole, **others)
 
 
 def attractors(

@@ -155,10 +155,8 @@ class BasinJob(Question):
         with instance_pair(fmus[OSCILLATOR]) as instances:
             if previous is not None:
                 return self.gather_attractors(instances, point, previous)
-            decider, rows = (
-                MotionDecider(*instances, point, self.settings),
-                [ABSENT_ROW] * len(items),
-            )
+            decider = MotionDecider(*instances, point, self.settings)
+            rows = [ABSENT_ROW] * len(items)
             states = np.array([state for state, _ in items])
             apart = np.flatnonzero(gap_between(states, self.structure.gap_offset) >= 0.0)
             starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in apart.tolist()]

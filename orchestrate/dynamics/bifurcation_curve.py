@@ -31,10 +31,7 @@ from .turning_points import (
     weakest_force,
 )
 
-REAL_MULTIPLIERS: dict[int, float] = {
-    Kind.FOLD: 1.0,
-    Kind.FLIP: -1.0,
-}
+REAL_MULTIPLIERS: dict[int, float] = {Kind.FOLD: 1.0, Kind.FLIP: -1.0}
 SMOOTH_KINDS = (Kind.FOLD, Kind.FLIP, Kind.TORUS)
 FOLLOWED = (*SMOOTH_KINDS, Kind.GRAZING, Kind.TOUCHING, Kind.EARLIER_RELEASE)
 OVERLAP = 1e-9  # over a eta^2: a gap, or a force, smaller by this than zero is no rounding
@@ -102,10 +99,8 @@ class BifurcationCurve:
         """Reset the bordering vectors to the singular vectors of the matrix at these unknowns."""
         if self.kind in SMOOTH_KINDS:
             left, _, right = np.linalg.svd(self.matrix(unknowns))
-            self.columns, self.rows = (
-                rotated_to_real(left[:, -1]),
-                rotated_to_real(right[-1].conj()),
-            )
+            self.columns = rotated_to_real(left[:, -1])
+            self.rows = rotated_to_real(right[-1].conj())
 
     def matrix(self, unknowns: Floats) -> NDArray[np.complex128]:
         """Return the orbit's scaled Jacobian at the multiplier: singular at the bifurcation."""

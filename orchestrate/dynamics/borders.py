@@ -44,7 +44,7 @@ from .orbit_records import (
 )
 from .orbit_tracer import OrbitPoint
 from .orbits import FirstGuess, call_from_start, excitation_arguments
-from .tracer import BranchSegment, ContinuationSettings
+from .tracer import ContinuationSettings
 
 POINT = "codimension_two"
 LEFT = "what is left of both conditions, of the multipliers' polynomial over its largest part"
@@ -73,7 +73,11 @@ class BorderJob(Question):
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Trace the bifurcation curve over both parameters; return its points as a table."""
         curve, root = start_root(self)
-        back, forth = (trace_curve(self, curve, start) for start in (root.reversed(), root))
+        settings = ContinuationSettings(self.longest, self.most)
+        back, forth = (
+            BifurcationTracer(curve, start, settings).trace(start)
+            for start in (root.reversed(), root)
+        )
         roots = [*reversed(back.points[1:]), *forth.points]
         points = locate_points(curve, roots, (back.end, forth.end))
         with EventInstance(fmus[OSCILLATOR]) as instance:
@@ -81,12 +85,8 @@ class BorderJob(Question):
             at = [row_at(instance, curve, each.unknowns, each.residual) for each in points]
         angles = [root.unknowns[-1] if self.kind == Kind.TORUS else np.nan for root in roots]
         ends = np.array([back.end, forth.end])
-        return {
-            **orbit_table(rows),
-            "angle": np.array(angles),
-            "ends": ends,
-            **located_table(POINT, at, points),
-        }
+        more = {"angle": np.array(angles), "ends": ends}
+        return {**orbit_table(rows), **more, **located_table(POINT, at, points)}
 
     def dataset(self, table: Table) -> xr.Dataset:
         setting, kind = self.setting, KINDS[self.kind]
@@ -120,12 +120,6 @@ def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
     except SOLVER_ERRORS as reason:
         expected = "expected a branch of this structure"
         raise InputError(f"start: no bifurcation found there ({reason}); {expected}") from None
-
-
-def trace_curve(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment[Root]:
-    """Trace the bifurcation curve from a root, along its tangent, to a limit or an end."""
-    settings = ContinuationSettings(job.longest, job.most)
-    return BifurcationTracer(curve, start, settings).trace(start)
 
 
 def row_at(
@@ -216,13 +210,8 @@ def border(
     pairs = checked_limit_pairs(names, limits)
     nodes, kind = start_nodes(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
-    given = complete_excitation(
-        start.isel(point=0),
-        names,
-        excitation_arguments(eta, frequency, amplitude),
-        pairs[0],
-        structure,
-    )
+    excitation = excitation_arguments(eta, frequency, amplitude)
+    given = complete_excitation(start.isel(point=0), names, excitation, pairs[0], structure)
     acceleration = acceleration_at_start(start, box_acceleration)
     second = second_start_value(structure, names[1], given, acceleration)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):

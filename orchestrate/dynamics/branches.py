@@ -79,11 +79,8 @@ class BranchJob(Question):
         settings = ContinuationSettings(self.longest, self.most)
         try:
             start = OrbitPoint(*solve_orbit(self.setting, guess, np.array([self.value])))
-            starts = (
-                [start.reversed(), start]
-                if self.switch < 0
-                else [leaving_branch(self.switch, start)]
-            )
+            both = [start.reversed(), start]
+            starts = both if self.switch < 0 else [leaving_branch(self.switch, start)]
         except SOLVER_ERRORS as reason:
             expected = "expected an orbit of this structure"
             raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None

@@ -225,7 +225,6 @@ def contact_durations(
         return np.zeros(0)
 
     def force(time: Floats, *begin: Floats) -> Floats:
-        """Return the contact force (18) a time after permanent contact has begun."""
         return form.force(*form.common_motion(time, *begin))
 
     periods = form.fastest * float(spans.max()) / (2.0 * math.pi)
@@ -273,11 +272,5 @@ def short_openings(
         lambda time, *start: -force(time, *start), bracket, args=tuple(begin[:, row])
     )
     is_open = found.f_x <= 0.0
-    return list(
-        zip(
-            row[is_open].tolist(),
-            bracket[0][is_open].tolist(),
-            found.x[is_open].tolist(),
-            strict=True,
-        )
-    )
+    columns = (values[is_open].tolist() for values in (row, bracket[0], found.x))
+    return list(zip(*columns, strict=True))

@@ -67,10 +67,7 @@ class SettledResponse(NamedTuple):
 def run_until_settled(
     instance: Instance, point: Point, starts: ArrayLike, settings: AttractorSettings
 ) -> list[SettledResponse]:
-    """Simulate from states at phase 0 until samples repeat or the limit; return the responses.
-
-    All starts are run together, then those that do not repeat yet as long again.
-    """
+    """Simulate from states at phase 0 until samples repeat or the limit; return the responses."""
     ends, converged = np.reshape(np.asarray(starts, dtype=float), (-1, 4)), settings.converged
     loop, loose = response_loop(instance), settings.apart * converged
     dropped = transient_periods(
@@ -121,14 +118,8 @@ def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[
     """Cluster irregular responses' feature rows by single linkage; return a label per row."""
     table = np.asarray(rows, dtype=float).reshape(-1, len(FEATURES))
     scale = np.maximum(np.abs(table[:, 2]), 1e-300)
-    points = np.column_stack(
-        [
-            np.log(scale),
-            table[:, 3] / scale,
-            table[:, 4] / scale,
-            settings.count_weight * table[:, 1],
-        ]
-    )
+    counts = settings.count_weight * table[:, 1]
+    points = np.column_stack([np.log(scale), table[:, 3] / scale, table[:, 4] / scale, counts])
     return single_linkage(points, settings.alike_irregular)
 
 

@@ -264,7 +264,6 @@ def solve_end(
     curve.update_border(root.unknowns)
 
     def conditions(unknowns: Floats) -> Floats:
-        """Return the residual of the two conditions that hold at the curve's end."""
         if resonance:
             polynomial = characteristic_polynomial(curve, unknowns)
             at = 1.0 if kind == PointKind.RESONANCE_1 else -1.0

@@ -104,11 +104,8 @@ class CurveGrower:
                 curve.end = self.end_reason(curve)
                 continue
             target = last.s + step
-            point = (
-                self.image(target)
-                if change_ahead is None or target < change_ahead.low.s
-                else change_ahead.low
-            )
+            is_beyond = change_ahead is not None and target >= change_ahead.low.s
+            point = change_ahead.low if change_ahead and is_beyond else self.image(target)
             if point.itinerary != last.itinerary:
                 change_ahead = self.bisect_change(last, point)
                 continue

@@ -43,10 +43,8 @@ class Setting:
 
     def point(self, values: Floats) -> Point:
         """Return structure and excitation with the varying parameters at these values."""
-        parameters = {
-            **dict(self.excitation),
-            **dict(zip(self.over, map(float, values), strict=True)),
-        }
+        varied = zip(self.over, map(float, values), strict=True)
+        parameters = {**dict(self.excitation), **dict(varied)}
         parameters.pop(ACCELERATION, None)
         return make_point(self.structure, parameters)
 
@@ -122,10 +120,8 @@ class Family:
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Return the residual's Jacobian: exact by nodes, by differences by parameters."""
-        columns = [
-            central_difference(self.residual, unknowns, self.size + i, *limits)[:, None]
-            for i, limits in enumerate(self.setting.limits)
-        ]
+        sides = enumerate(self.setting.limits, self.size)
+        columns = [central_difference(self.residual, unknowns, i, *at)[:, None] for i, at in sides]
         return np.hstack([self.orbit(unknowns).jacobian().real, *columns])
 
 

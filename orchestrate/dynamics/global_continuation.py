@@ -117,10 +117,8 @@ class AttractorsAtValue:
 
 def may_be_different_branches(motion: SettledMotion, other: SettledMotion, distance: float) -> bool:
     """Return whether motions at neighbouring values differ enough to be of different branches."""
-    if (motion.multiplicity, motion.impacts_per_period) != (
-        other.multiplicity,
-        other.impacts_per_period,
-    ):
+    counts = motion.multiplicity, motion.impacts_per_period
+    if counts != (other.multiplicity, other.impacts_per_period):
         return True
     state = other.point.from_faces(motion.point.faces(motion.states[0]))
     return other.nearest(state)[1] > distance
@@ -156,10 +154,8 @@ def continue_attractors(
         values[0].find_or_add(values[0].decider.decide(seed)[0])
     links = continue_to_neighbours(values)
     numbers = number_attractors(values, links, settings.neighbour)
-    labels = [
-        np.array([row[label] for label in value.labels], dtype=np.intp)
-        for value, row in zip(values, numbers, strict=True)
-    ]
+    pairs = zip(values, numbers, strict=True)
+    labels = [np.array([row[i] for i in value.labels], dtype=np.intp) for value, row in pairs]
     return MatchedAttractors([value.motions for value in values], numbers, labels)
 
 

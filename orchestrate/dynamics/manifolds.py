@@ -185,7 +185,6 @@ class ManifoldJob(SingleOrbitQuestion):
         more: dict[str, Any] = {ACCELERATION: push} if push else {}
 
         def run(faces: Floats, returns: int) -> tuple[Floats, Floats]:
-            """Simulate some returns from a state; return the end state, and counts of impacts."""
             begin(instance, *point, point.from_faces(faces.copy()), **more)
             if returns:
                 instance.step(0.0, returns * time)
@@ -195,7 +194,6 @@ class ManifoldJob(SingleOrbitQuestion):
         own = run(saddle.state, 1)[1]  # what happens on the orbit itself is no change
 
         def image(s: float) -> CurvePoint:
-            """Return the manifold's point at s: the image after floor(s) returns of the map."""
             returns = math.floor(s)
             distance = self.distance * saddle.size * saddle.growth_factor ** (s - returns)
             state, counts = run(saddle.state + sign * distance * saddle.direction, returns)
@@ -272,13 +270,9 @@ def break_variables(table: Table) -> dict[str, Any]:
     }
     rows = table["breaks"].T
     sides = flags("break", rows[0], "side of the manifold", dict(enumerate(SIDES)))
-    return {
-        "break_side": sides,
-        **{
-            f"break_{name}": variable("break", row, "1", text)
-            for (name, text), row in zip(texts.items(), rows[1:], strict=True)
-        },
-    }
+    columns = zip(texts.items(), rows[1:], strict=True)
+    others = {f"break_{name}": variable("break", row, "1", t) for (name, t), row in columns}
+    return {"break_side": sides, **others}
 
 
 def manifold(

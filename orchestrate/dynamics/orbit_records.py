@@ -156,12 +156,9 @@ def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Var
     )
     parameters = {name: parameter_variable(name, row, values) for name, values in along.items()}
     if ACCELERATION in setting.over:
-        parameters[ACCELERATION] = variable(
-            row,
-            table["values"][:, setting.over.index(ACCELERATION)],
-            "m/s2",
-            "constant acceleration of the box beside the harmonic one",
-        )
+        column = table["values"][:, setting.over.index(ACCELERATION)]
+        text = "constant acceleration of the box beside the harmonic one"
+        parameters[ACCELERATION] = variable(row, column, "m/s2", text)
     periods = np.arange(table["zero"].shape[1])
     return {
         **parameters,

@@ -131,14 +131,10 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     """Traces a branch of periodic orbits by pseudo-arclength, with its bifurcations."""
 
     kinds = (Kind.FOLD, Kind.FLIP, Kind.TORUS, Kind.GRAZING, Kind.TOUCHING, Kind.EARLIER_RELEASE)
-    ending_kinds = (
-        Kind.GRAZING,
-        Kind.TOUCHING,
-        Kind.EARLIER_RELEASE,
-        Kind.HALVING,
-        Kind.CONTACT_LOST,
-        Kind.CONTACT_BEGUN,
-    )  # beyond are other impacts, or copies
+    ending_kinds = (  # beyond are other impacts, or copies
+        *(Kind.GRAZING, Kind.TOUCHING, Kind.EARLIER_RELEASE),
+        *(Kind.HALVING, Kind.CONTACT_LOST, Kind.CONTACT_BEGUN),
+    )
     finds_pairs = True
 
     def __init__(self, start: OrbitPoint, settings: ContinuationSettings) -> None:

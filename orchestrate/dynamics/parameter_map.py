@@ -138,12 +138,8 @@ class MapJob(Question):
         left = np.arange(len(items))
         while len(left):
             points = [items[i] for i in left.tolist()]
-            settings = LoopSettings(
-                transient=dropped[left].tolist(),
-                samples=self.samples,
-                tolerance=self.tolerance,
-                decides=True,
-            )
+            own: Any = {"samples": self.samples, "tolerance": self.tolerance, "decides": True}
+            settings = LoopSettings(transient=dropped[left].tolist(), **own)
             results = loop.respond(points, ends[left], settings)
             done[left] += dropped[left] + self.samples
             responses = responses_from(results, points, self.tolerance)

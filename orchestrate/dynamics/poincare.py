@@ -64,12 +64,9 @@ class PoincareJob(OneMotionQuestion):
                 times = release_times(impacts, point, self.periods * period)
                 return {"time": times, "rows": states_at_times(plain, point, start, times)}
         rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
-        return {
-            "time": impacts.time,
-            "rows": np.column_stack([impacts.state, np.zeros(len(rate)), rate]),
-            "impact_velocity": impacts.closing,
-            "sticks": impacts.sticks,
-        }
+        rows = np.column_stack([impacts.state, np.zeros(len(rate)), rate])
+        more = {"impact_velocity": impacts.closing, "sticks": impacts.sticks}
+        return {"time": impacts.time, "rows": rows, **more}
 
     def dataset(self, table: Table) -> xr.Dataset:
         time, columns = table["time"], dict(zip(COLUMNS, table["rows"].T, strict=True))

@@ -91,7 +91,6 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         return True
 
     def location_tolerances(self, length: float) -> dict[str, float]:
-        """Return the tolerances of Brent's method (xtol, rtol) in a step of this length."""
         return {"xtol": ACCURACY, "rtol": ACCURACY}
 
     def end_before(self, step: BranchStep[Point]) -> tuple[str, Iterable[Point]]:
@@ -171,11 +170,9 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
             for kind in kinds
             for bracket in step.brackets(kind)
         ]
-        confirmed = [
-            each
-            for each in crossings
-            if self.confirms(each.kind, each.point, each.position / step.length)
-        ]
+        parts = [each.position / step.length for each in crossings]
+        pairs = zip(crossings, parts, strict=True)
+        confirmed = [each for each, part in pairs if self.confirms(each.kind, each.point, part)]
         return sorted(confirmed, key=lambda each: each.position)
 
     def add_step(
@@ -225,7 +222,6 @@ class BranchStep(Generic[Point]):
         self.known = {0.0: self.before, self.length: self.after}
 
     def point(self, position: float) -> Point:
-        """Return the branch's point at an arclength into the step, by Newton's method (cached)."""
         if position not in self.known:
             tracer = self.tracer
             self.known[position] = tracer.point(tracer.stepper.root_after(position))
@@ -287,10 +283,6 @@ class BranchStep(Generic[Point]):
         self, kind: Kind, low: float, high: float, level: float = 0.0
     ) -> tuple[float, Point]:
         """Solve by Brent's method for where a test has a level; return position, point."""
-        position = solve_between(
-            lambda position: self.test(position, kind) - level,
-            low,
-            high,
-            **self.tracer.location_tolerances(self.length),
-        )
+        within = self.tracer.location_tolerances(self.length)
+        position = solve_between(lambda at: self.test(at, kind) - level, low, high, **within)
         return position, self.point(position)

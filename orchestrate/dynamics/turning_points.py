@@ -54,7 +54,6 @@ def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
     phases = low + (high - low) * first / (first - last)
 
     def rate_and_slope(phase: Floats) -> tuple[Floats, Floats]:
-        """Return each quantity's rate and its derivative by tau, at phases."""
         return quantity_derivatives(orbit, segment, quantity, phase)[:2]
 
     phases = refine_zeros(rate_and_slope, phases, (low, high), orbit.form.eta)
@@ -131,7 +130,6 @@ def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
     low, high, segment = phase[:-1][turned], phase[1:][turned], segment[1:][turned]
 
     def rate_and_slope(phase: Floats) -> tuple[Floats, Floats]:
-        """Return the contact pressure's rate and its derivative by tau, at phases."""
         return pressing_force(orbit, segment, phase)[1:]
 
     phases = refine_zeros(rate_and_slope, 0.5 * (low + high), (low, high), orbit.form.eta)
@@ -149,11 +147,8 @@ def pressing_force(
     acceleration = form.field(state, phase, True)[:, 2]
     jerk = form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
     jerk -= form.stiffness[2] * velocity
-    return (
-        -form.force(position, velocity),
-        -form.force_rate(velocity, acceleration),
-        -form.force_rate(acceleration, jerk),
-    )
+    first, second = form.force_rate(velocity, acceleration), form.force_rate(acceleration, jerk)
+    return -form.force(position, velocity), -first, -second
 
 
 def stroboscopic_states(orbit: PeriodicOrbit, phase: float = 0.0) -> Floats:

@@ -83,9 +83,5 @@ def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:
 
 def nondimensional_impacts(impacts: Impacts, point: Point) -> Impacts:
     """Convert impacts from SI to the paper's units, displacements to those of the faces."""
-    return Impacts(
-        point.structure.omega * impacts.time,
-        point.faces(impacts.state),
-        impacts.closing / point.speed,
-        impacts.sticks,
-    )
+    tau, closing = point.structure.omega * impacts.time, impacts.closing / point.speed
+    return Impacts(tau, point.faces(impacts.state), closing, impacts.sticks)

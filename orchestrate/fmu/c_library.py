@@ -35,11 +35,9 @@ def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | N
             return path
     try:
         with made_once(paths[0]):
-            return (
-                paths[0]
-                if has_token(paths[0], token)
-                else compile_library(source, platform, folders[0])
-            )
+            if has_token(paths[0], token):
+                return paths[0]
+            return compile_library(source, platform, folders[0])
     except (CannotExport, StoreError) as reason:
         log.info("%s is not compiled, Python does the same: %s", source.name, reason)
         return None

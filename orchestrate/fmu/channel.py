@@ -61,7 +61,6 @@ class Channel:
         do_step = dll.fmi2DoStep
 
         def step(time: float, h: float) -> int:
-            """Step the FMU by h from a time; return the FMI status."""
             return int(do_step(component, time, h, 0))
 
         states = (dll.fmi2GetFMUstate, dll.fmi2SetFMUstate, dll.fmi2FreeFMUstate)
@@ -75,7 +74,6 @@ class Channel:
         answers = [*map(byref, flags), byref(last)]
 
         def step(time: float, h: float) -> int:
-            """Step the FMU by h from a time; return the FMI status."""
             return int(do_step(component, time, h, False, *answers))
 
         states = (dll.fmi3GetFMUState, dll.fmi3SetFMUState, dll.fmi3FreeFMUState)

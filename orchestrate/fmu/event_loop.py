@@ -109,18 +109,13 @@ class EventLoop:
         self.events = Channel(instance, (), EVENT_OUTPUTS)
 
     def run(self, nodes: Floats, derivatives: Floats, samples: Floats) -> Played:
-        """Simulate under inputs given at nodes; return outputs at the samples, and impacts.
-
-        A piece's input is set where it begins and runs on; a time of reading that is a node belongs
-        to the piece that begins there. Each time of reading, and each impact, ends a step.
-        """
+        """Simulate under inputs given at nodes; return outputs at the samples, and impacts."""
         step, handle = self.instance.stepper(), self.instance.event_handler()
         touch = self.instance.flag("in_contact")
         rows, touching = self._tables(samples)
         table: list[list[float]] = []
 
         def advance(time: float, target: float) -> float:
-            """Step the FMU to a time; record and handle all events on the way."""
             while time < target:
                 event, time = step(time, target - time)
                 if event:
@@ -129,7 +124,6 @@ class EventLoop:
             return time
 
         def read(index: int) -> None:
-            """Store the FMU's outputs as one row of the samples."""
             if self.outputs:
                 rows[index] = self.channel.get()
             touching[index] = touch()

@@ -184,7 +184,6 @@ def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
             check(name, "fmi3")
 
     def find_model(model: str) -> Description:
-        """Return the description of the FMU that is used for a model."""
         path = user_fmu.get(model) if isinstance(user_fmu, Mapping) else user_fmu
         return find(model, folder=folder, fmu=path, level=level)
 

@@ -37,10 +37,7 @@ class Impacts:
         return state
 
     def impulse(self, structure: Structure, speed: float = 1.0) -> NDArray[np.float64]:
-        """Return each impact's impulse on each mass, N s, (n,) (15); plastic if contact begins.
-
-        Of non-dimensional impacts it is over omega a eta^2, so that its unit is that of a mass.
-        """
+        """Return each impact's impulse on each mass, N s, (n,) (15); plastic if contact begins."""
         m1, m2 = structure.m1, structure.m2
         restitution = np.where(self.sticks, 0.0, structure.restitution(speed * self.closing))
         impulse: NDArray[np.float64] = (1.0 + restitution) * m1 * m2 / (m1 + m2) * self.closing

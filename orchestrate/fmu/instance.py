@@ -171,7 +171,6 @@ class Instance:
         messages = self._messages
 
         def run() -> None:
-            """Call the C function; raise an error if its status is not OK."""
             messages.clear()
             status = call()
             if status:
@@ -245,7 +244,6 @@ class Instance:
         """Wrap a prepared get call so that it raises if the FMU gives NaN or infinity."""
 
         def run() -> None:
-            """Call the get function; raise an error if a value is not finite."""
             call()
             if not math.isfinite(values.sum()) and not np.isfinite(values).all():
                 names = [variable.name for variable, length in variables for _ in range(length)]
@@ -328,17 +326,7 @@ class Instance:
     def state_calls(self) -> tuple[str, str, str, str, str]:
         """Return FMPy's method names to get, serialize, deserialize, set and free a state."""
         if self.is_fmi3:
-            return (
-                "getFMUState",
-                "serializeFMUState",
-                "deserializeFMUState",
-                "setFMUState",
-                "freeFMUState",
-            )
-        return (
-            "getFMUstate",
-            "serializeFMUstate",
-            "deSerializeFMUstate",
-            "setFMUstate",
-            "freeFMUstate",
-        )
+            save = "getFMUState", "serializeFMUState"
+            return *save, "deserializeFMUState", "setFMUState", "freeFMUState"
+        save = "getFMUstate", "serializeFMUstate"
+        return *save, "deSerializeFMUstate", "setFMUstate", "freeFMUstate"

@@ -31,7 +31,6 @@ class SteppingInstance(Instance):
         do_step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *results)
 
         def step(time: float, length: float) -> tuple[bool, float]:
-            """Step by a length; return whether an event happened, and the time."""
             self._time.value, self._length.value = time, length
             do_step()
             return event.value, last.value
@@ -45,7 +44,6 @@ class SteppingInstance(Instance):
         update = self.prepared("fmi3UpdateDiscreteStates", *results)
 
         def handle() -> None:
-            """Handle an event: enter event mode, update, step again."""
             enter()
             update()
             leave()
@@ -57,7 +55,6 @@ class SteppingInstance(Instance):
         call, values, _ = self._transfer("Get", "Boolean", [(self.variable(name), 1)], [0])
 
         def read() -> bool:
-            """Return whether the Boolean variable is true at present."""
             call()
             return bool(values[0])
 

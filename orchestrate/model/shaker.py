@@ -127,13 +127,9 @@ class Shaker(Described):
         (10.0, 30.0, 0.6)
         """
         given = {
-            "rated_force": rated_force,
-            "moving_mass": moving_mass,
-            "suspension_resonance": suspension_resonance,
-            "amplifier_power": amplifier_power,
-            "travel": travel,
-            "payload": payload,
-            "damping_ratio": damping_ratio,
+            **{"rated_force": rated_force, "moving_mass": moving_mass},
+            **{"suspension_resonance": suspension_resonance, "amplifier_power": amplifier_power},
+            **{"travel": travel, "payload": payload, "damping_ratio": damping_ratio},
         }
         sheet = {name: DATASHEET[name].check(value) for name, value in given.items()}
         factor = SHAKER["force_factor"].check(force_factor)

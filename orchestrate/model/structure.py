@@ -440,21 +440,15 @@ class Structure(Described):
     def D1(self) -> float:
         """Damping ratio d1/(2 omega m1) of mass 1 (8)."""
         omega, m1 = self.omega, self.m1
-        return exact_inverse(
-            self.d1 / (2.0 * omega * m1),
-            lambda ratio: damping_from_ratio(ratio, omega, m1),
-            self.d1,
-        )
+        ratio = self.d1 / (2.0 * omega * m1)
+        return exact_inverse(ratio, lambda D: damping_from_ratio(D, omega, m1), self.d1)
 
     @property
     def D2(self) -> float:
         """Damping ratio d2/(2 omega m2) of mass 2 (8)."""
         omega, m1, mu = self.omega, self.m1, self.mu
-        return exact_inverse(
-            self.d2 / (2.0 * omega * self.m2),
-            lambda ratio: damping_from_ratio(ratio, omega, m1) * mu,
-            self.d2,
-        )
+        ratio = self.d2 / (2.0 * omega * self.m2)
+        return exact_inverse(ratio, lambda D: damping_from_ratio(D, omega, m1) * mu, self.d2)
 
     @property
     def f1(self) -> float:

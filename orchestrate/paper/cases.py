@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..model import Structure
 
 CASES = {
@@ -54,9 +52,3 @@ BRANCHES: dict[str, dict[str, Branch]] = {
         **OF_ALL,
     },
 }
-
-
-def map_values(parameter: str, count: int) -> np.ndarray:
-    """Return ``count`` values of a parameter over the range of its map."""
-    low, high = MAPS[parameter]
-    return (np.geomspace if parameter == "D" else np.linspace)(low, high, count)

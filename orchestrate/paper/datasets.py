@@ -277,7 +277,8 @@ class Datasets:
     def map(self, parameter: str) -> xr.Dataset:
         """Return the map over eta and e, D or kappa."""
         size, etas = self.size, np.linspace(*cases.MAP_ETAS, self.size.map_etas)
-        axes = {"eta": etas, parameter: cases.map_values(parameter, size.map_rows)}
+        spaced = np.geomspace if parameter == "D" else np.linspace
+        axes = {"eta": etas, parameter: spaced(*cases.MAPS[parameter], size.map_rows)}
         more = {"transient": size.map_settle, "samples": size.map_keep}
         return self.get(f"map_{parameter}", orchestrate.map, ELASTIC, **axes, **more)
 

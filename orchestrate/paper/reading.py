@@ -14,12 +14,8 @@ Edges = tuple[float, float]  # two neighbouring frequencies
 NOWHERE = float("nan"), float("nan")
 LAST = 8.0  # of the paper's range
 WINDOWS = {  # an eta inside of each
-    "T, contact": 0.4,
-    "T/2": 1.05,
-    "T/1": 2.0,
-    "2T/1": 4.2,
-    "3T/1": 6.3,
-    "4T/1": 8.0,
+    **{"T, contact": 0.4, "T/2": 1.05, "T/1": 2.0},
+    **{"2T/1": 4.2, "3T/1": 6.3, "4T/1": 8.0},
 }
 
 

@@ -53,11 +53,8 @@ def write_report(
     fmu: Any,
 ) -> Path:
     """Write ``report.html`` with claims, regions and pictures; return its path."""
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("orchestrate.paper"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-    )
+    loader, strict = jinja2.PackageLoader("orchestrate.paper"), jinja2.StrictUndefined
+    environment = jinja2.Environment(loader=loader, autoescape=True, undefined=strict)
     environment.filters["typeset"] = typeset
     claims, first = content["claims"], size.transient
     numbered = [{**row, "number": number} for number, row in enumerate(claims, 1)]
@@ -83,9 +80,5 @@ def write_report(
 def picture_entry(name: str, picture: Path) -> dict[str, Any]:
     """Return texts, picture and data files of a part, for the page's template."""
     part, content = PARTS[name], picture.read_bytes()
-    return {
-        "file": picture.stem,
-        "part": part,
-        "picture": base64.b64encode(content).decode(),
-        **png_size(content),
-    }
+    data = base64.b64encode(content).decode()
+    return {"file": picture.stem, "part": part, "picture": data, **png_size(content)}

@@ -45,15 +45,11 @@ def mathml(latex: str) -> Markup:
     return Markup(tex2mathml(latex).replace("\n", ""))
 
 
-def match_to_latex(match: re.Match[str]) -> str:
-    """Return the LaTeX of a regular expression's match of a formula."""
-    return match.expand(LATEX[int(str(match.lastgroup).removeprefix("word"))])
-
-
 def typeset(text: str) -> Markup:
     r"""Return a sentence as HTML with its formulas as MathML."""
     parts, end, text = [], 0, plain(text)
     for match in FORMULA.finditer(text):
-        parts += [escape(text[end : match.start()]), mathml(match_to_latex(match))]
+        latex = match.expand(LATEX[int(str(match.lastgroup).removeprefix("word"))])
+        parts += [escape(text[end : match.start()]), mathml(latex)]
         end = match.end()
     return Markup("").join([*parts, escape(text[end:])])

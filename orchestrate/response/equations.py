@@ -44,11 +44,9 @@ class MotionCoefficients(NamedTuple):
         """Return each mass's acting coefficients: its own, or those of both in contact."""
 
         def columns(rates: Floats) -> Floats:
-            """Return coefficients with axes appended to broadcast over ``touching``."""
             return rates.reshape(*rates.shape, *(1,) * (touching.ndim - 1))
 
         def chosen(rates: Floats) -> Floats:
-            """Return each mass's coefficients, those of both as one where they touch."""
             each = columns(rates)
             return np.where(touching, each[2:], each[:2])
 

@@ -20,8 +20,6 @@ def make_dataset(
     variables: Mapping[str, Variable], coordinates: Mapping[str, Variable], title: str, **more: Any
 ) -> xr.Dataset:
     """Return a dataset of variables and coordinates, with its title and more attributes."""
-    import xarray as xr  # takes most of a second: only where a dataset is made
-
     return xr.Dataset(variables, coordinates, {"title": title, **more})
 
 

@@ -201,7 +201,6 @@ def first_contact_time(cut: ImpactIntervals, iterations: int = 20) -> Floats:
     g[0] = np.where(cut.gap_offset == 0.0, g[0], g[0] + cut.gap_offset)
 
     def gap(s: Floats) -> Floats:
-        """Return the gap a time after the left end, by its cubic Taylor polynomial."""
         distance: Floats = g[0] + s * (g[1] + s * (g[2] / 2.0 + s * g[3] / 6.0))
         return distance
 

@@ -101,12 +101,9 @@ class Series:
             name: parameter_variable(name, self.name, values) for name, values in along.items()
         }
         coordinates[self.name] = parameter_variable(self.name, self.name, self.values)
-        coordinates["period"] = variable(
-            self.name,
-            2.0 * np.pi / np.array(self.etas),
-            "1",
-            "excitation period T = 2 pi/eta in units of tau (22)",
-        )
+        period = 2.0 * np.pi / np.array(self.etas)
+        text = "excitation period T = 2 pi/eta in units of tau (22)"
+        coordinates["period"] = variable(self.name, period, "1", text)
         return coordinates
 
     def scales(self) -> NDArray[np.float64]:
@@ -133,11 +130,8 @@ def make_series(
         if isinstance(value, tuple):
             varied[name] = value
             del excitation[name]
-    name = (
-        over
-        or next((name for name in EXCITATION_PARAMETERS if name in varied), None)
-        or next(iter(excitation))
-    )
+    listed = (name for name in EXCITATION_PARAMETERS if name in varied)
+    name = over or next(listed, None) or next(iter(excitation))
     varied = varied or {name: (excitation[name],)}
     check_lengths(name, over, varied)
     rows = (dict(zip(varied, row, strict=True)) for row in zip(*varied.values(), strict=True))
@@ -338,11 +332,8 @@ class Question(Job, ABC):
         if not arguments.get("phase"):
             arguments.pop("phase", None)
         texts = [f"Structure{brief(arguments.pop('structure'))}"]
-        texts += [
-            f"{name}={brief(arguments[name])}"
-            for name in arguments
-            if arguments[name] not in (None, "")
-        ]
+        pairs = [(name, value) for name, value in arguments.items() if value not in (None, "")]
+        texts += [f"{name}={brief(value)}" for name, value in pairs]
         return f"{self.asked}({', '.join(texts)})"
 
 

@@ -5,28 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import REST
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, positive
 from ..model.outcomes import IRREGULAR
 from ..running.job import Table
+from ..running.options import Running
 from .labels import Variable, make_dataset, parameter_variable, variable, yes_or_no
 from .questions import Point, Series, ask, excitation_numbers, make_series
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, response_variables
 from .threshold import threshold_variables
 from .turns_and_jumps import inside_irregular, jump_indices, prominent_maxima
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
 DIMENSIONS = ("structure", "direction")
@@ -58,13 +54,11 @@ class ResonanceJob(SweepJob):
         return len(KINDS) * super().independent_series()
 
     def items(self) -> Sequence[Point]:
-        """Return the operating points of all responses, the bonded structure's first."""
         both = self.structure.as_bonded(), self.structure.as_delaminated()
         points = super().items()
         return [Point(structure, point.excitation) for structure in both for point in points]
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the resonance curves with their peaks and jumps."""
         ordered = {name: self.in_order(values) for name, values in table.items()}
         title = f"Resonance curves: {self.structure.label()}"
         curves = make_dataset(self.variables(ordered), self.coordinates(), title)
@@ -122,16 +116,12 @@ class ResonanceJob(SweepJob):
             for index in prominent_maxima(larger, self.prominence):
                 rows.append(curve.isel({self.series.name: index}))
                 noise.append(inside[index])
+        sizes = {name: [float(row[name]) for row in rows] for name in PEAK_QUANTITIES}
         text = "whether it lies inside a range of irregular responses, where a maximum is chance"
         return {
             **self.locations("peak", rows),
             "peak_irregular": yes_or_no("peak", noise, text),
-            **{
-                f"peak_{name}": variable(
-                    "peak", [float(row[name]) for row in rows], *REPORTED[name]
-                )
-                for name in PEAK_QUANTITIES
-            },
+            **{f"peak_{n}": variable("peak", sizes[n], *REPORTED[n]) for n in PEAK_QUANTITIES},
         }
 
     def jumps(self, data: xr.Dataset) -> dict[str, Variable]:
@@ -154,11 +144,10 @@ class ResonanceJob(SweepJob):
 
     def locations(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
         """Return variables of structure, direction and frequency for peaks or jumps."""
+        labels = {name: [str(row[name].values) for row in rows] for name in DIMENSIONS}
         words = {
-            f"{what}_{name}": variable(
-                what, np.array([str(row[name].values) for row in rows], dtype="U11"), "1", name
-            )
-            for name in DIMENSIONS
+            f"{what}_{name}": variable(what, np.array(texts, dtype="U11"), "1", name)
+            for name, texts in labels.items()
         }
         name, text = self.series.name, {"peak": "of the maximum", "jump": "just after the jump"}
         return words | {
@@ -211,13 +200,9 @@ class ResonanceLevelsJob(ResonanceJob):
         return len(self.level) * super().independent_series()
 
     def items(self) -> Sequence[Point]:
-        """Return the operating points of all responses, level by level."""
         return [point for job in self.level_jobs for point in job.items()]
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of all curves, with ``level`` as first dimension."""
-        import xarray as xr
-
         parts = {name: np.split(values, len(self.level_jobs)) for name, values in table.items()}
         curves = [
             job.dataset({name: parts[name][i] for name in parts})
@@ -225,22 +210,14 @@ class ResonanceLevelsJob(ResonanceJob):
         ]
         levels = xr.Variable(*parameter_variable("level", "level", self.level))
         whole, *_ = regular = [curve.drop_dims(RAGGED) for curve in curves]
-        joined = xr.concat(
-            regular,
-            dim=xr.DataArray(levels, dims="level", name="level"),
-            data_vars=[
-                str(name) for name, values in whole.data_vars.items() if "structure" in values.dims
-            ],
-            coords=["amplitude"],
-            compat="equals",
-            join="exact",
-        )
-        ragged = [
-            xr.concat(
-                [self.rows_of_level(i, curve, name) for i, curve in enumerate(curves)], dim=name
-            )
-            for name in RAGGED
-        ]
+        kept = [str(name) for name, one in whole.data_vars.items() if "structure" in one.dims]
+        dim = xr.DataArray(levels, dims="level", name="level")
+        alike: Any = {"coords": ["amplitude"], "compat": "equals", "join": "exact"}
+        joined = xr.concat(regular, dim, data_vars=kept, **alike)
+        ragged = []
+        for name in RAGGED:
+            rows = [self.rows_of_level(i, curve, name) for i, curve in enumerate(curves)]
+            ragged.append(xr.concat(rows, dim=name))
         result = xr.merge([joined, *ragged], combine_attrs="drop_conflicts")
         result.attrs["title"] = f"Resonance curves over the level: {self.structure.label()}"
         return result

@@ -37,10 +37,7 @@ class Response:
 
     @cached_property
     def multiplicity(self) -> int:
-        """Return the least number of periods after which states repeat, 0 if they do not.
-
-        Within the tolerance; :meth:`decision` says how reliable it is.
-        """
+        """Return the least number of periods after which states repeat, 0 if they do not."""
         if self.known_multiplicity is not None:
             return self.known_multiplicity
         return self.repetition(self.tolerance).multiplicity
@@ -71,20 +68,14 @@ class Response:
         return Decision(n, decided), impacts / n
 
     def repeats(self, impacts: int, n: int) -> bool:
-        """Return whether the samples have the impacts of a motion with so many in n periods.
-
-        One at phase 0 may be counted on either side of it.
-        """
+        """Return whether the samples have the impacts of a motion with so many in n periods."""
         count = len(self.samples)
         whole, rest = divmod(count, n)
         found = round(self.impacts_per_period * count)
         return whole * impacts - 1 <= found <= (whole + (rest > 0)) * impacts + 1
 
     def lacks_impacts(self, impacts: float, n: int) -> bool:
-        """Return whether so many impacts, namely none, are too few for n periods to last.
-
-        Between impacts the system is linear: what repeats after several periods is a transient.
-        """
+        """Return whether so many impacts, namely none, are too few for n periods to last."""
         return not impacts and (self.has_to_impact or n > 1)
 
     @property

@@ -187,10 +187,8 @@ class ResponseLoop:
         states, counts = results.states[i], results.counts
         size = point.excitation.frequency, float(results.x_rel_max[i])
         if settings.loose:
-            within = (
-                find_repetition(states, *size, each)
-                for each in (settings.tolerance, settings.loose)
-            )
+            both = settings.tolerance, settings.loose
+            within = (find_repetition(states, *size, each) for each in both)
             (counts["multiplicity"][i], _), (counts["nearly"][i], results.deviations[i]) = within
         if settings.decides:
             decision = decide_multiplicity(states, *size, settings.tolerance)
@@ -277,13 +275,9 @@ class CompiledResponseLoop(ResponseLoop):
         different = {id(point): point for point in points}  # as of a basin: one for all starts
         index = {key: i for i, key in enumerate(different)}
         chosen = np.array([index[id(point)] for point in points])
+        first = dict.fromkeys(START_PARAMETERS, 0.0) | {"x_rel_max_on": False}
         values = [
-            {
-                **dict.fromkeys(START_PARAMETERS, 0.0),
-                **point.structure.parameters(),
-                **point.excitation.inputs(),
-                "x_rel_max_on": False,
-            }
+            {**first, **point.structure.parameters(), **point.excitation.inputs()}
             for point in different.values()
         ]
         tables = (

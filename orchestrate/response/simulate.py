@@ -118,12 +118,9 @@ def impact_variables(table: Table) -> dict[str, Variable]:
 
 def impact_columns(impacts: Impacts, structure: Structure) -> Table:
     """Return impacts as table columns: time, closing speed, impulse, sticking."""
-    return {
-        "impact_time": impacts.time,
-        "impact_velocity": impacts.closing,
-        "impulse": impacts.impulse(structure),
-        "sticks": impacts.sticks,
-    }
+    names = "impact_time", "impact_velocity", "impulse", "sticks"
+    columns = impacts.time, impacts.closing, impacts.impulse(structure), impacts.sticks
+    return dict(zip(names, columns, strict=True))
 
 
 def simulate(

@@ -10,25 +10,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, REST, Instance, begin, sampled
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import positive, whole
 from ..running.job import Table
+from ..running.options import Running
 from .equations import absolute_accelerations
 from .labels import make_dataset, variable
 from .questions import Point, SeriesQuestion, ask
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 KINDS = ("bonded", "delaminated", "sampled")
 Floats = NDArray[np.float64]
@@ -108,16 +104,12 @@ class SpectraJob(SeriesQuestion):
         return (frequency**2 * displaced)[:, :shown], between[:, :shown]
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the spectra over parameter, kind, mass and order."""
         along, orders = self.series.name, self.orders()
         speeds = np.array([point.excitation.frequency for point in self.series.points])
         text = "amplitude of the absolute acceleration"
         kinds = "bonded and delaminated with impulses; delaminated as sampled between impulses"
-        variables = {
-            "acceleration": variable(
-                (along, "kind", "mass", "order"), table["acceleration"], "m/s2", text
-            )
-        }
+        dims = along, "kind", "mass", "order"
+        variables = {"acceleration": variable(dims, table["acceleration"], "m/s2", text)}
         coordinates = {
             **self.series.coordinates(),
             "kind": variable("kind", np.array(KINDS), "1", kinds),

@@ -6,17 +6,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, Instance
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, checked_word, positive, whole
 from ..running.blocks import lazy_rows
 from ..running.job import Table
+from ..running.options import Running
 from ..running.store import StoredRows
 from .labels import (
     COORDINATES,
@@ -33,12 +35,6 @@ from .peaks import POINTS, peaks
 from .questions import Point, SeriesQuestion, answer_question
 from .respond import DecidedResponse, decisions_from, responses_from
 from .response_loop import LoopSettings, periods_to_sample, response_loop
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 Direction = Literal["up", "down", "both", "given"]
 DIRECTIONS = ("up", "down", "both", "given")
@@ -97,11 +93,9 @@ class SweepJob(SeriesQuestion):
         return len(self.orders())
 
     def count(self) -> int:
-        """Return the number of responses, over all directions."""
         return self.independent_series() * super().count()
 
     def items(self) -> Sequence[Point]:
-        """Return the operating points of all responses, in computing order."""
         points = self.series.points
         return [points[index] for order in self.orders() for index in order]
 
@@ -118,15 +112,9 @@ class SweepJob(SeriesQuestion):
         self, fmus: Mapping[str, Path], points: Sequence[Point], starts: ArrayLike, **chain: Any
     ) -> Table:
         """Return a chunk's table: responses one from the other, or each from its own start."""
-        settings = LoopSettings(
-            transient=self.transient,
-            samples=self.samples,
-            tolerance=self.tolerance,
-            decides=True,
-            peak_periods=self.peak_periods,
-            peak_points=POINTS,
-            **chain,
-        )
+        names = ("transient", "samples", "tolerance", "peak_periods")
+        own: Any = {name: getattr(self, name) for name in names}
+        settings = LoopSettings(**own, decides=True, peak_points=POINTS, **chain)
         with Instance(fmus[OSCILLATOR]) as instance:
             results = response_loop(instance).respond(points, starts, settings)
         responses = responses_from(results, points, self.tolerance)
@@ -154,7 +142,6 @@ class SweepJob(SeriesQuestion):
         return bytes(table["end"][-1].tobytes())
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the sweep over the parameter, in the order of its values."""
         ordered = {name: self.in_order(table[name]) for name in table if name != "gap"}
         ordered["gap"] = self.gaps_in_order(table["gap"])
         title = f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
@@ -178,7 +165,6 @@ class SweepJob(SeriesQuestion):
         source = numbers.ravel().astype(np.intp)
 
         def read(rows: NDArray[np.intp]) -> NDArray[np.float64]:
-            """Return rows of samples by their place in the result."""
             return gaps.rows(source[rows]) / length[rows % len(length)]
 
         return lazy_rows(numbers.shape, gaps.shape[1], read)
@@ -219,7 +205,6 @@ class RunOnJob(SweepJob):
     warmup_items: ClassVar[int] = 0
 
     def items(self) -> Sequence[Any]:
-        """Return operating point and start state of each response."""
         points = self.series.points
         states = np.broadcast_to(np.reshape(self.start, (-1, 4)), (len(points), 4))
         return list(zip(points, map(tuple, states.tolist()), strict=True))

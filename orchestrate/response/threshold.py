@@ -82,16 +82,10 @@ def threshold_variables(structure: Structure, along: str, frequency: Floats) -> 
 
 
 def lowest_threshold(structure: Structure, low: float, high: float) -> tuple[float, float]:
-    """Minimise the threshold between two frequencies; return rad/s and box level, m/s2.
-
-    The curve is a smooth one with a valley at each natural frequency of the linear response, as
-    narrow as that is damped: its minima are bracketed on a grid with these frequencies in it, and
-    found by Brent's method.
-    """
+    """Minimise the threshold between two frequencies; return rad/s and box level, m/s2."""
     from scipy.optimize import minimize_scalar
 
     def level(frequency: float) -> float:
-        """Return the threshold acceleration of the box, m/s2, at a frequency."""
         speed = np.array([frequency])
         return float(threshold_amplitudes(structure, speed)[0]) * (frequency * frequency)
 

@@ -55,8 +55,6 @@ def lazy_rows(
     from xarray.core import indexing
 
     class Rows(BackendArray):
-        """Array that xarray indexes before it is read."""
-
         shape = (*leading, width)
         dtype = np.dtype(float)
 
@@ -65,7 +63,6 @@ def lazy_rows(
             return indexing.explicit_indexing_adapter(key, self.shape, support, self.read)
 
         def read(self, key: Index) -> NDArray[np.float64]:
-            """Return the values at integers and slices, one an axis."""
             numbers = np.arange(int(np.prod(leading))).reshape(leading)[key[:-1]]
             values = read(numbers.ravel()).reshape(*numbers.shape, width)
             return np.asarray(values[(..., key[-1])])

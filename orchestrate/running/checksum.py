@@ -24,12 +24,8 @@ def checksum(data: xr.Dataset) -> str:
     digest = hashlib.sha256(encode_json(normalized_attributes(data.attrs)))
     for name in sorted(data.variables, key=str):
         array = data.variables[name]
-        header = [
-            str(name),
-            list(map(str, array.dims)),
-            list(array.shape),
-            normalized_attributes(array.attrs),
-        ]
+        dims, attributes = list(map(str, array.dims)), normalized_attributes(array.attrs)
+        header = [str(name), dims, list(array.shape), attributes]
         digest.update(encode_json(header))
         for block in blocks(array.shape):
             digest.update(encode_array(np.asarray(array[block].values)))

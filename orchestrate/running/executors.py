@@ -113,7 +113,6 @@ class ThreadExecutor(Executor):
         future: Future[Any] = Future()
 
         def call() -> None:
-            """Run the call unless it was cancelled."""
             if future.set_running_or_notify_cancel():
                 try:
                     future.set_result(fn(*args, **kwargs))
@@ -188,7 +187,6 @@ def initialize_worker(parent: int) -> None:
         return
 
     def watch() -> None:
-        """End this worker when its parent process has ended."""
         while os.getppid() == parent:
             time.sleep(0.5)
         os._exit(1)

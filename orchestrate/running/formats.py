@@ -149,7 +149,6 @@ def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
             )
 
     def sheets(path_to_write: Path) -> None:
-        """Write each table and the metadata to a sheet of the workbook."""
         with path_to_write.open("wb") as file, pd.ExcelWriter(file, engine="openpyxl") as book:
             for name, frame in frames.items():
                 frame.to_excel(book, sheet_name=name[:MAX_SHEET_NAME], index=False, inf_rep="inf")
@@ -186,7 +185,6 @@ def write_mat(data: xr.Dataset, path: Path) -> list[Path]:
     content["attributes"] = {name: str(value) for name, value in data.attrs.items()}
 
     def save(path_to_write: Path) -> None:
-        """Write the variables to a MATLAB file."""
         with path_to_write.open("wb") as file:
             savemat(file, content, long_field_names=True, oned_as="column", do_compression=True)
 

@@ -84,10 +84,7 @@ class Job(ABC):
 
     @abstractmethod
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the final xarray dataset from the arrays of all chunks, concatenated.
-
-        The last chunk of a job that ``gathers`` adds arrays of other names.
-        """
+        """Return the final xarray dataset from the arrays of all chunks, concatenated."""
 
     def parameters(self) -> dict[str, Any]:
         """Return the job's fields as JSON data for its identity; long lists summarized."""

@@ -143,12 +143,8 @@ class Journal:
     def put(self, index: int, table: Table) -> None:
         """Store a computed chunk (dict of arrays) under its number, with a checksum."""
         data = pack(table)
-        self._query(
-            "INSERT OR REPLACE INTO chunks VALUES (?, ?, ?)",
-            index,
-            self._row_checksum(index, data),
-            data,
-        )
+        values = index, self._row_checksum(index, data), data
+        self._query("INSERT OR REPLACE INTO chunks VALUES (?, ?, ?)", *values)
 
     def _query(self, statement: str, *values: object) -> list[tuple]:  # type: ignore[type-arg]
         """Run an SQL statement; return all rows; SQLite's errors become ``StoreError``."""
@@ -171,11 +167,6 @@ class Journal:
         discard(self.path)
 
 
-def error_text(error: Exception) -> str:
-    """Return an exception's text in one line, the operating system's message if it has one."""
-    return str(getattr(error, "strerror", None) or error)
-
-
 class Lock:
     """File lock by SQLite on a result that is being computed; it ends with the process."""
 
@@ -192,8 +183,9 @@ class Lock:
                 raise InputError(
                     f"{path}: another process is computing it; wait for it, or choose another place"
                 ) from None
+            reason = getattr(error, "strerror", None) or error  # the operating system's
             raise StoreError(
-                f"{self.path}: cannot be made ({error_text(error)}); expected a writable "
+                f"{self.path}: cannot be made ({reason}); expected a writable "
                 "place where no folder or other file of this name is: remove that"
             ) from error
 

@@ -99,7 +99,8 @@ class RunOptions:
     @property
     def processes(self) -> int:
         """Number of worker processes: ``jobs``, or all available cores."""
-        return self.jobs or available_cores()
+        usable = getattr(os, "sched_getaffinity", None)
+        return self.jobs or (len(usable(0)) if usable else os.cpu_count() or 1)
 
     def path(self, name: str) -> Path | None:
         """Return the NetCDF path of a named result below ``store``; None without ``store``."""
@@ -107,10 +108,3 @@ class RunOptions:
             return None
         path = Path(self.store)
         return path if path.suffix == ".nc" else path / f"{name}.nc"
-
-
-def available_cores() -> int:
-    """Return the number of processor cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

@@ -323,7 +323,6 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
 
     def write(path_to_write: Path) -> None:
         # xarray's to_netcdf imports Dask's scheduler to find a lock that nobody needs here
-        """Write the dataset to a netCDF file."""
         with open_file(path_to_write, mode="w", lock=False) as file:
             targets = {name: create_variable(file.ds, str(name), dataset[name]) for name in bulk}
             others = {name: options for name, options in encoding.items() if name not in bulk}

@@ -112,10 +112,7 @@ def folds(
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
     low = calm_speed(structure, drive) if low is None else low
     speeds = [polish_root(numerator, root) for root in real if low <= root <= high]
-    return [
-        BifurcationPoint(float(no_load_speed(structure, drive, Omega)), Omega, FOLD)
-        for Omega in speeds
-    ]
+    return [BifurcationPoint(float(no_load_speed(structure, drive, w)), w, FOLD) for w in speeds]
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
@@ -129,13 +126,14 @@ def dividing_speed(structure: Structure, drive: Drive) -> float:
 
 def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
     """Return numerator and denominator of the slope d eta0 / d Omega as polynomials in Omega."""
-    pull, masses, box = (
-        substitute_i_omega(part) for part in mechanical_polynomials(structure, drive)
+    parts = mechanical_polynomials(structure, drive)
+    pull, masses, box = (  # with s = i Omega
+        Polynomial(np.asarray(part.coef, dtype=complex) * 1j ** np.arange(len(part.coef)))
+        for part in parts
     )
     above, below = pull + masses, box * (pull + masses) + pull * masses
-    torque = imaginary_part(above * conjugate_polynomial(below)) * Polynomial(
-        [0.0, 0.0, 0.0, 0.0, 1.0]
-    )
+    torque = imaginary_part(above * conjugate_polynomial(below))
+    torque = torque * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
     size = imaginary_part(1j * below * conjugate_polynomial(below))  # |below|^2
     factor = drive.epsilon / (2.0 * drive.b(structure))
     return size**2 - factor * (torque.deriv() * size - torque * size.deriv()), size**2
@@ -175,7 +173,6 @@ def neimark_sacker_points(
     from scipy.optimize import brentq
 
     def hurwitz_product(Omega: float) -> float:
-        """Return the product of all sums of two growth rates; it is 0 at a bifurcation."""
         roots = growth_rates(structure, drive, Omega)
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)
@@ -189,9 +186,8 @@ def neimark_sacker_points(
         roots = growth_rates(structure, drive, Omega)
         pairs = roots[np.abs(roots.imag) > 1e-9]
         if np.abs(pairs.real).min() < 1e-6:  # no two real ones of opposite signs
-            points.append(
-                BifurcationPoint(float(no_load_speed(structure, drive, Omega)), Omega, TORUS)
-            )
+            voltage = float(no_load_speed(structure, drive, Omega))
+            points.append(BifurcationPoint(voltage, Omega, TORUS))
     return points
 
 
@@ -220,12 +216,6 @@ def branch_stability(
     between = [0.5 * (low + high) for low, high in pairwise(speeds)]
     middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]] if points else [speed]
     return points, [bool(growth_rates(structure, drive, Omega)[0].real < 0.0) for Omega in middles]
-
-
-def substitute_i_omega(polynomial: Polynomial) -> Polynomial:
-    """Convert a polynomial in s into one in Omega by setting s = i Omega."""
-    powers = 1j ** np.arange(len(polynomial.coef))
-    return Polynomial(np.asarray(polynomial.coef, dtype=complex) * powers)
 
 
 def conjugate_polynomial(polynomial: Polynomial) -> Polynomial:

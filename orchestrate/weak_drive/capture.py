@@ -329,11 +329,9 @@ def capture(
         check("time", time, "s", low=0.0, exclusive=True)
     stay = checked_integer("stay", stay, 1)
     scheme = scheme_from_arguments(structure, step, sampled=control is not None)
-    job = CaptureJob(
-        "capture",
-        *(structure, drive, over or "", parameter_values, voltages),
-        *(float(tolerance), float(time or 0.0), stay, scheme, control),
-    )
+    what = (structure, drive, over or "", parameter_values, voltages)
+    how = (float(tolerance), float(time or 0.0), stay, scheme, control)
+    job = CaptureJob("capture", *what, *how)
     for each in job.items():  # refused now, not amid the work
         couple_job(*each, Constant(voltages[-1], job.time_limit(each)), scheme, 0.0, control)
     return answer(job, running, finder(running))

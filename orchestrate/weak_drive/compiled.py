@@ -155,10 +155,8 @@ class CompiledMaster(Master):
 
     def _failure(self, pair: Pair) -> FmuError:
         """Build the error for the FMU instance whose step failed."""
-        for channel, side in (
-            (self.oscillator, pair.oscillator),
-            (self.drive.channel, pair.drive),
-        ):
+        sides = (self.oscillator, pair.oscillator), (self.drive.channel, pair.drive)
+        for channel, side in sides:
             if side.status == NOT_FINITE:
                 channel.get()  # it raises
             if side.status:

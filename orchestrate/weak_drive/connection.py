@@ -48,13 +48,9 @@ class Connection:
     cubic: int = -1  # place among its inputs of one with its three derivatives; -1: all are held
 
 
+ENERGIES = ("box_force_work", "motor_energy", "box_damper_energy", "stored_energy")
 MOTOR = Connection(  # the first two outputs are what the step control needs
-    {name: Link(name, 1.0) for name in OURS},
-    ("voltage",),
-    (
-        *("box_force_work", "motor_energy", "box_damper_energy", "stored_energy"),
-        *("angle", "speed"),
-    ),
+    {name: Link(name, 1.0) for name in OURS}, ("voltage",), (*ENERGIES, "angle", "speed")
 )
 
 

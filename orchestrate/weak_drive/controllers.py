@@ -67,12 +67,6 @@ class InputControl(ABC):
         """Return the time at which the controller gave up, s; NaN if it did not."""
 
 
-def limit_voltage(voltage: float, available: float) -> float:
-    """Limit a voltage to the range from 0 to the available voltage, which may be negative."""
-    low, high = min(0.0, available), max(0.0, available)
-    return min(max(voltage, low), high)
-
-
 @dataclass(frozen=True, kw_only=True)
 class SpeedControl(Controller):
     """Control the speed by a proportional-integral law with a limited voltage.
@@ -127,10 +121,10 @@ class SpeedControl(Controller):
         deviation = setpoint - measured.speed
         grown = integral + deviation * measured.h / self.reset_time
         demand = self.gain * (deviation + grown)
-        voltage = limit_voltage(demand, measured.available)
-        if (
-            voltage == demand or (demand - voltage) * deviation < 0.0
-        ):  # not limited, or leaving that
+        low, high = sorted((0.0, measured.available))  # which may be negative
+        voltage = min(max(demand, low), high)
+        leaves = (demand - voltage) * deviation < 0.0
+        if voltage == demand or leaves:  # not limited, or leaving that
             integral = grown
         step = self.rise * measured.h
         return voltage, (setpoint + min(max(self.speed - setpoint, -step), step), integral)

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +25,7 @@ from ..fmu.exported import finder
 from ..fmu.instance import REAL_TYPES, Instance
 from ..fmu.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
 from ..fmu.play import PLAYED, Player
+from ..lazy import Unpack, xr
 from ..model import Excitation
 from ..model.arguments import checked, checked_integer, positive
 from ..model.drive import Drive
@@ -34,6 +35,7 @@ from ..response.labels import variable, yes_or_no
 from ..response.questions import Question, checked_state, checked_structure
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Chunk, Table, brief, plain
+from ..running.options import Running
 from ..running.runner import answer
 from .compiled import create_master
 from .connection import OURS, Connection, checked_links, checked_variable
@@ -44,12 +46,6 @@ from .master import Scheme
 from .polynomials import end_value
 from .record import Floats, Record, joined
 from .schedule import Course, check
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 OUTPUTS = (*PLAYED, "box_force", "impact_energy")
 IN_TIME_TOO = {
@@ -80,9 +76,8 @@ class Coupling:
         known = dict(zip(self.inputs.names, values, strict=True))
         drive.initialize(**dict(job.start_values), **known)
         recorded = job.record if parts == 1 else ()
-        connection = Connection(
-            links, tuple(self.inputs.names), recorded=recorded, cubic=self.inputs.cubic
-        )
+        more: Any = {"recorded": recorded, "cubic": self.inputs.cubic}
+        connection = Connection(links, tuple(self.inputs.names), **more)
         self.h = job.step / parts
         self.master = create_master(oscillator, drive, Scheme(self.h), connection)
         knows = "box_acceleration" in links
@@ -155,7 +150,6 @@ class CosimulateJob(Question):
     item: ClassVar[str] = "step"
 
     def call_text(self) -> str:
-        """Return Python source of the call that repeats this job."""
         values = {"connect": dict(self.connect), "parameters": dict(self.start_values)}
         values |= {name: getattr(self, name) for name in ("duration", "step", "record", "start")}
         texts = (f"{name}={value!r}" for name, value in values.items() if value)
@@ -163,7 +157,6 @@ class CosimulateJob(Question):
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
     def count(self) -> int:
-        """Return the number of items: all steps, and the motion under their accelerations."""
         return round(self.duration / self.step) + 1
 
     def times(self, parts: int = 1) -> Floats:
@@ -171,7 +164,6 @@ class CosimulateJob(Question):
         return np.linspace(0.0, self.duration, parts * (self.count() - 1) + 1)
 
     def items(self) -> Sequence[int]:
-        """Return the numbers of the steps, and of the motion."""
         return range(self.count())
 
     def chunks(self) -> list[Chunk]:
@@ -234,9 +226,6 @@ class CosimulateJob(Question):
         return {**columns, **impact_columns(impacts, self.structure)}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset over communication points, and of the impacts."""
-        import xarray as xr
-
         names = {**IN_TIME, **IN_TIME_TOO}
         description = describe(self.drive)
         theirs = {}
@@ -405,9 +394,8 @@ def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Val
             checked.append((name, bool(value)))
             continue
         check(name, value, str(drive.variable(name).unit or ""))
-        checked.append(
-            (name, float(value) if drive.variable(name).type in REAL_TYPES else int(value))
-        )
+        is_real = drive.variable(name).type in REAL_TYPES
+        checked.append((name, float(value) if is_real else int(value)))
     return tuple(checked)
 
 

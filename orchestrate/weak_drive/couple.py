@@ -121,9 +121,7 @@ class CoupleJob(CoupledRun):
                 f"the motor completed no revolution in {self.schedule.duration:g} s: "
                 "raise the voltage or the duration"
             )
-        variables = {
-            name: variable("revolution", table[name], *text) for name, text in COLUMNS.items()
-        }
+        variables = {n: variable("revolution", table[n], *text) for n, text in COLUMNS.items()}
         eta0 = table["voltage"] / self.drive.volts(self.structure)
         Omega = table["speed"] / self.structure.omega
         texts = {
@@ -146,18 +144,16 @@ class CoupleJob(CoupledRun):
         records = [RampRecord(self, table, up) for up in (True, False)]
         first: list[tuple[str, Jump | None, RampRecord]] = []
         further: list[tuple[str, Jump | None, RampRecord]] = []
-        for direction, record, rows in zip(
-            DIRECTIONS, records, table["jump_rows"][-1], strict=True
-        ):
+        legs = zip(DIRECTIONS, records, table["jump_rows"][-1], strict=True)
+        for direction, record, rows in legs:
             known = rows[np.isfinite(rows[:, 0])].tolist()
             jumps = [Jump(int(row[0]), row[1], row[2], Suspect(*row[3:])) for row in known]
             jumps.sort(key=lambda jump: jump.outcome != LOST)  # the first sure one stands for all
             first.append((direction, jumps[0] if jumps else None, record))
             further += [(direction, jump, record) for jump in jumps[1:]]
         directions, every, records_of = zip(*first, *further, strict=True)
-        columns = variables_shown(
-            records[0].forward(), [jump.shown if jump else NOT_SHOWN for jump in every]
-        )
+        shown = [jump.shown if jump else NOT_SHOWN for jump in every]
+        columns = variables_shown(records[0].forward(), shown)
         columns |= bracket_variables(every, columns, self.drive.volts(self.structure))
         columns |= self.theory_variables(len(every))
         for name in MIRRORED & columns.keys() if records[0].sense < 0.0 else ():
@@ -270,10 +266,8 @@ def schedule_from_arguments(
     rate = 1e-4 * volts * omega if rate is None else rate
     settle = 300.0 / omega if settle is None else settle
     first, last = ends
-    low, sense = (
-        0.9 * own_resonance.resonances(structure, drive)[0] * volts,
-        math.copysign(1.0, last),
-    )
+    low = 0.9 * own_resonance.resonances(structure, drive)[0] * volts
+    sense = math.copysign(1.0, last)
     if spin_up is None:  # a run up begins on the branch below the resonance
         spin_up = 600.0 / omega if sense * last > sense * first > low / 0.9 else 0.0
     ramp = Ramp(first, last, float(rate), float(settle), float(increment), bool(back))

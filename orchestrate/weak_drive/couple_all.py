@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -30,10 +31,8 @@ System = tuple[Structure, Drive]
 def voltage_range(structure: Structure, drive: Drive) -> tuple[float, float]:
     """Return the two ends of the voltage ramp, over K omega, from below to past resonance."""
     low, high = own_resonance.resonances(structure, drive)
-    first, last = (
-        float(averaged.no_load_speed(structure, drive, speed))
-        for speed in (0.97 * low, 1.05 * high)
-    )
+    ends = (0.97 * low, 1.05 * high)
+    first, last = (float(averaged.no_load_speed(structure, drive, end)) for end in ends)
     folds = averaged.folds(structure, drive)
     return first, max([last, *(fold.eta0 + 0.05 for fold in folds)])
 
@@ -53,9 +52,8 @@ def couple_job_from_numbers(
     couple.require_motor(drive)
     volts, omega = drive.volts(structure), structure.omega
     first, last = voltage_range(structure.as_bonded(), drive) if eta0 is None else eta0
-    schedule = couple.schedule_from_arguments(
-        structure, drive, (first * volts, last * volts), rate=rate * volts * omega, back=back
-    )
+    ends, speed = (first * volts, last * volts), rate * volts * omega
+    schedule = couple.schedule_from_arguments(structure, drive, ends, rate=speed, back=back)
     scheme = couple.scheme_from_arguments(structure, None if step is None else step / omega)
     job = couple.couple_job(structure, drive, schedule, scheme)
     return replace(job, name=f"couple_{name}_{kind}_{rate:g}")
@@ -121,10 +119,8 @@ def couple_all(
         if not (math.isfinite(rate) and rate > 0.0):
             raise InputError(f"rate = {rate}: expected a number > 0, of eta0 in a time 1/omega")
     runs = list(product(systems, kinds, dict.fromkeys(rates)))
-    jobs = [
-        couple_job_from_numbers(name, systems[name], kind, rate, eta0, back, step)
-        for name, kind, rate in runs
-    ]
+    more = (eta0, back, step)
+    jobs = [couple_job_from_numbers(n, systems[n], kind, rate, *more) for n, kind, rate in runs]
     if not jobs:
         raise InputError("kinds, rates: expected one of each, or more")
     datasets = [
@@ -133,14 +129,8 @@ def couple_all(
     ]
     texts_of_jumps = {name: "" for name, values in datasets[0].items() if values.dtype.kind == "U"}
     missing = dict.fromkeys(datasets[0].data_vars, np.nan) | texts_of_jumps
-    result = xr.concat(
-        datasets,
-        "run",
-        join="outer",
-        combine_attrs="drop_conflicts",
-        data_vars="all",
-        fill_value=missing,
-    )
+    how: Any = {"join": "outer", "combine_attrs": "drop_conflicts", "data_vars": "all"}
+    result = xr.concat(datasets, "run", fill_value=missing, **how)
     names, states, speeds = (np.array(column) for column in zip(*runs, strict=True))
     text = "change of the no-load speed over omega per 1/omega"
     result = result.assign_coords(

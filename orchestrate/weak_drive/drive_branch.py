@@ -47,13 +47,7 @@ from .shooting import Shooter
 
 STRUCTURES = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
-BIFURCATIONS = (
-    Kind.FOLD,
-    Kind.FLIP,
-    Kind.TORUS,
-    Kind.TOUCHING,
-    Kind.GRAZING,
-)  # located
+BIFURCATIONS = (Kind.FOLD, Kind.FLIP, Kind.TORUS, Kind.TOUCHING, Kind.GRAZING)  # located
 MULTIPLIERS = 4  # the largest ones, that are kept
 COLUMNS: dict[str, tuple[str, str]] = {  # numbers of a motion, with units
     "speed": ("rad/s", "mean speed"),
@@ -90,16 +84,14 @@ class DriveBranchJob(Job):
         for structure in items:
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
                 rows.append(self.trace_legs((oscillator, shaker), structure))
-        bifurcations = [
-            [[each.point for each in leg.bifurcations] for leg in legs] for legs in rows
-        ]
+        columns = {
+            "points": lambda leg: self.motion_table(leg.points),
+            "events": lambda leg: self.motion_table([each.point for each in leg.bifurcations]),
+            "kinds": self.bifurcation_codes,
+            "ends": lambda leg: ENDS.index(leg.end),
+        }
         return {
-            "points": np.array([[self.motion_table(leg.points) for leg in legs] for legs in rows]),
-            "events": np.array(
-                [[self.motion_table(motions) for motions in legs] for legs in bifurcations]
-            ),
-            "kinds": np.array([[self.bifurcation_codes(leg) for leg in legs] for legs in rows]),
-            "ends": np.array([[ENDS.index(leg.end) for leg in legs] for legs in rows]),
+            k: np.array([[f(leg) for leg in legs] for legs in rows]) for k, f in columns.items()
         }
 
     @property
@@ -134,9 +126,8 @@ class DriveBranchJob(Job):
         if flip.kind != Kind.FLIP or 2 * flip.point.period.revolutions > turns:
             return False
         ends = [leg.points[-1].coordinates for leg in legs if leg.end == HALVED]
-        return not any(
-            np.abs(flip.point.coordinates - end).max() < 2.0 * self.longest for end in ends
-        )
+        at = flip.point.coordinates
+        return not any(np.abs(at - end).max() < 2.0 * self.longest for end in ends)
 
     def trace_doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
         """Trace the leg of twice the period from a period doubling."""
@@ -321,15 +312,8 @@ def drive_branch(
     check("longest", longest, "", low=1e-4, high=1.0)
     settle = 600.0 / omega if settle is None else float(settle)
     check("settle", settle, "s", low=0.0)
-    job = DriveBranchJob(
-        "drive_branch",
-        structure,
-        drive,
-        (first, last),
-        float(longest),
-        checked_integer("most", most, 2),
-        checked_integer("period", period, 1),
-        checked_integer("steps", steps, 16),
-        settle,
-    )
+    least = (("most", most, 2), ("period", period, 1), ("steps", steps, 16))
+    most, period, steps = (checked_integer(*count) for count in least)
+    own = (float(longest), most, period, steps, settle)
+    job = DriveBranchJob("drive_branch", structure, drive, (first, last), *own)
     return answer(job, running, finder(running))

@@ -200,11 +200,9 @@ def drive_spectra(
         raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
     step = scheme_from_arguments(structure, step, 0.0).h
     record = (revolutions, points, float(highest))
-    tried = (
-        [voltage_at_resonance(structure, drive, share) for share in (0.6, 0.45, 0.3, 0.15)]
-        if voltage is None
-        else [float(voltage)]
-    )
+    shares = (0.6, 0.45, 0.3, 0.15) if voltage is None else ()
+    tried = [voltage_at_resonance(structure, drive, share) for share in shares]
+    tried = tried or [float(voltage)]  # type: ignore[arg-type]
     jobs = []
     for target in tried:
         first = 0.85 * target if begin is None else float(begin)

@@ -73,11 +73,8 @@ def extrema(series: Sequence[Any], first: Any, last: Any) -> list[Any]:
 
 def range_of_mass(structure: Structure, record: Record) -> Range:
     """Return the lowest and the highest x1 within each step, also with an impact."""
-    before, after, cubic = (
-        record.before.motion(),
-        record.after.motion(),
-        record.after.acceleration(),
-    )
+    before, after = record.before.motion(), record.after.motion()
+    cubic = record.after.acceleration()
     h = record.after["h"]
     hit = after.impact_time - record.before["time"]
     impact = (after.impact_time != before.impact_time) & (hit >= 0.0) & (hit <= h)

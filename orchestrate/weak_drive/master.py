@@ -142,10 +142,7 @@ class Master:
         return self.run([inputs], h)
 
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
-        """Run an interval for each row of the drive's inputs, held constant; return the record.
-
-        Where something is recorded, inputs at the interval's end follow those over it in a row.
-        """
+        """Run an interval for each row of the drive's inputs, held constant; return the record."""
         values = np.asarray(inputs, dtype=float)
         rows = values.reshape(len(values), self.width)
         return self.run_controlled(rows.tolist(), len(values), h)
@@ -278,11 +275,8 @@ class Master:
         from_position = math.isnan(after[1])
         times = [*self.points[::2][-2 - from_position :], self.row[TIME] + h]
         values = [*self.points[1::2][-2 - from_position :], after[0 if from_position else 1]]
-        return (
-            *derivatives([t - self.row[TIME] for t in times], values, 1 + from_position),
-            0.0,
-            0.0,
-        )
+        ages = [t - self.row[TIME] for t in times]
+        return (*derivatives(ages, values, 1 + from_position), 0.0, 0.0)
 
     def _remember(self) -> None:
         """Keep the last points of velocity or position where no acceleration is connected."""

@@ -35,7 +35,6 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
     w, n = free_modes(structure, drive)
 
     def gap_at_impact(Omega: float) -> float:
-        """Return the gap at the impact for a speed; 0 at a resonance."""
         return float((n**2 / (w * np.tan(w * np.pi / Omega))).sum())
 
     poles = (w[:, np.newaxis] / np.arange(1, 1 + int(w[-1] / w[-2]))).ravel()

@@ -72,7 +72,6 @@ class PassageJob(Job):
         """Compute one chunk of steps with all samples, or the hysteresis loop."""
 
         def revolve_with_samples(run: Run) -> Table:
-            """Run the steps; return revolutions and the samples after every interval."""
             record = run.record(items)
             revolutions, energies = run.revolutions.add(record)
             own = energies._asdict()

@@ -285,7 +285,6 @@ class Shooter:
         known: dict[float, Shot] = {0.0: base}
 
         def end_state_shifted_by(change: float) -> Floats | None:
-            """Return the final state with one unknown shifted; None past a grazing."""
             if change not in known:
                 moved = unknowns.copy()
                 moved[which] += change

@@ -86,12 +86,8 @@ def parameter_file_path(component: str) -> str:
 def add_units(root: ET.Element, components: Components) -> None:
     """Add the definitions of all used units to the XML document."""
     parent = ET.SubElement(root, qualified_tag("ssd", "Units"))
-    used = {
-        one.unit(port): one.fmu.units[one.unit(port)]
-        for one in components.values()
-        for port in (*one.inputs, *one.outputs)
-        if one.unit(port)
-    }
+    each = [(c, c.unit(p)) for c in components.values() for p in (*c.inputs, *c.outputs)]
+    used = {unit: one.fmu.units[unit] for one, unit in each if unit}
     for unit, powers in sorted(used.items()):
         element = ET.SubElement(parent, qualified_tag("ssc", "Unit"), name=unit)
         ET.SubElement(

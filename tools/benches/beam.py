@@ -82,12 +82,9 @@ class DelaminatedBeam:
     def section(self, share: float) -> Section:
         """Return the cross-section of a layer that has a share of the thickness."""
         h = share * self.thickness
-        area = h * self.width
-        inertia = self.width * h**3 / 12.0
-        stiffness = self.modulus
-        return Section(
-            bending=stiffness * inertia, axial=stiffness * area, mass=self.density * area
-        )
+        area, inertia = h * self.width, self.width * h**3 / 12.0
+        bending, axial = self.modulus * inertia, self.modulus * area
+        return Section(bending=bending, axial=axial, mass=self.density * area)
 
     @cached_property
     def nodes(self) -> Floats:
@@ -131,18 +128,13 @@ class DelaminatedBeam:
 
     @cached_property
     def matrices(self) -> tuple[Floats, Floats, Floats]:
-        """Return stiffness, mass matrix and base excitation of the free displacements.
-
-        The pull is the inertia times a unit displacement of base and beam.
-        """
+        """Return stiffness, mass matrix and base excitation of the free displacements."""
         size = 3 * len(self.node_numbers)
         stiffness, inertia = np.zeros((size, size)), np.zeros((size, size))
         sections, inside = self.sections(), self.is_inside(self.nodes)
         for i, length in enumerate(np.diff(self.nodes)):
             for layer in (1, 2) if inside[i] and inside[i + 1] else (0,):
-                to = np.concatenate(
-                    [self.node_selector(layer, i), self.node_selector(layer, i + 1)]
-                )
+                to = np.concatenate([self.node_selector(layer, node) for node in (i, i + 1)])
                 used = np.flatnonzero(to.any(axis=0))
                 to, where = to[:, used], np.ix_(used, used)
                 stiffness[where] += to.T @ sections[layer].stiffness(length) @ to
@@ -240,10 +232,9 @@ class DelaminatedBeam:
         pairs = [i for i in reversed(apart) if i > 0][::every]
         if not pairs:
             return None
-        upper, lower = (
-            np.array([shapes[3 * self.node_numbers[layer, i] + DEFLECTION] for i in pairs])
-            for layer in (1, 2)
-        )
+        numbers = self.node_numbers
+        rows = [[3 * numbers[layer, i] + DEFLECTION for i in pairs] for layer in (1, 2)]
+        upper, lower = (shapes[row] for row in rows)
         upper_part, lower_part = self.section(self.share), self.section(1.0 - self.share)
         mass = upper_part.mass * lower_part.mass / (upper_part.mass + lower_part.mass)
         mass *= every * self.length / self.elements

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orchestrate import record
+from orchestrate.lazy import xr
 
 from .excitation import Excitation
 from .integrator import highest_stiffness, integrate
 from .sensors import Sensor
 from .system import Floats, ModalSystem, Motion
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 STEPS = 60.0  # in a period of the fastest oscillation, contacts closed
 PIECE = 100_000  # numbers that are computed at once
@@ -64,12 +61,7 @@ class Bench:
             None if sensor is None else sensor.read(signal, fine, factor, rng)
             for sensor, signal, rng in zip(sensors, signals, rngs, strict=True)
         ]
-        box, face1, face2 = readings
-        measured = record(
-            time=np.arange(len(signals[0][::factor])) / self.rate,
-            box_acceleration=box,
-            acceleration1=face1,
-            acceleration2=face2,
-            source="virtual bench",
-        )
-        return measured, motion
+        names = ("box_acceleration", "acceleration1", "acceleration2")
+        channels = dict(zip(names, readings, strict=True))
+        time = np.arange(len(signals[0][::factor])) / self.rate
+        return record(time=time, **channels, source="virtual bench"), motion

@@ -133,10 +133,7 @@ def equilibrium(system: ModalSystem) -> Floats:
 
 
 def highest_stiffness(system: ModalSystem) -> float:
-    """Return a bound of the largest squared angular frequency, all contacts closed.
-
-    For Hertz's law at a depth of 1 mm.
-    """
+    """Return a bound of the largest squared angular frequency, all contacts closed."""
     contacts = system.contacts or empty_contacts(system.modes)
     stiffness = contacts.stiffness * (np.sqrt(1e-3) if contacts.law == "hertz" else 1.0)
     weighted = contacts.rows * np.sqrt(stiffness)[:, np.newaxis]

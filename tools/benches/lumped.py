@@ -37,14 +37,8 @@ class Faces:
         if self.law == "hertz":  # as deep at the speed as the linear spring
             stiffness *= 1.25 / math.sqrt(self.speed / w)
         count = len(rows)
-        return Contacts(
-            rows,
-            clearance,
-            np.full(count, stiffness),
-            np.full(count, damping),
-            self.law,
-            longest_impact=1.5 / self.frequency,
-        )
+        forces = np.full(count, stiffness), np.full(count, damping)
+        return Contacts(rows, clearance, *forces, self.law, 1.5 / self.frequency)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orchestrate import Structure
+from orchestrate.lazy import xr
 
 from .beam import DelaminatedBeam
 from .bench import Bench
@@ -26,9 +26,6 @@ from .lumped import (
 )
 from .sensors import Sensor
 from .system import ModalSystem, Motion
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 OPENED = 1e-6  # m: a gap that counts; a penalty lets go of less where nothing opens
 FIRST, LAST, DURATION = 20.0, 90.0, 40.0  # Hz, Hz, s
@@ -167,9 +164,8 @@ def draw_delaminated(rng: np.random.Generator, level: float, conditions: Conditi
 
 def draw_with_gap(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
     """Draw a specimen of two halves with a gap of 0.1 to 2 mm at rest."""
-    return two_mass_specimen(
-        draw_halves(rng), draw_contact_law(rng, draw_log_uniform(rng, 1e-4, 2e-3))
-    )
+    own, clearance = draw_halves(rng), draw_log_uniform(rng, 1e-4, 2e-3)
+    return two_mass_specimen(own, draw_contact_law(rng, clearance))
 
 
 def draw_preloaded(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
@@ -314,13 +310,9 @@ def draw_sensor(rng: np.random.Generator, noise: float, bandwidth: float) -> Sen
 
 
 def draw_guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure:
-    """Draw a guess: true masses and frequencies with relative errors, damping by up to 2.
-
-    Of a sound beam the guess has two halves a little apart, as one who asks has to assume.
-    """
+    """Draw a guess: true masses and frequencies with relative errors, damping by up to 2."""
 
     def near(value: float) -> float:
-        """Return a value changed by a random relative error of at most ``off``."""
         return value * float(rng.uniform(1.0 - off, 1.0 + off))
 
     f1, f2 = own.f1, min(own.f2, MOST_APART * own.f1)
@@ -343,10 +335,8 @@ def draw(
 ) -> Case:
     """Draw a beam and a bench and measure it; return record, guess and truth as a ``Case``."""
     conditions = conditions or Conditions()
-    level, noise = (
-        draw_log_uniform(rng, *conditions.level),
-        draw_log_uniform(rng, *conditions.noise),
-    )
+    level = draw_log_uniform(rng, *conditions.level)
+    noise = draw_log_uniform(rng, *conditions.noise)
     name, shaker = draw_excitation(rng, conditions.excitation, level)
     count = conditions.sensors or int(rng.integers(1, 3))
     bandwidth = draw_log_uniform(rng, 1000.0, 4000.0)

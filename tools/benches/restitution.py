@@ -37,7 +37,6 @@ def hunt_crossley_restitution(damping: float, speed: float) -> float:
     high = min(1.0, (1.0 - 1e-15) / y)
 
     def balance(e: float) -> float:
-        """Return how far an impact's energies are from balance for a coefficient of restitution."""
         return y * (1.0 + e) - math.log1p(y) + math.log1p(-e * y)
 
     return float(brentq(balance, 0.0, high)) if balance(high) < 0.0 else high

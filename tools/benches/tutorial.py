@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 from scipy.signal import butter, sosfiltfilt
+
+from orchestrate.lazy import xr
 
 from .beam import DelaminatedBeam
 from .bench import Bench
@@ -17,9 +18,6 @@ from .excitation import Swept
 from .lumped import Clamp, Faces, Halves
 from .sensors import Sensor
 from .system import ModalSystem
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "records"
 GRAVITY = 9.80665  # m/s2
@@ -29,12 +27,8 @@ RATE = 1250.0  # Hz
 BEAM = Halves(m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.008, zeta2=0.009)
 FACES = Faces(law="hunt-crossley", frequency=1000.0, restitution=0.6, speed=0.05)
 CLAMP = Clamp(faces=Faces(frequency=600.0), play=1e-4, mass=0.2, centring=1.0)
-BENCH = Bench(
-    excitation=SWEEP,
-    box=Sensor(noise=0.01),
-    face1=Sensor(noise=0.02, gain=1.02),
-    rate=RATE,
-)
+FACE = Sensor(noise=0.02, gain=1.02)
+BENCH = Bench(excitation=SWEEP, box=Sensor(noise=0.01), face1=FACE, rate=RATE)
 HEADING = """\
 Virtual bench with compliant contact: computed, not measured
 Test;Swept sine {first:g}-{last:g} Hz, linear, {duration:g} s, {level} g

@@ -11,6 +11,7 @@ import zipfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from fmu_src.export import forms, native_form, sources
 from fmu_src.export.compiler import kernel_object
@@ -37,11 +38,8 @@ def own_compiler() -> list[str] | None:
 
 def zig_compiler(target: str = "native") -> list[str] | None:
     """Return the command of ziglang's C compiler for a target; None if not installed."""
-    return (
-        [sys.executable, "-m", "ziglang", "cc", "-target", target]
-        if importlib.util.find_spec("ziglang")
-        else None
-    )
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", target]
+    return command if importlib.util.find_spec("ziglang") else None
 
 
 def c_compiler() -> list[str] | None:
@@ -57,11 +55,9 @@ def run_compiler(command: Sequence[object], folder: Path) -> None:
 
 def unpack_binary(fmu: Path, version: str, folder: Path, windows: bool = False) -> Path:
     """Unpack an FMU's binary of this machine into a folder; return its path."""
-    suffix = ".dll" if windows else ".so"
+    name = f"{FOLDERS[version][windows]}/{fmu.stem}{'.dll' if windows else '.so'}"
     with zipfile.ZipFile(fmu) as archive:
-        return Path(
-            archive.extract(f"binaries/{FOLDERS[version][windows]}/{fmu.stem}{suffix}", folder)
-        )
+        return Path(archive.extract(f"binaries/{name}", folder))
 
 
 def names_header(fmu: Path) -> str:
@@ -75,22 +71,12 @@ def names_header(fmu: Path) -> str:
             continue
         settable = variable.causality in ("parameter", "input")
         limits = [c_literal(variable.min, -math.inf), c_literal(variable.max, math.inf)]
-        cells = [
-            f'"{variable.name}"',
-            f"{variable.valueReference}u",
-            f"'{TYPES[variable.type]}'",
-            str(int(settable)),
-        ]
-        rows.append(
-            "    {" + ", ".join([*cells, str(int(variable.variability == "fixed")), *limits]) + "},"
-        )
-    defines = [
-        "#include <math.h>",
-        f'#define TOKEN "{description.guid}"',
-        f"#define TIME_REFERENCE {time}u",
-        f"#define FMI_VERSION {description.fmi_version[0]}",
-    ]
-    defines += [f"#define MODEL_{description.name}"]
+        cells = [f'"{variable.name}"', f"{variable.valueReference}u", f"'{TYPES[variable.type]}'"]
+        cells += [str(int(settable)), str(int(variable.variability == "fixed")), *limits]
+        rows.append("    {" + ", ".join(cells) + "},")
+    version = f"#define FMI_VERSION {description.fmi_version[0]}"
+    defines = ["#include <math.h>", f'#define TOKEN "{description.guid}"']
+    defines += [f"#define TIME_REFERENCE {time}u", version, f"#define MODEL_{description.name}"]
     return "\n".join([*defines, "static const Name NAMES[] = {", *rows, "};", ""])
 
 
@@ -154,15 +140,8 @@ def rebuild_shim(
         (folder / name).write_bytes(content)
     target = folder / "rebuilt.so"
     fixed = ("-shared", "-fPIC", "-fvisibility=hidden", "-g", "-O1", "-ffp-contract=off")
-    command = [
-        *(command or c_compiler()),
-        *fixed,
-        *options,
-        "-o",
-        target,
-        *(name for name in native_form.shim_sources(version) if name.endswith(".c")),
-        "kernel.o",
-    ]
+    parts = [name for name in native_form.shim_sources(version) if name.endswith(".c")]
+    command = [*(command or c_compiler()), *fixed, *options, "-o", target, *parts, "kernel.o"]
     run_compiler(command, folder)
     return target
 
@@ -199,18 +178,10 @@ class Importer:
         """Run a mode of the program with times or a text as input; return the process."""
         command = [*under, self.program, self.library, *arguments]
         text += "".join(f"{float(time).hex()}\n" for time in times)
-        done = subprocess.run(
-            [*map(str, command)],
-            input=text,
-            capture_output=True,
-            text=True,
-            timeout=timeout,
-            env=env,
-        )
-        if success:
-            assert done.returncode == 0, (
-                f"exit code {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}"
-            )
+        how: Any = {"input": text, "timeout": timeout, "env": env}
+        done = subprocess.run([*map(str, command)], capture_output=True, text=True, **how)
+        shown = f"exit code {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}"
+        assert done.returncode == 0 or not success, shown
         return done
 
     def simulate(

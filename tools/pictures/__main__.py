@@ -78,12 +78,11 @@ def draw_researcher_card() -> Figure:
 
 def follow_branches() -> dict[str, xr.Dataset]:
     """Return the branches of the orbits of Figure 6, each by a name."""
-    return {
-        label: orchestrate.branch(
-            PAPER, start=orchestrate.orbit(PAPER, eta=eta, period=period), limits=limits
-        )
-        for label, (eta, period, limits) in BRANCHES.items()
-    }
+    found = {}
+    for label, (eta, period, limits) in BRANCHES.items():
+        start = orchestrate.orbit(PAPER, eta=eta, period=period)
+        found[label] = orchestrate.branch(PAPER, start=start, limits=limits)
+    return found
 
 
 def draw_branches() -> Figure:

@@ -25,7 +25,6 @@ def write_small(png: bytes, path: Path) -> None:
         few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
 
     def write(place: Path) -> None:
-        """Write the picture with a palette to a path."""
         few.save(place, format="png", optimize=True)
 
     write_whole(path, write)

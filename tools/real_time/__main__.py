@@ -16,12 +16,6 @@ from .step_times import FREQUENCIES, PARTS, measure_steps, table_row
 from .targets import run_on_all_targets
 
 
-def print_targets(sources: Path, folder: Path) -> None:
-    """Run the trajectory on each target and print its results."""
-    for name, result in run_on_all_targets(sources, folder).items():
-        print(f"{name}: " + ", ".join(f"{key} {value}" for key, value in result.items()))
-
-
 def print_stack(sources: Path) -> None:
     """Print a table of the stack bytes of each kind of call."""
     if missing_programs(*(compiler for compiler, *_ in MACHINES.values())):
@@ -51,7 +45,8 @@ def main() -> None:
     fmu = Path(find(OSCILLATOR).path)
     with tempfile.TemporaryDirectory() as folder:
         sources = unpack(fmu, Path(folder))
-        print_targets(sources, Path(folder))
+        for name, result in run_on_all_targets(sources, Path(folder)).items():
+            print(f"{name}: " + ", ".join(f"{key} {value}" for key, value in result.items()))
         print_stack(sources)
     print_times(fmu, arguments.steps)
 

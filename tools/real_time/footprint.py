@@ -22,10 +22,7 @@ CALLS = {  # FMI 3.0's, by what they are for
     "instantiation": "fmi3InstantiateCoSimulation",
     "initialisation": "fmi3ExitInitializationMode",
 }
-MACHINES = {
-    "Cortex-M7": ("arm-none-eabi-gcc", *CORTEX_M7),
-    "x86-64": ("gcc",),
-}
+MACHINES = {"Cortex-M7": ("arm-none-eabi-gcc", *CORTEX_M7), "x86-64": ("gcc",)}
 
 
 @dataclass(frozen=True)

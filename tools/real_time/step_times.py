@@ -30,12 +30,9 @@ class StepTimes:
     contacts: int
 
     def __add__(self, other: StepTimes) -> StepTimes:
-        return StepTimes(
-            self.histogram + other.histogram,
-            max(self.evaluations, other.evaluations),
-            self.impacts + other.impacts,
-            self.contacts + other.contacts,
-        )
+        most = max(self.evaluations, other.evaluations)
+        counts = self.impacts + other.impacts, self.contacts + other.contacts
+        return StepTimes(self.histogram + other.histogram, most, *counts)
 
     def quantile(self, part: float) -> int:
         """Return the time, ns, that a part of the steps does not exceed."""

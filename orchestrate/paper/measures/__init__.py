@@ -27,12 +27,6 @@ def check_claims(claims: Iterable[Claim], data: Datasets) -> list[dict[str, str]
         measured = find_measure(claim.measure)(data, claim, **claim.keywords())
         verdict = judge(measured.parts, data.size.decides or not claim.full)
         names = ("section", "text", "printed", "how", "tolerance")
-        rows.append(
-            {
-                **{name: getattr(claim, name) for name in names},
-                "found": plain(measured.found),
-                "verdict": verdict,
-                "why": claim.why if verdict in (NO, PARTLY) else "",
-            }
-        )
+        row = {**{name: getattr(claim, name) for name in names}, "found": plain(measured.found)}
+        rows.append({**row, "verdict": verdict, "why": claim.why * (verdict in (NO, PARTLY))})
     return rows

@@ -42,7 +42,6 @@ def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndar
     rate = START[1] + D * alpha - ETA * (b * math.cos(phase) - a * math.sin(phase))
 
     def motion(tau: np.ndarray) -> np.ndarray:
-        """Return the displacement at non-dimensional times."""
         angle = ETA * (tau + BEGAN)
         free = alpha * np.cos(frequency * tau) + rate / nu * np.sin(frequency * tau)
         return a * np.cos(angle) + b * np.sin(angle) + np.exp(-damping * tau) * free
@@ -151,8 +150,6 @@ def next_state(data: Datasets, claim: Claim) -> Measured:
 
 def period(data: Datasets, claim: Claim) -> Measured:
     """Compare eta/2 pi and 2 pi/eta as periods of sin(eta tau)."""
-    printed, right = (
-        float(np.abs(np.sin(ETA * (TAUS + span)) - np.sin(ETA * TAUS)).max())
-        for span in (ETA / (2.0 * np.pi), 2.0 * np.pi / ETA)
-    )
+    spans, here = (ETA / (2.0 * np.pi), 2.0 * np.pi / ETA), np.sin(ETA * TAUS)
+    printed, right = (float(np.abs(np.sin(ETA * (TAUS + span)) - here).max()) for span in spans)
     return compare("change of sin(eta tau) after T", printed, right, "2 pi/eta")

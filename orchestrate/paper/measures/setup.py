@@ -51,7 +51,6 @@ def fit_linear_curve(speed: np.ndarray, amplitude: np.ndarray) -> tuple[np.ndarr
     from scipy.optimize import least_squares
 
     def errors(numbers: np.ndarray) -> np.ndarray:
-        """Return the curve's relative errors."""
         return linear_curve(numbers, speed) / amplitude - 1.0
 
     begin = np.array([0.02 * amplitude.max(), speed[amplitude.argmax()], 0.01])

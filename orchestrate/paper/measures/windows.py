@@ -198,11 +198,10 @@ def one_impact_everywhere(data: Datasets, claim: Claim) -> Measured:
     settled, up = (
         reading.between(one, 1.37, 8.0) for one in (data.settled("elastic"), data.up("elastic"))
     )
+    repeats = [part.multiplicity.values > 0 for part in (settled, up)]
     one, swept = (
-        float(np.mean(reading.impacts_in_response(part)[part.multiplicity.values > 0] == 1))
-        if (part.multiplicity > 0).any()
-        else np.nan
-        for part in (settled, up)
+        float(np.mean(reading.impacts_in_response(part)[flags] == 1)) if flags.any() else np.nan
+        for part, flags in zip((settled, up), repeats, strict=True)
     )
     text = (
         f"{100 * one:.1f} % of the periodic responses above 1.37 run on until they repeat, "
