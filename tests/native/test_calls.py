@@ -1,6 +1,7 @@
 """Which function may be called when, and what a call that may not be changes: nothing."""
 
 import ctypes
+import math
 import re
 
 import pytest
@@ -141,3 +142,31 @@ def test_only_references_of_the_model_description_are_known(fmus, version):
                     with pytest.raises(Refused):
                         f.call(f"set{kind}", [reference], [0])
         assert f.save() == before
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_damaged_state_is_refused(fmus, version):
+    """Cut or longer, a bit of it changed anywhere, or with a number that does not fit."""
+    with open_fmu(fmus[version]) as f:
+        data, time = f.start().step(20.0).save()
+        before = f.outputs()
+        bad = [data[:size] for size in (0, 1, 63, 64, len(data) - 1)] + [data + b"\0"]
+        for place in (*range(64), *range(64, len(data), 61)):
+            bad.append(data[:place] + bytes([data[place] ^ 4]) + data[place + 1 :])
+        for one in bad:
+            with pytest.raises(Refused):
+                f.restore(one, time)
+        assert f.outputs() == before
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_step_of_no_length_and_the_shortest_there_is(fmus, version):
+    with open_fmu(fmus[version]) as f:
+        before = f.start().step(20.0).motion()
+        for size in (-1.0, -5e-324, math.nan, math.inf, -math.inf):
+            assert "communicationStepSize = " in f.refused("doStep", 20.0, size)
+        for point in (-20.0, 19.0, 21.0, math.nan, math.inf, 1e300):
+            told = f.refused("doStep", point, 1.0)
+            assert "currentCommunicationPoint = " in told and "20.0 s" in told
+        f.call("doStep", 20.0, 0.0)
+        assert f.motion() == before

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from orchestrate.model import Structure
+from orchestrate.model.structure import Structure
 
 BEAM = {"m1": 1.5, "m2": 1.4, "k1": 8437.5, "k2": 9450.0, "d1": 1.125, "d2": 1.95}
 PAPER = {"m1": 1.0, "m2": 1.0, "k1": 1.0, "k2": 1.2, "d1": 0.01, "d2": 0.01}
@@ -186,23 +186,6 @@ def levels(si: bool) -> xr.Dataset:
     threshold = ("frequency", level[0] * 30.0 / size, {"event": "opens"})
     variables["threshold_acceleration"] = threshold
     return xr.Dataset(variables, {**sides, **names}, {**known(si), "clearance": -2e-5})
-
-
-def paper_curves(panels: int) -> xr.Dataset:
-    """Something that looks like the paper's curves."""
-    count = 40
-    tau = np.tile(np.linspace(0.0, 8.0 * np.pi, count), panels)
-    state = np.stack([np.sin(tau), np.sin(tau) + 0.5, np.cos(tau), np.cos(tau)], axis=1)
-    flags = {"flag_values": [0, 1, 2], "flag_meanings": "separate_motion a_sequence contact"}
-    variables = {
-        "tau": ("point", tau),
-        "state": (("point", "coordinate"), state),
-        "kind": ("point", np.arange(len(tau)) % 3, flags),
-        "panel_of": ("point", np.repeat(np.arange(panels), count)),
-        **{name: ("panel", np.full(panels, 0.5)) for name in ("e", "D", "eta")},
-        "multiplicity": ("panel", np.arange(panels)),
-    }
-    return xr.Dataset(variables)
 
 
 def capture() -> xr.Dataset:
