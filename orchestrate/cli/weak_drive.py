@@ -100,7 +100,7 @@ def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
 def variable_lines(drive: Path) -> Iterator[str]:
     """Yield the drive's parameters, inputs and outputs, and what could be connected."""
     from ..fmu.description import describe
-    from ..weak_drive.connection import FORCE, MOTION, proposals
+    from ..weak_drive.connection import proposals
 
     description = describe(drive)
     yield f"{description.name}, FMI {description.fmi_version}"
@@ -109,13 +109,16 @@ def variable_lines(drive: Path) -> Iterator[str]:
             if variable.causality == causality:
                 unit = variable.unit or "no unit"
                 yield f"  {causality:10} {name:28} {unit:10} {variable.description or ''}".rstrip()
-    likely = {ours: names[0] for ours, names in proposals(description).items() if names}
-    motion = [name for name in MOTION if name in likely][:1]
-    if motion and FORCE[0] in likely:
-        links = " ".join(f"{name}={likely[name]}" for name in (*motion, FORCE[0]))
+    if likely := proposals(description):
+        links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
         yield f"likely: --connect {links}   (by unit and name; check the sign of the force)"
     else:
-        yield "no outputs and inputs that could be the box's motion and the force on it"
+        yield (
+            "units and names do not tell; connect outputs with the box's acceleration, velocity and "
+            "position, and the input with the force on it: --connect box_acceleration=OUTPUT "
+            "box_velocity=OUTPUT box_position=OUTPUT box_force=INPUT (one motion is enough, all are "
+            "more exact)"
+        )
 
 
 def cosimulate_summary(data: xr.Dataset) -> Iterator[str]:

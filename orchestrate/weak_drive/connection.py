@@ -117,18 +117,27 @@ def near(name: str, known: Iterable[str]) -> str:
     return f" (did you mean {' or '.join(close)}?)" if close else ""
 
 
-def proposals(drive: Description) -> dict[str, list[str]]:
-    """Return by our names which of the drive's variables could be meant, the likeliest first."""
-    found: dict[str, list[str]] = {}
+def proposals(drive: Description) -> dict[str, str]:
+    """Return by our names the drive's variables that are likely meant, by unit and name.
+
+    - A variable of the causality whose unit is of the same dimension is likely, the one whose name
+      looks most like ours first; where none has a unit, one with a part that abbreviates ours.
+    - Derivatives of the force are proposed by our own names alone, no variable is proposed twice,
+      and without a motion and a force nothing is.
+    """
+    found: dict[str, str] = {}
     for ours, powers in UNITS.items():
         ranks = {}
         for name, variable in drive.variables.items():
-            powers_of_theirs = drive.units.get(variable.unit or "")
-            fits = powers_of_theirs in (None, powers) and variable.type in REAL_TYPES
+            theirs = drive.units.get(variable.unit or "")
+            rank = similarity(ours.partition("_")[2], name)
+            fits = theirs == powers or (theirs is None and rank == 1.0)
+            fits = fits and variable.type in REAL_TYPES and name not in found.values()
             if fits and variable.causality == ("input" if ours in FORCE else "output"):
-                ranks[name] = (powers_of_theirs is None, -similarity(ours.partition("_")[2], name))
-        found[ours] = sorted(ranks, key=lambda name: ranks[name])
-    return found
+                ranks[name] = (theirs is not None, rank)
+        if ranks and (ours not in FORCE[1:] or ours in ranks):
+            found[ours] = max(ranks, key=lambda name: ranks[name])
+    return found if FORCE[0] in found and set(MOTION) & set(found) else {}
 
 
 def similarity(word: str, name: str) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
@@ -38,7 +39,7 @@ from ..running.job import Chunk, Table, brief, plain
 from ..running.options import Running
 from ..running.runner import answer
 from .compiled import create_master
-from .connection import OURS, Connection, checked_links, checked_variable
+from .connection import MOTION, OURS, Connection, checked_links, checked_variable
 from .controllers import InputControl
 from .energy_balance import given_work
 from .inputs import Input, Inputs, check_inputs
@@ -58,6 +59,7 @@ IN_TIME_TOO = {
 BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
 MAX_STEPS = 10_000_000
 NOTHING = np.empty((0, 0))
+NOTICED = 0.01  # of the largest displacement: a larger coupling error gives a warning
 Values = tuple[tuple[str, float | bool], ...]
 
 
@@ -370,7 +372,21 @@ def cosimulate(
         start=checked_state("start", start, checked_structure(structure)),
     )
     check_inputs(job.inputs, links)
-    return answer(job, running, finder(running), foreign)
+    found = answer(job, running, finder(running), foreign)
+    warn_of_error(found, [name for name in MOTION if name not in links])
+    return found
+
+
+def warn_of_error(run: xr.Dataset, missing: Sequence[str]) -> None:
+    """Warn where the error of the coupling is large enough to hide or to make impacts."""
+    if "coupling_error" not in getattr(run, "data_vars", ()):  # no estimate, or a job alone
+        return
+    size = max(float(abs(run[name]).max()) for name in ("x1", "x2"))
+    error = float(run.coupling_error.max())
+    if error > NOTICED * size:
+        more = f" and connect {', '.join(missing)} if the drive has it" if missing else ""
+        text = f"coupling error {error:.2g} m of displacements up to {size:.2g} m: impacts may be "
+        warnings.warn(f"{text}missed or added; reduce the step{more}", stacklevel=3)
 
 
 def checked_step_count(duration: float, step: float, drive: Description) -> int:

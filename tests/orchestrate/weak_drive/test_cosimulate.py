@@ -225,9 +225,17 @@ def test_what_cannot_be_connected_is_said_in_a_line(drive, name):
 
 
 def test_what_is_proposed_has_the_causality_and_a_name_like_ours(drive):
-    found = proposals(describe(drive))
-    assert found["box_force"][0] == "specimen_force"
-    assert found["box_acceleration"][0] == "table_acc"
+    assert proposals(describe(drive)) == {
+        **{"box_acceleration": "table_acc", "box_velocity": "table_vel"},
+        **{"box_position": "table_pos", "box_force": "specimen_force"},
+    }
+
+
+@pytest.mark.usefixtures("exported")
+def test_an_error_that_may_hide_impacts_gives_a_warning(drive):
+    run = {**RUN, "duration": 0.5, "estimate": True, "step": 0.01}
+    with pytest.warns(UserWarning, match="connect box_velocity, box_position"):
+        orchestrate.cosimulate(STRUCTURE, drive, connect=CONNECT, **run)
 
 
 def test_derivatives_of_a_polynomial_through_points():
