@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import io
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
@@ -35,6 +36,7 @@ class Description:
     has_fixed_step: bool = False  # whether all communication steps have to be of one length
     has_states: bool = False  # whether it can go back to a state, and give one as bytes
     saves_states: bool = False
+    runs_here: bool = True  # whether it has a binary for this machine
     digest: str = ""  # of the file's bytes
 
     @property
@@ -90,6 +92,10 @@ def read_description(path: Path) -> Description:
         check_archive(data)
         xml = fmpy.read_model_description(io.BytesIO(data))
         co_simulation = xml.coSimulation
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            names = archive.namelist()
+        library = f"{co_simulation and co_simulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
+        here = {f"binaries/{one}/{library}" for one in (fmpy.platform, fmpy.platform_tuple)}
         if co_simulation:
             check_identifier(co_simulation.modelIdentifier)
         _known[digest] = Description(
@@ -107,6 +113,7 @@ def read_description(path: Path) -> Description:
             ),
             has_states=bool(co_simulation and co_simulation.canGetAndSetFMUstate),
             saves_states=bool(co_simulation and co_simulation.canSerializeFMUstate),
+            runs_here=not here.isdisjoint(names),
             digest=digest,
         )
     return dataclasses.replace(_known[digest], path=path)

@@ -355,6 +355,8 @@ def cosimulate(
         connect, drive = connect or OURS, finder(running)(model).path
     path = Path(drive).resolve()
     description = describe(path)
+    if not description.runs_here:
+        raise InputError(f"FMU {path}: it has no binary for this machine; export it with one")
     links = checked_links(connect or {}, description)
     for name, value in (("duration", duration), ("step", step)):
         check(name, value, "s", low=0.0, exclusive=True)
