@@ -100,7 +100,7 @@ def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
 def variable_lines(drive: Path) -> Iterator[str]:
     """Yield the drive's parameters, inputs and outputs, and what could be connected."""
     from ..fmu.description import describe
-    from ..weak_drive.connection import proposals
+    from ..weak_drive.connection import MOTION, proposals
 
     description = describe(drive)
     yield f"{description.name}, FMI {description.fmi_version}"
@@ -113,11 +113,10 @@ def variable_lines(drive: Path) -> Iterator[str]:
         links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
         yield f"likely: --connect {links}   (by unit and name; check the sign of the force)"
     else:
+        outputs = " ".join(f"{ours}=OUTPUT" for ours in MOTION)
         yield (
-            "units and names do not tell; connect outputs with the box's acceleration, velocity and "
-            "position, and the input with the force on it: --connect box_acceleration=OUTPUT "
-            "box_velocity=OUTPUT box_position=OUTPUT box_force=INPUT (one motion is enough, all are "
-            "more exact)"
+            f"units and names do not tell which are the box's: --connect {outputs} box_force=INPUT "
+            "(one motion is enough, all are more exact)"
         )
 
 
