@@ -1,13 +1,14 @@
 """Decide whether the speed at a constant voltage has settled, and at which mean speed.
 
 - The record is cut into means over `block` revolutions; the first one is left out.
-- The speed has *converged* where three limits in turn, extrapolated from successive means as an
-  exponential approach (Aitken's process), agree within half of `tolerance`; by a fold the approach
-  is slower than any exponential, and they do not.
-- So where the last four changes are below a hundredth of `tolerance`, or the last five means go to
-  and fro within 0.3 of it.
+- The speed has settled where its last `seen` changes are below `still` of `tolerance`, or, if they
+  go to and fro, the means between them lie within `to_and_fro` of it.
+- If they go one way, it has converged where the limits extrapolated from them as an exponential
+  approach (Aitken's process) agree within `agreement` of the tolerance; by a fold the approach is
+  slower than `slowest` a block, and they do not.
 - An irregular motion has settled where three long means, each a third of `blocks`, differ by less
-  than half of what the blocks scatter; its speed has an error then.
+  than the tolerance, or `scatter` of what the blocks do; its speed has an error then, at least
+  `deviation` of their standard deviation.
 - All else has not settled.
 """
 
@@ -27,6 +28,13 @@ class SettledSettings:
     blocks: int = 48  # of the three long means of an irregular motion, together
     tolerance: float = 1e-4  # of the settled speed, over omega
     piece: float = 50.0  # simulated between two tests, in 1/omega
+    seen: int = 4  # changes between blocks
+    still: float = 0.01  # of the tolerance
+    to_and_fro: float = 0.3  # of the tolerance
+    slowest: float = 0.95  # of a change, what the next one is at most
+    agreement: float = 0.5  # of the tolerance
+    scatter: float = 0.5  # of the standard deviation of changes between blocks
+    deviation: float = 0.35  # of the standard deviation of the blocks
 
 
 def settled_speed(speeds: np.ndarray, settings: SettledSettings) -> tuple[float, float]:
@@ -34,25 +42,26 @@ def settled_speed(speeds: np.ndarray, settings: SettledSettings) -> tuple[float,
     count = len(speeds) // settings.block
     means = speeds[: count * settings.block].reshape(count, settings.block).mean(axis=1)[1:]
     changes = np.diff(means)
-    if len(changes) < 4:
+    if len(changes) < settings.seen:
         return math.nan, 0.0
-    last = changes[-4:]
-    if np.abs(last).max() < 0.01 * settings.tolerance:
+    last = changes[-settings.seen :]
+    if np.abs(last).max() < settings.still * settings.tolerance:
         return float(means[-1]), 0.0
     if not (last > 0.0).all() and not (last < 0.0).all():
-        if np.ptp(means[-5:]) < 0.3 * settings.tolerance:
-            return float(means[-5:].mean()), 0.0
+        between = means[-settings.seen - 1 :]
+        if np.ptp(between) < settings.to_and_fro * settings.tolerance:
+            return float(between.mean()), 0.0
     else:
         ratios = last[1:] / last[:-1]
-        if ratios.max() < 0.95:
-            limits = means[-3:] + last[1:] * ratios / (1.0 - ratios)
-            if np.ptp(limits) < 0.5 * settings.tolerance:
+        if ratios.max() < settings.slowest:
+            limits = means[1 - settings.seen :] + last[1:] * ratios / (1.0 - ratios)
+            if np.ptp(limits) < settings.agreement * settings.tolerance:
                 return float(limits[-1]), 0.0
     if len(means) < settings.blocks:
         return math.nan, 0.0
     late = means[-settings.blocks :]
     thirds = late.reshape(3, -1).mean(axis=1)
-    if np.ptp(thirds) < max(settings.tolerance, 0.5 * float(np.std(np.diff(late)))):
-        error = max(float(np.ptp(thirds)), 0.35 * float(np.std(late)))
+    if np.ptp(thirds) < max(settings.tolerance, settings.scatter * float(np.std(np.diff(late)))):
+        error = max(float(np.ptp(thirds)), settings.deviation * float(np.std(late)))
         return float(thirds.mean()), error
     return math.nan, 0.0

@@ -97,6 +97,23 @@ def test_each_record_has_a_verdict_with_its_reason(run):
     assert "intact" not in said
 
 
+def test_what_is_stored_has_the_numbers_of_the_verdict(run):
+    folder, _ = run
+    found = {}
+    for name in ("parted", "whole"):
+        paths = folder.glob(f"diagnose_{name}_*.nc")
+        (path,) = (path for path in paths if "signs" not in path.stem)
+        found[name] = xr.load_dataset(path)
+    best = found["parted"].sel(hypothesis="delaminated")
+    assert best.participation.item() == pytest.approx(1.0, rel=0.05)
+    for name, true in (("f1", 42.0), ("f2", 52.0)):
+        assert float(best.value.sel(parameter=name)) == pytest.approx(true, rel=0.02)
+        assert 1e-4 < float(best.standard_error.sel(parameter=name)) / true < 0.05
+    assert float(best.value.sel(parameter="e")) == pytest.approx(0.5, abs=0.08)
+    halves = found["whole"].value.sel(parameter=["f1", "f2", "zeta1", "zeta2", "e"])
+    assert halves.isnull().all() and 0.0 < float(found["whole"].smallest_opening) < 1e-3
+
+
 def test_each_record_has_a_page_with_its_evidence(run):
     folder, said = run
     for name, word in (("parted", "Delaminated."), ("whole", "No opening seen.")):

@@ -21,7 +21,8 @@ from .records import BEAM, RATE, SWEEP, guess, record, seen_at
 LIMIT = {"jobs": 1, "progress": False}
 
 
-@pytest.mark.parametrize("factor", ordinary([1.566, 0.532]))  # at the tip, and at the middle
+@pytest.mark.slow  # an ordinary run has the numbers of tests/orchestrate/cli/test_diagnose.py
+@pytest.mark.parametrize("factor", [1.566, 0.532])  # at the tip, and at the middle
 def test_a_delamination_is_found_with_its_numbers_wherever_the_sensor_is(factor):
     answer = orchestrate.detect(seen_at(factor, noise=0.01), guess(), **LIMIT)
     assert str(answer.verdict.values) == "delaminated", answer.attrs["reason"]
@@ -36,6 +37,7 @@ def test_a_delamination_is_found_with_its_numbers_wherever_the_sensor_is(factor)
     assert {"measured", "fitted", "floor", "misfit_at", "evaluations"} <= set(answer.variables)
 
 
+@pytest.mark.slow
 def test_of_a_bonded_structure_no_opening_is_seen_and_its_halves_are_not_stated():
     answer = orchestrate.detect(record(BEAM.as_bonded(), noise=0.02), guess(), **LIMIT)
     assert str(answer.verdict.values) == "no opening seen", answer.attrs["reason"]

@@ -17,16 +17,7 @@ from orchestrate.dynamics.lyapunov import (
 )
 from orchestrate.dynamics.variational import monodromy, period_in_tau
 from orchestrate.errors import InputError
-from orchestrate.fmu import (
-    OSCILLATOR,
-    REST,
-    STATE,
-    EventInstance,
-    Impacts,
-    Instance,
-    begin,
-    find,
-)
+from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep

@@ -12,16 +12,7 @@ from scipy.linalg import expm
 from orchestrate.dynamics.closed_form import ClosedForm, contact_durations
 from orchestrate.dynamics.following import follow_impacts
 from orchestrate.dynamics.variational import contact_durations_after, monodromy, period_in_tau
-from orchestrate.fmu import (
-    OSCILLATOR,
-    REST,
-    STATE,
-    EventInstance,
-    Impacts,
-    Instance,
-    begin,
-    find,
-)
+from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.threshold import threshold_amplitudes
