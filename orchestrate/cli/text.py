@@ -124,7 +124,8 @@ def attractor_table(data: xr.Dataset) -> Iterator[str]:
     columns = {"number": [str(number) for number in data.attractor.values]}
     columns |= columns_of(data, names, form=".4g") | {"largest gap": gaps}
     (state,) = columns_of(data, "state").values()
-    yield from table(columns | {"state at phase 0 (SI)": state})
+    unit = "" if is_in_ratios(data) else " (SI)"
+    yield from table(columns | {f"state at phase 0{unit}": state})
 
 
 # -- parameters and ranges ------------------------------------------------------------------------

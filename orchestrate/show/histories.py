@@ -14,8 +14,8 @@ from ..constants import TURN
 from ..units import units_of, with_units
 from . import labels
 from .colours import BLACK, BLUE, GREY, RED
-from .planes import relative_motion as relative_curve
-from .scales import acceleration_scale, frequency_scale, length_scale
+from .planes import gap_through_impacts, relative_motion
+from .scales import acceleration_scale, frequency_scale, length_label, length_scale
 from .spectra import acceleration_spectrum, draw_stems
 from .style import XI_REL, draw_line, legend_above, make_panels, set_title, styled, write_in_panel
 
@@ -42,7 +42,7 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
     factor, letter = length_scale(data, max(largest["x1"], largest["x2"]))
     pace, speed_letter = length_scale(data, max(largest["v1"], largest["v2"]))
     turns, instants = time_axis(data, data)
-    time, gap, rate = relative_motion(data)
+    time, gap, rate = gap_through_impacts(data)
     for number, style in MASSES:
         axes["masses"].plot(turns, data[f"x{number}"] / factor, **style)
         axes["phases"].plot(data[f"x{number}"] / factor, data[f"v{number}"] / pace, **style)
@@ -62,12 +62,13 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
         alike = with_units(bonded, units_of(data))  # one axis has one unit
         top = max(top, draw_spectrum(axes["spectrum"], alike, (("1", GLUED),)))
     axes["spectrum"].set_ylim(SPECTRUM_FLOOR * (top or 1.0), 2.0 * (top or 1.0))
-    axes["masses"].set_ylabel(f"displacement in {letter}m")
-    axes["gap"].set_ylabel(f"{labels.gap_name(data)} in {letter}m")
+    axes["masses"].set_ylabel(length_label(data, "displacement", f"{letter}m"))
+    axes["gap"].set_ylabel(length_label(data, labels.gap_name(data), f"{letter}m"))
     axes["force"].set(ylabel="contact force in N", xlabel=instants, xlim=(turns[0], turns[-1]))
-    rate_label = f"velocity in {speed_letter}m/s"
-    axes["phases"].set(xlabel=f"displacement in {letter}m", ylabel=rate_label)
-    axes["relative"].set(xlabel=f"gap in {letter}m", ylabel=f"gap {rate_label}")
+    rate_label = length_label(data, "velocity", f"{speed_letter}m/s")
+    for name, words, before in (("phases", "displacement", ""), ("relative", "gap", "gap ")):
+        label = length_label(data, words, f"{letter}m")
+        axes[name].set(xlabel=label, ylabel=f"{before}{rate_label}")
     for name, columns in (("masses", 3), ("gap", 1)):
         axes[name].sharex(axes["force"])
         axes[name].tick_params(labelbottom=False)
@@ -80,17 +81,6 @@ def time_axis(data: xr.Dataset, motion: xr.Dataset) -> tuple[np.ndarray, str]:
     if units_of(data).time == "s":
         return motion.time.values, "time in s"
     return motion.periods_done.values, "time in periods, $t/T$"
-
-
-def relative_motion(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return time, gap and gap velocity, with points before and after each impact (14)."""
-    at, closing = data.impact_time.values, data.impact_velocity.values
-    after = np.where(data.sticks.values == 1, 0.0, float(data.attrs.get("e", 0.0)) * closing)
-    time = np.concatenate([data.time.values, at, at])
-    gap = np.concatenate([data.x_rel.values, 0.0 * at, 0.0 * at])
-    rate = np.concatenate([data.v_rel.values, -closing, after])
-    order = np.argsort(time, kind="stable")
-    return time[order], gap[order], rate[order]
 
 
 def draw_spectrum(
@@ -209,7 +199,7 @@ def draw_paper_histories(data: xr.Dataset) -> Figure:
     figure, axes = make_panels(count + 1, 1, (8.5, 1.6 * (count + 1)), sharex=True)
     for index, plane in enumerate(axes[:count]):
         eta = float(data.eta[index])
-        tau, gap, _ = relative_curve(data, index)
+        tau, gap, _ = relative_motion(data, index)
         turns = tau * eta / TURN
         draw_line(plane, turns, gap, "-", BLACK, 0.9)
         kind = f"{labels.format_period(index + 1)}-periodic, one impact in a response period"

@@ -18,7 +18,7 @@ from ..units import length_of_ratio, omega_of, scale_of, units_of
 from . import labels
 from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW
 from .labels import branch_title, has_frequency_unit, title_from_attributes
-from .scales import axis_values, lengths, parameter_scale
+from .scales import axis_values, length_label, lengths, parameter_scale
 from .style import XI_REL, XI_REL_RATE, draw_line, legend_below, make_panels, styled
 
 COLUMNS = {  # of a map: the quantities that have a panel
@@ -160,10 +160,23 @@ def draw_motions(data: xr.Dataset, motions: Sequence[xr.Dataset], title: str = "
     (right, x_label), (up, y_label) = (coordinate_scale(motions[0], n) for n in ("x_rel", "v_rel"))
     label_attractors(plane, data)
     for motion, colour in zip(motions, (*BASINS, *[OTHER] * len(motions)), strict=False):
-        plane.plot(motion.x_rel / right, (motion.v2 - motion.v1) / up, color=colour, linewidth=1.2)
+        _, gap, rate = gap_through_impacts(motion)
+        plane.plot(gap / right, rate / up, color=colour, linewidth=1.2)
     plane.set(xlabel=x_label, ylabel=y_label)
     figure.legend(loc="outside lower left")
     return figure
+
+
+def gap_through_impacts(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time, gap and gap velocity, with points before and after each impact (14)."""
+    at, closing = data.impact_time.values, data.impact_velocity.values
+    e, e_slope = (float(data.attrs.get(name, 0.0)) for name in ("e", "e_slope"))
+    after = np.where(data.sticks.values == 1, 0.0, e * closing / (1.0 + e_slope * closing))
+    time = np.concatenate([data.time.values, at, at])
+    gap = np.concatenate([data.x_rel.values, 0.0 * at, 0.0 * at])
+    rate = np.concatenate([data.v_rel.values, -closing, after])
+    order = np.argsort(time, kind="stable")
+    return time[order], gap[order], rate[order]
 
 
 def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
@@ -172,7 +185,7 @@ def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
         return 1.0, labels.symbol(name)
     factor, word = scale_of(data, "m/s" if name.startswith("v") else "m")
     words = labels.gap_name(data) if name == "x_rel" else labels.symbol(name).rpartition(" in ")[0]
-    return factor, f"{words} in {labels.typeset_unit(word)}"
+    return factor, length_label(data, words, labels.typeset_unit(word))
 
 
 def mark_attractors(

@@ -97,7 +97,7 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Uni
     >>> beam = orchestrate.Structure.nondimensional()
     >>> figure = orchestrate.plot(orchestrate.simulate(beam, eta=1.2, periods=4))
     >>> [axes.get_ylabel() for axes in figure.axes][0]
-    'displacement in m'
+    'displacement'
 
     Notes
     -----

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..units import FACTORS, OVER_OMEGA, omega_of, scale_of, units_of
+from ..units import FACTORS, OVER_OMEGA, is_in_ratios, omega_of, scale_of, units_of
 from .labels import gap_name, has_frequency_unit, si_prefix, symbol, typeset_unit
 from .style import XI_REL
 
@@ -48,6 +48,8 @@ def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
 
 def length_scale(data: xr.Dataset, largest: float) -> tuple[float, str]:
     """Return the divisor from m (or m/s) to the display unit, and its SI prefix."""
+    if is_in_ratios(data):
+        return 1.0, ""
     factor, word = scale_of(data, "m")
     if not units_of(data).length:
         return si_prefix(largest)
@@ -59,7 +61,12 @@ def lengths(
 ) -> tuple[xr.DataArray, str]:
     """Return lengths, or speeds in ``m/s``, in display units, and the axis label."""
     factor, letter = length_scale(data, float(abs(values).max()) if values.size else 1.0)
-    return values / factor, f"{words} in {letter}{unit}"
+    return values / factor, length_label(data, words, f"{letter}{unit}")
+
+
+def length_label(data: xr.Dataset, words: str, unit: str) -> str:
+    """Return the axis label of a length or speed; without a unit in the paper's ratios."""
+    return words if is_in_ratios(data) else f"{words} in {unit}"
 
 
 def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, str]:

@@ -48,7 +48,7 @@ def drawn(monkeypatch):
 def test_one_answer(simulated):
     figure = plot(simulated[1], title="mine")
     assert figure.get_suptitle() == "mine"
-    assert figure.axes[0].get_ylabel() == "displacement in m"
+    assert figure.axes[0].get_ylabel() == "displacement"
 
 
 def test_the_bonded_structure_beside_it_in_any_order(simulated, drawn):
