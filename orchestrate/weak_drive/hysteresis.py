@@ -9,8 +9,8 @@ in which the ramp's record suggests a jump:
 - Every step in which the speed gains `smallest` on the voltage, or moves by `against` against it,
   is halved, to `width`.
 - Then the voltage goes back over that step. The motion is *lost* there where the speed comes back
-  more than `clear` away, and both motions last when they are held `again` times. Where it comes
-  back, the step is halved further.
+  more than `clear` away, and both motions last, within `same`, when they are held `again` times.
+  Where it comes back, the step is halved further.
 - There is *no* jump where no such step is left, and on the way back the speed is nowhere `clear`
   away.
 - All else is *undecided*: a speed that does not settle, two motions nearer than `clear`, a step
