@@ -153,7 +153,8 @@ def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
     legend_above(rows[1], 2)
     for axes, name in zip(rows[4:], names, strict=True):
         draw_signal(axes, data, name, 1.0, color=BLACK)
-        axes.set_ylabel(f"{name}\nin {data[name].attrs['units']}")
+        unit = str(data[name].attrs["units"])
+        axes.set_ylabel(name if unit == "1" else f"{name}\nin {unit}")
     rows[-1].set(xlabel="time in s", xlim=(0.0, float(data.time[-1])))
     return figure
 

@@ -207,7 +207,7 @@ def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
     glued = size.isel(level=0).sel(structure="bonded")
     draw_line(axes[0], x.values, glued, "--", GREY, 1.0, "bonded, at each level")
     use_plain_log(axes[0])
-    axes[0].set_ylabel("largest acceleration between\nimpacts over level, in g/g")
+    axes[0].set_ylabel("largest acceleration\nover level")
     axes[1].set_ylabel(f"largest gap in {letter}m")
     axes[1].set_ylim(bottom=0.0)
     if THRESHOLD in data:
