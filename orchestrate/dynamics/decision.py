@@ -7,7 +7,8 @@
   response, if nearer than `near`, comes as the multipliers say, or lies within `same`.
 - Without such an orbit, states that repeat are *repeated*.
 - They are *undecided* near an unstable orbit, or before impacts that have to come at this level.
-- What does not repeat is *irregular*: a torus, or chaos.
+- What does not repeat is *irregular*: a torus, or chaos. Where a value has such attractors already,
+  it is the one with the nearest largest gap: means over few periods are no reason for one more.
 """
 
 from __future__ import annotations

@@ -90,8 +90,10 @@ class AttractorsAtValue:
         )
 
     def find_or_add(self, motion: SettledMotion) -> int:
-        """Return the index of a motion among the attractors here; append it if it is new."""
-        # irregular ones by the nearest gap: means over few periods are no reason for one more
+        """Return the index of a motion among the attractors here; append it if it is new.
+
+        Irregular ones are joined by the nearest gap, as the rule in :mod:`.decision` says.
+        """
         if motion.decided == IRREGULAR:
             alike = [k for k, known in enumerate(self.motions) if known.decided == IRREGULAR]
             if alike:
