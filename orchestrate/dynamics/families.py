@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -65,9 +66,16 @@ class Setting:
 
     def form(self, values: Floats) -> ClosedForm:
         """Return the closed-form coefficients at these values of the parameters."""
-        point = self.point(values)
-        point.excitation.check(point.structure)
-        return ClosedForm.from_structure(*point, self.acceleration(values))
+        return closed_form(self, np.asarray(values, dtype=float).tobytes())
+
+
+@functools.lru_cache(maxsize=64)
+def closed_form(setting: Setting, values: bytes) -> ClosedForm:
+    """Return the coefficients at values of the varying parameters, given as the array's bytes."""
+    numbers = np.frombuffer(values)
+    point = setting.point(numbers)
+    point.excitation.check(point.structure)
+    return ClosedForm.from_structure(*point, setting.acceleration(numbers))
 
 
 def check_parameters(over: tuple[str, ...]) -> None:

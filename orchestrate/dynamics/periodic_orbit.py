@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,6 +61,11 @@ class ImpactSequence:
         return ImpactSequence(self.periods, (*self.kinds[:before], IMPACT, *self.kinds[before:]))
 
 
+def of_next(rows: NDArray[Any]) -> NDArray[Any]:
+    """Return the rows of the next nodes, the first one after the last; np.roll is slow."""
+    return np.concatenate([rows[1:], rows[:1]])
+
+
 @dataclass(frozen=True)
 class PeriodicOrbit:
     """A candidate periodic orbit: nodes (impacts and releases) and the equations they solve."""
@@ -81,7 +87,7 @@ class PeriodicOrbit:
     @cached_property
     def ends(self) -> Floats:
         """Return the phases, rad, at which segments between nodes end."""
-        phases = np.roll(self.begins, -1)
+        phases = of_next(self.begins)
         phases[-1] += TURN * self.sequence.periods
         return phases
 
@@ -150,10 +156,10 @@ class PeriodicOrbit:
         """Return the residual of the orbit's equations at its nodes, shape (4 k,)."""
         if not self.count:
             return np.zeros(0)
-        after = np.roll(self.nodes, -1, axis=0)
+        after = of_next(self.nodes)
         residual = self.arrivals @ self.reduction.T
         residual[:, 1:] -= after[:, 1:]
-        released = np.roll(self.sequence.releases, -1)
+        released = of_next(self.sequence.releases)
         if released.any():
             _, position, velocity, closing = after[released].T
             residual[released, 0] = self.form.force(position, velocity)
@@ -177,7 +183,7 @@ class PeriodicOrbit:
         rates = form.field(self.arrivals, self.ends, self.contact)
         after[:, :, PHASE] = rates @ self.reduction.T / form.eta
         after[:, [1, 2, 3], [1, 2, 3]] = -1.0
-        released = np.roll(sequence.releases, -1)
+        released = of_next(sequence.releases)
         before[released] *= np.array([0.0, 1.0, 1.0, 0.0])[:, None]
         after[released, 0] = [0.0, form.force_x, form.force_v, 0.0]
         after[released, 3] = [0.0, 0.0, 0.0, 1.0]
