@@ -115,6 +115,7 @@ def code_digests(module: str) -> dict[str, str]:
     return dict(sorted(digests.items()))
 
 
+@functools.cache
 def source_file(module: str) -> Path | None:
     """Return the source file of a module of this package, or of a kernel; None of others."""
     parts = module.split(".")

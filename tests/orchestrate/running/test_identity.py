@@ -37,6 +37,7 @@ def ours(tmp_path, monkeypatch):
     monkeypatch.setattr(identity, "PACKAGE", tmp_path / "small")
     monkeypatch.setattr(identity, "ROOT", "small")
     identity.read_source.cache_clear()
+    identity.source_file.cache_clear()
     yield package(
         tmp_path / "small",
         sweep="from . import tools\nfrom .running import pool\n",
@@ -46,6 +47,7 @@ def ours(tmp_path, monkeypatch):
         running__pool="",
     )
     identity.read_source.cache_clear()
+    identity.source_file.cache_clear()
 
 
 def test_code_is_the_closure_of_imports(ours):
