@@ -12,7 +12,7 @@ from typing import Any
 from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
-from ..units import is_in_ratios, range_text, text_of, units_of, with_units
+from ..units import is_in_ratios, range_text, units_of, with_units
 from .answer import answer, answer_question, display_units, is_curve, read_earlier_result
 from .grammar import parse, plain_int
 from .options import (
@@ -48,6 +48,7 @@ from .text import (
     length_text,
     parameter_column,
     table,
+    time_text,
     varied_parameter,
     without_unit,
 )
@@ -328,16 +329,16 @@ def orbit_summary(data: xr.Dataset) -> Iterator[str]:
     """Yield an orbit's stability, multipliers, impacts, states at phase 0 and largest gap."""
     parts = data.multipliers.transpose("multiplier", "part").values
     size = max(abs(complex(*pair)) for pair in parts)
-    word, in_ratios = flag_word(data.stability), is_in_ratios(data)
+    word = flag_word(data.stability)
     yield f"{word}: the largest multiplier has the absolute value {size:.6f}"
     if word == "undecided":
         yield "a run of the FMU from this orbit has other impacts: the orbit may not be a motion"
     yield "multipliers " + ", ".join(f"{real:.6f}{imaginary:+.6f}i" for real, imaginary in parts)
     for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
         if math.isfinite(time):
-            at = f"tau = {time:.8g}" if in_ratios else text_of(data, time, "s", ".8g")
-            yield f"impact at {at}, closing at {length_text(data, speed, 'm/s')}"
-    names = "x1, x2, v1, v2" if in_ratios else "x1, x2 in m, v1, v2 in m/s"
+            closing = length_text(data, speed, "m/s")
+            yield f"impact at {time_text(data, time, '.8g')}, closing at {closing}"
+    names = "x1, x2, v1, v2" if is_in_ratios(data) else "x1, x2 in m, v1, v2 in m/s"
     for i, state in enumerate(data.state.values):
         numbers = ", ".join(f"{value:.8g}" for value in state)
         yield f"state at phase 0 after {i} periods: {numbers} ({names})"

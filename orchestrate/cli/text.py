@@ -90,6 +90,13 @@ def length_text(data: xr.Dataset, value: float | xr.DataArray, unit: str, form: 
     return without_unit(data, text_of(data, value, unit, form), unit)
 
 
+def time_text(data: xr.Dataset, time: float, form: str = ".4g") -> str:
+    """Format a time in display units, as tau where a result in ratios was asked in none."""
+    if is_in_ratios(data) and not units_of(data).time:
+        return f"tau = {time:{form}}"
+    return text_of(data, time, "s", form)
+
+
 def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
     """Yield all variables of a result at one parameter value as a table."""
     yield f"one value, {format_parameter(data, name, float(data[name][0]))}: a table and no picture"
@@ -108,10 +115,9 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
         return
     first = int(data.impact_velocity.values.argmax())
     speed = length_text(data, data.impact_velocity[first], "m/s", ".4g")
-    impulse, time = (f"{float(data[name][first]):.4g}" for name in ("impulse", "impact_time"))
-    hardest = f"{impulse} N s at {time} s"
-    if is_in_ratios(data):
-        hardest = f"at tau = {time}"
+    hardest = f"at {time_text(data, float(data.impact_time[first]))}"
+    if not is_in_ratios(data):
+        hardest = f"{float(data.impulse[first]):.4g} N s {hardest}"
     sticks = int(data.sticks.sum())
     yield f"{count} impacts, the fastest at {speed} ({hardest}); {sticks} begin permanent contact"
 

@@ -11,8 +11,8 @@ MAX_FILES = 10_000  # far above any real FMU: an archive with more is an attack 
 MAX_BYTES = 1 << 30  # unpacked; the same
 
 
-def check_archive(data: bytes) -> None:
-    """Raise if an FMU's zip has paths outside its folder, too many files or too many bytes."""
+def checked_names(data: bytes) -> list[str]:
+    """Return the paths in an FMU's zip; raise if one is outside, or it is too large."""
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         entries = archive.infolist()
     if len(entries) > MAX_FILES:
@@ -31,6 +31,7 @@ def check_archive(data: bytes) -> None:
             raise ValueError(f"{name!r} in it, expected paths below the archive")
         if stat.S_ISLNK(entry.external_attr >> 16):
             raise ValueError(f"{name!r} in it is a link, expected files")
+    return names
 
 
 def check_identifier(name: str) -> None:

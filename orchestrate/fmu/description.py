@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import io
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
@@ -13,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from .archive import MAX_BYTES, check_archive, check_identifier
+from .archive import MAX_BYTES, check_identifier, checked_names
 
 SI_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
@@ -70,6 +69,14 @@ def describe(path: str | PathLike[str], model: str | None = None) -> Description
     return description
 
 
+def describe_runnable(path: str | PathLike[str], model: str | None = None) -> Description:
+    """Return :func:`describe`; raise where the FMU has no binary for this machine."""
+    description = describe(path, model)
+    if not description.runs_here:
+        raise InputError(f"FMU {path}: it has no binary for this machine; export it with one")
+    return description
+
+
 def exponents(base: Any) -> dict[str, int]:
     """Return the nonzero exponents of the SI base units (kg, m, s, ...) of FMPy's base unit."""
     powers = {name: int(getattr(base, name)) for name in SI_UNITS} if base else {}
@@ -89,11 +96,9 @@ def read_description(path: Path) -> Description:
     if digest not in _known:
         import fmpy
 
-        check_archive(data)
+        names = checked_names(data)
         xml = fmpy.read_model_description(io.BytesIO(data))
         co_simulation = xml.coSimulation
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            names = archive.namelist()
         library = f"{co_simulation and co_simulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
         here = {f"binaries/{one}/{library}" for one in (fmpy.platform, fmpy.platform_tuple)}
         if co_simulation:

@@ -16,7 +16,7 @@ from fmu_src.export.errors import CannotExport
 from ..errors import InputError, StoreError
 from ..files import made_once, open_folder
 from ..version import __version__
-from .description import Description, describe
+from .description import Description, describe, describe_runnable
 
 log = logging.getLogger(__name__)
 
@@ -150,7 +150,7 @@ def find(
     """Return the description of a model's FMU: a given file, an up-to-date one, or a new export."""
     check(model, form)
     if fmu is not None:
-        return describe(fmu, model)
+        return describe_runnable(fmu, model)
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     reasons: list[CannotExport] = []
     for candidate in dict.fromkeys((form, WITHOUT_COMPILER)):

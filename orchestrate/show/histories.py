@@ -15,7 +15,7 @@ from ..units import units_of, with_units
 from . import labels
 from .colours import BLACK, BLUE, GREY, RED
 from .planes import gap_through_impacts, relative_motion
-from .scales import acceleration_scale, frequency_scale, length_label, length_scale
+from .scales import acceleration_scale, frequency_scale, in_unit, length_scale
 from .spectra import acceleration_spectrum, draw_stems
 from .style import XI_REL, draw_line, legend_above, make_panels, set_title, styled, write_in_panel
 
@@ -39,15 +39,15 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
     axes = figure.subplot_mosaic(LAYOUT, width_ratios=(2.2, 1))
     set_title(figure, title or labels.title_from_attributes(data))
     largest = {name: float(np.abs(data[name]).max()) for name in ("x1", "x2", "v1", "v2")}
-    factor, letter = length_scale(data, max(largest["x1"], largest["x2"]))
-    pace, speed_letter = length_scale(data, max(largest["v1"], largest["v2"]))
+    factor, unit = length_scale(data, max(largest["x1"], largest["x2"]))
+    pace, speed_unit = length_scale(data, max(largest["v1"], largest["v2"]), "m/s")
     turns, instants = time_axis(data, data)
-    time, gap, rate = gap_through_impacts(data)
+    time, gap, gap_rate = gap_through_impacts(data)
     for number, style in MASSES:
         axes["masses"].plot(turns, data[f"x{number}"] / factor, **style)
         axes["phases"].plot(data[f"x{number}"] / factor, data[f"v{number}"] / pace, **style)
     draw_line(axes["gap"], np.interp(time, data.time, turns), gap / factor, "-", BLACK, 1.0)
-    draw_line(axes["relative"], gap / factor, rate / pace, "-", BLACK, 0.8)
+    draw_line(axes["relative"], gap / factor, gap_rate / pace, "-", BLACK, 0.8)
     at, count = np.interp(data.impact_time.values, data.time.values, turns), data.sizes["impact"]
     label = f"{count} impact{'s' * (count != 1)}" if count else "no impacts"
     axes["gap"].plot(at, np.zeros_like(at), "|", color=RED, markersize=8, label=label)
@@ -62,13 +62,14 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
         alike = with_units(bonded, units_of(data))  # one axis has one unit
         top = max(top, draw_spectrum(axes["spectrum"], alike, (("1", GLUED),)))
     axes["spectrum"].set_ylim(SPECTRUM_FLOOR * (top or 1.0), 2.0 * (top or 1.0))
-    axes["masses"].set_ylabel(length_label(data, "displacement", f"{letter}m"))
-    axes["gap"].set_ylabel(length_label(data, labels.gap_name(data), f"{letter}m"))
+    axes["masses"].set_ylabel(in_unit("displacement", unit))
+    axes["gap"].set_ylabel(in_unit(labels.gap_name(data), unit))
     axes["force"].set(ylabel="contact force in N", xlabel=instants, xlim=(turns[0], turns[-1]))
-    rate_label = length_label(data, "velocity", f"{speed_letter}m/s")
-    for name, words, before in (("phases", "displacement", ""), ("relative", "gap", "gap ")):
-        label = length_label(data, words, f"{letter}m")
-        axes[name].set(xlabel=label, ylabel=f"{before}{rate_label}")
+    for name, place, rate in (
+        ("phases", "displacement", "velocity"),
+        ("relative", "gap", "gap velocity"),
+    ):
+        axes[name].set(xlabel=in_unit(place, unit), ylabel=in_unit(rate, speed_unit))
     for name, columns in (("masses", 3), ("gap", 1)):
         axes[name].sharex(axes["force"])
         axes[name].tick_params(labelbottom=False)
@@ -112,7 +113,7 @@ def draw_spectrum(
         width = STEM_WIDTHS[style["color"]]
         draw_stems(axes, lines[peaks], felt_amplitude[peaks], floor, width, **stem)
     unit = f"in {word}" if labels.has_frequency_unit(data) else r"over $\Omega/2\pi$"
-    axes.set(xlabel=f"frequency {unit}", ylabel=f"acceleration in {unit_felt}")
+    axes.set(xlabel=f"frequency {unit}", ylabel=in_unit("acceleration", unit_felt))
     return top
 
 
@@ -146,10 +147,10 @@ def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
     title = title or f"{data.attrs['drive']}; {labels.title_from_attributes(data)}"
     figure, rows = make_panels(count, 1, (10.4, 1.2 + 1.6 * count), title, sharex=True)
     draw_box_gap_impacts(data, rows[0], rows[2], rows[3])
-    factor, letter = length_scale(data, float(abs(data.x1).max()))
+    factor, unit = length_scale(data, float(abs(data.x1).max()))
     for name, colour in (("x1", BLUE), ("x2", RED)):
         draw_signal(rows[1], data, name, factor, color=colour, label=f"mass {name[1]}")
-    rows[1].set_ylabel(f"displacement\nin {letter}m")
+    rows[1].set_ylabel(in_unit("displacement", unit, "\n"))
     legend_above(rows[1], 2)
     for axes, name in zip(rows[4:], names, strict=True):
         draw_signal(axes, data, name, 1.0, color=BLACK)
@@ -163,10 +164,10 @@ def draw_box_gap_impacts(data: xr.Dataset, box: Axes, gap: Axes, impacts: Axes) 
     """Draw the box's acceleration, the gap and each impact's impulse, in a panel each."""
     scale, unit = acceleration_scale(data)
     draw_signal(box, data, "box_acceleration", scale, color=BLACK)
-    box.set_ylabel(f"acceleration\nof box in {unit}")
-    factor, letter = length_scale(data, float(data.x_rel.max()))
+    box.set_ylabel(in_unit("acceleration\nof box", unit))
+    factor, unit = length_scale(data, float(data.x_rel.max()))
     draw_signal(gap, data, "x_rel", factor, color=BLACK)
-    gap.set_ylabel(f"gap in {letter}m")
+    gap.set_ylabel(in_unit("gap", unit))
     impacts.set_ylabel("impulse in N s")
     if count := data.sizes["impact"]:
         size = 5 if count < COLUMNS else 2

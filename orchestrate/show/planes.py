@@ -14,11 +14,12 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator
 
 from ..constants import TURN
 from ..flags import flag_words
-from ..units import length_of_ratio, omega_of, scale_of, units_of
+from ..model import Structure
+from ..units import is_in_ratios, length_of_ratio, omega_of, scale_of, units_of
 from . import labels
 from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW
 from .labels import branch_title, has_frequency_unit, title_from_attributes
-from .scales import axis_values, length_label, lengths, parameter_scale
+from .scales import axis_values, in_unit, lengths, parameter_scale
 from .style import XI_REL, XI_REL_RATE, draw_line, legend_below, make_panels, styled
 
 COLUMNS = {  # of a map: the quantities that have a panel
@@ -170,8 +171,8 @@ def draw_motions(data: xr.Dataset, motions: Sequence[xr.Dataset], title: str = "
 def gap_through_impacts(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return time, gap and gap velocity, with points before and after each impact (14)."""
     at, closing = data.impact_time.values, data.impact_velocity.values
-    e, e_slope = (float(data.attrs.get(name, 0.0)) for name in ("e", "e_slope"))
-    after = np.where(data.sticks.values == 1, 0.0, e * closing / (1.0 + e_slope * closing))
+    e = Structure.from_attributes(data.attrs).restitution(closing)
+    after = np.where(data.sticks.values == 1, 0.0, e * closing)
     time = np.concatenate([data.time.values, at, at])
     gap = np.concatenate([data.x_rel.values, 0.0 * at, 0.0 * at])
     rate = np.concatenate([data.v_rel.values, -closing, after])
@@ -184,8 +185,9 @@ def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
     if name == "phase":
         return 1.0, labels.symbol(name)
     factor, word = scale_of(data, "m/s" if name.startswith("v") else "m")
+    unit = "" if is_in_ratios(data) else labels.typeset_unit(word)
     words = labels.gap_name(data) if name == "x_rel" else labels.symbol(name).rpartition(" in ")[0]
-    return factor, length_label(data, words, labels.typeset_unit(word))
+    return factor, in_unit(words, unit)
 
 
 def mark_attractors(

@@ -21,6 +21,7 @@ from .scales import (
     acceleration_scale,
     axis_values,
     frequency_scale,
+    in_unit,
     length_scale,
     varied_dimension,
 )
@@ -35,9 +36,9 @@ THRESHOLD, LOWEST = "threshold_acceleration", "lowest_threshold"
 LAYOUT: list[Any] = [["x1_max", "x2_max"], ["a1_max", "a2_max"], ["x_rel_max", "x_rel_max"]]
 LAYOUT += [[THRESHOLD, THRESHOLD]]
 NAMES = {
-    **{f"x{i}_max": f"max $|x_{i}|$ in {{}}" for i in "12"},
-    **{f"a{i}_max": rf"max $|\ddot{{{{x}}}}_{i} + \ddot{{{{y}}}}|$ in {{}}" for i in "12"},
-    "x_rel_max": "largest gap in {}",
+    **{f"x{i}_max": f"max $|x_{i}|$" for i in "12"},
+    **{f"a{i}_max": rf"max $|\ddot{{x}}_{i} + \ddot{{y}}|$" for i in "12"},
+    "x_rel_max": "largest gap",
 }
 LENGTHS = {"x1_max": "xi1_max", "x2_max": "xi2_max", "x_rel_max": "xi_rel_max"}  # of an orbit
 
@@ -90,7 +91,7 @@ def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: AxisVal
         largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[at], x.values[at]))
     axes.margins(x=0.0, y=0.12)
     use_plain_log(axes)
-    axes.set_ylabel(NAMES[str(values.name)].format(unit))
+    axes.set_ylabel(in_unit(NAMES[str(values.name)], unit))
     list_largest(axes, largest, unit, x)
 
 
@@ -113,7 +114,7 @@ def draw_level_of_box(axes: Axes, data: xr.Dataset, x: AxisValues) -> None:
     axes.fill_between(x.values, threshold, level, **above)
     axes.margins(x=0.0, y=0.12)
     use_plain_log(axes)
-    axes.set_ylabel(rf"peak $|\ddot{{y}}|$ in {unit}")
+    axes.set_ylabel(in_unit(r"peak $|\ddot{y}|$", unit))
 
 
 def draw_threshold(
@@ -133,8 +134,7 @@ def display_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
     """Return the divisor from SI and the display unit of a quantity."""
     if str(values.name).startswith("a"):
         return acceleration_scale(data)
-    factor, letter = length_scale(data, float(values.max()))
-    return factor, f"{letter}m"
+    return length_scale(data, float(values.max()))
 
 
 def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: AxisValues) -> None:
@@ -180,7 +180,8 @@ def list_largest(
     style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}
     for row, (structure, (value, at)) in enumerate(largest.items()):
         corner = (0.99 if right else 0.01, 0.97 - 0.075 * row)
-        text = f"{structure}: {value:.4g} {unit} at {x.text(at)}".lstrip(": ")
+        number = f"{value:.4g} {unit}".rstrip()
+        text = f"{structure}: {number} at {x.text(at)}".lstrip(": ")
         colour = STRUCTURES.get(structure, BLACK)
         axes.text(*corner, text, color=colour, transform=axes.transAxes, **style)
 
@@ -197,18 +198,18 @@ def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
     colours = mpl.colormaps["viridis_r"].resampled(256)(0.1 + 0.85 * part)  # light for low levels
     size = np.maximum(data.a1_max, data.a2_max).max("direction") / data.level
     gaps = data.x_rel_max.sel(structure="delaminated").max("direction")
-    length, letter = length_scale(data, float(gaps.max()) or 1.0)
+    length, length_unit = length_scale(data, float(gaps.max()) or 1.0)
     x = axis_values(data, "frequency")
     for number, colour in enumerate(colours):
-        label = f"{level[number] / factor:.4g} {unit}" if len(level) <= 8 else None
+        label = f"{level[number] / factor:.4g} {unit}".rstrip() if len(level) <= 8 else None
         curve = size.isel(level=number).sel(structure="delaminated")
         draw_line(axes[0], x.values, curve, "-", colour, 1.4, label)
         draw_line(axes[1], x.values, gaps.isel(level=number) / length, "-", colour, 1.4)
     glued = size.isel(level=0).sel(structure="bonded")
     draw_line(axes[0], x.values, glued, "--", GREY, 1.0, "bonded, at each level")
     use_plain_log(axes[0])
-    axes[0].set_ylabel("largest acceleration\nover level")
-    axes[1].set_ylabel(f"largest gap in {letter}m")
+    axes[0].set_ylabel("largest acceleration\nbetween impacts\nover level")
+    axes[1].set_ylabel(in_unit("largest gap", length_unit))
     axes[1].set_ylim(bottom=0.0)
     if THRESHOLD in data:
         draw_threshold(axes[2], data, factor, "level at which it first {}")
@@ -216,7 +217,7 @@ def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
         for number, colour in enumerate(colours):
             axes[2].axhline(level[number] / factor, color=colour, linewidth=1.0)
         use_plain_log(axes[2])
-        axes[2].set_ylabel(f"level of the box in {unit}")
+        axes[2].set_ylabel(in_unit("level of the box", unit))
     axes[-1].set_xlabel(x.label)
     axes[0].margins(x=0.0)
     legend_below(figure, axes)
@@ -234,7 +235,7 @@ def draw_contact_threshold(data: xr.Dataset, title: str = "") -> Figure:
     if np.nanmax(level, initial=0.0) > 0.0:
         use_plain_log(plane)
     along = axis_values(data, str(data[THRESHOLD].dims[0])).label
-    plane.set(xlabel=along, ylabel=f"peak acceleration of the box in {unit}")
+    plane.set(xlabel=along, ylabel=in_unit("peak acceleration of the box", unit))
     plane.legend()
     return figure
 
@@ -247,4 +248,10 @@ def mark_lowest(axes: Axes, data: xr.Dataset) -> None:
     place, level = float(data[f"{LOWEST}_frequency"]) / turn, float(data[LOWEST]) / factor
     where = f"at {place:.5g} {word}" if word != "eta" else rf"at $\eta$ = {place:.5g}"
     style: Any = {"color": BLACK, "markersize": 4.0, "linestyle": "none"}
-    axes.plot(place, level, "o", label=f"lowest: {level:.3g} {unit} {where}", **style)
+    axes.plot(
+        place,
+        level,
+        "o",
+        label=" ".join(filter(None, (f"lowest: {level:.3g}", unit, where))),
+        **style,
+    )

@@ -46,32 +46,36 @@ def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
     return FACTORS["frequency"]["Hz"], "Hz"
 
 
-def length_scale(data: xr.Dataset, largest: float) -> tuple[float, str]:
-    """Return the divisor from m (or m/s) to the display unit, and its SI prefix."""
+def length_scale(data: xr.Dataset, largest: float, unit: str = "m") -> tuple[float, str]:
+    """Return the divisor from m, or m/s, to the display unit, and that unit; none of a ratio."""
     if is_in_ratios(data):
         return 1.0, ""
-    factor, word = scale_of(data, "m")
     if not units_of(data).length:
-        return si_prefix(largest)
-    return factor, word.removesuffix("m").replace("u", "µ")
+        factor, prefix = si_prefix(largest)
+        return factor, prefix + unit
+    factor, word = scale_of(data, unit)
+    return factor, typeset_unit(word)
 
 
 def lengths(
     data: xr.Dataset, values: xr.DataArray, words: str, unit: str = "m"
 ) -> tuple[xr.DataArray, str]:
     """Return lengths, or speeds in ``m/s``, in display units, and the axis label."""
-    factor, letter = length_scale(data, float(abs(values).max()) if values.size else 1.0)
-    return values / factor, length_label(data, words, f"{letter}{unit}")
+    factor, word = length_scale(data, float(abs(values).max()) if values.size else 1.0, unit)
+    return values / factor, in_unit(words, word)
 
 
-def length_label(data: xr.Dataset, words: str, unit: str) -> str:
-    """Return the axis label of a length or speed; without a unit in the paper's ratios."""
-    return words if is_in_ratios(data) else f"{words} in {unit}"
+def in_unit(words: str, unit: str, space: str = " ") -> str:
+    """Return an axis label with its unit, if there is one."""
+    return f"{words}{space}in {unit}" if unit else words
 
 
 def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, str]:
-    """Return the divisor from m/s2 to the display unit, and that unit for an axis."""
-    word = units_of(data).acceleration or usual
+    """Return the divisor from m/s2 to the display unit, and that unit; none of a ratio."""
+    word = units_of(data).acceleration
+    if is_in_ratios(data) and not word:
+        return 1.0, ""
+    word = word or usual
     return FACTORS["acceleration"][word], typeset_unit(word)
 
 
@@ -97,7 +101,7 @@ def axis_values(data: xr.Dataset, parameter: str) -> AxisValues:
             return AxisValues(data.frequency.values / factor, FREQUENCIES[word])
     if parameter == "level":
         factor, word = acceleration_scale(data, "g")
-        return AxisValues(data.level.values / factor, f"peak acceleration of the box in {word}")
+        return AxisValues(data.level.values / factor, in_unit("peak acceleration of the box", word))
     factor, label = parameter_scale(data, parameter)
     return AxisValues(data[parameter].values / factor, label)
 
@@ -110,8 +114,8 @@ def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
     if parameter == "eta" and units_of(data).frequency not in ("", "eta"):
         return factor / omega_of(data), FREQUENCIES[word]
     if parameter in ("amplitude", "clearance") and units_of(data).length:
-        factor, letter = length_scale(data, 1.0)
-        return factor, f"{symbol(parameter).removesuffix(' m')} {letter}m"
+        factor, unit = length_scale(data, 1.0)
+        return factor, f"{symbol(parameter).removesuffix(' m')} {unit}"
     return 1.0, symbol(parameter)
 
 
@@ -121,8 +125,8 @@ def gap_scale(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
     if not (asked and {"amplitude", "eta"} <= set(data.coords)):
         return 0.0, XI_REL
     largest = float((values * data.amplitude * data.eta**2).max())
-    factor, name = length_scale(data, largest)
-    return factor, f"{gap_name(data)} in {name}m"
+    factor, unit = length_scale(data, largest)
+    return factor, in_unit(gap_name(data), unit)
 
 
 def displayed_gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:

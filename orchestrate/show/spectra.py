@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ..units import units_of, with_units
 from .colours import BLACK, BLUE, ORANGE, STRUCTURES
 from .labels import format_frequency, has_frequency_unit, title_from_attributes
-from .scales import acceleration_scale, frequency_scale
+from .scales import acceleration_scale, frequency_scale, in_unit
 from .style import legend_below, make_panels, styled
 
 FLOOR = 1e-6  # of a motor's spectra: the lower end of the axis over the largest amplitude
@@ -61,7 +61,7 @@ def draw_spectra(data: xr.Dataset, title: str = "", mass: int = 1, decades: int 
         for plane, kinds in zip(axes[2 * index : 2 * index + 2], SIDES, strict=True):
             draw_side(plane, data, part, kinds, floor)
         axes[2 * index].set_ylim(floor, 2.0 * top)
-        axes[2 * index].set_ylabel(f"acceleration\nof mass {mass} in {unit}")
+        axes[2 * index].set_ylabel(in_unit(f"acceleration\nof mass {mass}", unit))
     lines = f"in {frequency_scale(data)[1]}" if with_unit else r"over $\Omega$"
     for plane in axes if with_unit else axes[-2:]:
         plane.set_xlabel(f"frequency of the line {lines}")
@@ -103,7 +103,7 @@ def draw_motor_spectra(data: xr.Dataset, mass: int = 1, title: str = "") -> Figu
         values, colour = shown.sel(kind=kind).values, STRUCTURES[kind]
         draw_stems(panel, data.order.values, values, FLOOR * top, 1.5, color=colour)
         speed = format_frequency(turning, float(data.speed.sel(kind=kind)))
-        panel.set(title=f"{kind}, {speed}", ylabel=f"acceleration in {unit}")
+        panel.set(title=f"{kind}, {speed}", ylabel=in_unit("acceleration", unit))
         panel.set_ylim(FLOOR * top, 2.0 * top)
     axes[-1].set_xlabel(r"frequency over the motor's speed $\Omega$")
     return figure

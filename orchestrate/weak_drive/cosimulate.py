@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu.begin import REST, begin
-from ..fmu.description import Description, describe
+from ..fmu.description import Description, describe, describe_runnable
 from ..fmu.exported import finder
 from ..fmu.instance import REAL_TYPES, Instance
 from ..fmu.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
@@ -354,9 +354,7 @@ def cosimulate(
         model = SHAKER if isinstance(drive, Drive) else ELECTRODYNAMIC_SHAKER
         connect, drive = connect or OURS, finder(running)(model).path
     path = Path(drive).resolve()
-    description = describe(path)
-    if not description.runs_here:
-        raise InputError(f"FMU {path}: it has no binary for this machine; export it with one")
+    description = describe_runnable(path)
     links = checked_links(connect or {}, description)
     for name, value in (("duration", duration), ("step", step)):
         check(name, value, "s", low=0.0, exclusive=True)
@@ -375,13 +373,14 @@ def cosimulate(
     )
     check_inputs(job.inputs, links)
     found = answer(job, running, finder(running), foreign)
-    warn_of_error(found, [name for name in MOTION if name not in links])
+    if estimate:
+        warn_of_error(found, [name for name in MOTION if name not in links])
     return found
 
 
 def warn_of_error(run: xr.Dataset, missing: Sequence[str]) -> None:
     """Warn where the error of the coupling is large enough to hide or to make impacts."""
-    if "coupling_error" not in getattr(run, "data_vars", ()):  # no estimate, or a job alone
+    if "coupling_error" not in getattr(run, "data_vars", ()):  # a job alone
         return
     size = max(float(abs(run[name]).max()) for name in ("x1", "x2"))
     error = float(run.coupling_error.max())

@@ -66,12 +66,18 @@ def make_records(folder):
         m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.01, zeta2=0.01, e=0.5
     )
     sweep = orchestrate.SweptSine(first=40.0, last=56.0, duration=4.0, acceleration=4.0)
-    sensor = orchestrate.Sensor(bandwidth=250.0, sample_rate=600.0, noise=0.005)
+    sensor = orchestrate.Sensor(bandwidth=250.0, sample_rate=600.0, noise=0.005, participation=1.4)
     for name, structure in (("parted", beam), ("whole", beam.as_bonded())):
         history = orchestrate.shake(structure, sweep, sample_rate=600.0, progress=False)
         felt = orchestrate.measure(history, sensor, excitation=sweep).drop_vars("acceleration2")
         orchestrate.write_record(felt, folder / f"{name}.csv")
     (folder / "beam.toml").write_text(GUESSED)
+
+
+def stored_verdict(folder, name):
+    """The file of a record's verdict."""
+    (path,) = (p for p in folder.glob(f"diagnose_{name}_*.nc") if not p.stem.endswith("_signs"))
+    return path
 
 
 @pytest.fixture(scope="module")
@@ -101,15 +107,21 @@ def test_what_is_stored_has_the_numbers_of_the_verdict(run):
     folder, _ = run
     found = {}
     for name in ("parted", "whole"):
-        paths = folder.glob(f"diagnose_{name}_*.nc")
-        (path,) = (path for path in paths if "signs" not in path.stem)
-        found[name] = xr.load_dataset(path)
+        found[name] = xr.load_dataset(stored_verdict(folder, name))
     best = found["parted"].sel(hypothesis="delaminated")
-    assert best.participation.item() == pytest.approx(1.0, rel=0.05)
+    assert best.participation.item() == pytest.approx(1.4, rel=0.05)
     for name, true in (("f1", 42.0), ("f2", 52.0)):
         assert float(best.value.sel(parameter=name)) == pytest.approx(true, rel=0.02)
         assert 1e-4 < float(best.standard_error.sel(parameter=name)) / true < 0.05
     assert float(best.value.sel(parameter="e")) == pytest.approx(0.5, abs=0.08)
+    assert float(found["parted"].ratio) > 3.0 and float(found["parted"].odds) > 100.0
+    sound = [name for name in found["whole"].hypothesis.values if name.startswith("bonded")]
+    misfits = found["whole"].misfit.sel(hypothesis=sound)  # each contains the linear spring
+    linear = float(misfits.sel(hypothesis="bonded"))
+    common = np.sqrt(np.average(np.square([42.0, 52.0]), weights=[1.5, 1.2]))
+    stated = found["whole"].value.sel(hypothesis="bonded", parameter="f")
+    assert float(stated) == pytest.approx(common, rel=0.005)
+    assert len(sound) > 3 and float(misfits.max()) <= 1.001 * linear
     halves = found["whole"].value.sel(parameter=["f1", "f2", "zeta1", "zeta2", "e"])
     assert halves.isnull().all() and 0.0 < float(found["whole"].smallest_opening) < 1e-3
 
@@ -131,7 +143,7 @@ def test_each_record_has_a_page_with_its_evidence(run):
 
 def test_a_page_says_what_the_record_is_and_how_the_page_was_made(run):
     folder, said = run
-    (stored,) = (path for path in folder.glob("diagnose_parted_*.nc") if "signs" not in path.stem)
+    stored = stored_verdict(folder, "parted")
     again = io.StringIO()
     with redirect_stdout(again):
         assert main(["report", str(stored), "--output", str(folder), "--units", "g"]) == 0

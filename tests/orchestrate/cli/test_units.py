@@ -77,7 +77,7 @@ ASKED = {  # command, a unit, what is printed in it, and what is printed anyhow
     ),
     "orbit": (
         ("--eta", "3.0"),
-        *("mm", r"closing at [\d.]+ mm/s"),
+        *("mm", r"impact at 0\.480678\d* s, closing at [\d.]+ mm/s"),
         ("unstable", "-3.359480", "0.480678", "state at phase 0"),
     ),
     "manifold": (
@@ -227,6 +227,12 @@ def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(comman
         more["state"] = (("attractor", "coordinate"), [[0.0] * 4])
         lines = attractor_table(data.assign(more))
     assert "xi_Rel = 1.5, 3 mm" in " ".join(lines)
+
+
+def test_times_of_impacts_are_tau_in_ratios_unless_a_unit_is_asked_for(ask):
+    orbit = ("orbit", "--eta", "3.0", "--plot", "none")
+    assert "impact at tau = 0.480678" in ask(*orbit).success().out
+    assert re.search(r"impact at 0\.22950\d* periods", ask(*orbit, "--units", "periods").out)
 
 
 def test_the_picture_of_an_orbit_says_whether_it_is_stable():
