@@ -10,7 +10,7 @@ from __future__ import annotations
 from abc import ABC
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -106,6 +106,7 @@ class Series:
         coordinates["period"] = variable(self.name, period, "1", text)
         return coordinates
 
+    @cached_property
     def scales(self) -> NDArray[np.float64]:
         """Return the units of the states' coordinates at each point, shape (n, 4)."""
         return np.array([point.scale for point in self.points])
@@ -291,7 +292,7 @@ def start_states(
                 f"direction over the same values of {series.name}"
             )
         ends = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
-        return tuple((ends.values * series.scales()).ravel().tolist())
+        return tuple((ends.values * series.scales).ravel().tolist())
     rows = checked_states("start", start, structure)
     if len(rows) not in (1, len(series.values)):
         raise InputError(

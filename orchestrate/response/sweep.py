@@ -158,7 +158,7 @@ class SweepJob(SeriesQuestion):
 
     def gaps_in_order(self, gaps: NDArray[np.float64] | StoredRows) -> Any:
         """Return the samples of the gap over a eta^2 in the values' order, lazily if stored."""
-        length = self.series.scales()[:, :1]
+        length = self.series.scales[:, :1]
         if isinstance(gaps, np.ndarray):
             return np.asarray(self.in_order(gaps), dtype=float) / length
         numbers = self.in_order(np.arange(gaps.shape[0]))
@@ -174,7 +174,7 @@ class SweepJob(SeriesQuestion):
         along: Dims = (self.series.name,)
         if self.direction == "both":
             along = ("direction", self.series.name)
-        scales = self.series.scales()
+        scales = self.series.scales
         text = "stroboscopic samples of the gap xi_2 - xi_1 (21)"
         return {
             "xi_rel": variable((*along, "sample"), table["gap"], "1", text),
