@@ -8,7 +8,7 @@ the peak acceleration in m/s2, where that varies.
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar, NamedTuple, TypeVar
@@ -33,6 +33,7 @@ EXCITATION_PARAMETERS = {
     **{name: EXCITATION[name] for name in ("frequency", "amplitude")},
     "level": LEVEL,
 }
+KEPT_POINTS = 2**14  # of a series, from one use to the next
 FORMS = "expected eta=, or frequency= with amplitude="
 
 
@@ -80,36 +81,58 @@ class Point(NamedTuple):
         return states
 
 
+class Points(Sequence[Point]):
+    """Operating points by number, made where they are indexed: a million would not fit in memory.
+
+    ``make`` returns the point of a number; ``numbers`` are those of the points, in order.
+    """
+
+    def __init__(self, make: Callable[[int], Point], numbers: NDArray[np.intp]) -> None:
+        self.make, self.numbers = make, numbers
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def __getitem__(self, key: Any) -> Any:
+        chosen = self.numbers[key].tolist()
+        return list(map(self.make, chosen)) if isinstance(chosen, list) else self.make(chosen)
+
+    def taken(self, numbers: NDArray[np.intp]) -> Points:
+        """Return the points of given numbers."""
+        return Points(self.make, self.numbers[numbers])
+
+
 @dataclass(frozen=True)
 class Series:
     """Operating points along one parameter, in the order of the values given."""
 
     name: str  # of the parameter, and of the dimension of all results
     values: tuple[float, ...]
-    points: tuple[Point, ...]
-    etas: tuple[float, ...]  # frequency ratio of each
+    points: Points
+    # of each: frequency ratio, rad/s, m
+    etas: NDArray[np.float64]
+    frequencies: NDArray[np.float64]
+    amplitudes: NDArray[np.float64]
 
     def coordinates(self) -> dict[str, Variable]:
         """Return dataset coordinates: the parameter, eta, frequency, amplitude and period."""
-        excitations = [point.excitation for point in self.points]
-        along = {
+        along: dict[str, ArrayLike] = {
             "eta": self.etas,
-            "frequency": [excitation.frequency for excitation in excitations],
-            "amplitude": [excitation.amplitude for excitation in excitations],
+            "frequency": self.frequencies,
+            "amplitude": self.amplitudes,
+            self.name: self.values,
         }
         coordinates = {
             name: parameter_variable(name, self.name, values) for name, values in along.items()
         }
-        coordinates[self.name] = parameter_variable(self.name, self.name, self.values)
-        period = 2.0 * np.pi / np.array(self.etas)
         text = "excitation period T = 2 pi/eta in units of tau (22)"
-        coordinates["period"] = variable(self.name, period, "1", text)
+        coordinates["period"] = variable(self.name, 2.0 * np.pi / self.etas, "1", text)
         return coordinates
 
     @cached_property
     def scales(self) -> NDArray[np.float64]:
         """Return the units of the states' coordinates at each point, shape (n, 4)."""
-        return np.array([point.scale for point in self.points])
+        return table_of(self.points, lambda point: point.scale, 4)
 
 
 @lru_cache(maxsize=16)
@@ -135,12 +158,30 @@ def make_series(
     name = over or next(listed, None) or next(iter(excitation))
     varied = varied or {name: (excitation[name],)}
     check_lengths(name, over, varied)
-    rows = (dict(zip(varied, row, strict=True)) for row in zip(*varied.values(), strict=True))
-    points = tuple(make_point(structure, {**excitation, **row}) for row in rows)
-    etas = varied.get("eta") or tuple(p.excitation.eta(p.structure) for p in points)
-    if "eta" in excitation:
-        etas = (excitation["eta"],) * len(points)
-    return Series(name, varied[name], points, etas)
+
+    @lru_cache(maxsize=KEPT_POINTS)
+    def make(number: int) -> Point:
+        row = {varying: numbers[number] for varying, numbers in varied.items()}
+        return make_point(structure, {**excitation, **row})
+
+    points = Points(make, np.arange(len(varied[name])))
+    given = varied.get("eta") or excitation.get("eta")
+    numbers = table_of(points, lambda point: excitation_row(point, given is None), 3)
+    if given is not None:
+        numbers[:, 0] = given
+    return Series(name, varied[name], points, *numbers.T)
+
+
+def excitation_row(point: Point, with_eta: bool) -> tuple[float, float, float]:
+    """Return a point's eta, unless it is known, its frequency and its amplitude."""
+    excitation = point.excitation
+    eta = excitation.eta(point.structure) if with_eta else np.nan
+    return eta, excitation.frequency, excitation.amplitude
+
+
+def table_of(points: Points, row: Callable[[Point], ArrayLike], width: int) -> NDArray[np.float64]:
+    """Return numbers of each point, shape (n, width)."""
+    return np.fromiter(map(row, points), np.dtype((float, (width,))), len(points))
 
 
 def varied_values(

@@ -82,13 +82,12 @@ class ResonanceJob(SweepJob):
         structure = self.structure.as_delaminated()
         if structure.gap_offset == 0.0:
             return {}
-        speeds = np.array([point.excitation.frequency for point in self.series.points])
-        return threshold_variables(structure, self.series.name, speeds)
+        return threshold_variables(structure, self.series.name, self.series.frequencies)
 
     def coordinates(self) -> dict[str, Variable]:
         """Return dataset coordinates: structure, direction, excitation, frequency in Hz."""
         name = self.series.name
-        turns = [point.excitation.frequency / (2.0 * np.pi) for point in self.series.points]
+        turns = self.series.frequencies / (2.0 * np.pi)
         directions = ["up", "down"] if self.direction == "both" else [self.direction]
         text = "whether the masses are glued or can part"
         return {

@@ -96,8 +96,7 @@ class SweepJob(SeriesQuestion):
         return self.independent_series() * super().count()
 
     def items(self) -> Sequence[Point]:
-        points = self.series.points
-        return [points[index] for order in self.orders() for index in order]
+        return self.series.points.taken(np.concatenate(self.orders()))
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
@@ -142,8 +141,9 @@ class SweepJob(SeriesQuestion):
         return bytes(table["end"][-1].tobytes())
 
     def dataset(self, table: Table) -> xr.Dataset:
-        ordered = {name: self.in_order(table[name]) for name in table if name != "gap"}
-        ordered["gap"] = self.gaps_in_order(table["gap"])
+        in_order = {"gap": self.gaps_in_order}
+        # each column leaves the table: of a long sweep there is no room for two
+        ordered = {name: in_order.get(name, self.in_order)(table.pop(name)) for name in [*table]}
         title = f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
         return make_dataset(self.variables(ordered), self.coordinates(), title)
 

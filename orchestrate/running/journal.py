@@ -115,13 +115,20 @@ class Journal:
 
     def indices(self) -> set[int]:
         """Return the numbers of the intact stored chunks; delete those with a wrong checksum."""
-        indices = set()
-        for index, digest, data in self._query("SELECT i, sha256, CAST(data AS BLOB) FROM chunks"):
-            if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
-                indices.add(index)
-            else:
+        numbers = {index for (index,) in self._query("SELECT i FROM chunks")}
+        for index in sorted(numbers):  # one after the other: together they may not fit in memory
+            if not self._content(index):
                 self.drop(index, "damaged")
-        return indices
+                numbers.remove(index)
+        return numbers
+
+    def _content(self, index: int) -> bytes:
+        """Return the bytes of a stored chunk; none where it is damaged."""
+        rows = self._query("SELECT sha256, CAST(data AS BLOB) FROM chunks WHERE i = ?", index)
+        for digest, data in rows:
+            if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
+                return data
+        return b""
 
     def drop(self, index: int, reason: str) -> None:
         """Delete a stored chunk, so that it is computed again; log the reason as a warning."""
@@ -134,10 +141,8 @@ class Journal:
 
     def get(self, index: int) -> Table:
         """Return a stored chunk as a dict of arrays; raise ``StoreError`` if it is damaged."""
-        rows = self._query("SELECT sha256, CAST(data AS BLOB) FROM chunks WHERE i = ?", index)
-        for digest, data in rows:
-            if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
-                return unpack(data)
+        if data := self._content(index):
+            return unpack(data)
         raise StoreError(f"{self.path}: chunk {index} is damaged; repeat the call to recompute it")
 
     def put(self, index: int, table: Table) -> None:

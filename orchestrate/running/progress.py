@@ -20,6 +20,7 @@ from .store import Store
 
 log = logging.getLogger(__name__)
 MIN_GAP = 3  # chunks in a row not begun: from here on, guessing the middle one pays
+REACH = 100  # chunks past the first of them at most: until it comes there, guesses are in memory
 
 
 @dataclass(frozen=True)
@@ -49,10 +50,12 @@ class Progress:
         self.job, self.store, self.identity, self.fmus = job, store, identity, fmus
         self.chunks = job.chunks()
         self.result = store.result()
-        self.done_chunks = set(range(len(self.chunks))) if self.complete else self.valid_chunks()
+        done = set(range(len(self.chunks))) if self.complete else self.valid_chunks()
+        self.left = {each.index: each for each in self.chunks if each.index not in done}
+        self._stored_items = sum(map(self.size, done))
         self.under_way: set[int] = set()
         self.guesses: dict[int, Guess] = {}
-        self._ends: dict[int, Table] = {}  # last entries of chunks that are certain
+        self._ends: dict[int, Table] = {}  # last entries of the last chunks that are certain
         self.wasted = 0  # items that were guessed in vain
         self.items: Sequence[Any] | None = None
 
@@ -87,7 +90,7 @@ class Progress:
 
     def done(self) -> int:
         """Return the number of items computed so far, those of guessed chunks included."""
-        return sum(self.size(index) for index in {*self.done_chunks, *self.guesses})
+        return self._stored_items + sum(map(self.size, self.guesses))
 
     def size(self, index: int) -> int:
         """Return the number of items of a chunk."""
@@ -110,11 +113,11 @@ class Progress:
 
     def is_untouched(self, index: int) -> bool:
         """Return whether a chunk is not computed, not running and not guessed."""
-        return not (index in self.done_chunks or index in self.under_way or index in self.guesses)
+        return index in self.left and index not in self.under_way and index not in self.guesses
 
     def certain_tasks(self) -> Iterator[Task]:
         """Yield tasks for untouched chunks whose true start state is known."""
-        for chunk in self.chunks:
+        for chunk in self.left.values():
             if self.is_certain(chunk):
                 yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
 
@@ -140,8 +143,8 @@ class Progress:
         if not self.is_untouched(chunk.index) or chunk.after is None:
             return self.is_untouched(chunk.index)
         if self.job.gathers:
-            return len(self.done_chunks) == chunk.index
-        return chunk.after in self.done_chunks
+            return len(self.left) == 1
+        return chunk.after not in self.left
 
     def continuing_tasks(self) -> Iterator[Task]:
         """Yield tasks that continue guessed chunks, also instead of guesses with another start."""
@@ -162,7 +165,7 @@ class Progress:
         """Yield one task amid the longest run of untouched chunks, started by warm-up items."""
         first, last = max(self.gaps(), key=lambda gap: gap[1] - gap[0], default=(0, 0))
         if self.job.warmup_items and last - first >= MIN_GAP:
-            chunk = self.chunks[(first + last) // 2]
+            chunk = self.chunks[min((first + last) // 2, first + REACH)]
             begin = self.chunks[first].start
             warmup_items = self.item_range(
                 max(chunk.start - self.job.warmup_items, begin), chunk.start
@@ -171,15 +174,13 @@ class Progress:
 
     def gaps(self) -> Iterator[tuple[int, int]]:
         """Yield runs of consecutive untouched chunks as pairs (first, one past the last)."""
-        first = 0
-        for chunk in self.chunks:
-            if not self.is_untouched(chunk.index):
-                yield first, chunk.index
-                first = chunk.index + 1
-            elif chunk.after is None:
-                yield first, chunk.index
-                first = chunk.index
-        yield first, len(self.chunks)
+        first = last = 0
+        for index in filter(self.is_untouched, self.left):
+            if index != last or self.chunks[index].after is None:
+                yield first, last
+                first = index
+            last = index + 1
+        yield first, last
 
     def items_of(self, chunk: Chunk) -> Sequence[Any]:
         """Return the job's items that belong to a chunk."""
@@ -195,7 +196,7 @@ class Progress:
         if self.complete:
             return 0
         longest_gap = max((last - first for first, last in self.gaps()), default=0)
-        certain = sum(map(self.is_certain, self.chunks))
+        certain = sum(map(self.is_certain, self.left.values()))
         return certain + (longest_gap // MIN_GAP if self.job.warmup_items else 0)
 
     # -- what was computed ------------------------------------------------------------------------
@@ -215,15 +216,17 @@ class Progress:
     def store_chunk(self, index: int, table: Table) -> None:
         """Write a chunk with a true start to the store, and remember its last row."""
         self.store.put(index, table)
-        self.done_chunks.add(index)
+        del self.left[index]
+        self._stored_items += self.size(index)
         if self.job.sequential:
+            self._ends.pop(index - 1, None)
             self._ends[index] = last_entries(table)
 
     def resolve_guesses(self) -> None:
         """Store guessed chunks whose start equals the end of the chunk before; discard others."""
         for index in sorted(self.guesses):
             after = self.chunks[index].after
-            if after is None or after in self.done_chunks:
+            if after is None or after not in self.left:
                 guess = self.guesses.pop(index)
                 if after is None or self.job.boundary_state(self.end_of(after)) == guess.start:
                     self.store_chunk(index, guess.table)
@@ -232,7 +235,7 @@ class Progress:
 
     def finish_if_done(self) -> None:
         """Build, mark with provenance and store the final dataset, if all chunks are done."""
-        if self.complete or len(self.done_chunks) < len(self.chunks):
+        if self.complete or self.left:
             return
         if self.wasted:
             log.debug("%s: %d items were guessed in vain", self.job.name, self.wasted)

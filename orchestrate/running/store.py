@@ -208,7 +208,7 @@ class Disk(Store):
                     shapes[name].append(values.shape)
                 else:
                     columns.setdefault(name, []).append(values)
-        table: dict[str, Any] = {name: np.concatenate(parts) for name, parts in columns.items()}
+        table: dict[str, Any] = {name: np.concatenate(columns.pop(name)) for name in [*columns]}
         table |= {
             name: StoredRows(self, name, [rows for rows, _ in each], each[0][1])
             for name, each in shapes.items()

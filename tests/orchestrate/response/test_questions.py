@@ -24,7 +24,7 @@ def along(structure=OWN, **asked):
 
 def test_eta_is_a_frequency_and_an_amplitude():
     found = along(eta=[0.5, 2.0])
-    assert (found.name, found.values, found.etas) == ("eta", (0.5, 2.0), (0.5, 2.0))
+    assert (found.name, found.values, [*found.etas]) == ("eta", (0.5, 2.0), [0.5, 2.0])
     for point, eta in zip(found.points, found.etas, strict=True):
         assert point.excitation.frequency == eta * OWN.omega
         assert point.excitation.amplitude == 1.0 / (eta * eta)
@@ -68,7 +68,7 @@ def test_a_parameter_of_the_structure_is_replaced_and_eta_stays():
     found = along(eta=1.5, over="omega", values=[1.0, 10.0])
     assert [point.structure.omega for point in found.points] == [1.0, 10.0]
     assert [point.excitation.frequency for point in found.points] == [1.5, 15.0]
-    assert found.etas == (1.5, 1.5)
+    assert [*found.etas] == [1.5, 1.5]
 
 
 @pytest.mark.parametrize(

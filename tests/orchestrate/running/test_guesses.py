@@ -86,9 +86,8 @@ def job(figure: str, direction: str, low: float = 0.1, high: float = 8.0, step: 
 
 def played(sweep: SweepJob, workers: int, store=None):
     """The result, and how many values were guessed in vain."""
-    progress = Progress(sweep, store or Store(), {}, {OSCILLATOR: find(OSCILLATOR)})
     with patch.object(SweepJob, "chunk_size", 10):
-        progress.chunks = sweep.chunks()
+        progress = Progress(sweep, store or Store(), {}, {OSCILLATOR: find(OSCILLATOR)})
         play(progress, workers, 1)
     return progress.result.drop_attrs(), progress.wasted
 
