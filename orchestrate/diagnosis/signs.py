@@ -32,7 +32,6 @@ from .undamaged import SoundStructure
 
 RESPONSE = "the response"  # reference of the phase where nothing else is known
 UNKNOWN = SoundStructure(math.nan, math.nan)
-EXCEED_FACTOR = 2.0  # times what noise and a sound structure show
 MEANINGS = {-1: "unknown", 0: "no", 1: "yes"}
 NOISE_SOURCES = "lines at 0.36 to 0.44 of the sampling rate", "off-orders 2.37 and 3.37"
 
@@ -46,6 +45,7 @@ def signs(
     seeds: int = 8,
     periods: float = 16.0,
     high_band: float | None = None,
+    factor: float = 2.0,
 ) -> xr.Dataset:
     """Compute model-free signs of delamination in a record.
 
@@ -71,14 +71,17 @@ def signs(
         Hz above which the signs at high frequencies are taken; by default six times the highest
         frequency of the excitation or, where that is lower, 0.3 of the sampling rate. Where that
         is less than 3.3 times the highest frequency there are none.
+    factor : float
+        Times what noise and a sound structure show: a sign above it stands out, ``exceeds``.
 
     Returns
     -------
     xarray.Dataset
         Over ``sign`` and ``channel``: ``value``; ``floor``, what noise alone makes of it; ``sound``
         and ``sound_highest``, the median and the largest value of sound structures under the same
-        box with the same noise; ``exceeds``, whether the value is above twice the larger of floor
-        and ``sound_highest`` (or ``unknown``); ``frequency`` in Hz, where an order is largest. All
+        box with the same noise; ``exceeds``, whether the value is above ``factor`` times the larger
+        of floor and ``sound_highest`` (or ``unknown``); ``frequency`` in Hz, where an order is
+        largest. All
         signs are numbers without a unit, NaN where the record cannot show them. Coordinates over
         ``sign``: its ``meaning``, ``formula``, ``source`` and what else is known to move it,
         ``moved_by``. Over ``channel``: ``noise`` in m/s2. ``sound_f`` in Hz and ``sound_zeta`` are
@@ -108,8 +111,9 @@ def signs(
     True
     """
     others = [other] if isinstance(other, xr.Dataset) else list(other or ())
+    times = checked_number("factor", factor, 1.0, 1e6)
     if is_drive_run(record):
-        return signs_of_drive_run(record, others)
+        return signs_of_drive_run(record, others, times)
     length = checked_number("periods", periods, 2.0, 1e4)
     count = checked_integer("seeds", seeds, 1, 1000)
     every = [reference_channels(one) for one in (record, *others)]
@@ -143,7 +147,7 @@ def signs(
     }
     if reference == RESPONSE:
         described["sound_from"] = "none: what excites the structure is unknown"
-    answer = signs_dataset(every[0].title, names, values, floors, shown, described)
+    answer = signs_dataset(every[0].title, names, values, floors, shown, times, described)
     return answer.assign(
         frequency=peak_frequencies(own[0], names), **sound_variables(sound, noises[0])
     )
@@ -217,13 +221,14 @@ def signs_dataset(
     values: dict[str, Floats],
     floors: dict[str, Floats],
     shown: Floats,
+    factor: float,
     described: dict[str, Any],
 ) -> xr.Dataset:
     """Assemble the dataset of the signs."""
     over = ("sign", "channel")
     value, floor = np.stack(list(values.values())), np.stack(list(floors.values()))
     highest = np.fmax.reduce(shown)
-    limit = EXCEED_FACTOR * np.fmax(floor, highest)
+    limit = factor * np.fmax(floor, highest)
     known = np.isfinite(value) & np.isfinite(highest)
     exceeds = np.where(known, value > limit, -1)
     texts = (
@@ -241,16 +246,14 @@ def signs_dataset(
                 over, median_of_known(shown), "1", "the same of a sound structure, median"
             ),
             "sound_highest": variable(over, highest, "1", "the same of a sound structure, largest"),
-            "exceeds": flags(
-                over, exceeds, f"whether it is above {EXCEED_FACTOR:g} times all", MEANINGS
-            ),
+            "exceeds": flags(over, exceeds, f"whether it is above {factor:g} times all", MEANINGS),
         },
         {
             "sign": ("sign", np.array(list(INDICATORS)), {"long_name": "sign"}),
             "channel": ("channel", np.array(names), {"long_name": "channel of the record"}),
             **{n: ("sign", np.array(columns[n]), {"long_name": text}) for n, _, text in texts},
         },
-        attributes("signs", "Signs", title, **described),
+        attributes("signs", "Signs", title, factor=factor, **described),
     )
 
 
@@ -277,7 +280,7 @@ def sound_variables(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
     }
 
 
-def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Dataset:
+def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset], factor: float) -> xr.Dataset:
     """Compute the signs of a run on a weak drive, against that of the sound beam."""
     if len(others) != 1 or not is_drive_run(others[0]):
         raise InputError("other: expected the run of the sound beam on the same drive")
@@ -287,4 +290,4 @@ def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Data
     itself = [0.0 if name in own else math.nan for name in INDICATORS]  # against itself
     shown, title = np.array(itself)[None, :, None], str(run.attrs.get("title", "run"))
     described = {"seeds": "none", "sound_from": "the run of the sound beam"}
-    return signs_dataset(title, ["motor"], values, floors, shown, described)
+    return signs_dataset(title, ["motor"], values, floors, shown, factor, described)

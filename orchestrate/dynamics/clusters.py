@@ -42,7 +42,6 @@ class AttractorSettings:
     count_weight: float = 0.2
     residual: float = 1e-9  # of an orbit's equations in units of a eta^2, at most
     max_nodes: int = 400  # of an orbit that Newton's method is tried on
-    margin: float = 1e-9  # by which the multipliers of a stable orbit are smaller than 1 at least
     # distances over the motion's size: where the FMU is again after the periods of an orbit; from
     # which a response may be coming to an orbit, and lies on it
     returns: float = 1e-6

@@ -3,7 +3,7 @@
 - It is run on until its state repeats within `converged`, or within `apart` times that with a
   deviation that dies, for at most `longest` periods.
 - It is on an *orbit* that Newton's method finds from its impacts over these periods: a possible
-  motion, stable by `margin`, to which the FMU `returns` with the same impacts, and to which the
+  motion, stable, to which the FMU `returns` with the same impacts, and to which the
   response, if nearer than `near`, comes as the multipliers say, or lies within `same`.
 - Without such an orbit, states that repeat are *repeated*.
 - They are *undecided* near an unstable orbit, or before impacts that have to come at this level.
@@ -160,10 +160,7 @@ class MotionDecider:
 
     def stable_motion(self, orbit: PeriodicOrbit | None, free_phase: float) -> SettledMotion | None:
         """Return a stable orbit as a motion; None without one."""
-        if (
-            orbit is None
-            or np.abs(orbit.multipliers()).max(initial=0.0) >= 1.0 - self.settings.margin
-        ):
+        if orbit is None or not orbit.stable:
             return None
         return SettledMotion.from_orbit(self.point, orbit, free_phase)
 

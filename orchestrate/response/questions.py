@@ -130,9 +130,14 @@ class Series:
         return coordinates
 
     @cached_property
+    def units(self) -> NDArray[np.float64]:
+        """Return the units of displacements and velocities at each point, shape (n, 2)."""
+        return table_of(self.points, lambda point: point.scale[[0, -1]], 2)
+
+    @property
     def scales(self) -> NDArray[np.float64]:
         """Return the units of the states' coordinates at each point, shape (n, 4)."""
-        return table_of(self.points, lambda point: point.scale, 4)
+        return self.units.repeat(2, axis=1)
 
 
 @lru_cache(maxsize=16)

@@ -74,7 +74,7 @@ class ResonanceJob(SweepJob):
 
     def variables(self, table: Table) -> dict[str, Variable]:
         """Return dataset variables of the curves: amplitudes, accelerations, multiplicity."""
-        along, length = (*DIMENSIONS, self.series.name), self.series.scales[:, 0]
+        along, length = (*DIMENSIONS, self.series.name), self.series.units[:, 0]
         return {**self.threshold(), **response_variables(along, table, length, REPORTED)}
 
     def threshold(self) -> dict[str, Variable]:

@@ -158,7 +158,7 @@ class SweepJob(SeriesQuestion):
 
     def gaps_in_order(self, gaps: NDArray[np.float64] | StoredRows) -> Any:
         """Return the samples of the gap over a eta^2 in the values' order, lazily if stored."""
-        length = self.series.scales[:, :1]
+        length = self.series.units[:, :1]
         if isinstance(gaps, np.ndarray):
             return np.asarray(self.in_order(gaps), dtype=float) / length
         numbers = self.in_order(np.arange(gaps.shape[0]))
@@ -174,12 +174,12 @@ class SweepJob(SeriesQuestion):
         along: Dims = (self.series.name,)
         if self.direction == "both":
             along = ("direction", self.series.name)
-        scales = self.series.scales
         text = "stroboscopic samples of the gap xi_2 - xi_1 (21)"
+        ends = table.pop("end") / self.series.scales
         return {
             "xi_rel": variable((*along, "sample"), table["gap"], "1", text),
-            **response_variables(along, table, scales[:, 0], RESPONSE_QUANTITIES),
-            "end_state": variable((*along, "coordinate"), table["end"] / scales, "1", END),
+            **response_variables(along, table, self.series.units[:, 0], RESPONSE_QUANTITIES),
+            "end_state": variable((*along, "coordinate"), ends, "1", END),
         }
 
     def coordinates(self) -> dict[str, Variable]:

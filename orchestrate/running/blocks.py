@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-BLOCK = 2**21  # values in memory at once
+BLOCK = 2**19  # values in memory at once
 CHUNK = 2**17  # values compressed together in a file, whole rows
 
 Index = tuple[int | slice, ...]

@@ -143,7 +143,7 @@ class Progress:
         if not self.is_untouched(chunk.index) or chunk.after is None:
             return self.is_untouched(chunk.index)
         if self.job.gathers:
-            return len(self.left) == 1
+            return len(self.chunks) - len(self.left) == chunk.index
         return chunk.after not in self.left
 
     def continuing_tasks(self) -> Iterator[Task]:
@@ -239,9 +239,9 @@ class Progress:
             return
         if self.wasted:
             log.debug("%s: %d items were guessed in vain", self.job.name, self.wasted)
-        dataset = self.job.dataset(self.table())
-        dataset = with_provenance(dataset, self.job, self.identity, self.fmus, self.store.begun)
-        self.result = self.store.finish(dataset)
+        about = self.job, self.identity, self.fmus, self.store.begun
+        # the store alone holds the dataset, and lets go of it
+        self.result = self.store.finish(with_provenance(self.job.dataset(self.table()), *about))
         self.items = None
 
     def table(self) -> Table:

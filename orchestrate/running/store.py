@@ -29,6 +29,7 @@ log = logging.getLogger(__name__)
 MIN_COMPRESSED = 10_000  # values from which a variable is worth compressing
 LAST_SECOND = 253_402_300_799  # of the year 9999
 MAX_LOADED = 2**28  # bytes of a file that is read whole; larger ones are opened lazily
+JOINED = 500  # chunks joined at a time: many small arrays leave holes in memory
 ZLIB_LEVEL = 1  # not higher: the last digits of numbers do not shrink, however long it tries
 
 
@@ -202,12 +203,16 @@ class Disk(Store):
         """Return all chunks' arrays joined, those of ``bulk`` as :class:`StoredRows`."""
         columns: dict[str, list[np.ndarray]] = {}
         shapes: dict[str, list[tuple[int, ...]]] = {name: [] for name in bulk}
-        for index in range(count):
-            for name, values in self.get(index).items():
-                if name in shapes:
-                    shapes[name].append(values.shape)
-                else:
-                    columns.setdefault(name, []).append(values)
+        for first in range(0, count, JOINED):
+            parts: dict[str, list[np.ndarray]] = {}
+            for index in range(first, min(first + JOINED, count)):
+                for name, values in self.get(index).items():
+                    if name in shapes:
+                        shapes[name].append(values.shape)
+                    else:
+                        parts.setdefault(name, []).append(values)
+            for name, some in parts.items():
+                columns.setdefault(name, []).append(np.concatenate(some))
         table: dict[str, Any] = {name: np.concatenate(columns.pop(name)) for name in [*columns]}
         table |= {
             name: StoredRows(self, name, [rows for rows, _ in each], each[0][1])
@@ -227,6 +232,7 @@ class Disk(Store):
         self.journal.remove()
         discard(journal_path(self.path))  # of a run that was killed as it finished
         self._journal = None
+        del dataset  # there may be no room for it beside what is read
         self._result = load(self.path)
         return self._result
 

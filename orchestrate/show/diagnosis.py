@@ -23,7 +23,6 @@ CHANNELS = {"acceleration1": "sensor 1", "acceleration2": "sensor 2", "motor": "
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY)
 FITS = (BLUE, ORANGE, GREEN)  # of the delaminated, of the best sound structure, of the bonded one
 PARTED, BONDED = "delaminated", "bonded"  # names of hypotheses begin so
-LIMIT = 2.0  # times what noise and a sound structure show, from which a sign stands out
 FEWEST_DECADES = (0.2, 10.0)  # of the signs' axis, at least
 
 
@@ -37,16 +36,20 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     figure, (axes,) = make_panels(1, 1, size, title)
     ratio = (data.value / np.fmax(data.floor, data.sound_highest)).where(data.exceeds >= 0)
     channels = [str(channel) for channel in data.channel.values]
-    share, signs = 0.8 / len(channels), np.arange(data.sizes["sign"])
+    share, limit, signs = (
+        0.8 / len(channels),
+        float(data.attrs["factor"]),
+        np.arange(data.sizes["sign"]),
+    )
     for number, channel in enumerate(channels):
         positions = signs + share * (number - 0.5 * (len(channels) - 1))
         values, label = ratio.sel(channel=channel).values, CHANNELS.get(channel, channel)
         colour = COLOURS[number % len(COLOURS)]
         axes.barh(positions, np.nan_to_num(values), share, color=colour, label=label)
-        write_values(axes, positions, values, data.value.sel(channel=channel).values)
+        write_values(axes, positions, values, data.value.sel(channel=channel).values, limit)
     lines: Any = {"linewidth": 1.0, "zorder": 3}
     axes.axvline(1.0, color=GREY, label="noise and a sound structure", **lines)
-    axes.axvline(LIMIT, color=RED, linestyle="--", label="from here it stands out", **lines)
+    axes.axvline(limit, color=RED, linestyle="--", label="from here it stands out", **lines)
     high = max(float(np.nanmax(ratio.values, initial=1.0)), FEWEST_DECADES[1])
     axes.set(xscale="log", xlim=(FEWEST_DECADES[0], 4.0 * high))
     axes.set_yticks(signs, [str(text) for text in data.meaning.values])
@@ -58,12 +61,14 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
-def write_values(axes: Axes, place: np.ndarray, ratios: np.ndarray, values: np.ndarray) -> None:
+def write_values(
+    axes: Axes, place: np.ndarray, ratios: np.ndarray, values: np.ndarray, least: float
+) -> None:
     """Write each sign's own value at the end of its bar, or that the record lacks it."""
     for y, ratio, value in zip(place, ratios, values, strict=True):
         known = np.isfinite(ratio)
         text = f"{value:.3g}" if known else "not in this record"
-        x = float(ratio) if known and ratio > LIMIT else LIMIT  # lines are left of it
+        x = float(ratio) if known and ratio > least else least  # lines are left of it
         offset: Any = {"xytext": (3, 0), "textcoords": "offset points", "zorder": 4}
         colour = BLACK if known else GREY
         axes.annotate(text, (x, y), va="center", fontsize=7, color=colour, **offset)

@@ -42,7 +42,7 @@ def test_every_known_sign_has_its_bar_and_the_others_are_named(signs):
     assert all(any(np.isclose(width, wanted) for width in widths) for wanted in order_2)
     low, high = axes.get_xlim()
     assert low == diagnosis.FEWEST_DECADES[0] and high > float(order_2.max())
-    assert all(text.xy[0] >= diagnosis.LIMIT for text in axes.texts)  # on no line
+    assert all(text.xy[0] >= signs.attrs["factor"] for text in axes.texts)  # on no line
     assert figure.get_suptitle() == "Beam A"
 
 
