@@ -585,9 +585,6 @@ def test_repeated_extreme_values_are_those_of_a_saturated_channel():
         )
 
 
-# -- channels as they are -------------------------------------------------------------------------
-
-
 def swept(count=4000, rate=1000.0):
     """Acceleration, velocity and displacement of a sine swept from 20 to 60 Hz, in SI."""
     time = np.arange(count) / rate

@@ -139,9 +139,6 @@ def test_nothing_depends_on_the_amplitude(seed, power):
     assert once == (1, np.abs(np.diff(parts)).max())
 
 
-# -- how it was decided ---------------------------------------------------------------------------
-
-
 def states_of(deviation, count=200, of_velocity=np.zeros_like):
     """A response with some deviations of mass 1, of a motion of size 1 to 2."""
     n = np.arange(count)

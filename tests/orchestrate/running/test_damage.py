@@ -151,9 +151,6 @@ def test_a_folder_in_the_place_of_a_file(find, path, ending):
         answer(JOB, {"store": path}, find)
 
 
-# -- results --------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("damage", FILE_DAMAGE)
 @pytest.mark.parametrize("seed", ordinary(range(4)))
 def test_a_damaged_result(find, path, damage, seed):

@@ -99,9 +99,6 @@ class Where(Squares):
         return {"square": np.array([float(os.getpid())])}
 
 
-# -- a Dask scheduler that is lost ----------------------------------------------------------------
-
-
 class Lost:
     """A client of Dask whose scheduler ends while it is asked for something."""
 

@@ -70,8 +70,6 @@ def test_what_is_on_disk_is_certain(tmp_path):
     journal.close()
 
 
-# -- orbit diagrams of the paper, at fewer frequencies over fewer periods --------------------------
-
 FIGURES = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D
 
 
