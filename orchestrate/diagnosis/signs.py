@@ -81,11 +81,10 @@ def signs(
         and ``sound_highest``, the median and the largest value of sound structures under the same
         box with the same noise; ``exceeds``, whether the value is above ``factor`` times the larger
         of floor and ``sound_highest`` (or ``unknown``); ``frequency`` in Hz, where an order is
-        largest. All
-        signs are numbers without a unit, NaN where the record cannot show them. Coordinates over
-        ``sign``: its ``meaning``, ``formula``, ``source`` and what else is known to move it,
-        ``moved_by``. Over ``channel``: ``noise`` in m/s2. ``sound_f`` in Hz and ``sound_zeta`` are
-        the sound structure's. The attribute ``seeds`` has the seeds.
+        largest. All signs are numbers without a unit, NaN where the record cannot show them.
+        Coordinates over ``sign``: its ``meaning``, ``formula``, ``source`` and what else is known
+        to move it, ``moved_by``. Over ``channel``: ``noise`` in m/s2. ``sound_f`` in Hz and
+        ``sound_zeta`` are the sound structure's. The attribute ``seeds`` has the seeds.
 
     Raises
     ------

@@ -171,17 +171,12 @@ def make_series(
 
     points = Points(make, np.arange(len(varied[name])))
     given = varied.get("eta") or excitation.get("eta")
-    numbers = table_of(points, lambda point: excitation_row(point, given is None), 3)
-    if given is not None:
-        numbers[:, 0] = given
-    return Series(name, varied[name], points, *numbers.T)
-
-
-def excitation_row(point: Point, with_eta: bool) -> tuple[float, float, float]:
-    """Return a point's eta, unless it is known, its frequency and its amplitude."""
-    excitation = point.excitation
-    eta = excitation.eta(point.structure) if with_eta else np.nan
-    return eta, excitation.frequency, excitation.amplitude
+    if given is None:
+        etas = table_of(points, lambda point: (point.excitation.eta(point.structure),), 1)[:, 0]
+    else:
+        etas = np.full(len(points), given)
+    pairs = table_of(points, lambda each: (each.excitation.frequency, each.excitation.amplitude), 2)
+    return Series(name, varied[name], points, etas, *pairs.T)
 
 
 def table_of(points: Points, row: Callable[[Point], ArrayLike], width: int) -> NDArray[np.float64]:

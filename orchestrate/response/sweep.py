@@ -175,11 +175,12 @@ class SweepJob(SeriesQuestion):
         if self.direction == "both":
             along = ("direction", self.series.name)
         text = "stroboscopic samples of the gap xi_2 - xi_1 (21)"
-        ends = table.pop("end") / self.series.scales
         return {
             "xi_rel": variable((*along, "sample"), table["gap"], "1", text),
             **response_variables(along, table, self.series.units[:, 0], RESPONSE_QUANTITIES),
-            "end_state": variable((*along, "coordinate"), ends, "1", END),
+            "end_state": variable(
+                (*along, "coordinate"), table["end"] / self.series.scales, "1", END
+            ),
         }
 
     def coordinates(self) -> dict[str, Variable]:

@@ -29,7 +29,7 @@ log = logging.getLogger(__name__)
 MIN_COMPRESSED = 10_000  # values from which a variable is worth compressing
 LAST_SECOND = 253_402_300_799  # of the year 9999
 MAX_LOADED = 2**28  # bytes of a file that is read whole; larger ones are opened lazily
-JOINED = 500  # chunks joined at a time: many small arrays leave holes in memory
+JOINED = 100  # chunks joined at a time: many small arrays leave holes in memory
 ZLIB_LEVEL = 1  # not higher: the last digits of numbers do not shrink, however long it tries
 
 
@@ -204,15 +204,13 @@ class Disk(Store):
         columns: dict[str, list[np.ndarray]] = {}
         shapes: dict[str, list[tuple[int, ...]]] = {name: [] for name in bulk}
         for first in range(0, count, JOINED):
-            parts: dict[str, list[np.ndarray]] = {}
-            for index in range(first, min(first + JOINED, count)):
-                for name, values in self.get(index).items():
-                    if name in shapes:
-                        shapes[name].append(values.shape)
-                    else:
-                        parts.setdefault(name, []).append(values)
-            for name, some in parts.items():
-                columns.setdefault(name, []).append(np.concatenate(some))
+            parts = [self.get(index) for index in range(first, min(first + JOINED, count))]
+            for name in parts[0]:
+                arrays = [part[name] for part in parts]
+                if name in shapes:
+                    shapes[name] += [array.shape for array in arrays]
+                else:
+                    columns.setdefault(name, []).append(np.concatenate(arrays))
         table: dict[str, Any] = {name: np.concatenate(columns.pop(name)) for name in [*columns]}
         table |= {
             name: StoredRows(self, name, [rows for rows, _ in each], each[0][1])

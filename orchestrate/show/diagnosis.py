@@ -36,11 +36,8 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     figure, (axes,) = make_panels(1, 1, size, title)
     ratio = (data.value / np.fmax(data.floor, data.sound_highest)).where(data.exceeds >= 0)
     channels = [str(channel) for channel in data.channel.values]
-    share, limit, signs = (
-        0.8 / len(channels),
-        float(data.attrs["factor"]),
-        np.arange(data.sizes["sign"]),
-    )
+    share, signs = 0.8 / len(channels), np.arange(data.sizes["sign"])
+    limit = float(data.attrs["factor"])
     for number, channel in enumerate(channels):
         positions = signs + share * (number - 0.5 * (len(channels) - 1))
         values, label = ratio.sel(channel=channel).values, CHANNELS.get(channel, channel)

@@ -51,7 +51,8 @@ def test_guesses_never_change_a_bit(stubborn, workers):
         assert stubborn != (100, 140) or workers != 2 or 0 < progress.wasted <= 60
 
 
-def test_what_is_on_disk_is_certain(tmp_path):
+def test_what_is_on_disk_is_certain(tmp_path, monkeypatch):
+    monkeypatch.setattr("orchestrate.running.progress.REACH", 2)
     path = tmp_path / "job.nc"
     store = open_store("job", {}, RunOptions(store=path))
     progress = Progress(Forgetful("job"), store, {}, MODELS)
@@ -59,11 +60,10 @@ def test_what_is_on_disk_is_certain(tmp_path):
     certain = progress.next_task()
     progress.under_way.add(certain.chunk.index)
     guess = progress.next_task()
-    assert (certain.guess, guess.guess) == (False, True)
+    assert (certain.guess, guess.guess, guess.chunk.index) == (False, True, 3)  # 1 and the reach
     progress.under_way.add(guess.chunk.index)
-    progress.add_result(
-        guess, *compute(progress.job, {}, guess.items, guess.previous, guess.warmup_items)
-    )
+    made = compute(progress.job, {}, guess.items, guess.previous, guess.warmup_items)
+    progress.add_result(guess, *made)
     store.close()
     journal = Journal(journal_path(path), {}, "")
     assert journal.indices() == set()
