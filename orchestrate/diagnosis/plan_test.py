@@ -83,6 +83,7 @@ def plan_test(
     periods: float = 16.0,
     gain_error: float = 0.03,
     threshold: float = 5.0,
+    margin: float = 2.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Find frequencies and levels at which a delamination shows best.
@@ -107,6 +108,9 @@ def plan_test(
         Doubt about the sensors' gains, relative: it makes differences of order 1 worth less.
     threshold : float
         Standard deviations from which a difference counts.
+    margin : float
+        Of the recommended level over the one at which differences count, and over the one at which
+        pressed faces open: neither the noise nor the preload is known exactly.
     **running
         As for :func:`orchestrate.shake`, but for ``store``.
 
@@ -135,7 +139,8 @@ def plan_test(
     -----
     One sweep over all frequencies is computed for the guess, and one for a fifth of its split, at
     most 120 s long. A structure without clearance is the same at all levels; one with a clearance
-    is computed at each. The recommended sweep is as slow as ISO 7626-2 asks for; sweep it up and
+    is computed at each. The recommended sweep passes the bonded resonance, as
+    :func:`orchestrate.detect` needs it, and is as slow as ISO 7626-2 asks for; sweep it up and
     down.
 
     Examples
@@ -159,12 +164,14 @@ def plan_test(
     wanted = np.unique(checked_positive("levels", levels, "m/s2"))
     sensors = sensor_by_channel(sensor or Sensor(bandwidth=40.0 * float(f[-1]), noise=USUAL_NOISE))
     limit = checked_number("threshold", threshold, 1e-3, 1e6)
+    above = checked_number("margin", margin, 1.0, 1e3)
     noise = checked_noise(sensors, checked_number("periods", periods, 2.0, 1e4), gain_error)
     if running.get("store") is not None:
         raise InputError("store: expected none; the answer is small, write it by to_netcdf")
     test = SweepComputation(structure, sensors, f, noise, running)
     sweeps = test.sweeps_at(wanted)
-    return plan_dataset(test, sweeps, limit, test.largest_distances(sweeps[-1]))
+    answer = plan_dataset(test, sweeps, limit, test.largest_distances(sweeps[-1]))
+    return answer.assign(recommended_sweep(test, answer, above))
 
 
 @dataclass(frozen=True)
@@ -308,7 +315,7 @@ def plan_dataset(
     kept = levels[:, None] * largest_opening_force(test.structure, f)
     splits = smallest_splits(levels, limit, split_distances)
     split = "smallest difference between the halves that counts, relative to the guess's"
-    answer = xr.Dataset(
+    return xr.Dataset(
         {
             "distance": variable(over, np.hypot(first, higher), "1", f"difference in {unit}"),
             "distance_first": variable(over, first, "1", f"of order 1, in {unit}"),
@@ -325,7 +332,6 @@ def plan_dataset(
         },
         attributes("plan_test", "Plan of a test", test.structure.label()),
     )
-    return answer.assign(recommended_sweep(test, answer))
 
 
 def smallest_detectable(
@@ -363,17 +369,19 @@ def smallest_splits(levels: Floats, limit: float, distances: Floats) -> Floats:
     return np.where(wanted > ascending[-1], np.inf, np.exp(parts))
 
 
-def recommended_sweep(test: SweepComputation, answer: xr.Dataset) -> dict[str, Any]:
-    """Recommend a swept sine: the lowest level with a margin, over the frequencies that count."""
+def recommended_sweep(test: SweepComputation, answer: xr.Dataset, margin: float) -> dict[str, Any]:
+    """Recommend the lowest level with a margin, over the resonance and all that counts."""
     higher, limit = answer.distance_harmonics.values, float(answer.threshold)
     fits = np.flatnonzero(answer.overload.values == 0)
-    enough = [i for i in fits if higher[i].max() >= 2.0 * limit]
+    shut = answer.level.values < margin * np.fmin.reduce(answer.opening_level.values)
+    enough = [i for i in fits if higher[i].max() >= margin * limit and not shut[i]]
     row = int(enough[0] if enough else fits[-1] if len(fits) else 0)
     f, curve = test.frequency, higher[row]
     counting = np.flatnonzero(curve >= min(limit, 0.5 * float(curve.max())))
     low, high = float(f[counting[0]]), float(f[counting[-1]])
-    room = 0.1 * max(high - low, test.sound.f)
-    first, last = max(low - room, float(f[0])), min(high + room, float(f[-1]))
+    room, passed = 0.1 * max(high - low, test.sound.f), 0.25 * test.sound.f
+    first = max(min(low - room, test.sound.f - passed), float(f[0]))
+    last = min(max(high + room, test.sound.f + passed), float(f[-1]))
     rate = sweep_rate(test.sound.f, test.sound.zeta)
     duration = max((last - first) / max(rate, 1e-9), 4.0 * test.noise.periods / first)
     text = "whether orders 2 and 3 count in the recommended sweep"

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from orchestrate import Structure
+from orchestrate import Structure, plan_test
 from orchestrate.lazy import xr
 
 from .beam import DelaminatedBeam
@@ -62,6 +62,7 @@ class Truth:
     # mean over the impacts; NaN where there was none, and of finite elements
     restitution: float = math.nan
     largest_gap: float = 0.0  # m
+    seen_gap: float = 0.0  # m: of the faces at the sensors
     # relative change of the frequency at the largest deflection, of a beam that hardens
     change: float = 0.0
     size: float = math.nan  # length of the delamination over that of the beam; NaN for two masses
@@ -111,6 +112,7 @@ class Conditions:
     sensor: tuple[float, float] | None = None
     # force that presses the faces together, over the one that opens them at resonance
     preload: tuple[float, float] = (0.1, 1.6)
+    planned: bool = False  # swept as `plan_test` recommends for a guess of the preload, too
     off: float = 0.1  # how far guesses may be off
     # of the sensor on face 1, over its largest signal: below 1 it saturates
     range: float = math.inf
@@ -351,13 +353,35 @@ def draw(
     )
     for _ in range(TRIES):
         own = KINDS[kind](rng, level, conditions)
+        guess = draw_guess(rng, own, conditions.off) if conditions.planned else None
+        if guess is not None:
+            guess = guess.replace(clearance=own.clearance * rng.uniform(0.7, 1.3))
+            bench = replace(bench, excitation=planned_sweep(guess))
+            level = bench.excitation.level
         try:
             record, motion = bench.measure(own.system, int(rng.integers(1 << 31)))
         except UnboundedMotionError:
             continue
         truth = make_truth(kind, own, motion, Setup(level, noise, count, name))
-        return Case(record, draw_guess(rng, own, conditions.off), truth)
+        return Case(record, guess or draw_guess(rng, own, conditions.off), truth)
     raise UnboundedMotionError(f"{kind}: {TRIES} beams, and none whose motion stays bounded")
+
+
+def planned_sweep(guess: Structure) -> Swept:
+    """Return the sweep that the package recommends for a structure, at most 120 s long."""
+    plan = plan_test(guess, progress=False)
+    ends = float(plan.recommended_first), float(plan.recommended_last)
+    duration = min(float(plan.recommended_duration), 120.0)
+    return Swept(*ends, duration, float(plan.recommended_level))
+
+
+def gap_at_sensors(system: ModalSystem, motion: Motion) -> float:
+    """Return the largest gap, m, of the contact next to the sensors; 0 where no face parts."""
+    apart = system.output_rows[0] - system.output_rows[-1]
+    if system.contacts is None or not apart.any():
+        return 0.0
+    away = [np.linalg.norm(system.contacts.rows + sign * apart, axis=1) for sign in (1.0, -1.0)]
+    return float(motion.largest_gap[np.minimum(*away).argmin()])
 
 
 def make_truth(kind: str, own: Specimen, motion: Motion, setup: Setup) -> Truth:
@@ -377,6 +401,7 @@ def make_truth(kind: str, own: Specimen, motion: Motion, setup: Setup) -> Truth:
         clearance=own.clearance,
         restitution=float(motion.restitution[0]) if two_masses else math.nan,
         largest_gap=gap,
+        seen_gap=gap_at_sensors(own.system, motion),
         change=frequency_change(own.cubic, own.f1, peak),
         size=own.size,
         setup=setup,

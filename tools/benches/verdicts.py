@@ -24,7 +24,7 @@ GROUPS: Mapping[str, tuple[str, Conditions]] = {  # name in the table -> kind, c
     "delaminated": ("delaminated", Conditions()),
     "gap": ("gap", Conditions()),
     "pressed, shut": ("preloaded", Conditions(preload=(1.2, 1.6))),
-    "pressed, opens": ("preloaded", Conditions(preload=(0.1, 0.7))),
+    "pressed, opens": ("preloaded", Conditions(planned=True)),
     "FE 0.3 to 0.5": ("elements", Conditions(size=(0.3, 0.5), anywhere=True, sensor=PLACES)),
     "FE 0.5 to 0.7": ("elements", Conditions(size=(0.5, 0.7), anywhere=True, sensor=PLACES)),
 }
@@ -59,7 +59,7 @@ def verdict_problem(verdict: str, truth: Truth, message: str = "", smallest: flo
     """Return what is wrong with a verdict; empty where nothing is.
 
     Random excitation may be refused: the detector goes by orders. An opening may be overlooked that
-    is smaller than the one that the detector says that it would have seen.
+    is away from the sensors, or smaller there than what the detector says it would have seen.
     """
     if verdict == FAILED or (verdict == REFUSED and truth.setup.excitation != "random"):
         return f"{verdict}: {message}"
@@ -67,8 +67,8 @@ def verdict_problem(verdict: str, truth: Truth, message: str = "", smallest: flo
         return "called delaminated, and is sound"
     if verdict == DELAMINATED and not truth.opened:
         return "called delaminated, and did not open"
-    visible = truth.opened and truth.touched and truth.largest_gap > max(VISIBLE, smallest)
+    visible = truth.opened and truth.touched and truth.seen_gap > max(VISIBLE, smallest)
     if verdict == NO_OPENING and visible:
-        text = f"no opening seen, and it opened by {1e3 * truth.largest_gap:.3g} mm"
+        text = f"no opening seen, and it opened by {1e3 * truth.seen_gap:.3g} mm"
         return f"{text}, where {1e3 * smallest:.3g} mm would have been seen"
     return ""

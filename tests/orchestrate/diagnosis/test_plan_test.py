@@ -76,22 +76,24 @@ def test_a_preloaded_delamination_shows_from_the_level_that_opens_it(exported):
     plan = orchestrate.plan_test(
         pressed,
         sensor=SENSOR,
-        levels=[0.9 * needed, 3.0 * needed],
-        frequencies=np.linspace(40.0, 54.0, 15),
+        levels=[0.9 * needed, 1.9 * needed, 3.0 * needed],
+        frequencies=np.linspace(36.0, 60.0, 25),
         progress=False,
     )
     assert float(plan.opening_level.min()) == pytest.approx(needed, rel=1e-5)  # not of its grid
-    shut, opened = plan.distance_harmonics.max("frequency").values
-    assert shut < 0.05 * opened
+    shut, near, opened = plan.distance_harmonics.max("frequency").values
     assert plan.opening.isel(level=0).max() < 1e-9 < plan.opening.isel(level=1).max()
+    # with a margin, and past the resonance of both together, 46.7 Hz
+    assert shut < 0.05 * opened and near > 10.0
+    assert float(plan.recommended_level) == 3.0 * needed
+    assert float(plan.recommended_first) < 37.0 and float(plan.recommended_last) > 58.0
     assert (plan.closing_force.isel(level=0) < force).all()
 
 
 def test_smaller_differences_are_told_at_higher_levels(plan):
     splits = plan.smallest_split.values
     assert splits[0] == np.inf and 1.0 > splits[1] > splits[2] > 0.0
-    opening = float(plan.smallest_opening[1])
-    assert 0.0 < opening < float(plan.opening.isel(level=1).max())
+    assert 0.0 < float(plan.smallest_opening[1]) < float(plan.opening.isel(level=1).max())
 
 
 def test_splits_between_the_computed_ones_are_powers():
@@ -130,6 +132,7 @@ def test_noise_is_that_of_least_squares_in_a_window():
         ({"sensor": {"box_acceleration": SENSOR}}, "box alone"),
         ({"structure": HALVES.as_bonded()}, "bonded"),
         ({"threshold": 0.0}, "threshold"),
+        ({"margin": 0.5}, "margin"),
         ({"store": "plan.nc"}, "store"),
         ({"g": 0.1}, "levels and g: expected one"),
         ({"levels": None, "g": [-1.0]}, "g = "),
