@@ -275,8 +275,8 @@ class Findings:
         opening = f"{digits(1e6 * self.smallest)} \u00b5m"
         text = (
             f"up to {self.high:.3g} m/s\u00b2 from {self.first:.3g} to {self.last:.3g} Hz; "
-            f"faces at the sensor that part by {opening} would have been seen at every frequency; "
-            "away from the sensor an opening may be larger"
+            f"faces that touch and part by {opening} at the sensor would have been seen at every "
+            "frequency; away from the sensor, or of faces that never touch, it may be larger"
         )
         if math.isnan(self.bursts):
             text += "; the record is sampled too slowly for the bursts of impacts"

@@ -20,6 +20,7 @@ from .store import Store
 
 log = logging.getLogger(__name__)
 MIN_GAP = 3  # chunks in a row not begun: from here on, guessing the middle one pays
+VAIN = 0.25  # of the items stored: where more were guessed in vain, guesses only cost time
 REACH = 100  # chunks past the first of them at most: until it comes there, guesses are in memory
 
 
@@ -105,11 +106,9 @@ class Progress:
 
     def next_task(self) -> Task | None:
         """Return the next chunk to compute, sure ones before guesses; None if none can."""
-        for find in (self.certain_tasks, self.continuing_tasks, self.gap_task):
-            task = next(find(), None)
-            if task is not None:
-                return task
-        return None
+        guesses = self.wasted <= VAIN * self._stored_items
+        finders = (self.certain_tasks, self.continuing_tasks, self.gap_task)[: 3 if guesses else 1]
+        return next((task for find in finders for task in find()), None)
 
     def is_untouched(self, index: int) -> bool:
         """Return whether a chunk is not computed, not running and not guessed."""

@@ -40,7 +40,7 @@ def play(progress: Progress, workers: int, seed: int, stop: int = -1) -> None:
 @pytest.mark.parametrize("stubborn", RANGES)
 @pytest.mark.parametrize("workers", ordinary([1, 2, 3, 7, 40], kept=[1, 2, 7]))
 def test_guesses_never_change_a_bit(stubborn, workers):
-    """In vain are those alone where the beginning is not forgotten, and the chunks next to it."""
+    """In vain are those where the beginning is not forgotten, of 240, and the chunks next to it."""
     job = Forgetful("job", stubborn=stubborn)
     alone = job.work({}, job.items(), None)["value"]
     for seed in range(3):
@@ -48,7 +48,8 @@ def test_guesses_never_change_a_bit(stubborn, workers):
         play(progress, workers, seed)
         assert np.array_equal(progress.result.value, alone)
         assert progress.wasted == 0 or (workers > 1 and stubborn != (0, 0))
-        assert stubborn != (100, 140) or workers != 2 or 0 < progress.wasted <= 60
+        assert stubborn != (100, 140) or workers != 2 or 0 < progress.wasted
+        assert progress.wasted < (60 if stubborn == (100, 140) else 300)  # it does not go on so
 
 
 def test_what_is_on_disk_is_certain(tmp_path, monkeypatch):
