@@ -67,17 +67,24 @@ def run_cosimulate(arguments: argparse.Namespace) -> None:
 def ask_cosimulate(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     """Return structure and keywords of ``cosimulate``."""
     structure = read_structure_options(arguments)
+    if arguments.structure == "paper" and not arguments.set:
+        raise InputError("--structure is missing; expected one in SI units, as the drive has them")
     question = arguments.row.keywords(arguments)
     for name in ("duration", "step"):
         if question[name] is None:
             raise InputError(f"--{name} is missing; expected seconds, such as --{name} 0.01")
     return structure, question | {
         "drive": str(arguments.drive),
-        "connect": read_pairs("--connect", arguments.connect, PAIR),
+        "connect": read_pairs("--connect", split_at_commas(arguments.connect), PAIR),
         "parameters": read_values("--parameter", arguments.parameter),
         "inputs": read_values("--input", arguments.input),
-        "record": tuple(name for name in (arguments.record or "").split(",") if name),
+        "record": split_at_commas(arguments.record),
     }
+
+
+def split_at_commas(texts: Sequence[str] | None) -> tuple[str, ...]:
+    """Return an option's words, split at commas too."""
+    return tuple(word for word in ",".join(texts or ()).split(",") if word)
 
 
 def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
@@ -107,11 +114,12 @@ def variable_lines(drive: Path) -> Iterator[str]:
     for causality in LISTED:
         for name, variable in description.variables.items():
             if variable.causality == causality:
-                unit = variable.unit or "no unit"
-                yield f"  {causality:10} {name:28} {unit:10} {variable.description or ''}".rstrip()
+                value = "" if variable.start is None else str(variable.start)
+                about = f"{value:>8} {variable.unit or 'no unit':10} {variable.description or ''}"
+                yield f"  {causality:10} {name:28} {about}".rstrip()
     if likely := proposals(description):
         links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
-        yield f"likely: --connect {links}   (by unit and name; check the sign of the force)"
+        yield f"likely: --connect {links}   (by unit and name; a run checks the sign of the force)"
     else:
         outputs = " ".join(f"{ours}=OUTPUT" for ours in MOTION)
         yield (
@@ -125,7 +133,9 @@ def cosimulate_summary(data: xr.Dataset) -> Iterator[str]:
     yield from extents(data, "x1 x2")
     yield f"impacts: {data.sizes['impact']} in {float(data.time[-1]):.6g} s"
     worst = text_of(data, data.coupling_error.max(), "m", ".2g")
-    yield f"coupling error of the displacements: {worst}, by half the step"
+    yield f"coupling error of the displacements: {worst} (from a second run with half the step)"
+    if data.attrs["inputs_at_start"]:
+        yield f"no input was given for {data.attrs['inputs_at_start']}, which stays so"
 
 
 COSIMULATE = Command(
@@ -147,13 +157,16 @@ COSIMULATE = Command(
                 by names of the drive; a minus before a name turns its sign
             --parameter NAME=VALUE +  its start values
             --input NAME=VALUE +  its other inputs: a number, or a CSV file with time in s and value
-            --record A,B,...  variables of the drive that are stored
+            --record NAME +  variables of the drive that are stored
             """,
         ),
         Group(
             "the run",
             "",
-            ("--duration S  of the run, s\n--step S  communication step, s", START),
+            (
+                "--duration S  of the run, s (needed)\n--step S  communication step, s (needed)",
+                START,
+            ),
         ),
         *result_groups(),
     ),

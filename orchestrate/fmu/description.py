@@ -56,7 +56,8 @@ def describe(path: str | PathLike[str], model: str | None = None) -> Description
     """Return an FMU file's :class:`Description`; raise if it is no FMU, or of another model."""
     path = Path(path)
     if not path.is_file():
-        raise InputError(f"FMU {path}: no such file; expected one that `vibroimpact build` writes")
+        own = "`python -m orchestrate build` writes the project's own"
+        raise InputError(f"FMU {path}: no such file; expected an FMU ({own})")
     try:
         description = read_description(path)
     except Exception as error:

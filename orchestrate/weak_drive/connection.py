@@ -25,6 +25,7 @@ UNITS = {  # exponents of SI units
     "box_position": {"m": 1},
     **{name: {"kg": 1, "m": 1, "s": -2 - order} for order, name in enumerate(FORCE)},
 }
+IN_WORDS = dict(zip(UNITS, ("m/s2", "m/s", "m", "N", "N/s", "N/s2", "N/s3"), strict=True))
 OURS = dict(zip((*MOTION, *FORCE), (*MOTION, *FORCE), strict=True))  # of the package's own drives
 EXPECTED = f"expected some of {', '.join(MOTION)}, and box_force"
 
@@ -62,7 +63,10 @@ def checked_links(connect: Mapping[str, str], drive: Description) -> dict[str, L
         if name not in UNITS:
             raise InputError(f"connect: {name} is none of our names{near(name, UNITS)}; {EXPECTED}")
     if "box_force" not in connect or not set(connect) & set(MOTION):
-        raise InputError(f"connect: {', '.join(connect) or 'nothing'} alone; {EXPECTED}")
+        missing = "box_force" if set(connect) & set(MOTION) else "a motion of the box"
+        likely = ", ".join(f"{ours}={theirs}" for ours, theirs in proposals(drive).items())
+        hint = f"; by unit and name likely: {likely}" if likely else ""
+        raise InputError(f"connect: {missing} is missing; {EXPECTED}{hint}")
     links: dict[str, Link] = {}
     for ours, theirs in connect.items():
         sign, name = (-1.0, theirs[1:]) if theirs.startswith("-") else (1.0, theirs)
@@ -79,7 +83,7 @@ def checked_variable(drive: Description, name: str, causality: str, any_type: bo
     if name not in drive.variables:
         raise InputError(
             f"the FMU {drive.name} has no variable {name!r}{near(name, drive.variables)}; "
-            f"expected an {causality or 'variable'} of its own, see its modelDescription.xml"
+            f"expected {of_causality(drive, causality)}"
         )
     variable = drive.variable(name)
     numbers = (*REAL_TYPES, *INTEGER_TYPES, "Boolean")
@@ -93,9 +97,16 @@ def checked_variable(drive: Description, name: str, causality: str, any_type: bo
     if causality and variable.causality != causality:
         raise InputError(
             f"{name} of the FMU {drive.name} is of causality {variable.causality}; "
-            f"expected {causality}"
+            f"expected {of_causality(drive, causality)}"
         )
     return variable
+
+
+def of_causality(drive: Description, causality: str) -> str:
+    """Return text on the drive's variables of a causality, or on all."""
+    names = [name for name, one in drive.variables.items() if causality in ("", one.causality)]
+    listed = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
+    return f"one of its {f'{causality}s' if causality else 'variables'}: {listed or 'it has none'}"
 
 
 def factor_to_si(drive: Description, ours: str, theirs: str) -> float:
@@ -104,9 +115,9 @@ def factor_to_si(drive: Description, ours: str, theirs: str) -> float:
     if unit not in drive.units:
         return 1.0
     if drive.units[unit] != UNITS[ours]:
-        text = " ".join(f"{name}^{power}" for name, power in UNITS[ours].items())
+        fits = next((f" ({unit}: {one}?)" for one in MOTION if UNITS[one] == drive.units[unit]), "")
         raise InputError(
-            f"{theirs} of the FMU {drive.name} is in {unit}; {ours} expects a unit of {text}"
+            f"{theirs} of the FMU {drive.name} is in {unit}; {ours} expects {IN_WORDS[ours]}{fits}"
         )
     return drive.factors.get(unit, 1.0)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
@@ -39,13 +39,13 @@ from ..running.job import Chunk, Table, brief, plain
 from ..running.options import Running
 from ..running.runner import answer
 from .compiled import create_master
-from .connection import MOTION, OURS, Connection, checked_links, checked_variable
+from .connection import MOTION, OURS, Connection, Link, checked_links, checked_variable
 from .controllers import InputControl
 from .energy_balance import given_work
 from .inputs import Input, Inputs, check_inputs
-from .master import Scheme
+from .master import DriveSide, Scheme
 from .polynomials import end_value
-from .record import Floats, Record, joined
+from .record import BOX, Floats, Record, joined
 from .schedule import Course, check
 
 OUTPUTS = (*PLAYED, "box_force", "impact_energy")
@@ -70,19 +70,14 @@ class Coupling:
         self, job: CosimulateJob, oscillator: Instance, drive: Instance, parts: int
     ) -> None:
         self.job, self.parts, self.oscillator, self.drive = job, parts, oscillator, drive
-        links = checked_links(dict(job.connect), drive.description)
         self.inputs = Inputs(job.inputs, drive.description)
         still = Excitation(frequency=job.structure.omega, amplitude=0.0)
         begin(oscillator, job.structure, still, job.start)
-        (values,) = self.inputs.at(np.zeros(1)).tolist()
-        known = dict(zip(self.inputs.names, values, strict=True))
-        drive.initialize(**dict(job.start_values), **known)
-        recorded = job.record if parts == 1 else ()
-        more: Any = {"recorded": recorded, "cubic": self.inputs.cubic}
-        connection = Connection(links, tuple(self.inputs.names), **more)
+        connection = job.begin_drive(drive, self.inputs)
+        connection = replace(connection, recorded=job.record if parts == 1 else ())
         self.h = job.step / parts
         self.master = create_master(oscillator, drive, Scheme(self.h), connection)
-        knows = "box_acceleration" in links
+        knows = "box_acceleration" in connection.links
         self.divides_first = not knows and not drive.description.has_fixed_step
 
     def advance(self, items: Sequence[int]) -> Table:
@@ -179,7 +174,7 @@ class CosimulateJob(Question):
         """Return the progress bar's note where a run cannot be resumed."""
         if first or describe(self.drive).saves_states:
             return ""
-        return "not resumable: the drive cannot save its state"
+        return "not resumable"
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Do some steps, of half the length too; or compute the motion at the end."""
@@ -187,6 +182,9 @@ class CosimulateJob(Question):
             assert previous is not None
             return self.motion(fmus[OSCILLATOR], previous)
         table: Table = {}
+        if self.estimate:
+            known = previous["moved"][-1] if previous is not None else self.moved_by_force()
+            table["moved"] = np.array([known])
         for parts in self.finenesses():
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(self.drive, "drive") as drive:
                 coupling = Coupling(self, oscillator, drive, parts)
@@ -197,6 +195,39 @@ class CosimulateJob(Question):
                     table |= coupling.get_state()
                 coupling.master.close()
         return table
+
+    def begin_drive(self, drive: Instance, inputs: Inputs) -> Connection:
+        """Initialise the drive with its inputs at the start; return how it is connected."""
+        (values,) = inputs.at(np.zeros(1)).tolist()
+        drive.initialize(**dict(self.start_values), **dict(zip(inputs.names, values, strict=True)))
+        links = checked_links(dict(self.connect), drive.description)
+        return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
+
+    def moved_by_force(self) -> float:
+        """Return by how much 1 N more moves the box in a step: position, velocity or acceleration.
+
+        The one of them that is connected, in this order: the sign of the first is sure whatever
+        springs the drive has.
+        """
+        moved = []
+        for force in (0.0, 1.0):
+            with Instance(self.drive, "drive") as drive:
+                inputs = Inputs(self.inputs, drive.description)
+                side = DriveSide(drive, self.begin_drive(drive, inputs))
+                (values,) = inputs.at(np.zeros(1)).tolist()
+                side.put((force, 0.0, 0.0, 0.0), values)
+                side.channel.step(0.0, self.step)
+                side.put((force, 0.0, 0.0, 0.0), values)
+                moved.append(side.get()[: len(BOX)])
+        return next(after - before for before, after in zip(*moved, strict=True) if after == after)
+
+    def inputs_at_start(self, drive: Description) -> Iterator[str]:
+        """Yield the drive's inputs that nothing is given for, with their start values."""
+        links = checked_links(dict(self.connect), drive).values()
+        given = {*(link.theirs for link in links), *Inputs(self.inputs, drive).names}
+        for name, one in drive.variables.items():
+            if one.causality == "input" and name not in given:
+                yield f"{name} = {one.start} {one.unit or ''}".rstrip()
 
     def finenesses(self) -> tuple[int, ...]:
         """Return into how many parts each step is divided: none, and two for the error."""
@@ -225,6 +256,7 @@ class CosimulateJob(Question):
             if isinstance(one, InputControl):
                 end = one.aborted(tuple(steps["control 1"][-1].tolist()))
                 columns["control_aborted"] = np.array([end])
+        columns["moved"] = steps.get("moved", np.array([np.nan]))[:1]
         return {**columns, **impact_columns(impacts, self.structure)}
 
     def dataset(self, table: Table) -> xr.Dataset:
@@ -255,7 +287,11 @@ class CosimulateJob(Question):
                 "title": f"{self.structure.label()} on {description.name}",
                 "drive": description.name,
                 "recorded": ",".join(self.record),
-                "resumable": "yes" if description.saves_states else "no: the drive has no states",
+                "inputs_at_start": ", ".join(self.inputs_at_start(description)),
+                "moved_by_1_N": float(table["moved"][0]),
+                "resumable": "yes"
+                if description.saves_states
+                else "no: the drive cannot save its state",
             },
         )
 
@@ -374,8 +410,18 @@ def cosimulate(
     check_inputs(job.inputs, links)
     found = answer(job, running, finder(running), foreign)
     if estimate:
+        warn_of_sign(found, links)
         warn_of_error(found, [name for name in MOTION if name not in links])
     return found
+
+
+def warn_of_sign(run: xr.Dataset, links: Mapping[str, Link]) -> None:
+    """Warn where a force on the box moves the box against it."""
+    if (moved := getattr(run, "attrs", {}).get("moved_by_1_N", 0.0)) < 0.0:
+        force = links["box_force"]
+        turned = ("-" if force.scale > 0.0 else "") + force.theirs
+        text = f"1 N of box_force moves the box by {moved:.2g} in a step, against the force"
+        warnings.warn(f"{text}; connect box_force={turned}, unless that is meant", stacklevel=3)
 
 
 def warn_of_error(run: xr.Dataset, missing: Sequence[str]) -> None:
@@ -386,8 +432,9 @@ def warn_of_error(run: xr.Dataset, missing: Sequence[str]) -> None:
     error = float(run.coupling_error.max())
     if error > NOTICED * size:
         more = f" and connect {', '.join(missing)} if the drive has it" if missing else ""
-        text = f"coupling error {error:.2g} m of displacements up to {size:.2g} m: impacts may be "
-        warnings.warn(f"{text}missed or added; reduce the step{more}", stacklevel=3)
+        text = f"coupling error {error:.2g} m of displacements up to {size:.2g} m: "
+        text += "it diverges" if error > size else "impacts may be missed or added"
+        warnings.warn(f"{text}; reduce the step{more}", stacklevel=3)
 
 
 def checked_step_count(duration: float, step: float, drive: Description) -> int:

@@ -62,7 +62,7 @@ def drives(exported, tmp_path_factory):
 
 
 BAD = {  # options, and what the line says
-    "nothing": ("plain", [], "connect: nothing alone"),
+    "nothing": ("plain", [], "connect: a motion of the box is missing"),
     "no force": ("plain", [A], "and box_force"),
     "no motion": ("plain", [F], "box_acceleration"),
     "our name": ("plain", [A, F, "box_speed=vel"], "box_speed is none of our names"),

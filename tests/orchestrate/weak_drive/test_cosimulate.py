@@ -236,6 +236,9 @@ def test_an_error_that_may_hide_impacts_gives_a_warning(drive):
     run = {**RUN, "duration": 0.5, "estimate": True, "step": 0.01}
     with pytest.warns(UserWarning, match="connect box_velocity, box_position"):
         orchestrate.cosimulate(STRUCTURE, drive, connect=CONNECT, **run)
+    turned = {**CONNECT, "box_force": "-specimen_force"}
+    with pytest.warns(UserWarning, match="connect box_force=specimen_force, unless"):
+        orchestrate.cosimulate(STRUCTURE, drive, connect=turned, **run)
 
 
 def test_derivatives_of_a_polynomial_through_points():
