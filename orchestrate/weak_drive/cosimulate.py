@@ -474,10 +474,11 @@ def checked_inputs(
             times, values = value if isinstance(value, tuple) else ((0.0, duration), (value, value))
             try:
                 value = Course(tuple(np.ravel(times)), tuple(np.ravel(values)))
+            except InputError as error:
+                raise InputError(f"inputs: {name}: {error}") from None
             except (TypeError, ValueError):
-                raise InputError(
-                    f"inputs: {name} = {value!r}: expected a number, (times, values) or a Course"
-                ) from None
+                text = "expected a number, (times, values) or a Course"
+                raise InputError(f"inputs: {name} = {value!r:.60}: {text}") from None
         courses.append((name, value))
     return tuple(courses)
 
