@@ -39,7 +39,7 @@ def invalid(folder, fmu):
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda folder, _: folder / "missing.fmu", ["no such file", "vibroimpact build"]),
+        (lambda folder, _: folder / "missing.fmu", ["no such file", "orchestrate build"]),
         (lambda folder, _: folder, ["no such file"]),
         (random_bytes, ["not readable as an FMU"]),
         (cut_off, ["not readable as an FMU"]),
