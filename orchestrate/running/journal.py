@@ -131,8 +131,9 @@ class Journal:
         return b""
 
     def drop(self, index: int, reason: str) -> None:
-        """Delete a stored chunk, so that it is computed again; log the reason as a warning."""
-        log.warning("%s: chunk %s is %s, it is computed anew", self.path, index, reason)
+        """Delete a stored chunk; log the reason for which it is computed anew, if there is one."""
+        if reason:
+            log.warning("%s: chunk %s is %s, it is computed anew", self.path, index, reason)
         self._query("DELETE FROM chunks WHERE i = ?", index)
 
     def is_empty(self) -> bool:

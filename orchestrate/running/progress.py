@@ -3,7 +3,8 @@
 A sequential job's chunk starts from the end of the one before. Where the job forgets its beginning
 (a response that converges), a chunk may be guessed: computed before the one before is known, from
 the end of a few items ahead of it. When that one is known, the guess stands if it began on the very
-same bits, and is thrown away if not. So the result is the sequential one, whoever computed it.
+same bits, and is thrown away if not. So the result is the sequential one, whoever computed it. The
+guess of chunk i is stored under ``~i``, with its start, for a run that is interrupted.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from .identity import Fmu, Identity
 from .job import Chunk, Job, Table, last_entries
 from .provenance import with_provenance
@@ -21,7 +24,8 @@ from .store import Store
 log = logging.getLogger(__name__)
 MIN_GAP = 3  # chunks in a row not begun: from here on, guessing the middle one pays
 VAIN = 0.25  # of the items stored: where more were guessed in vain, guesses only cost time
-REACH = 100  # chunks past the first of them at most: until it comes there, guesses are in memory
+REACH = 100  # chunks past the first of them at most: until it comes there, all may be in vain
+START = "start of a guess"  # column of its table
 
 
 @dataclass(frozen=True)
@@ -38,10 +42,10 @@ class Task:
 
 @dataclass(frozen=True)
 class Guess:
-    """A chunk computed early from a guessed start state, kept until the true one is known."""
+    """A chunk computed early from a guessed start state, stored until the true one is known."""
 
     start: bytes  # that state
-    table: Table
+    end: Table  # the chunk's last entries
 
 
 class Progress:
@@ -51,37 +55,46 @@ class Progress:
         self.job, self.store, self.identity, self.fmus = job, store, identity, fmus
         self.chunks = job.chunks()
         self.result = store.result()
+        self.guesses: dict[int, Guess] = {}
         done = set(range(len(self.chunks))) if self.complete else self.valid_chunks()
         self.left = {each.index: each for each in self.chunks if each.index not in done}
         self._stored_items = sum(map(self.size, done))
         self.under_way: set[int] = set()
-        self.guesses: dict[int, Guess] = {}
         self._ends: dict[int, Table] = {}  # last entries of the last chunks that are certain
         self.wasted = 0  # items that were guessed in vain
         self.items: Sequence[Any] | None = None
 
     def valid_chunks(self) -> set[int]:
-        """Return the numbers of stored chunks that fit this job; delete the others."""
+        """Return the numbers of stored chunks that fit this job; delete others, keep guesses."""
         valid = set()
-        for index in sorted(self.store.indices()):
+        for index in sorted(self.store.indices(), reverse=True):
             problem = self.problem(index)
-            if problem:
+            if problem or ~index in valid:  # of a guess that stands already
                 self.store.drop(index, problem)
+            elif index < 0:
+                start, table = self.stored_guess(~index)
+                self.guesses[~index] = Guess(start, last_entries(table))
             else:
                 valid.add(index)
         return valid
 
+    def stored_guess(self, index: int) -> tuple[bytes, Table]:
+        """Return a stored guess of a chunk: its start and its table."""
+        table = dict(self.store.get(~index))
+        return table.pop(START).tobytes(), table
+
     def problem(self, index: int) -> str:
         """Return why a stored chunk does not fit this job (number, rows); empty if it does."""
-        if not 0 <= index < len(self.chunks):
+        number = max(index, ~index)
+        if number >= len(self.chunks):
             return f"none of the {len(self.chunks)} of this job"
         try:
-            table = self.store.get(index)
+            table = self.store.get(index) if index >= 0 else self.stored_guess(number)[1]
         except Exception:
             return "not readable"
         lengths = {len(values) for values in table.values() if values.ndim}
-        if lengths != {self.size(index)}:
-            return f"not of {self.size(index)} items"
+        if lengths != {self.size(number)}:
+            return f"not of {self.size(number)} items"
         return ""
 
     @property
@@ -104,9 +117,9 @@ class Progress:
 
     # -- what may be computed next ----------------------------------------------------------------
 
-    def next_task(self) -> Task | None:
+    def next_task(self, may_guess: bool = True) -> Task | None:
         """Return the next chunk to compute, sure ones before guesses; None if none can."""
-        guesses = self.wasted <= VAIN * self._stored_items
+        guesses = may_guess and self.wasted <= VAIN * self._stored_items
         finders = (self.certain_tasks, self.continuing_tasks, self.gap_task)[: 3 if guesses else 1]
         return next((task for find in finders for task in find()), None)
 
@@ -150,7 +163,7 @@ class Progress:
         for index in sorted(self.guesses):
             following = index + 1
             if following < len(self.chunks) and self.chunks[following].after == index:
-                previous = last_entries(self.guesses[index].table)
+                previous = self.guesses[index].end
                 if self.is_untouched(following) or self.started_elsewhere(following, previous):
                     chunk = self.chunks[following]
                     yield Task(chunk, self.items_of(chunk), previous, (), True)
@@ -206,7 +219,8 @@ class Progress:
         self.under_way.discard(index)
         if task.guess:
             self.wasted += self.size(index) if index in self.guesses else 0
-            self.guesses[index] = Guess(start, table)
+            self.guesses[index] = Guess(start, last_entries(table))
+            self.store.put(~index, {**table, START: np.frombuffer(start, np.uint8)})
         else:
             self.store_chunk(index, table)
         self.resolve_guesses()
@@ -228,9 +242,10 @@ class Progress:
             if after is None or after not in self.left:
                 guess = self.guesses.pop(index)
                 if after is None or self.job.boundary_state(self.end_of(after)) == guess.start:
-                    self.store_chunk(index, guess.table)
+                    self.store_chunk(index, self.stored_guess(index)[1])
                 else:
                     self.wasted += self.size(index)
+                self.store.drop(~index)
 
     def finish_if_done(self) -> None:
         """Build, mark with provenance and store the final dataset, if all chunks are done."""

@@ -185,7 +185,8 @@ class Runner:
         """Submit the next tasks of all ready jobs until the workers' queue is full."""
         for state in self.states.values():
             while len(self.futures) < workers.max_in_flight() and self.ready(state):
-                task = state.next_task()
+                # nothing that is sure waits behind a guess
+                task = state.next_task(len(self.futures) + 1 < workers.max_in_flight())
                 if task is None:
                     break
                 chosen = {model: fmus[model] for model in state.job.models}

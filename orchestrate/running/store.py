@@ -72,8 +72,8 @@ class Store:
         """Store a computed chunk, a dict of arrays, under its number."""
         self._chunks[index] = table
 
-    def drop(self, index: int, reason: str) -> None:
-        """Delete a chunk that cannot be used for a reason, so that it is computed again."""
+    def drop(self, index: int, reason: str = "") -> None:
+        """Delete a chunk, with a warning where it cannot be used for a reason."""
         del self._chunks[index]
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
@@ -218,7 +218,7 @@ class Disk(Store):
         }
         return table
 
-    def drop(self, index: int, reason: str) -> None:
+    def drop(self, index: int, reason: str = "") -> None:
         """Delete a chunk from the journal by its number, with a warning that names the reason."""
         self.journal.drop(index, reason)
 

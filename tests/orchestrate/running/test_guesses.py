@@ -10,7 +10,6 @@ from orchestrate.fmu import OSCILLATOR, find
 from orchestrate.model import Structure
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.executors import compute
-from orchestrate.running.journal import Journal, journal_path
 from orchestrate.running.options import RunOptions
 from orchestrate.running.progress import Progress
 from orchestrate.running.store import Store, open_store
@@ -52,7 +51,7 @@ def test_guesses_never_change_a_bit(stubborn, workers):
         assert progress.wasted < (60 if stubborn == (100, 140) else 300)  # it does not go on so
 
 
-def test_what_is_on_disk_is_certain(tmp_path, monkeypatch):
+def test_a_guess_is_stored_for_a_run_that_is_interrupted(tmp_path, monkeypatch):
     monkeypatch.setattr("orchestrate.running.progress.REACH", 2)
     path = tmp_path / "job.nc"
     store = open_store("job", {}, RunOptions(store=path))
@@ -66,9 +65,10 @@ def test_what_is_on_disk_is_certain(tmp_path, monkeypatch):
     made = compute(progress.job, {}, guess.items, guess.previous, guess.warmup_items)
     progress.add_result(guess, *made)
     store.close()
-    journal = Journal(journal_path(path), {}, "")
-    assert journal.indices() == set()
-    journal.close()
+    again = Progress(Forgetful("job"), open_store("job", {}, RunOptions(store=path)), {}, MODELS)
+    assert (set(again.guesses), again.done()) == ({3}, 10)
+    play(again, 2, seed=0)
+    assert np.array_equal(again.result.value, again.job.work({}, again.job.items(), None)["value"])
 
 
 FIGURES = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D
