@@ -172,6 +172,7 @@ def attractors_summary(data: xr.Dataset) -> Iterator[str]:
             word = "attractor" if count == 1 else "attractors"
             yield f"{count} {word} at {where} ({data.sizes['start']} random starts)"
             yield from attractor_table(at)
+        yield "what few starts lead to is easily overlooked: basin, or a range of values, finds it"
         return
     data = data.sortby(name)
     for number in sorted(set(data.number.values.tolist())):
@@ -517,6 +518,24 @@ def parse_bifurcation(option: str, text: str) -> int | str:
     return text if text == "all" else parse(option, text, "a number, or all", plain_int)
 
 
+def is_on_curve(curve: xr.Dataset, question: Question) -> bool:
+    """Return whether a curve of a bifurcation's kind passes it within 1e-3 of the range."""
+    import numpy as np
+
+    from ..flags import flag_words
+    from ..model import Structure
+
+    start, (across, along) = question["start"], question["over"]
+    found = start.isel(bifurcation=question["bifurcation"])
+    level = Structure.from_attributes(start.attrs).parameters().get(along, np.nan)
+    x, y = curve[across].values - float(found.bifurcation_value), curve[along].values - level
+    at = np.flatnonzero((y[:-1] * y[1:] <= 0.0) & (y[:-1] != y[1:]))
+    passes = x[at] - y[at] * (x[at + 1] - x[at]) / (y[at + 1] - y[at])
+    near = np.abs(passes) < 1e-3 * np.ptp(question["limits"][0])
+    kind = flag_words(start.bifurcation_kind.attrs)[int(found.bifurcation_kind)]
+    return bool(curve.attrs["kind"] == kind and near.any())
+
+
 def run_border(arguments: argparse.Namespace) -> None:
     """Run ``border``: follow one bifurcation, or all of a branch into one picture."""
     import orchestrate
@@ -527,9 +546,12 @@ def run_border(arguments: argparse.Namespace) -> None:
         return
     if arguments.store is not None:
         raise InputError("--store: of one bifurcation; expected it without --bifurcation all")
-    curves = []
+    curves: list[xr.Dataset] = []
     for number in range(question["start"].sizes.get("bifurcation", 0)):
         one = {**question, "bifurcation": number}
+        if any(is_on_curve(curve, one) for curve in curves):
+            print(f"number {number} is on a curve that was followed")
+            continue
         try:
             curves.append(answer_question(arguments, structure, one, picture=False))
         except InputError as reason:

@@ -403,7 +403,7 @@ MAP = Command(
   {program} map --structure beam --hz 8:20:0.25 --amplitude 1e-4 --over e --values 0.3,0.5,0.7
   {program} map --structure beam --set clearance=2e-5 --hz 8:20:0.25 --g 0.002:0.05:0.002
   {program} map --eta 2.4:2.9:0.02 --over e --values 0.6:0.8:0.02 --overlay border.nc
-Each point starts from rest. The picture has impacts per period, multiplicity and largest gap.""",
+Each point starts from rest. The picture has a panel for each quantity.""",
     response_groups(
         Group(
             "question",

@@ -175,12 +175,13 @@ class SweepJob(SeriesQuestion):
         if self.direction == "both":
             along = ("direction", self.series.name)
         text = "stroboscopic samples of the gap xi_2 - xi_1 (21)"
+        units, end = self.series.units, table["end"]
+        end[..., :2] /= units[:, :1]  # in place, of a long sweep
+        end[..., 2:] /= units[:, 1:]
         return {
             "xi_rel": variable((*along, "sample"), table["gap"], "1", text),
-            **response_variables(along, table, self.series.units[:, 0], RESPONSE_QUANTITIES),
-            "end_state": variable(
-                (*along, "coordinate"), table["end"] / self.series.scales, "1", END
-            ),
+            **response_variables(along, table, units[:, 0], RESPONSE_QUANTITIES),
+            "end_state": variable((*along, "coordinate"), end, "1", END),
         }
 
     def coordinates(self) -> dict[str, Variable]:

@@ -19,7 +19,7 @@ from ..units import is_in_ratios, length_of_ratio, omega_of, scale_of, units_of
 from . import labels
 from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW
 from .labels import branch_title, has_frequency_unit, title_from_attributes
-from .scales import axis_values, in_unit, lengths, parameter_scale
+from .scales import axis_values, in_unit, lengths, parameter_scale, varied_dimensions
 from .style import XI_REL, XI_REL_RATE, draw_line, legend_below, make_panels, styled
 
 COLUMNS = {  # of a map: the quantities that have a panel
@@ -54,7 +54,7 @@ def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] =
     words = title or (title_from_attributes(maps[0]) if len(maps) == 1 else "")
     figure, axes = make_panels(len(maps), len(columns), size, words)
     for row, data in enumerate(maps):
-        first, second = map(str, data[columns[0]].dims)
+        first, second = varied_dimensions(data[columns[0]], 2)
         up, right = (second, first) if first in ("eta", "frequency") else (first, second)
         x, y = axis_values(data, right), axis_values(data, up)
         for column, name in enumerate(columns):

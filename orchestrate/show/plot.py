@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from ..errors import InputError
 from ..units import Units, with_units
 from . import analysis, diagnosis, histories, lines, planes, resonance, spectra, weak_drive
+from .files import for_slides
 
 DRAW: dict[str, Callable[..., Figure]] = {  # by the function that made the result
     # lines over a parameter
@@ -60,7 +61,13 @@ EXPECTED = (
 )
 
 
-def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Units = "") -> Figure:
+def plot(
+    *answers: xr.Dataset,
+    title: str = "",
+    part: str = "",
+    units: str | Units = "",
+    size: str = "",
+) -> Figure:
     """Draw one result, or several that belong in one picture; return the figure.
 
     Parameters
@@ -80,6 +87,8 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Uni
         Of its axes and its title, such as ``"Hz, mm, g"``: a frequency in Hz, rpm, rad/s or as eta,
         a length in m, mm or um, an acceleration in m/s2 or g, a time in s or periods. By default
         Hz and the prefix that suits of a structure in SI, the paper's ratios else.
+    size : str
+        Shape of a slide, such as ``"16:9"``, with larger letters.
 
     Returns
     -------
@@ -112,12 +121,24 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Uni
     if part and (part != "jumps" or set(shown) != {"couple"}):
         asked = f"part={part!r} of {' and '.join(sorted(shown))}"
         raise InputError(f"plot: {asked}; expected 'jumps' of couple")
-    if part:
-        return weak_drive.draw_jumps(by_structure(shown["couple"]), title=title)
-    draw = choose_picture(shown)
+    jumps = partial(weak_drive.draw_jumps, by_structure(shown.get("couple", [])))
+    draw = jumps if part else choose_picture(shown)
     if draw is None:
         raise InputError(f"plot: no picture of {' and '.join(kinds) or 'nothing'}; {EXPECTED}")
-    return draw(title=title) if title else draw()
+    shape = slide_shape(size)
+    figure = draw(title=title) if title else draw()
+    return for_slides(figure, shape) if shape else figure
+
+
+def slide_shape(size: str) -> tuple[float, float] | None:
+    """Return width and height of a shape such as ``16:9``; None of an empty one."""
+    try:
+        width, height = map(float, size.split(":")) if size else (1.0, 1.0)
+        if not (0.1 <= width / height <= 10.0):
+            raise ValueError
+    except (ValueError, ZeroDivisionError):
+        raise InputError(f"plot: size = {size!r}; expected W:H such as '16:9'") from None
+    return (width, height) if size else None
 
 
 def choose_picture(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] | None:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from ..errors import InputError
 from ..units import FACTORS, OVER_OMEGA, is_in_ratios, omega_of, scale_of, units_of
 from .labels import gap_name, has_frequency_unit, si_prefix, symbol, typeset_unit
 from .style import XI_REL
@@ -33,10 +34,20 @@ class AxisValues(NamedTuple):
         return f"{text} and {left} more" if left > 0 else text
 
 
+def varied_dimensions(data: xr.DataArray, count: int) -> list[str]:
+    """Return so many names of an array's dimensions, besides direction and structure."""
+    names = [str(name) for name in data.dims if name not in ("direction", "structure")]
+    if len(names) != count:
+        raise InputError(
+            f"plot: varies over {' and '.join(names) or 'nothing'}; expected {count} of them: the "
+            "whole result, or a selection by a list such as isel(eta=[0])"
+        )
+    return names
+
+
 def varied_dimension(data: xr.DataArray) -> str:
     """Return the name of an array's dimension besides direction and structure."""
-    (name,) = (str(name) for name in data.dims if name not in ("direction", "structure"))
-    return name
+    return varied_dimensions(data, 1)[0]
 
 
 def frequency_scale(data: xr.Dataset) -> tuple[float, str]:

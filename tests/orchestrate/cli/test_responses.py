@@ -16,6 +16,7 @@ from matplotlib import image
 import orchestrate
 from orchestrate import Structure
 from orchestrate.cli import responses
+from orchestrate.cli.dynamics import is_on_curve
 from orchestrate.fmu import OSCILLATOR, find
 from orchestrate.version import __version__
 
@@ -345,6 +346,14 @@ def test_all_bifurcations_of_a_branch_and_a_map_under_them(ask, folder, tmp_path
     done = ask("border", "--start", path, "--bifurcation", "all", *limits).success()
     assert "Neimark-Sacker" in done.out and len(list(folder.glob("border_all*.png"))) == 1
     (curve,) = folder.glob("border_window*.nc")
+    of = {
+        "start": xr.load_dataset(path),
+        "bifurcation": 0,
+        "over": ("eta", "e"),
+        "limits": [(2, 3)],
+    }
+    data = xr.load_dataset(curve)
+    assert is_on_curve(data, of) and not is_on_curve(data.isel(point=slice(2)), of)
     few = ("map", "--eta", "2.6,2.7", "--over", "e", "--values", "0.69,0.71", "--samples", "4")
     ask(*few, "--transient", "5", "--overlay", f"{curve},{curve}").success()
     assert shows_something(next(folder.glob("map_*_over_*.png")))
