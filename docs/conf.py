@@ -22,12 +22,7 @@ author = "the vibroimpact developers"
 project_copyright = author
 version = release = orchestrate.__version__
 
-extensions = [
-    "myst_nb",
-    "sphinx.ext.autodoc",
-    "numpydoc",
-    "sphinx_copybutton",
-]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "sphinx_copybutton"]
 nitpicky = True
 nitpick_ignore_regex = [  # of others, whose manuals are on the network; modules that are not public
     (r"py:.*", r"(?:xarray|matplotlib|numpy)\..*"),

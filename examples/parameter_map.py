@@ -7,11 +7,7 @@ from orchestrate.show import files
 
 paper = Structure.nondimensional(D=0.05)
 found = map(
-    paper,
-    eta=np.linspace(0.5, 1.6, 30),
-    e=np.linspace(0.1, 0.9, 15),
-    transient=100,
-    settle=50.0,
+    paper, eta=np.linspace(0.5, 1.6, 30), e=np.linspace(0.1, 0.9, 15), transient=100, settle=50.0
 )
 one_period = found.multiplicity == 1
 print(f"{float(one_period.mean()):.0%} of the map repeats after one period")

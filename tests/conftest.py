@@ -10,10 +10,7 @@ from .exports import BUILD, refresh
 from .fmu.programs.driver import Fmu2
 
 everywhere = settings(
-    deadline=None,
-    derandomize=True,
-    database=None,
-    suppress_health_check=list(HealthCheck),
+    deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck)
 )
 settings.register_profile("few", everywhere, max_examples=10)
 settings.register_profile("many", everywhere, max_examples=100)

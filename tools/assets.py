@@ -21,15 +21,7 @@ from orchestrate.fmu import Instance, describe, find
 from orchestrate.show import files
 
 from .pictures import electrodynamic_shaker, icon, oscillator, shaker
-from .references import (
-    COIL,
-    MODELS,
-    REFERENCES,
-    SHAKER,
-    Reference,
-    reference_rows,
-    write_reference,
-)
+from .references import COIL, MODELS, REFERENCES, SHAKER, Reference, reference_rows, write_reference
 
 TABLES = Path(__file__).resolve().parents[1] / "docs" / "variables.md"
 SERIES = re.compile(r"\[(?!1\])\d+\]$")  # of a series, the first stands for all

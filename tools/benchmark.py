@@ -68,7 +68,8 @@ QUESTIONS = {  # the sizes are scaled
     "simulate, 100 times": "[o.simulate(structure, eta=eta) for eta in etas(0.3, 3.0, {runs})]",
     "orbit, 100 values": "[o.orbit(structure, eta=eta, **quiet) for eta in etas(1.0, 1.1, {runs})]",
     "a minute of vibration at 20 kHz": (
-        "o.shake(o.Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=48.0, zeta1=0.007, zeta2=0.007), "
+        "o.shake(o.Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=48.0, zeta1=0.007, "
+        "zeta2=0.007), "
         "o.Random(psd=((20.0, 0.5), (200.0, 0.5)), duration=0.6 * {runs}, seed=1), "
         "sample_rate=2e4, **quiet)"
     ),

@@ -180,10 +180,7 @@ def format_assumed(name: str, value: float) -> str:
 
 
 def read_excitation(
-    arguments: argparse.Namespace,
-    structure: Structure,
-    si: bool = False,
-    one: bool = False,
+    arguments: argparse.Namespace, structure: Structure, si: bool = False, one: bool = False
 ) -> dict[str, Any]:
     """Return frequency and amplitude of the box's motion as keywords of the public API."""
     from ..constants import GRAVITY

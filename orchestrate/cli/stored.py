@@ -18,9 +18,7 @@ MOST_NAMED = 3  # parameters that a line on two structures names
 READING = (KeyError, TypeError, ValueError)  # of attributes
 
 
-def read_structure_and_question(
-    arguments: argparse.Namespace,
-) -> tuple[Structure, dict[str, Any]]:
+def read_structure_and_question(arguments: argparse.Namespace) -> tuple[Structure, dict[str, Any]]:
     """Return the structure and the keywords of a command that may begin with a stored result."""
     if arguments.start is None:
         arguments.structure = arguments.structure or "paper"

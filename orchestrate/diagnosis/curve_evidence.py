@@ -19,13 +19,7 @@ from ..laboratory.sampled import Sampled
 from ..laboratory.stepped_sine import SteppedSine
 from ..lazy import xr
 from ..model import Structure
-from .evidence import (
-    COARSE_RANGE,
-    FITTED_RANGE,
-    Evidence,
-    Participation,
-    checked_participation,
-)
+from .evidence import COARSE_RANGE, FITTED_RANGE, Evidence, Participation, checked_participation
 from .orders import (
     ORDERS,
     SAMPLES_PER_PERIOD,

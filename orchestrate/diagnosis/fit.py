@@ -228,7 +228,7 @@ class FitJob(SearchJob):
         if isinstance(self.data, CurveData):
             named = named.drop_vars("time")  # of the stepped sine that is played for it
         made = named.drop_vars("asked").assign(
-            correlation=results.correlation(position, list(named.parameter.values)),
+            correlation=results.correlation(position, list(named.parameter.values))
         )
         return made.assign_attrs(
             analysis="fit", title=f"Fit: {name}", hypothesis=name, reason=results.reason()

@@ -146,10 +146,7 @@ class SearchJob(Job):
         return [*((h, part) for h, count in longest_first for part in range(count)), (-1, 0)]
 
     def work(
-        self,
-        fmus: Mapping[str, Path],
-        items: Sequence[tuple[int, int]],
-        previous: Table | None,
+        self, fmus: Mapping[str, Path], items: Sequence[tuple[int, int]], previous: Table | None
     ) -> Table:
         """Do one search; the last one refines the best of all others."""
         position, part = items[0]
@@ -253,10 +250,7 @@ class SearchJob(Job):
         return sorted(solutions, key=penalised_misfit)
 
     def hypothesis_result(
-        self,
-        minima: tuple[Search, list[Solution]],
-        player: Player,
-        with_errors: bool = True,
+        self, minima: tuple[Search, list[Solution]], player: Player, with_errors: bool = True
     ) -> dict[str, Any]:
         """Return the best solution of a hypothesis with its errors, residuals and fitted orders."""
         search, found = minima

@@ -57,11 +57,7 @@ def min_impacts(batches: int = BATCHES) -> int:
 
 
 def largest_exponent(
-    impacts: Impacts,
-    end: float,
-    point: Point,
-    blocks: int = BLOCKS,
-    batches: int = BATCHES,
+    impacts: Impacts, end: float, point: Point, blocks: int = BLOCKS, batches: int = BATCHES
 ) -> Exponent:
     """Return the largest Lyapunov exponent and its error, from a response's impacts in a span."""
     if len(impacts.time) < min_impacts(batches):

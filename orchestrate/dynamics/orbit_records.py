@@ -73,12 +73,7 @@ VARIABLES: dict[str, tuple[tuple[str, ...], str, str, Mapping[int, str]]] = {
         "whether the FMU runs through the same impacts and contacts",
         NO_YES,
     ),
-    "fmu_return": (
-        (),
-        "1",
-        "how far from its first state the FMU returns, over a eta^2",
-        {},
-    ),
+    "fmu_return": ((), "1", "how far from its first state the FMU returns, over a eta^2", {}),
     "node_kind": (NODES, "1", "what happens", KINDS),
     "node_phase": (NODES, "rad", "phase of the box, where it happens", {}),
     "node_position": (NODES, "1", "displacement of mass 1 there over a eta^2", {}),

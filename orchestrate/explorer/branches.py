@@ -65,11 +65,7 @@ def bifurcation_points(found: xr.Dataset) -> list[dict[str, Any]]:
     kinds = found.bifurcation_kind
     names = flag_words(kinds.attrs)
     return [
-        {
-            "eta": float(value),
-            "gap": float(np.max(gaps)),
-            "kind": names[int(kind)],
-        }
+        {"eta": float(value), "gap": float(np.max(gaps)), "kind": names[int(kind)]}
         for value, kind, gaps in zip(
             found.bifurcation_value.values,
             kinds.values,

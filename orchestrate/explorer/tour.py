@@ -117,27 +117,9 @@ STEPS = (
         "at this frequency and level finds the delamination. Nearer to their own frequency, or "
         "shaken harder, they open and knock.",
         (
-            View(
-                "pressed",
-                "{0.5 g} at {30 Hz}: shut",
-                0.75,
-                level=0.5,
-                **PRESSED,
-            ),
-            View(
-                "pressed-hill",
-                "{0.5 g} at {41 Hz}: open",
-                1.025,
-                level=0.5,
-                **PRESSED,
-            ),
-            View(
-                "pressed-open",
-                "{3 g} at {30 Hz}: open",
-                0.75,
-                level=3.0,
-                **PRESSED,
-            ),
+            View("pressed", "{0.5 g} at {30 Hz}: shut", 0.75, level=0.5, **PRESSED),
+            View("pressed-hill", "{0.5 g} at {41 Hz}: open", 1.025, level=0.5, **PRESSED),
+            View("pressed-open", "{3 g} at {30 Hz}: open", 0.75, level=3.0, **PRESSED),
         ),
     ),
 )

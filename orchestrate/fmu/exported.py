@@ -65,11 +65,7 @@ def export_all(
 
 
 def export(
-    name: str,
-    form: str,
-    folder: Path,
-    platforms: tuple[str, ...] = (),
-    level: int = logging.INFO,
+    name: str, form: str, folder: Path, platforms: tuple[str, ...] = (), level: int = logging.INFO
 ) -> Path:
     """Export one model in one form to ``folder/FORM/NAME.fmu`` atomically; return the file's
     path.

@@ -34,7 +34,5 @@ def load(description: Description, folder: str) -> Any:
 
     make = fmi3.FMU3Slave if description.is_fmi3 else fmi2.FMU2Slave
     return make(
-        guid=description.guid,
-        unzipDirectory=folder,
-        modelIdentifier=description.identifier,
+        guid=description.guid, unzipDirectory=folder, modelIdentifier=description.identifier
     )

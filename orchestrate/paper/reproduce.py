@@ -34,10 +34,7 @@ class Reproduction:
 
 
 def reproduce(
-    output: Path,
-    resolution: Resolution,
-    figures: Sequence[str] | None,
-    running: Mapping[str, Any],
+    output: Path, resolution: Resolution, figures: Sequence[str] | None, running: Mapping[str, Any]
 ) -> Reproduction:
     """Compute the paper, or some parts; take stored results; write pictures, claims and report."""
     parts = choose_parts(figures)

@@ -62,11 +62,7 @@ EXPECTED = (
 
 
 def plot(
-    *answers: xr.Dataset,
-    title: str = "",
-    part: str = "",
-    units: str | Units = "",
-    size: str = "",
+    *answers: xr.Dataset, title: str = "", part: str = "", units: str | Units = "", size: str = ""
 ) -> Figure:
     """Draw one result, or several that belong in one picture; return the figure.
 

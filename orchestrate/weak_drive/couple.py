@@ -275,10 +275,7 @@ def schedule_from_arguments(
 
 
 def scheme_from_arguments(
-    structure: Structure,
-    step: float | None,
-    tolerance: float | None = None,
-    sampled: bool = False,
+    structure: Structure, step: float | None, tolerance: float | None = None, sampled: bool = False
 ) -> Scheme:
     """Choose communication step and tolerance from :func:`couple` arguments."""
     omega = structure.omega

@@ -201,10 +201,7 @@ def has_same_numbers(trial: Trial) -> bool:
     other = trial.folder / "expected.nc"
     for name, data in trial.expected.items():
         other.write_bytes(data)
-        with (
-            xr.open_dataset(trial.commands.output / name) as here,
-            xr.open_dataset(other) as there,
-        ):
+        with xr.open_dataset(trial.commands.output / name) as here, xr.open_dataset(other) as there:
             if not here.identical(there):
                 return False
     return True

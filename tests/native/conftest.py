@@ -21,8 +21,7 @@ def cannot(reason):
     if importlib.util.find_spec("ziglang") is None:
         pytest.skip(f"ziglang missing: {reason}")
     pytest.fail(
-        f"a new version of ziglang breaks the way the native FMUs are made: {reason}",
-        pytrace=False,
+        f"a new version of ziglang breaks the way the native FMUs are made: {reason}", pytrace=False
     )
 
 

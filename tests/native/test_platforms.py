@@ -29,7 +29,7 @@ FUSED = r"\s(v?fn?m(add|sub|la|ls)\S*)\s"  # fmadd, fmsub, fnmadd, fnmsub, fmla,
 ARM_LIBRARIES = Path("/usr/aarch64-linux-gnu")  # Debian's libc6-arm64-cross
 FOLDERS = {
     "fmi2": {
-        *("linux64", "win64", "darwin64", "aarch64-linux", "aarch64-windows", "aarch64-darwin"),
+        *("linux64", "win64", "darwin64", "aarch64-linux", "aarch64-windows", "aarch64-darwin")
     },
     "fmi3": set(ALL),
 }

@@ -15,15 +15,7 @@ from .beam import DelaminatedBeam
 from .bench import Bench
 from .excitation import Excitation, Random, Stepped, Swept
 from .integrator import UnboundedMotionError
-from .lumped import (
-    TURN,
-    Clamp,
-    Faces,
-    Halves,
-    Torsion,
-    cubic_stiffness,
-    frequency_change,
-)
+from .lumped import TURN, Clamp, Faces, Halves, Torsion, cubic_stiffness, frequency_change
 from .sensors import Sensor
 from .system import ModalSystem, Motion
 

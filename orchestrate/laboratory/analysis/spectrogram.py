@@ -20,11 +20,7 @@ from .channels import (
 
 
 def spectrogram(
-    record: xr.Dataset,
-    *,
-    resolution: float | None = None,
-    spectra: int = 200,
-    window: str = "hann",
+    record: xr.Dataset, *, resolution: float | None = None, spectra: int = 200, window: str = "hann"
 ) -> xr.Dataset:
     """Compute amplitude spectra of short parts of a record.
 

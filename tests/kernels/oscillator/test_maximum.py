@@ -11,15 +11,7 @@ from hypothesis import strategies as st
 from fmu_src.kernels.oscillator import memory as at
 from tools import exact_motion as truth
 
-from .kernel import (
-    DEFAULTS,
-    advanced,
-    examples,
-    sizes,
-    started,
-    structures,
-    unloaded,
-)
+from .kernel import DEFAULTS, advanced, examples, sizes, started, structures, unloaded
 
 STATES = st.tuples(
     st.floats(-1.0, 0.0), st.floats(-1.0, 0.0), st.floats(0.2, 1.0), st.floats(0.0, 1.0)

@@ -20,15 +20,7 @@ from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.roots import walk
 from tools import exact_motion as truth
 
-from .kernel import (
-    DEFAULTS,
-    examples,
-    rest_together,
-    sizes,
-    started,
-    structures,
-    unloaded,
-)
+from .kernel import DEFAULTS, examples, rest_together, sizes, started, structures, unloaded
 
 SIGNED = st.just(0.0) | sizes(1e-12, 1e3) | sizes(1e-12, 1e3).map(lambda x: -x)
 HEIGHTS = st.just(0.0) | sizes(1e-15, 1e3)

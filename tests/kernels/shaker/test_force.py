@@ -41,11 +41,7 @@ def test_the_acceleration_belongs_to_the_force_that_has_run_on():
     again = list(m)
     t = 0.05
     f0, f1, f2, f3 = (FORCED[name] for name in FORCE)
-    now = (
-        f0 + t * (f1 + t * (f2 / 2 + t * f3 / 6)),
-        f1 + t * (f2 + t * f3 / 2),
-        f2 + t * f3,
-    )
+    now = (f0 + t * (f1 + t * (f2 / 2 + t * f3 / 6)), f1 + t * (f2 + t * f3 / 2), f2 + t * f3)
     set_force(again, *now, f3)
     assert stepper.refresh(again, t) == at.OK
     for one in (m, again):

@@ -5,13 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from orchestrate.dynamics.basins import (
-    BasinJob,
-    Plane,
-    PlaneAxis,
-    basin,
-    run_to_phase_zero,
-)
+from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, basin, run_to_phase_zero
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, REST, STATE, Instance, begin, find, finder

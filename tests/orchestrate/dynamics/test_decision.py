@@ -163,14 +163,7 @@ def test_distances_compare_gaps_with_the_gap():
 
 @pytest.mark.parametrize(
     ("flags", "expected"),
-    [
-        ("0110", 1),
-        ("10011", 4),
-        ("1110011", 0),
-        ("0000", 0),
-        ("1111", 0),
-        ("0011111000", 4),
-    ],
+    [("0110", 1), ("10011", 4), ("1110011", 0), ("0000", 0), ("1111", 0), ("0011111000", 4)],
 )
 def test_the_middle_of_the_longest_run_on_a_ring(flags, expected):
     assert middle_of_longest_run(np.array([letter == "1" for letter in flags])) == expected

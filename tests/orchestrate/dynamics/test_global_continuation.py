@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.global_continuation import (
-    BY_NEWTON,
-    BY_SIMULATION,
-    match_neighbours,
-)
+from orchestrate.dynamics.global_continuation import BY_NEWTON, BY_SIMULATION, match_neighbours
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import ORBIT
 from orchestrate.response.questions import Point

@@ -27,10 +27,7 @@ def multipliers(found):
     return found.multipliers.values @ np.array([1.0, 1.0j])
 
 
-@pytest.mark.parametrize(
-    ("period", "eta"),
-    [(1, 1.5), (1, 3.0), (2, 4.0), (3, 5.6), (4, 8.0)],
-)
+@pytest.mark.parametrize(("period", "eta"), [(1, 1.5), (1, 3.0), (2, 4.0), (3, 5.6), (4, 8.0)])
 def test_one_impact_in_n_periods_is_that_of_the_closed_form(period, eta):
     found, truth = known(eta, period), SingleImpact(eta, period)
     assert found.node_kind.values.tolist() == [0]

@@ -11,14 +11,7 @@ from orchestrate.errors import FmuError
 from orchestrate.fmu import PLAYED, REST, Player
 from orchestrate.fmu import event_loop as loops
 from orchestrate.fmu.c_library import library
-from orchestrate.fmu.event_loop import (
-    SOURCE,
-    Calls,
-    CompiledEventLoop,
-    EventLoop,
-    Progress,
-    Task,
-)
+from orchestrate.fmu.event_loop import SOURCE, Calls, CompiledEventLoop, EventLoop, Progress, Task
 from orchestrate.fmu.play import CUBIC
 from orchestrate.model import Structure
 

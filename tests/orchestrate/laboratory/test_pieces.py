@@ -231,11 +231,7 @@ SWEEP = {"first": 20.0, "last": 90.0, "duration": 2.0, "acceleration": 4.9}
         (SteppedSine, {"frequencies": 40.0}, "frequencies: 40.0; expected 1 to"),
         (SteppedSine, {"frequencies": (4.0, -1.0)}, "frequencies[1] = -1.0 Hz: expected 1e-09 <="),
         (SteppedSine, {"settle_cycles": 1.5}, "settle_cycles = 1.5: expected a whole number >= 0"),
-        (
-            SteppedSine,
-            {"measured_cycles": 0},
-            "measured_cycles = 0.0: expected a whole",
-        ),
+        (SteppedSine, {"measured_cycles": 0}, "measured_cycles = 0.0: expected a whole"),
         (SteppedSine, {"acceleration": [(9, 1), (20, 1)]}, "is of 9 to 20 Hz; expected 8 to 40"),
         (Random, {"psd": 3.0}, "psd = 3.0: expected pairs (Hz, value)"),
         (Random, {"psd": [(20, 0.0), (30, 1.0)]}, "psd at 20 Hz = 0.0: expected a number > 0"),

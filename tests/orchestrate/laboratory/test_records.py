@@ -271,11 +271,7 @@ def test_text_as_analysers_write_it(tmp_path, name, encoding):
     ("heading", "columns", "said"),
     [
         ("t,Table,Beam", None, 'base "Table", face 1 "Beam", time "t"'),
-        (
-            "t,one,two",
-            None,
-            'time "t", base "one", face 1 "two", by their order: no name is known',
-        ),
+        ("t,one,two", None, 'time "t", base "one", face 1 "two", by their order: no name is known'),
         ("t,tip,foot", [0, 2, 1], 'time "t", base "foot", face 1 "tip"'),
         ("t,tip / g,foot / g", [0, "foot / g", "tip"], 'time "t", base "foot", face 1 "tip"'),
     ],

@@ -10,15 +10,7 @@ import pytest
 from scipy import signal
 from scipy.linalg import expm
 
-from orchestrate import (
-    InputError,
-    Sampled,
-    Sensor,
-    Structure,
-    SweptSine,
-    measure,
-    shake,
-)
+from orchestrate import InputError, Sampled, Sensor, Structure, SweptSine, measure, shake
 from orchestrate.laboratory.analog_filter import anti_aliasing, phi_functions
 
 from ...sparing import ordinary

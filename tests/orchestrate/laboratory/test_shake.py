@@ -183,10 +183,7 @@ def test_transient_time_is_when_a_thousandth_is_left():
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (
-            {"excitation": 3.0},
-            "excitation = 3.0: expected a SweptSine, SteppedSine, Random",
-        ),
+        ({"excitation": 3.0}, "excitation = 3.0: expected a SweptSine, SteppedSine, Random"),
         ({"structure": 3.0}, "structure = 3.0: expected a Structure"),
         ({"sample_rate": -1.0}, "sample_rate = -1.0: expected a number > 0"),
         ({"sample_rate": 1e12}, "sample_rate = 1000000000000.0 Hz: expected at most"),

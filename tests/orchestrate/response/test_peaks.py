@@ -8,13 +8,7 @@ import pytest
 from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, begin, find, sampled
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.equations import absolute_accelerations
-from orchestrate.response.peaks import (
-    PEAKS,
-    POINTS,
-    Motion,
-    cubic_extrema,
-    peaks,
-)
+from orchestrate.response.peaks import PEAKS, POINTS, Motion, cubic_extrema, peaks
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import LoopSettings, periods_to_sample, response_loop
 

@@ -54,10 +54,7 @@ def signs():
     generator = np.random.default_rng(2)
     response = 6.0 * np.sin(angle) + np.sin(2.0 * angle) + 0.01 * generator.normal(size=4000)
     record = xr.Dataset(
-        {
-            "box_acceleration": ("time", 2.0 * np.sin(angle)),
-            "acceleration1": ("time", response),
-        },
+        {"box_acceleration": ("time", 2.0 * np.sin(angle)), "acceleration1": ("time", response)},
         {"time": time},
         {"title": EVIL},
     )

@@ -5,11 +5,7 @@ import pytest
 
 from orchestrate.dynamics.bifurcations import Kind
 
-from .validation import (
-    bifurcations,
-    random_sets,
-    trajectory_error,
-)
+from .validation import bifurcations, random_sets, trajectory_error
 
 SETS = random_sets(5)
 

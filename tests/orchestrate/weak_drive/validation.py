@@ -184,10 +184,7 @@ def branch_of(system, most=120, range_=(0.95, 1.15)):
     job = DriveBranchJob("branch", *system, speeds, **asked)
     grid = np.linspace(*(speed / omega for speed in speeds), 2001)
     length = float(averaged.amplitude(*system.as_bonded(), grid).max()) * system.drive.length
-    with (
-        Instance(find(OSCILLATOR).path) as one,
-        Instance(find(SHAKER).path) as other,
-    ):
+    with Instance(find(OSCILLATOR).path) as one, Instance(find(SHAKER).path) as other:
         return job.trace_legs((one, other), system.structure), length
 
 

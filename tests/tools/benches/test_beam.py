@@ -43,11 +43,7 @@ def test_a_delaminated_beam_has_the_published_frequencies(length):
     The published methods differ among each other by 0.25 % in the second mode.
     """
     beam = DelaminatedBeam(
-        clamped_both=True,
-        share=0.5,
-        elements=60,
-        first=0.5 - length / 2,
-        last=0.5 + length / 2,
+        clamped_both=True, share=0.5, elements=60, first=0.5 - length / 2, last=0.5 + length / 2
     )
     frequencies, shapes = dimensionless(beam, 6)
     upper, lower = (beam.deflection_rows(shapes, layer, beam.nodes) for layer in (1, 2))

@@ -9,13 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from tools.benches.integrator import equilibrium, integrate
-from tools.benches.lumped import (
-    TURN,
-    Faces,
-    Halves,
-    cubic_stiffness,
-    frequency_change,
-)
+from tools.benches.lumped import TURN, Faces, Halves, cubic_stiffness, frequency_change
 from tools.benches.recipe import OPENED
 
 from ...sparing import ordinary
