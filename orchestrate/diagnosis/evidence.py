@@ -138,6 +138,18 @@ class Evidence:
         made.__dict__["resonance"] = self.resonance
         return made
 
+    @cached_property
+    def sliding(self) -> Floats:
+        """Cubics of the sign of the measured velocity, relative to the base and smooth at zero."""
+        channels = self.orders.channels
+        spectrum = np.fft.rfft((channels.values[self.orders.rows] - channels.box).mean(axis=0))
+        turns = TURN * np.fft.rfftfreq(self.samples, 1.0 / self.rate)
+        spectrum[turns < 0.5 * TURN * self.resonance] = 0.0  # drift
+        speed = np.fft.irfft(spectrum / (1j * np.maximum(turns, 1.0)), self.samples)
+        slow = self.settings.slow * TURN * self.resonance * self.displacement
+        sign = speed / np.hypot(speed, slow)
+        return Sampled(acceleration=tuple(sign), sample_rate=self.rate).pieces().derivatives
+
     @property
     def rate(self) -> float:
         """Sampling rate, Hz."""

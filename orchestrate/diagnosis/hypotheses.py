@@ -325,16 +325,31 @@ class Delaminated(Hypothesis):
         """Compute the motion of both masses by the FMU."""
         assert player is not None
         player.start(self.structure_from_values(values, evidence))
-        nodes = evidence.pieces.nodes
-        return player.play(nodes, evidence.pieces.derivatives, nodes, ("x1", "x2")).rows.T
+        nodes, cubics = evidence.pieces.nodes, evidence.pieces.derivatives
+        if friction := values.get("friction", 0.0) * float(np.median(evidence.level)):
+            cubics = cubics + friction * evidence.sliding  # on both masses alike, as inertia acts
+        return player.play(nodes, cubics, nodes, ("x1", "x2")).rows.T
 
 
 @dataclass(frozen=True)
 class DelaminatedWithClearance(Delaminated):
-    """Two masses with a gap between the faces at rest, or pressed together by a preload."""
+    """Two masses with a gap between the faces at rest, or pressed together by a preload.
+
+    Pressed faces slide when the beam bends: ``friction`` brakes both masses, over the base's median
+    acceleration, against the velocity that was measured.
+    """
 
     name: ClassVar[str] = "delaminated, with clearance"
     onset: Onset | None = None  # where the faces begin to open
+
+    def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
+        """Return the bounds of the numbers that are free; a resonance curve has no velocity."""
+        friction = {"friction": (0.0, 2.0)} if evidence.has_floor else {}
+        return {**super().bounds(evidence), **friction}
+
+    def values_from_structure(self, structure: Structure, evidence: Evidence) -> dict[str, float]:
+        """Convert a structure to the numbers that are fitted, without friction."""
+        return {**super().values_from_structure(structure, evidence), "friction": 0.0}
 
     def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
         """Return starts of one split: pressed faces, gaps, and halves that move alone up to one."""
@@ -364,9 +379,10 @@ class DelaminatedWithClearance(Delaminated):
         force = self.onset.level * float(opening_force(shut, self.onset.frequency))
         closed = -force * (1.0 / shut.k1 + 1.0 / shut.k2) / evidence.displacement
         return [
-            {**guess, **alike, "e": e, "clearance": part * closed}
+            {**guess, **alike, "e": e, "clearance": part * closed, "friction": friction}
             for part in (1.0, 0.8, 0.6)
             for e in (0.35, 0.7)
+            for friction in (0.0, 0.1, 0.3)
         ]
 
 

@@ -26,7 +26,7 @@ from .misfit import misfit
 from .orders import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
 from .settings import SETTINGS, Settings
 
-MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 6, 8  # rows and columns of tables
+MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 7, 8  # rows and columns of tables
 
 
 @dataclass(frozen=True)
