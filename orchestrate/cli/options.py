@@ -298,7 +298,7 @@ def varied_arguments(
 def excitation_by_level(
     arguments: argparse.Namespace, structure: Structure, one: bool = False
 ) -> dict[str, Any]:
-    """Return frequency and level (m/s2) of the box from ``--g``, each a number or a tuple."""
+    """Return the box's frequency and its level (m/s2) from ``--g``, each a number or a tuple."""
     from ..constants import GRAVITY
 
     one_of(arguments, "amplitude", "g")

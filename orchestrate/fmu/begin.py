@@ -35,8 +35,11 @@ def begin(
         enter()
 
 
-def from_rest(structure: Structure, state: list[float]) -> list[float]:
-    """Convert a start state counted from the (preloaded) rest to one from unloaded springs."""
+def to_rest(structure: Structure, state: list[float]) -> list[float]:
+    """Convert a start state from unloaded springs to one from rest, as the FMU takes it.
+
+    All zeros mean rest.
+    """
     if structure.gap_offset >= 0.0 or not any(state):
         return state
     (x1, x2, *velocities), (rest_1, rest_2) = state, structure.at_rest

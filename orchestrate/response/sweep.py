@@ -162,8 +162,8 @@ class SweepJob(SeriesQuestion):
         length = self.series.units[:, :1]
         if isinstance(gaps, np.ndarray):
             return np.asarray(self.in_order(gaps), dtype=float) / length
-        numbers = self.in_order(np.arange(gaps.shape[0]))
-        source = numbers.ravel()
+        numbers = self.in_order(np.arange(gaps.shape[0], dtype=np.intp))
+        source = numbers.ravel().view(np.intp)
 
         def read(rows: NDArray[np.intp]) -> NDArray[np.float64]:
             return gaps.rows(source[rows]) / length[rows % len(length)]
