@@ -24,7 +24,7 @@ def begin(
     **values: float,
 ) -> None:
     """Reset an oscillator FMU; initialise it at time 0 by structure, excitation and start state."""
-    start_state = from_rest(structure, four_numbers(start))
+    start_state = to_rest(structure, four_numbers(start))
     state = dict(zip(START_PARAMETERS, start_state, strict=True))
     start_values = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}
     instance.reset()

@@ -16,8 +16,8 @@ def checked_times(
     """Return equally spaced times, their rate in Hz, and what was done to make them equal.
 
     - Times within 5 % of a step of equal ones are kept.
-    - Rounded ones, whose distances from equal steps range over no more than their last digit, become
-      equal: by the stated rate, else, if that is ten steps at most, by the roundest that fits.
+    - Rounded ones, whose distances from equal steps range over no more than their last digit,
+      become equal: by the stated rate, else, if that is ten steps at most, by the roundest one.
     - Others are refused, as times that contradict a stated rate; with `resample` they become equal,
       unless they fall or have a gap.
     """

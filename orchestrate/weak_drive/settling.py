@@ -1,7 +1,7 @@
 """Decide whether a motor switched on has settled below or beyond the resonance.
 
-- The speed has settled by the one rule of :mod:`.settled`, to a tenth of the voltage's tolerance,
-  1e-6 to 1e-4 at that. Where the no-load speed is below the resonance, it is captured without a run.
+- The speed has settled by the one rule of :mod:`.settled`, to a tenth of the voltage's tolerance
+  (1e-6 to 1e-4). A motor whose no-load speed is below the resonance is captured, without a run.
 - It is *captured* where the settled speed is below the resonance, and *passed* where it is beyond,
   as its means have been for `stay` revolutions.
 - It has settled *at the resonance*, which is neither, where both are within the tolerance and three
