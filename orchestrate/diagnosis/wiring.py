@@ -223,16 +223,17 @@ def lost_sample_notes(orders: RecordOrders, settings: Settings) -> Iterator[Note
     row = np.linalg.pinv(np.vander(np.arange(count) + 0.5, 2))[1]  # a line's value at its end
     kernel = np.concatenate([row[::-1], -row])  # as a convolution: later less earlier samples
     phase = measured_phase(channels)
-    jump = fftconvolve(phase - phase.mean(), kernel, "same")
-    jump = np.abs(jump - TURN * np.round(jump / TURN))
+    jump = np.abs(fftconvolve(phase - phase.mean(), kernel, "same"))
     inside = np.zeros(len(phase), bool)
     for part in windows.parts:
         inside[part] = True
     inside[: 2 * count] = inside[-2 * count :] = False
     jump = np.where(inside, jump, 0.0)
     where = int(np.argmax(jump))
-    if jump[where] > max(settings.jump, settings.usual * float(np.median(jump[inside]))):
-        text = f"the base's phase jumps by {jump[where]:.2g} rad at {channels.time[where]:.4g} s"
+    least = max(settings.jump, settings.usual * float(np.median(jump[inside])))
+    turned = abs(jump[where] - TURN * round(jump[where] / TURN))
+    if jump[where] > least and turned > settings.jump:
+        text = f"the base's phase jumps by {turned:.2g} rad at {channels.time[where]:.4g} s"
         yield Note("lost samples", f"{text}: are samples lost? cut the record there")
 
 

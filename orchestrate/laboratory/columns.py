@@ -194,7 +194,8 @@ def converted_channels(
         column = table.columns[place]
         own = units.get(name, column.unit)
         sensor = stated.get(name, column.sensitivity)
-        if isinstance(sensitivity, str) and units and not own:  # it may not be in volts
+        of_all = isinstance(sensitivity, str) and "=" not in sensitivity
+        if of_all and units and not own:  # it may not be in volts
             text = "no unit, where others have one; expected its unit too: give it by unit="
             raise InputError(f"{column_label(table, column)}: {text}")
         factor, derivatives = unit_factor(
