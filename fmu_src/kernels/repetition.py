@@ -35,10 +35,10 @@ def decide(m, time):
       is less than the tolerance too; and states a divisor of n apart keep a steady difference.
     - An n above a quarter of these samples is seen too seldom for that: it counts if no smaller one
       agrees and the deviation is below ``NEGLIGIBLE`` of the tolerance.
-    - *Undecided*, with the best guess: some n agrees but drifts or has not been confirmed, or a
-      deviation shrinks by ``MAX_CONTRACTION`` (``MAX_DYING_RATIO`` where some n agrees).
+    - *Undecided*, with the best guess: some n agrees but is not confirmed, or a deviation shrinks
+      by ``MAX_CONTRACTION`` (``MAX_DYING_RATIO`` where some n agrees).
     - *Undecided* too if only n up to three quarters of all samples agrees.
-    - *Irregular*: all else.
+    - *Irregular*: all else, also where the states of each n that agrees drift steadily.
     """
     scale(m, int(m[COUNT] / 2))
     count, limit, tolerance = int(m[LATER]), longest(m), m[TOLERANCE]

@@ -111,6 +111,11 @@ def read_drive_options(arguments: argparse.Namespace) -> tuple[Structure, Drive]
 
     drive = Drive.from_file(arguments.drive)
     structure = Structure.from_file(arguments.structure or arguments.drive)
+    if arguments.drive == "quick" and structure.omega > 10.0:  # that motor turns at 1.5 rad/s
+        raise InputError(
+            "--drive is missing: the motor of the set quick is far too slow for "
+            f"{structure.omega:.4g} rad/s; expected --drive beam, rig, or a file with [motor]"
+        )
     changes = parse_changes(arguments.set)
     drive_names = {field.name for field in fields(Drive)}
     of_drive = {name: float(value) for name, value in changes.items() if name in drive_names}

@@ -225,7 +225,7 @@ def parse_changes(texts: Iterable[str]) -> dict[str, float | bool]:
     return changes
 
 
-def parse_changed_value(name: str, value: str) -> float | bool:
+def parse_changed_value(name: str, value: str, option: str = "") -> float | bool:
     """Parse the VALUE of ``--set NAME=VALUE``: a number, with a unit if the parameter allows it."""
     if value in ("true", "false"):
         return value == "true"
@@ -241,7 +241,7 @@ def parse_changed_value(name: str, value: str) -> float | bool:
         check_name(name)  # before its unit
         words = f", with {' or '.join(known)} if you like" if known else ", or true or false"
         raise InputError(
-            f"--set {name}={value}: {value} is not a number; expected one{words}"
+            f"{option or f'--set {name}='}{value}: {value} is not a number; expected one{words}"
         ) from None
 
 

@@ -13,6 +13,7 @@ from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
 from .grammar import (
     is_single_number,
+    parse_changed_value,
     parse_changes,
     parse_ends,
     parse_one_or_more,
@@ -261,7 +262,13 @@ def read_over(arguments: argparse.Namespace) -> tuple[tuple[float, ...], bool] |
     """Return the values of ``--over``, and whether they are a range; None without it."""
     if (arguments.over is None) != (arguments.values is None):
         raise InputError("--over and --values: expected both, or none of them")
-    return parse_values("--values", arguments.values, zero=True) if arguments.over else None
+    if arguments.over is None:
+        return None
+    if ":" in arguments.values:
+        return parse_values("--values", arguments.values, zero=True)
+    listed = (part.strip() for part in arguments.values.split(","))
+    option = f"--over {arguments.over} --values "
+    return tuple(float(parse_changed_value(arguments.over, one, option)) for one in listed), False
 
 
 def join_option_names(names: Any, joint: str = ", ") -> str:
@@ -298,7 +305,7 @@ def varied_arguments(
 def excitation_by_level(
     arguments: argparse.Namespace, structure: Structure, one: bool = False
 ) -> dict[str, Any]:
-    """Return frequency and level (m/s2) of the box from ``--g``, each a number or a tuple."""
+    """Return the box's frequency and its level (m/s2) from ``--g``, each a number or a tuple."""
     from ..constants import GRAVITY
 
     one_of(arguments, "amplitude", "g")

@@ -232,5 +232,3 @@ Repeat the command to resume an interrupted run. Finished data is left as it is.
     ),
     run_paper,
 )
-
-COMMANDS = (BUILD, EXPLORE, REPORT, PAPER)

@@ -415,5 +415,3 @@ Each point starts from rest. The picture has a panel for each quantity.""",
     ask_map,
     map_summary,
 )
-
-COMMANDS = (SIMULATE, RESONANCE, SPECTRA, SWEEP, MAP)

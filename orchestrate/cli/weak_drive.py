@@ -596,6 +596,8 @@ def jump_voltages_title(_: Results, question: Question) -> str:
 def jump_voltage_lines(results: Results) -> Iterator[str]:
     """Yield a table of the jump voltages at rate 0, and advice if one is missing."""
     (data,) = results.values()
+    if not data.attrs["back"]:  # the ramps went up alone
+        data = data.sel(jump=["up"])
     (over,) = {str(dim) for dim in data.jumps.dims} - {"structure", "jump"} or {""}
     rows: Columns = {"jump at rate 0": [str(jump) for jump in data.jump.values]}
     if over:
@@ -616,7 +618,7 @@ def jump_voltage_lines(results: Results) -> Iterator[str]:
     rows["change V"] = ["" if math.isnan(change) else f"{change:.5f}" for change in changes.values]
     yield from table(rows, len(rows["change V"]))
     if (data.decided == "undecided").any():
-        yield "undecided by constant voltages; drive-branch computes folds, where the speed jumps"
+        yield "undecided by constant voltages; drive-branch shows which motions are stable"
 
 
 JUMP_VOLTAGES = Command(

@@ -73,16 +73,15 @@ class Findings:
     def verdict(self) -> str:
         """Apply the rule and return one of the four verdicts.
 
-        - A record of a saturated channel, of a sweep that does not pass the resonance, or of a
-          resonance far from the guess's frequencies is "undecided".
-        - "delaminated": order 2 is seen and the misfit is at most 3 and 1.5 times smaller than the
-          best sound one; at most 4 and 1.05 times smaller where two faces move apart and order 2
-          or bursts exceed their thresholds; 3 and 5 times where the faces' difference is all there
-          is. The ratio is exceeded in 19 of 20 records put together of its blocks.
+        - A record of a saturated channel (`clipped`), of a sweep that does not pass the resonance
+          (`end_response`), or of one far from the guess's (`guess_factor`) is "undecided".
+        - "delaminated": order 2 is seen and the misfit is at most `delaminated` and `ratio` times
+          smaller than the best sound one; `delaminated_apart` and `ratio_apart` where two faces
+          move apart and order 2 or bursts exceed their thresholds; `ratio_difference` where the
+          faces' difference is all there is; in `share` of records put together of its blocks.
         - "no opening seen": order 2, the difference of the faces and bursts are below their
-          thresholds, a sound misfit is at most 1.2, and noise hides no order 2 of a tenth of order
-          1.
-        - "not described": neither kind of hypothesis has a misfit as small as that.
+          thresholds, a sound misfit is at most `sound`, noise hides no order 2 of `hidden`.
+        - "not described": no misfit is at most `sound`, or that limit of a delaminated one.
         - "undecided": all else.
         """
         usable = all(one.holds for one in self.record_conditions())

@@ -9,8 +9,8 @@ weights W of the soft loss. Three covariances of d are taken:
   what the model misses hangs together over neighbours and is no noise;
 * discrepancy: what a model misses beyond noise, it may also have hidden in its numbers, where no
   residual shows it. Numbers at which the squares beyond noise are larger by ``hidden_share`` of
-  themselves are one standard deviation away; damping and restitution are in doubt by
-  ``restitution_doubt`` beside. Of records of the model itself nothing is left of it.
+  themselves are one standard deviation away; the restitution is in doubt by ``restitution_doubt``
+  beside, a damping ratio by the mean of both, each as far as the contact misses ``contact_misfit``.
 
 The first two are linear in what moves the numbers, and the misfit is rugged: impacts come and go,
 and a search ends in one of several minima that lie close. What that adds was measured, on 495

@@ -95,7 +95,10 @@ def is_worth_a_search(data: RecordData | CurveData) -> bool:
 
 @lru_cache(maxsize=2)
 def cached_onset(data: RecordData | CurveData) -> Onset | None:
-    """Return where order 2 begins and what moves before; None where nothing is silent or loud."""
+    """Return the first window in which order 2 is seen, and the bonded fit of those without it.
+
+    None where order 2 is seen nowhere, or too few windows lack it.
+    """
     evidence = cached_evidence(data)
     even = even_orders(evidence, np.zeros_like(evidence.measured))
     loud = even.ratio > even.threshold

@@ -34,7 +34,8 @@ class Settings:
     floor: float = 3.0  # times the amplitude between the orders that a line is above
     hum: float = 6.0  # amplitude of a mains line over that of the lines next to it
     coherence: float = 0.8  # of that line from one window to the next
-    jump: float = 0.35  # rad of the base's phase
+    jump: float = 0.35  # rad of the base's phase, without whole turns
+    usual: float = 10.0  # times the usual change, by noise, that a jump is
     samples: float = 10.0  # in a period of the resonance
 
 
@@ -54,10 +55,13 @@ def wiring_notes(channels: Channels, settings: Settings = SETTINGS) -> list[Note
 
     - Up to 0.7 of its resonance a sensor reads ``s exp(-i w t) (1 + G r^2/(1 - r^2))`` times the
       base's order 1, with the ratio r of the frequencies: s < 0 is polarity, |s| near 9.8 or its
-      inverse a unit, |s| beyond 2.5 a scale, |t| above 1 ms, clearer than the misfit, a delay.
+      inverse a unit, |s| beyond 2.5 a scale, |t| above 1 ms, clear of the misfit, a delay; all in
+      `fewest` windows.
     - Base and face are swapped where that describes the inverse of the response four times better;
-      a sensor is dead that moves less than 0.05 times the base, without a resonance.
-    - Samples are lost where the base's phase, continued from both sides, jumps by 0.35 rad.
+      a sensor is dead that is above the floor in less than half of the windows, or moves less than
+      0.05 times the base, without a resonance.
+    - Samples are lost where the base's phase, continued from both sides, jumps by 0.35 rad and ten
+      times as far as it usually does.
     - A line at 50 or 60 Hz is hum if it is 6 times its neighbours and keeps its phase, while the
       orders are elsewhere.
     - A channel is clipped by the rule of `clipped_share`; samples are few below ten in a period.
@@ -226,8 +230,10 @@ def lost_sample_notes(orders: RecordOrders, settings: Settings) -> Iterator[Note
     inside[: 2 * count] = inside[-2 * count :] = False
     jump = np.where(inside, jump, 0.0)
     where = int(np.argmax(jump))
-    if jump[where] > settings.jump:
-        text = f"the base's phase jumps by {jump[where]:.2g} rad at {channels.time[where]:.4g} s"
+    least = max(settings.jump, settings.usual * float(np.median(jump[inside])))
+    turned = abs(jump[where] - TURN * round(jump[where] / TURN))
+    if jump[where] > least and turned > settings.jump:
+        text = f"the base's phase jumps by {turned:.2g} rad at {channels.time[where]:.4g} s"
         yield Note("lost samples", f"{text}: are samples lost? cut the record there")
 
 

@@ -1,14 +1,14 @@
 """Decide to which motion a response settles; thresholds are those of ``AttractorSettings``.
 
-- It is run on until its state repeats within `converged`, or within `apart` times that with a
-  deviation that dies, for at most `longest` periods.
+- It is run on until its state repeats within `converged`, for at most `longest` periods; at their
+  end it may repeat within `apart` times that with a deviation that dies.
 - It is on an *orbit* that Newton's method finds from its impacts over these periods: a possible
-  motion, stable, to which the FMU `returns` with the same impacts, and to which the
-  response, if nearer than `near`, comes as the multipliers say, or lies within `same`.
-- Without such an orbit, states that repeat are *repeated*.
-- They are *undecided* near an unstable orbit, or before impacts that have to come at this level.
-- What does not repeat is *irregular*: a torus, or chaos. Where a value has such attractors already,
-  it is the one with the nearest largest gap: means over few periods are no reason for one more.
+  motion, stable, to which the FMU `returns` with the same impacts, and to which the response, if
+  nearer than `near`, comes at least half as fast as the multipliers say, or lies within `same`.
+- Without such an orbit, states that repeat within `converged` are *repeated*.
+- They are *undecided* near an unstable orbit, or without the impacts that such a motion must have.
+- All else is *irregular*: a torus, or chaos. Those of starts are joined within `alike_irregular`;
+  one that comes later joins the nearest largest gap.
 """
 
 from __future__ import annotations

@@ -101,7 +101,7 @@ def decay_rate(damping: float, square: float) -> float:
 def classify_exponents(
     exponent: ArrayLike, error: ArrayLike, floor: ArrayLike, sigmas: float = SIGMAS
 ) -> NDArray[np.int8]:
-    """Classify exponents by their errors as -1 periodic, 0 neutral or 1 chaotic."""
+    """Classify exponents: 1 chaotic, -1 periodic, 0 neutral within `sigmas` errors or `floor`."""
     value = np.asarray(exponent, dtype=float)
     distance = np.fmax(sigmas * np.asarray(error, dtype=float), floor)
     verdicts = np.where(value > distance, CHAOTIC, np.where(value < -distance, PERIODIC, NEUTRAL))

@@ -24,7 +24,7 @@ def begin(
     **values: float,
 ) -> None:
     """Reset an oscillator FMU; initialise it at time 0 by structure, excitation and start state."""
-    start_state = from_rest(structure, four_numbers(start))
+    start_state = to_rest(structure, four_numbers(start))
     state = dict(zip(START_PARAMETERS, start_state, strict=True))
     start_values = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}
     instance.reset()
@@ -35,8 +35,11 @@ def begin(
         enter()
 
 
-def from_rest(structure: Structure, state: list[float]) -> list[float]:
-    """Convert a start state counted from the (preloaded) rest to one from unloaded springs."""
+def to_rest(structure: Structure, state: list[float]) -> list[float]:
+    """Convert a start state from unloaded springs to one from rest, as the FMU takes it.
+
+    All zeros mean rest.
+    """
     if structure.gap_offset >= 0.0 or not any(state):
         return state
     (x1, x2, *velocities), (rest_1, rest_2) = state, structure.at_rest

@@ -1,4 +1,8 @@
-"""Columns of a file as they stand there, and which of them are a record's channels."""
+"""Columns of a file as they stand there, and which of them are a record's channels.
+
+Of columns with unknown names the one that is missing of base and face is taken, others are left out
+with a warning; where no name is known they are taken by their order, and refused if too many.
+"""
 
 from __future__ import annotations
 
@@ -190,6 +194,10 @@ def converted_channels(
         column = table.columns[place]
         own = units.get(name, column.unit)
         sensor = stated.get(name, column.sensitivity)
+        of_all = isinstance(sensitivity, str) and "=" not in sensitivity
+        if of_all and units and not own:  # it may not be in volts
+            text = "no unit, where others have one; expected its unit too: give it by unit="
+            raise InputError(f"{column_label(table, column)}: {text}")
         factor, derivatives = unit_factor(
             column_label(table, column), own, sensor, OF_FORCES if name == FORCE else OF_MOTIONS
         )

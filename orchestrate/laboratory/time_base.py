@@ -16,9 +16,10 @@ def checked_times(
     """Return equally spaced times, their rate in Hz, and what was done to make them equal.
 
     - Times within 5 % of a step of equal ones are kept.
-    - Rounded ones, whose distances from equal steps range over no more than their last digit and
-      that is ten steps at most, become equal: by the stated rate, else by the roundest that fits.
-    - Others are refused; with `resample` they become equal, unless they fall or have a gap.
+    - Rounded ones, whose distances from equal steps range over no more than their last digit,
+      become equal: by the stated rate, else, if that is ten steps at most, by the roundest one.
+    - Others are refused, as times that contradict a stated rate; with `resample` they become equal,
+      unless they fall or have a gap.
     """
     count, resolution = np.arange(len(times)), time_resolution(times)
     if rate is not None:

@@ -10,8 +10,8 @@ class Outcome(IntEnum):
 
     - *repeated*: states so many periods apart agree, and their deviation has died or dies.
     - *orbit*: Newton's method confirms it by a stable orbit that the FMU runs through.
-    - *irregular*: no number of periods repeats within all samples: chaos, a torus, a transient.
-    - *undecided*: all else, such as states that nearly repeat, or near an unstable orbit.
+    - *irregular*: no number of periods repeats, or its states drift: chaos, a torus, a transient.
+    - *undecided*: all else, such as a sweep's states that nearly repeat, or near an unstable orbit.
     - *absent*: there is no such motion at this value, or no motion from this start.
     """
 

@@ -102,8 +102,8 @@ static bool is_any(const double *state) {
     return state[X1] != 0.0 || state[X2] != 0.0 || state[V1] != 0.0 || state[V2] != 0.0;
 }
 
-/* begin.py: from_rest, of a state that counts from unloaded springs. */
-static void from_rest(const double *state, const double *rest, double *start) {
+/* begin.py: to_rest, of a state that counts from unloaded springs. */
+static void to_rest(const double *state, const double *rest, double *start) {
     for (int i = 0; i < STATES; i++) start[i] = state[i];
     if (rest[0] >= 0.0 || !is_any(state)) return;
     start[X1] = state[X1] - rest[1];
@@ -138,7 +138,7 @@ static void round_state(const double *state, double offset, double *end) {
 static bool initialize(Calls *calls, const Task *task, size_t i, const double *start) {
     double reals[64];
     for (size_t k = 0; k < calls->real_count; k++) reals[k] = task->reals[i * calls->real_count + k];
-    from_rest(start, task->rests + 3 * i, reals + calls->start_position);
+    to_rest(start, task->rests + 3 * i, reals + calls->start_position);
     return answered(calls, "fmi3Reset", calls->reset(calls->instance))
         && answered(calls, "fmi3SetFloat64", calls->set(calls->instance, calls->reals, calls->real_count, reals, calls->real_count))
         && answered(calls, "fmi3SetBoolean", calls->set_boolean(calls->instance, calls->booleans, calls->boolean_count, task->booleans + i * calls->boolean_count, calls->boolean_count))

@@ -142,6 +142,7 @@ class SweepJob(SeriesQuestion):
 
     def dataset(self, table: Table) -> xr.Dataset:
         in_order = {"gap": self.gaps_in_order}
+        del table["gap_offset"]  # what a next chunk needed
         # each column leaves the table: of a long sweep there is no room for two
         ordered = {name: in_order.get(name, self.in_order)(table.pop(name)) for name in [*table]}
         title = f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
@@ -161,8 +162,8 @@ class SweepJob(SeriesQuestion):
         length = self.series.units[:, :1]
         if isinstance(gaps, np.ndarray):
             return np.asarray(self.in_order(gaps), dtype=float) / length
-        numbers = self.in_order(np.arange(gaps.shape[0]))
-        source = numbers.ravel().astype(np.intp)
+        numbers = self.in_order(np.arange(gaps.shape[0], dtype=np.intp))
+        source = numbers.ravel().view(np.intp)
 
         def read(rows: NDArray[np.intp]) -> NDArray[np.float64]:
             return gaps.rows(source[rows]) / length[rows % len(length)]

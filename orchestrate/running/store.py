@@ -257,8 +257,12 @@ def load(path: Path) -> xr.Dataset:
         is_large = path.stat().st_size > MAX_LOADED
         with small_chunk_cache():
             data = (xr.open_dataset if is_large else xr.load_dataset)(path, engine="netcdf4")
+            # what is read for the checksum alone does not stay in memory
+            read = xr.open_dataset(path, engine="netcdf4", cache=False) if is_large else data
         stored_checksum = data.attrs.pop(ATTRIBUTE, None)
-        fits = stored_checksum is None or stored_checksum == checksum(data)
+        fits = stored_checksum is None or stored_checksum == checksum(read)
+        if is_large:
+            read.close()
     except Exception as error:
         if path.is_file() and not is_netcdf(path):
             raise StoreError(f"{path}: not readable; expected a NetCDF file") from error

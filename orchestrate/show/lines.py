@@ -338,7 +338,10 @@ def draw_jump_voltages(data: xr.Dataset, title: str = "") -> Figure:
             words = "at rate 0" if extrapolated else "too few rates for rate 0"
             panel.legend(loc="best", title=words)
         else:
-            style.write_in_panel(panel, f"no jump {jump}")
+            open_still = (part.decided == "undecided").any()
+            style.write_in_panel(
+                panel, f"jump {jump} undecided" if open_still else f"no jump {jump}"
+            )
             panel.set(xticks=[])
         panel.set(xlabel="rate$^{2/3}$ in (V/s)$^{2/3}$", ylabel="voltage in V")
         panel.set_title(f"jump {jump}")
@@ -350,7 +353,8 @@ def draw_jumps_over_rate(panel: Axes, data: xr.Dataset, structure: str) -> None:
     lag, end = data.rate.values ** (2.0 / 3.0), float(data.jumps)
     colour, finite = STRUCTURES[structure], np.isfinite(data.voltage.values)
     count = int(finite.sum())
-    text = f"{structure}: {count} rate{'s' * (count != 1)}" if count else f"{structure}: no jump"
+    nothing = "undecided" if data.decided.item() == "undecided" else "no jump"
+    text = f"{structure}: {count} rate{'s' * (count != 1)}" if count else f"{structure}: {nothing}"
     label = None if np.isfinite(end) else text
     panel.plot(lag, data.voltage, "o", color=colour, markersize=4, label=label)
     if np.isfinite(end):

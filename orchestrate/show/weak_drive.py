@@ -246,7 +246,10 @@ def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:
 
 @styled
 def draw_capture(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
-    """Draw which voltages pass the resonance, a column per structure; return the figure."""
+    """Draw starts from rest, a column per structure; return the figure.
+
+    Outcomes over voltage and parameter, or times of passage over the voltage.
+    """
     size = (5.5 * len(maps), 4.5)
     figure, axes = make_panels(1, len(maps), size, title, sharex=True, sharey=True)
     for panel, (name, data) in zip(axes, maps.items(), strict=True):

@@ -131,7 +131,7 @@ def near(name: str, known: Iterable[str]) -> str:
 def proposals(drive: Description) -> dict[str, str]:
     """Return by our names the drive's variables that are likely meant, by unit and name.
 
-    - A variable of the causality whose unit is of the same dimension is likely, the one whose name
+    - An input (force) or output (motion) whose unit is of the same dimension is likely, whose name
       looks most like ours first; where none has a unit, one with a part that abbreviates ours.
     - Derivatives of the force are proposed by our own names alone, no variable is proposed twice,
       and without a motion and a force nothing is.
@@ -147,7 +147,7 @@ def proposals(drive: Description) -> dict[str, str]:
             if fits and variable.causality == ("input" if ours in FORCE else "output"):
                 ranks[name] = (theirs is not None, rank)
         if ranks and (ours not in FORCE[1:] or ours in ranks):
-            found[ours] = max(ranks, key=lambda name: ranks[name])
+            found[ours] = ours if ours in ranks else max(ranks, key=lambda name: ranks[name])
     return found if FORCE[0] in found and set(MOTION) & set(found) else {}
 
 

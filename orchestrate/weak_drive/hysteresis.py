@@ -14,8 +14,8 @@ in which the ramp's record suggests a jump:
 - There is *no* jump where no such step is left, and on the way back the speed is nowhere `clear`
   away.
 - All else is *undecided*: a speed that does not settle, two motions nearer than `clear`, a step
-  that is still large at `finest`, another motion on the way back, or a speed that moves against the
-  voltage and what comes after it.
+  that is still large at `finest`, another motion on the way back, a speed that moves against the
+  voltage and what comes after it, or more than `max_holds` held voltages.
 
 Non-dimensional: voltages over K omega, speeds over omega, times in 1/omega, in the mirror image in
 which the motor turns forward.

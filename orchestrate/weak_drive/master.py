@@ -1,4 +1,4 @@
-"""Step the oscillator and its drive together: the oscillator alone goes back.
+"""Step the oscillator and its drive together: in an ordinary step the oscillator alone goes back.
 
 The structure's ``box_force`` depends on its states only, the box's acceleration on the force: there
 is no algebraic loop, but what each side assumes of the other over a step decides everything.
@@ -9,8 +9,8 @@ is no algebraic loop, but what each side assumes of the other over a step decide
   which are exact through impacts. A drive that takes the force alone is given its mean.
 - The oscillator goes back and does it again, under the acceleration between both ends: the cubic
   with the changes of the box's velocity and position, or what is known of it.
-- Where nothing is known to extrapolate, at the start, both go back `first_passes` times before, if
-  the drive can.
+- Where nothing is known to extrapolate, at the start, both do the step `first_passes` times, if the
+  drive can go back.
 - With a `tolerance` a step is halved, for both, where the energy defect is a larger part of the
   work exchanged in it; one with less than `easy` of that is followed by one twice as long.
 """

@@ -4,10 +4,10 @@
 - The speed has settled where its last `seen` changes are below `still` of `tolerance`, or, if they
   go to and fro, the means between them lie within `to_and_fro` of it.
 - If they go one way, it has converged where the limits extrapolated from them as an exponential
-  approach (Aitken's process) agree within `agreement` of the tolerance; by a fold the approach is
-  slower than `slowest` a block, and they do not.
+  approach (Aitken's process) agree within `agreement` of the tolerance; an approach slower than
+  `slowest` a block, as by a fold, has not converged.
 - An irregular motion has settled where three long means, each a third of `blocks`, differ by less
-  than the tolerance, or `scatter` of what the blocks do; its speed has an error then, at least
+  than the tolerance, or `scatter` of the changes' deviation; its speed has an error then, at least
   `deviation` of their standard deviation.
 - All else has not settled.
 """

@@ -1,9 +1,11 @@
 """Decide whether a motor switched on has settled below or beyond the resonance.
 
-- The speed has settled by the one rule of :mod:`.settled`, to a tenth of the voltage's tolerance.
+- The speed has settled by the one rule of :mod:`.settled`, to a tenth of the voltage's tolerance
+  (1e-6 to 1e-4). A motor whose no-load speed is below the resonance is captured, without a run.
 - It is *captured* where the settled speed is below the resonance, and *passed* where it is beyond,
   as its means have been for `stay` revolutions.
-- It has settled *at the resonance*, which is neither, where both are closer than its error.
+- It has settled *at the resonance*, which is neither, where both are within the tolerance and three
+  errors.
 - All else is *undecided*: a motion that goes on to swing slowly, or across the resonance.
 """
 

@@ -130,6 +130,7 @@ MISTAKES = {  # options of each command, then what its line says
     """,
     "couple": """
         --drive rigg : rigg | no such file | quick
+        --structure beam : --drive is missing | too slow for 75 rad/s
         --set x=1 : x | no parameter
         --rated-voltage 12 : --rated-voltage 12 | without --no-load-rpm | --stall-torque together
         --rated-voltage 9 --no-load-rpm 9 : --rated-voltage 9 | without --stall-torque

@@ -87,6 +87,15 @@ def test_a_clean_record_has_no_note(participation):
     assert notes(with_hum(sweep(noise=0.05), BASE)) != []
 
 
+def test_noise_and_a_whole_turn_are_no_lost_samples():
+    """The phase of a base in noise jumps by chance; a turn more or less is how it is counted."""
+    assert "lost samples" not in [note.kind for note in notes(sweep(noise=0.4))]
+    turn = round(RATE / (20.0 + 3.0 * 9000 / RATE))
+    kept = np.delete(np.arange(COUNT), slice(9000, 9000 + turn))
+    less = {name: values[kept] for name, values in sweep(noise=0.001).items()}
+    assert "lost samples" not in [note.kind for note in notes(less)]
+
+
 def test_few_samples_are_named_and_a_short_sweep_above_the_resonance_says_nothing():
     few = {name: values[::4] for name, values in sweep().items()}
     assert [note.kind for note in notes(few, RATE / 4)] == ["sampling"]

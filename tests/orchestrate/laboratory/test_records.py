@@ -620,6 +620,13 @@ def test_velocities_displacements_and_voltages_become_accelerations(tmp_path):
     assert np.allclose(read_record(path).box_acceleration, -turned.box_acceleration)
 
 
+def test_a_sensitivity_of_all_columns_asks_for_the_units_that_are_missing(tmp_path):
+    path = table_file(tmp_path / "a.csv", "t [s],base,tip", *swept(50)[:3])
+    with pytest.raises(InputError, match='column "tip": no unit, where others have one'):
+        read_record(path, unit="base=V", sensitivity="100 mV/g")
+    read_record(path, unit="base=V,face1=V", sensitivity="100 mV/g")
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
