@@ -7,8 +7,18 @@ import orchestrate
 from orchestrate.diagnosis.errors import contact_covariance, estimate, squares_beyond_noise
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fitting import Search, misfit
-from orchestrate.diagnosis.hypotheses import Bonded, Delaminated, NonlinearSpring, TwoModes
+from orchestrate.diagnosis.hypotheses import (
+    FREE,
+    Bonded,
+    Delaminated,
+    DelaminatedWithClearance,
+    NonlinearSpring,
+    TwoModes,
+)
 from orchestrate.fmu import OSCILLATOR, Player, find
+from tools.benches.bench import Bench
+from tools.benches.excitation import Swept
+from tools.benches.lumped import Faces, Halves
 
 from .records import BEAM, record
 
@@ -109,6 +119,28 @@ def test_a_bonded_structure_is_one_mass(player):
     zeta = total / (2.0 * (BEAM.m1 + BEAM.m2) * 2.0 * np.pi * common)
     motion = Bonded().displacements({"f": common, "log_zeta": np.log(zeta)}, evidence, None)
     assert misfit(evidence.residuals(motion)) < 0.02
+
+
+def test_pressed_faces_that_slide_are_described_with_friction(player):
+    """Shut faces of a virtual bench, whose force brakes the bending of both halves."""
+    own = Halves(f1=42.0, f2=52.0)
+    faces = Faces(law="linear", frequency=900.0, clearance=-4e-3, friction=0.01)
+    bench = Bench(excitation=Swept(34.0, 60.0, 12.0, 4.0), face2=None)
+    measured, motion = bench.measure(own.delaminated(faces), 1)
+    assert motion.largest_gap.max() < 0.0
+    evidence = Evidence.from_record(measured)
+    beam = orchestrate.Structure.from_halves(**vars(own), e=0.5, clearance=faces.clearance)
+    hypothesis = DelaminatedWithClearance(beam, (*FREE, "clearance"))
+    values = hypothesis.values_from_structure(beam, evidence)
+    missed = [
+        misfit(
+            evidence.residuals(
+                hypothesis.displacements({**values, "friction": f}, evidence, player)
+            )
+        )
+        for f in np.linspace(0.0, 0.5, 11)
+    ]
+    assert min(missed) < 0.5 and missed[0] > 2.0, missed
 
 
 def test_motions_without_bounds_are_far_from_the_record():
