@@ -596,7 +596,7 @@ def jump_voltages_title(_: Results, question: Question) -> str:
 def jump_voltage_lines(results: Results) -> Iterator[str]:
     """Yield a table of the jump voltages at rate 0, and advice if one is missing."""
     (data,) = results.values()
-    if not data.attrs["back"]:  # the ramps went up alone
+    if not data.attrs.get("back", True):  # the ramps went up alone
         data = data.sel(jump=["up"])
     (over,) = {str(dim) for dim in data.jumps.dims} - {"structure", "jump"} or {""}
     rows: Columns = {"jump at rate 0": [str(jump) for jump in data.jump.values]}

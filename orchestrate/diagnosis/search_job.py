@@ -95,7 +95,7 @@ def is_worth_a_search(data: RecordData | CurveData) -> bool:
 
 @lru_cache(maxsize=2)
 def cached_onset(data: RecordData | CurveData) -> Onset | None:
-    """Return the first window in which order 2 is seen, and the bonded fit of those without it.
+    """Return the window in which order 2 begins, and the bonded fit of those without it, or None.
 
     None where order 2 is seen nowhere, or too few windows lack it.
     """

@@ -256,13 +256,12 @@ def load(path: Path) -> xr.Dataset:
     try:
         is_large = path.stat().st_size > MAX_LOADED
         with small_chunk_cache():
-            data = (xr.open_dataset if is_large else xr.load_dataset)(path, engine="netcdf4")
-            # what is read for the checksum alone does not stay in memory
-            read = xr.open_dataset(path, engine="netcdf4", cache=False) if is_large else data
+            if is_large:  # what is read, for the checksum or by a user, does not stay in memory
+                data = xr.open_dataset(path, engine="netcdf4", cache=False)
+            else:
+                data = xr.load_dataset(path, engine="netcdf4")
         stored_checksum = data.attrs.pop(ATTRIBUTE, None)
-        fits = stored_checksum is None or stored_checksum == checksum(read)
-        if is_large:
-            read.close()
+        fits = stored_checksum is None or stored_checksum == checksum(data)
     except Exception as error:
         if path.is_file() and not is_netcdf(path):
             raise StoreError(f"{path}: not readable; expected a NetCDF file") from error
