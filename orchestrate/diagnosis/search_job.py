@@ -95,10 +95,7 @@ def is_worth_a_search(data: RecordData | CurveData) -> bool:
 
 @lru_cache(maxsize=2)
 def cached_onset(data: RecordData | CurveData) -> Onset | None:
-    """Return the window in which order 2 begins, and the bonded fit of those without it, or None.
-
-    None where order 2 is seen nowhere, or too few windows lack it.
-    """
+    """Return where order 2 begins and the bonded fit of the windows without it, or None."""
     evidence = cached_evidence(data)
     even = even_orders(evidence, np.zeros_like(evidence.measured))
     loud = even.ratio > even.threshold

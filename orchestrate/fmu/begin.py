@@ -36,10 +36,7 @@ def begin(
 
 
 def to_rest(structure: Structure, state: list[float]) -> list[float]:
-    """Convert a start state from unloaded springs to one from rest, as the FMU takes it.
-
-    All zeros mean rest.
-    """
+    """Convert a start state from unloaded springs to the FMU's, from rest; all zeros mean rest."""
     if structure.gap_offset >= 0.0 or not any(state):
         return state
     (x1, x2, *velocities), (rest_1, rest_2) = state, structure.at_rest

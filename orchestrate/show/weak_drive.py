@@ -246,10 +246,7 @@ def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:
 
 @styled
 def draw_capture(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
-    """Draw starts from rest, a column per structure; return the figure.
-
-    Outcomes over voltage and parameter, or times of passage over the voltage.
-    """
+    """Draw outcomes of starts from rest over voltage and parameter, or times; return the figure."""
     size = (5.5 * len(maps), 4.5)
     figure, axes = make_panels(1, len(maps), size, title, sharex=True, sharey=True)
     for panel, (name, data) in zip(axes, maps.items(), strict=True):
