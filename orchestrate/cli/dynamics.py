@@ -518,8 +518,8 @@ def parse_bifurcation(option: str, text: str) -> int | str:
     return text if text == "all" else parse(option, text, "a number, or all", plain_int)
 
 
-def is_on_curve(curve: xr.Dataset, question: Question) -> bool:
-    """Return whether a curve of a bifurcation's kind passes it within 1e-3 of the range."""
+def is_on_curve(curve: xr.Dataset, question: Question, near: float = 1e-3) -> bool:
+    """Return whether a curve of a bifurcation's kind passes it, within a part of the range."""
     import numpy as np
 
     from ..flags import flag_words
@@ -531,9 +531,9 @@ def is_on_curve(curve: xr.Dataset, question: Question) -> bool:
     x, y = curve[across].values - float(found.bifurcation_value), curve[along].values - level
     at = np.flatnonzero((y[:-1] * y[1:] <= 0.0) & (y[:-1] != y[1:]))
     passes = x[at] - y[at] * (x[at + 1] - x[at]) / (y[at + 1] - y[at])
-    near = np.abs(passes) < 1e-3 * np.ptp(question["limits"][0])
+    reach = near * np.ptp(question["limits"][0])
     kind = flag_words(start.bifurcation_kind.attrs)[int(found.bifurcation_kind)]
-    return bool(curve.attrs["kind"] == kind and near.any())
+    return bool(curve.attrs["kind"] == kind and (np.abs(passes) < reach).any())
 
 
 def run_border(arguments: argparse.Namespace) -> None:

@@ -181,6 +181,14 @@ def parse_values(option: str, text: str, zero: bool = False) -> tuple[tuple[floa
     return tuple(map(float, numbers)), is_range
 
 
+def parse_listed(name: str, text: str) -> tuple[tuple[float, ...], bool]:
+    """Parse a parameter's values, units in a list; return them, and whether it was a range."""
+    if ":" in text:
+        return parse_values("--values", text, zero=True)
+    option = f"--over {name} --values "
+    return tuple(parse_with_unit(option, name, one.strip()) for one in text.split(",")), False
+
+
 def is_single_number(text: str) -> bool:
     """Return whether a text is a single number, rather than a range or a list."""
     return not (":" in text or "," in text)
@@ -225,10 +233,15 @@ def parse_changes(texts: Iterable[str]) -> dict[str, float | bool]:
     return changes
 
 
-def parse_changed_value(name: str, value: str, option: str = "") -> float | bool:
-    """Parse the VALUE of ``--set NAME=VALUE``: a number, with a unit if the parameter allows it."""
+def parse_changed_value(name: str, value: str) -> float | bool:
+    """Parse the VALUE of ``--set NAME=VALUE``: true, false, or a number with or without a unit."""
     if value in ("true", "false"):
         return value == "true"
+    return parse_with_unit(f"--set {name}=", name, value, ", or true or false")
+
+
+def parse_with_unit(option: str, name: str, value: str, other: str = "") -> float:
+    """Parse a number, with a unit if the parameter of this name allows it."""
     known = next((units for names, units in SET_UNITS.items() if name in names), {})
     unit = next((unit for unit in known if value.endswith(unit)), None)  # mm before m
     try:
@@ -239,10 +252,9 @@ def parse_changed_value(name: str, value: str, option: str = "") -> float | bool
         return plain_float(value)
     except (ValueError, InvalidOperation):
         check_name(name)  # before its unit
-        words = f", with {' or '.join(known)} if you like" if known else ", or true or false"
-        raise InputError(
-            f"{option or f'--set {name}='}{value}: {value} is not a number; expected one{words}"
-        ) from None
+        words = f", with {' or '.join(known)} if you like" if known else other
+        text = f"{value} is not a number; expected one{words}"
+        raise InputError(f"{option}{value}: {text}") from None
 
 
 def check_name(name: str) -> None:

@@ -13,11 +13,10 @@ from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
 from .grammar import (
     is_single_number,
-    parse_changed_value,
     parse_changes,
     parse_ends,
+    parse_listed,
     parse_one_or_more,
-    parse_values,
     positive_number,
 )
 from .output import result_groups
@@ -262,13 +261,7 @@ def read_over(arguments: argparse.Namespace) -> tuple[tuple[float, ...], bool] |
     """Return the values of ``--over``, and whether they are a range; None without it."""
     if (arguments.over is None) != (arguments.values is None):
         raise InputError("--over and --values: expected both, or none of them")
-    if arguments.over is None:
-        return None
-    if ":" in arguments.values:
-        return parse_values("--values", arguments.values, zero=True)
-    listed = (part.strip() for part in arguments.values.split(","))
-    option = f"--over {arguments.over} --values "
-    return tuple(float(parse_changed_value(arguments.over, one, option)) for one in listed), False
+    return parse_listed(arguments.over, arguments.values) if arguments.over else None
 
 
 def join_option_names(names: Any, joint: str = ", ") -> str:

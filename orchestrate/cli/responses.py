@@ -14,7 +14,7 @@ from ..lazy import xr
 from ..units import is_in_ratios, text_of, with_units
 from .answer import OVERLAY, answer, answer_question, is_curve
 from .drive import DRIVE, drive_units, read_drive_options
-from .grammar import is_single_number, parse_changes, parse_values
+from .grammar import is_single_number, parse_changes, parse_listed
 from .options import (
     BESIDE,
     START,
@@ -367,7 +367,7 @@ def ask_map(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     for name, text in zip(arguments.over, arguments.values, strict=True):
         if name in excitation or (name == "level" and "amplitude" in excitation):
             raise InputError(f"--over {name}: twice; expected two parameters")
-        excitation[name] = parse_values("--values", text, zero=True)[0]
+        excitation[name] = parse_listed(name, text)[0]
     if sum(isinstance(value, tuple) for value in excitation.values()) != 2:
         raise InputError(
             "map: expected two parameters that vary: a range of frequencies and one of levels "

@@ -596,8 +596,8 @@ def jump_voltages_title(_: Results, question: Question) -> str:
 def jump_voltage_lines(results: Results) -> Iterator[str]:
     """Yield a table of the jump voltages at rate 0, and advice if one is missing."""
     (data,) = results.values()
-    if not data.attrs.get("back", True):  # the ramps went up alone
-        data = data.sel(jump=["up"])
+    # a direction in which no ramp went has not been decided
+    data = data.sel(jump=[jump for jump in data.jump.values if data.decided.sel(jump=jump).any()])
     (over,) = {str(dim) for dim in data.jumps.dims} - {"structure", "jump"} or {""}
     rows: Columns = {"jump at rate 0": [str(jump) for jump in data.jump.values]}
     if over:

@@ -46,8 +46,6 @@ class Quantity:
 
     def check(self, value: Any) -> float:
         """Return ``value`` as a float; raise ``InputError`` if it is no number or out of range."""
-        if type(value) is float and self.minimum <= value <= self.maximum:  # most of them, quickly
-            return value + 0.0
         number = plain(value)
         if isinstance(number, bool) or not isinstance(number, numbers.Real):
             raise InputError(f"{self.name} = {value!r}: expected a number, {self.expected}")

@@ -338,10 +338,8 @@ def draw_jump_voltages(data: xr.Dataset, title: str = "") -> Figure:
             words = "at rate 0" if extrapolated else "too few rates for rate 0"
             panel.legend(loc="best", title=words)
         else:
-            open_still = (part.decided == "undecided").any()
-            style.write_in_panel(
-                panel, f"jump {jump} undecided" if open_still else f"no jump {jump}"
-            )
+            undecided = (part.decided == "undecided").any()
+            style.write_in_panel(panel, f"{'undecided' if undecided else 'no jump'} {jump}")
             panel.set(xticks=[])
         panel.set(xlabel="rate$^{2/3}$ in (V/s)$^{2/3}$", ylabel="voltage in V")
         panel.set_title(f"jump {jump}")

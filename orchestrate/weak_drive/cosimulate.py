@@ -212,14 +212,13 @@ class CosimulateJob(Question):
         moved = []
         for force in (0.0, 1.0):
             with Instance(self.drive, "drive") as drive:
-                inputs = Inputs(self.inputs, drive.description)
-                side = DriveSide(drive, self.begin_drive(drive, inputs))
-                (values,) = inputs.at(np.zeros(1)).tolist()
-                side.put((force, 0.0, 0.0, 0.0), values)
+                connection = self.begin_drive(drive, Inputs(self.inputs, drive.description))
+                side = DriveSide(drive, replace(connection, inputs=()))  # they stay as they began
+                side.put((force, 0.0, 0.0, 0.0), ())
                 side.channel.step(0.0, self.step)
-                side.put((force, 0.0, 0.0, 0.0), values)
                 moved.append(side.get()[: len(BOX)])
-        return next(after - before for before, after in zip(*moved, strict=True) if after == after)
+        ways = (after - before for before, after in zip(*moved, strict=True))
+        return next((way for way in ways if math.isfinite(way)), math.nan)
 
     def inputs_at_start(self, drive: Description) -> Iterator[str]:
         """Yield the drive's inputs that nothing is given for, with their start values."""

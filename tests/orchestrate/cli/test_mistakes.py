@@ -26,6 +26,7 @@ MISTAKES = {  # options of each command, then what its line says
         --over amplitude --values 1,2 --hz 1 : --over amplitude | --g VALUES
         --over k1 --values 1,2 --eta 1 --g 1 : --over k1 | --hz
         --over f --values 0.1 --eta 1 : 'f' | no parameter
+        --over e --values 0.1,true --eta 1 : --over e --values true | not a number
         --set f=1 : f | no parameter of a structure | gamma
         --set e : --set e | NAME=VALUE
         --set e=abc : --set e=abc | abc is not a number
