@@ -102,6 +102,7 @@ class Conditions:
     size: tuple[float, float] = (0.1, 0.9)
     anywhere: bool = False
     sensor: tuple[float, float] | None = None
+    participation: tuple[float, float] = (1.0, 1.0)  # of each sensor on masses
     # force that presses the faces together, over the one that opens them at resonance
     preload: tuple[float, float] = (0.1, 1.6)
     planned: bool = False  # swept as `plan_test` recommends for a guess of the preload, too
@@ -350,8 +351,12 @@ def draw(
             guess = guess.replace(clearance=own.clearance * rng.uniform(0.7, 1.3))
             bench = replace(bench, excitation=planned_sweep(guess))
             level = bench.excitation.level
+        placed = own.system
+        if conditions.participation != (1.0, 1.0):
+            rows = rng.uniform(*conditions.participation, (2, 1)) * placed.output_rows
+            placed = replace(placed, output_rows=rows)
         try:
-            record, motion = bench.measure(own.system, int(rng.integers(1 << 31)))
+            record, motion = bench.measure(placed, int(rng.integers(1 << 31)))
         except UnboundedMotionError:
             continue
         truth = make_truth(kind, own, motion, Setup(level, noise, count, name))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,15 +17,16 @@ DELAMINATED, NO_OPENING, UNDECIDED = "delaminated", "no opening seen", "undecide
 REFUSED, FAILED, WRONG = "refused", "failed", "wrong"
 VISIBLE = 2e-5  # m: a gap that opens less may be overlooked
 PLACES = (0.3, 1.0)  # of the sensors on a beam of finite elements
+ANYWHERE = Conditions(participation=(0.3, 1.6))  # of two masses
 GROUPS: Mapping[str, tuple[str, Conditions]] = {  # name in the table -> kind, conditions
-    **{kind: (kind, Conditions()) for kind in ("sound", "hardening", "friction", "sagging")},
-    "torsion": ("torsion", Conditions(sensors=2)),
-    "clamp": ("clamp", Conditions()),
+    **{kind: (kind, ANYWHERE) for kind in ("sound", "hardening", "friction", "sagging")},
+    "torsion": ("torsion", replace(ANYWHERE, sensors=2)),
+    "clamp": ("clamp", ANYWHERE),
     "FE sound": ("intact elements", Conditions(sensor=PLACES)),
-    "delaminated": ("delaminated", Conditions()),
-    "gap": ("gap", Conditions()),
-    "pressed, shut": ("preloaded", Conditions(preload=(1.2, 1.6))),
-    "pressed, opens": ("preloaded", Conditions(planned=True)),
+    "delaminated": ("delaminated", ANYWHERE),
+    "gap": ("gap", ANYWHERE),
+    "pressed, shut": ("preloaded", replace(ANYWHERE, preload=(1.2, 1.6))),
+    "pressed, opens": ("preloaded", replace(ANYWHERE, planned=True)),
     "FE 0.3 to 0.5": ("elements", Conditions(size=(0.3, 0.5), anywhere=True, sensor=PLACES)),
     "FE 0.5 to 0.7": ("elements", Conditions(size=(0.5, 0.7), anywhere=True, sensor=PLACES)),
 }
