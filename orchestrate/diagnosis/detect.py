@@ -239,6 +239,7 @@ def findings_from_results(results: Results) -> Findings:
         resonance=evidence.resonance,
         guessed=(low, high),
         settings=evidence.settings,
+        alike=job.hypotheses[sound].alike,
     )
     residuals = results.residuals[sound], results.residuals[other]
     return replace(findings, share=resampled_share(*residuals, findings.deciding_ratio))
