@@ -118,10 +118,9 @@ def is_in_ratios(data: xr.Dataset) -> bool:
 
 
 def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
-    """Return datasets with display lengths in m, mm or um, by their largest length.
+    """Return datasets with display lengths in m, mm or um, so that the largest is 1 at least.
 
-    This is m, mm or um, so that the largest number is 1 at least. Answers stay as they are where
-    a unit of length was asked for, and where their structure is not in SI.
+    Answers stay as they are where a unit of length was asked for, or a structure is not in SI.
 
     Examples
     --------
@@ -133,8 +132,8 @@ def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
     if not all(has_own_frequency(data) and not units_of(data).length for data in answers):
         return list(answers)
     largest = max(map(largest_length, answers), default=0.0)
-    sizes = FACTORS["length"].items()
-    word = next((word for word, size in sizes if 0.0 < size <= largest < math.inf), "")
+    sizes = {size: word for word, size in FACTORS["length"].items() if size <= largest < math.inf}
+    word = sizes[max(sizes)] if sizes else ""
     return [with_units(data, word) for data in answers]
 
 
