@@ -33,33 +33,16 @@ OVER_OMEGA = "Omega/omega"
 
 @dataclass(frozen=True)
 class Units:
-    """Display units chosen for frequency, length, acceleration and time; empty: not chosen.
+    """Display units chosen for frequency, length, acceleration and time; empty: not chosen."""
 
-    Attributes
-    ----------
-    frequency : str
-        Hz, rpm, rad/s or eta, the ratio to omega = sqrt(k1/m1).
-    length : str
-        m, mm or um, of velocities too.
-    acceleration : str
-        m/s2 or g, 9.80665 m/s2.
-    time : str
-        s, or periods of the box.
-    """
-
-    frequency: str = ""
-    length: str = ""
-    acceleration: str = ""
-    time: str = ""
+    frequency: str = ""  # Hz, rpm, rad/s or eta, the ratio to omega = sqrt(k1/m1)
+    length: str = ""  # m, mm or um, of velocities too
+    acceleration: str = ""  # m/s2 or g, 9.80665 m/s2
+    time: str = ""  # s, or periods of the box
 
     @classmethod
     def from_text(cls, text: str, option: str = "units") -> Units:
         """Read units from a list such as ``Hz, mm, g``: at most one of each kind, in any order.
-
-        Raises
-        ------
-        InputError
-            Where a word is no unit, or there are two of a kind.
 
         Examples
         --------
@@ -201,12 +184,7 @@ def period_of(data: xr.Dataset) -> float:
 def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
     """Return the divisor from an SI unit to the display unit of a dataset, and that unit's name.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-    unit : str
-        As the dataset's variables have it: rad/s, Hz, m, m/s, s, m/s2 or a density over or of it;
-        others stay.
+    Units are rad/s, Hz, m, m/s, s, m/s2 or a density over or of it; others stay.
 
     Examples
     --------

@@ -334,7 +334,7 @@ class HysteresisLoop(VoltageHolder):
         later = point
         for _ in range(self.settings.again):
             later = self.hold_from(later, point.voltage)
-            if not self.is_same(later, point):
+            if not self.distance(later, point) <= self.settings.same:  # or not settled
                 return later
         return point
 
@@ -364,10 +364,6 @@ class HysteresisLoop(VoltageHolder):
             else:
                 return False
         return True
-
-    def is_same(self, point: HeldPoint, other: HeldPoint) -> bool:
-        """Return whether two points have settled at the same speed."""
-        return self.distance(point, other) <= self.settings.same
 
     def distance(self, point: HeldPoint, other: HeldPoint) -> float:
         """Return how far two settled speeds are apart at least, by their errors."""
