@@ -1,8 +1,8 @@
-"""Read the words of CF flag variables: numbers in a dataset that stand for words."""
+"""Read flags: the words of CF flag variables, and runs of true values."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 
@@ -13,3 +13,14 @@ def flag_words(attributes: Mapping[Any, Any]) -> dict[int, str]:
     words = str(attributes["flag_meanings"]).split()
     numbers = np.atleast_1d(attributes["flag_values"]).tolist()
     return {int(n): word.replace("_", " ") for n, word in zip(numbers, words, strict=True)}
+
+
+def runs_of(flags: Iterable[Any]) -> list[tuple[int, int]]:
+    """Return first and last index of each run of true flags."""
+    runs: list[tuple[int, int]] = []
+    for index, holds in enumerate(flags):
+        if holds and runs and runs[-1][1] == index - 1:
+            runs[-1] = (runs[-1][0], index)
+        elif holds:
+            runs.append((index, index))
+    return runs

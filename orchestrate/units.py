@@ -33,33 +33,16 @@ OVER_OMEGA = "Omega/omega"
 
 @dataclass(frozen=True)
 class Units:
-    """Display units chosen for frequency, length, acceleration and time; empty: not chosen.
+    """Display units chosen for frequency, length, acceleration and time; empty: not chosen."""
 
-    Attributes
-    ----------
-    frequency : str
-        Hz, rpm, rad/s or eta, the ratio to omega = sqrt(k1/m1).
-    length : str
-        m, mm or um, of velocities too.
-    acceleration : str
-        m/s2 or g, 9.80665 m/s2.
-    time : str
-        s, or periods of the box.
-    """
-
-    frequency: str = ""
-    length: str = ""
-    acceleration: str = ""
-    time: str = ""
+    frequency: str = ""  # Hz, rpm, rad/s or eta, the ratio to omega = sqrt(k1/m1)
+    length: str = ""  # m, mm or um, of velocities too
+    acceleration: str = ""  # m/s2 or g, 9.80665 m/s2
+    time: str = ""  # s, or periods of the box
 
     @classmethod
     def from_text(cls, text: str, option: str = "units") -> Units:
         """Read units from a list such as ``Hz, mm, g``: at most one of each kind, in any order.
-
-        Raises
-        ------
-        InputError
-            Where a word is no unit, or there are two of a kind.
 
         Examples
         --------
@@ -118,10 +101,9 @@ def is_in_ratios(data: xr.Dataset) -> bool:
 
 
 def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
-    """Return datasets with display lengths in m, mm or um, by their largest length.
+    """Return datasets with display lengths in m, mm or um, so that the largest is 1 at least.
 
-    This is m, mm or um, so that the largest number is 1 at least. Answers stay as they are where
-    a unit of length was asked for, and where their structure is not in SI.
+    Answers stay as they are where a unit of length was asked for, or a structure is not in SI.
 
     Examples
     --------
@@ -133,8 +115,8 @@ def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
     if not all(has_own_frequency(data) and not units_of(data).length for data in answers):
         return list(answers)
     largest = max(map(largest_length, answers), default=0.0)
-    sizes = FACTORS["length"].items()
-    word = next((word for word, size in sizes if 0.0 < size <= largest < math.inf), "")
+    sizes = {size: word for word, size in FACTORS["length"].items() if size <= largest < math.inf}
+    word = sizes[max(sizes)] if sizes else ""
     return [with_units(data, word) for data in answers]
 
 
@@ -202,12 +184,7 @@ def period_of(data: xr.Dataset) -> float:
 def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
     """Return the divisor from an SI unit to the display unit of a dataset, and that unit's name.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-    unit : str
-        As the dataset's variables have it: rad/s, Hz, m, m/s, s, m/s2 or a density over or of it;
-        others stay.
+    Units are rad/s, Hz, m, m/s, s, m/s2 or a density over or of it; others stay.
 
     Examples
     --------

@@ -26,22 +26,9 @@ def run_fresh(folder, program, *arguments, cwd, pure=False, env=None, timeout=30
     an interpreter takes longer than most programs. Where the environment or the command is another
     one, or the system is not Linux, an interpreter is started.
 
-    Parameters
-    ----------
-    folder : path-like
-        Where the program's module lies, and what else it imports of ours.
-    program : str
-        ``"module.function"``.
-    *arguments
-        Whatever JSON can write; a path becomes a string.
-    cwd : path-like
-        Working directory, not the project's.
-    pure : bool
-        Ask the FMU for pure Python.
-    env : dict, optional
-        Further environment variables.
-    under : sequence of str
-        A command to run the process with.
+    The folder has the program ``"module.function"`` and what else it imports of ours; arguments are
+    what JSON can write, a path becomes a string; the working directory is not the project's. The
+    FMU is asked for pure Python if `pure`, `under` is a command to run the process with.
     """
     environment = {k: v for k, v in os.environ.items() if k not in OURS}
     environment.update(env or {})

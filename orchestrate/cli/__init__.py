@@ -168,7 +168,7 @@ def report_interruption(ended: KeyboardInterrupt) -> int:
 
 
 def describe_progress_kept() -> str:
-    """Return a text for the user: what an interrupted command has stored, and how to resume."""
+    """Return what an interrupted command tells: what of it is stored, and how to resume."""
     store = sys.modules.get(STORE)  # not imported only to say that nothing is in it
     if store and store.STARTED:
         return "what was stored is kept; repeat the command to resume"

@@ -390,9 +390,8 @@ def map_summary(data: xr.Dataset) -> Iterator[str]:
     yield f"largest gap: {format_largest_gap(top)} at {where}"
     yield from extents(data, "impacts_per_period")
     if "exponent" in data:
-        chaotic = int((data.exponent > 3.0 * data.standard_error).sum())
-        share = format_share(chaotic, data.exponent.size)
-        yield f"exponent above zero by three standard errors: {share}"
+        chaotic = int(has_flag(data.verdict, "chaotic").sum())
+        yield format_share(chaotic, data.exponent.size, "chaotic")
 
 
 MAP = Command(

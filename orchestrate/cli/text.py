@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from ..flags import flag_words
+from ..flags import flag_words, runs_of
 from ..lazy import xr
 from ..units import (
     as_shown,
@@ -192,17 +192,6 @@ def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
     """Return a Boolean array: where a CF flag variable has the number of a word."""
     number = values.attrs["flag_meanings"].split().index(word)
     return values == values.attrs["flag_values"][number]
-
-
-def runs_of(flags: Any) -> list[tuple[int, int]]:
-    """Return first and last index of each run of true flags."""
-    runs: list[tuple[int, int]] = []
-    for index, holds in enumerate(flags):
-        if holds and runs and runs[-1][1] == index - 1:
-            runs[-1] = (runs[-1][0], index)
-        elif holds:
-            runs.append((index, index))
-    return runs
 
 
 def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) -> str:

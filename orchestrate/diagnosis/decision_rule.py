@@ -19,13 +19,6 @@ RESAMPLED = 1000
 MISFIT_MEANING = "A misfit of 1 is as far as noise and the usual error of a good model explain."
 
 
-ALIKE = {  # part of a sound hypothesis's name -> what else describes the record, where it is best
-    "stop": ": a breathing crack or a clamp with play describes it about as well",
-    "two modes": ": two modes of a sound beam describe it about as well",
-    "hardening": ": a spring that is not linear describes it about as well",
-}
-
-
 @dataclass(frozen=True)
 class Condition:
     """Hold whether a condition of a verdict is fulfilled, and what to say where it is not."""
@@ -69,6 +62,7 @@ class Findings:
     resonance: float  # frequency of that largest one, Hz
     guessed: tuple[float, float]  # lower and higher frequency of the guess's halves, Hz
     settings: Settings = SETTINGS
+    alike: str = ""  # as of the best sound hypothesis
 
     def verdict(self) -> str:
         """Apply the rule and return one of the four verdicts.
@@ -79,9 +73,11 @@ class Findings:
           smaller than the best sound one; `delaminated_apart` and `ratio_apart` where two faces
           move apart and order 2 or bursts exceed their thresholds; `ratio_difference` where the
           faces' difference is all there is; in `share` of records put together of its blocks.
-        - "no opening seen": order 2, the difference of the faces and bursts are below their
-          thresholds, a sound misfit is at most `sound`, noise hides no order 2 of `hidden`.
-        - "not described": no misfit is at most `sound`, or that limit of a delaminated one.
+        - "no opening seen": order 2, the difference of the faces and bursts (too slowly sampled
+          ones too) are below their thresholds, a sound misfit is at most `sound`, noise hides no
+          order 2 of `hidden`.
+        - "not described": no sound misfit is at most `sound`, and the delaminated one exceeds its
+          limit of the second rule.
         - "undecided": all else.
         """
         usable = all(one.holds for one in self.record_conditions())
@@ -125,8 +121,8 @@ class Findings:
         """Return the conditions of "delaminated"."""
         enough, most = self.deciding_ratio, self.largest_misfit
         alone = "is all that is seen, as two modes of a sound beam show it too: it decides"
-        other = next((words for name, words in ALIKE.items() if name in self.sound), "")
-        ratio = f"The ratio is {self.ratio:.3g}, where {enough:g} is enough{other}."
+        alike = f": {self.alike} about as well" if self.alike else ""
+        ratio = f"The ratio is {self.ratio:.3g}, where {enough:g} is enough{alike}."
         if self.is_difference_alone:
             ratio = f"The faces' difference {alone} from a ratio of {enough:g} on."
         return [

@@ -27,7 +27,7 @@ from .hypotheses import FREE
 from .orders import RecordOrders
 from .search_job import SearchJob, cached_orders
 from .settings import Changes, checked_settings
-from .wiring import wiring_notes
+from .wiring import WiringSettings, wiring_notes
 
 STATED = {  # numbers of the rule: their names there, units and long names
     "odds": ("odds", "1", "odds that the ratio decides, in records put together of blocks"),
@@ -151,7 +151,8 @@ class DetectJob(SearchJob):
         findings, even = findings_from_results(results), results.even
         whole = cached_orders(self.data)
         every, coordinates = results.comparison()
-        wiring = "; ".join(note.text for note in wiring_notes(whole.channels))
+        same = WiringSettings(clipped=findings.settings.clipped)
+        wiring = "; ".join(note.text for note in wiring_notes(whole.channels, same))
         scalars = {
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
             **{
@@ -238,6 +239,7 @@ def findings_from_results(results: Results) -> Findings:
         resonance=evidence.resonance,
         guessed=(low, high),
         settings=evidence.settings,
+        alike=job.hypotheses[sound].alike,
     )
     residuals = results.residuals[sound], results.residuals[other]
     return replace(findings, share=resampled_share(*residuals, findings.deciding_ratio))

@@ -27,7 +27,7 @@ def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> tuple[dict[str, float], d
     first, second = jump_voltage(run), jump_voltage(sound)
     fall = 1.0 - first / second
     lag = sum(  # of the ramps; NaN where it is not known
-        abs(float(one.jump_lag.sel(jump="up"))) / voltage if "jump_lag" in one else math.nan
+        abs(float(one.jump_lag.sel(jump="up")) / voltage) if "jump_lag" in one else math.nan
         for one, voltage in ((run, first), (sound, second))
     )
     power, scatter = extra_power(run, sound)
@@ -38,10 +38,10 @@ def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> tuple[dict[str, float], d
 
 
 def jump_voltage(run: xr.Dataset) -> float:
-    """Return the voltage at which the speed jumps up, V; NaN where the run has no jump."""
+    """Return the size of the voltage at which the speed jumps up, V; NaN without such a jump."""
     if "jumps" not in run or "jump" not in run.coords or "up" not in run.jump.values:
         return math.nan
-    return float(run.jumps.sel(jump="up"))
+    return abs(float(run.jumps.sel(jump="up")))
 
 
 def extra_power(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:
@@ -64,11 +64,12 @@ def extra_power(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:
 
 
 def power_below_jump(run: xr.Dataset) -> tuple[Floats, Floats]:
-    """Return the mean speeds up to the jump, ascending, and the motor's power at each, in W."""
-    time, work, voltage = (run[name].values for name in ("time", "motor", "voltage"))
-    speed = run.speed.values
+    """Return the sizes of the speeds up to the jump, ascending, and the motor's powers, in W."""
+    time, speed, voltage, work = (run[name].values for name in REQUIRED_VARIABLES)
     if not len(time) > 1:
         raise InputError("record: a run of less than two revolutions; expected more of them")
+    sense = -1.0 if -voltage.min() > voltage.max() else 1.0  # -1: the motor turns backward
+    voltage, speed = sense * voltage, sense * speed
     power = np.diff(work) / np.diff(time)
     jump = jump_voltage(run)
     end = jump if math.isfinite(jump) else float(voltage.max())

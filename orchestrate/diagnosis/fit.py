@@ -30,7 +30,7 @@ from .hypotheses import FREE, REPORTED, Hypothesis
 from .orders import channel_orders, checked_channels
 from .search_job import RecordData, SearchJob
 from .settings import SETTINGS, Changes, Settings, checked_settings
-from .wiring import wiring_notes
+from .wiring import WiringSettings, wiring_notes
 
 DEFAULT_FREE = ("f1", "f2", "zeta1", "zeta2", "e")
 DELAMINATED = "delaminated"
@@ -170,8 +170,8 @@ def checked_data(
     try:
         resonance = channel_orders(channels).resonance
     except InputError as error:
-        notes = "".join(f"; {note.text}" for note in wiring_notes(channels))
-        raise InputError(f"{error}{notes}") from None
+        notes = wiring_notes(channels, WiringSettings(clipped=settings.clipped))
+        raise InputError("; ".join([str(error), *(note.text for note in notes)])) from None
     if guess is not None:
         low, high = sorted((guess.f1, guess.f2))
         factor = factor_outside(resonance, low, high)

@@ -49,6 +49,7 @@ class Hypothesis(ABC):
     name: ClassVar[str]  # in messages and results
     is_rugged: ClassVar[bool] = False  # whether single impacts make the misfit uneven
     parts: ClassVar[int] = 1  # of the starts, each searched by itself
+    alike: ClassVar[str] = ""  # what describes a delaminated record, where this is the best
 
     @abstractmethod
     def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
@@ -129,6 +130,7 @@ class NonlinearSpring(Sound):
     """A bonded structure on a spring that hardens or softens, symmetrically or not."""
 
     name = "bonded, hardening or softening"
+    alike = "a spring that is not linear describes it"
     extra = {"square": (-1.0, 1.0), "cube": (-0.9, 20.0)}
 
     def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
@@ -171,6 +173,7 @@ class PositiveStop(Sound):
     """A bonded structure with a stop in the positive direction of the sensor."""
 
     name = "bonded, with a stop in the positive direction"
+    alike = "a breathing crack or a clamp with play describes it"
     extra = {"stop": (-0.8, 5.0), "position": (-1.0, 1.0)}
     side: ClassVar[float] = 1.0
 
@@ -202,6 +205,7 @@ class TwoModes(Sound):
     """A linear structure with a second mode in the sweep, such as torsion."""
 
     name = "bonded, with two modes"
+    alike = "two modes of a sound beam describe it"
     extra = {"apart": (-0.35, 0.35)}
 
     def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:

@@ -28,6 +28,9 @@ from .undamaged import SoundStructure
 
 SPLITS = (1.0, 0.2)  # parts of the guess's difference between its halves that are computed
 BOX = "box_acceleration"
+NEARLY = 0.5  # of the largest distance: what a sweep covers where less counts
+ROOM, PASSED = 0.1, 0.25  # beyond that and beyond the resonance, over the resonance
+FEWEST = 4.0  # windows at the lowest frequency
 USUAL_NOISE = 1e-3  # (m/s2)/sqrt(Hz)
 USUAL_LEVELS = tuple(float(f"{level:.2g}") for level in np.geomspace(0.01, 1.0, 9))  # g
 
@@ -44,7 +47,7 @@ class Sweep:
     level: float  # of the box, m/s2
 
     def scaled_to(self, level: float) -> Sweep:
-        """Scale the sweep to another level; valid for structures without clearance."""
+        """Scale the sweep to another level, which does not matter to the structure."""
         names = ("delaminated", "sound", "opening", "peak")
         scaled = {name: level / self.level * getattr(self, name) for name in names}
         return replace(self, level=level, **scaled)
@@ -138,8 +141,8 @@ def plan_test(
     Notes
     -----
     One sweep over all frequencies is computed for the guess, and one for a fifth of its split, at
-    most 120 s long. A structure without clearance is the same at all levels; one with a clearance
-    is computed at each. The recommended sweep passes the bonded resonance, as
+    most 120 s long. A structure without clearance and with a constant e is the same at all levels;
+    another is computed at each. The recommended sweep passes the bonded resonance, as
     :func:`orchestrate.detect` needs it, and is as slow as ISO 7626-2 asks for; sweep it up and
     down.
 
@@ -193,11 +196,11 @@ class SweepComputation:
     def duration(self) -> float:
         """Duration of a sweep over all frequencies, s, as ISO 7626-2 asks for."""
         rate = max(sweep_rate(self.sound.f, self.sound.zeta), 1e-9)
-        fewest = 4.0 * self.noise.periods / self.frequency[0]
+        fewest = FEWEST * self.noise.periods / self.frequency[0]
         return max(float(self.frequency[-1] - self.frequency[0]) / rate, fewest)
 
     def sweeps_at(self, levels: Floats) -> list[Sweep]:
-        """Compute the sweep at each level; without a clearance one is computed and scaled."""
+        """Compute the sweep at each level; one is scaled where the level does not matter."""
         if self.structure.has_scale:
             return [self.simulated_sweep(self.structure, level) for level in levels]
         computed = self.simulated_sweep(self.structure, float(levels[-1]))
@@ -370,20 +373,24 @@ def smallest_splits(levels: Floats, limit: float, distances: Floats) -> Floats:
 
 
 def recommended_sweep(test: SweepComputation, answer: xr.Dataset, margin: float) -> dict[str, Any]:
-    """Recommend the lowest level with a margin, over the resonance and all that counts."""
+    """Recommend a level, and a sweep over the bonded resonance and all frequencies that count.
+
+    The lowest level without overload at which orders 2 and 3 reach ``margin * threshold`` and
+    preloaded faces open with ``margin``; else the highest without overload; else the lowest.
+    """
     higher, limit = answer.distance_harmonics.values, float(answer.threshold)
     fits = np.flatnonzero(answer.overload.values == 0)
     shut = answer.level.values < margin * np.fmin.reduce(answer.opening_level.values)
     enough = [i for i in fits if higher[i].max() >= margin * limit and not shut[i]]
     row = int(enough[0] if enough else fits[-1] if len(fits) else 0)
     f, curve = test.frequency, higher[row]
-    counting = np.flatnonzero(curve >= min(limit, 0.5 * float(curve.max())))
+    counting = np.flatnonzero(curve >= min(limit, NEARLY * float(curve.max())))
     low, high = float(f[counting[0]]), float(f[counting[-1]])
-    room, passed = 0.1 * max(high - low, test.sound.f), 0.25 * test.sound.f
+    room, passed = ROOM * max(high - low, test.sound.f), PASSED * test.sound.f
     first = max(min(low - room, test.sound.f - passed), float(f[0]))
     last = min(max(high + room, test.sound.f + passed), float(f[-1]))
     rate = sweep_rate(test.sound.f, test.sound.zeta)
-    duration = max((last - first) / max(rate, 1e-9), 4.0 * test.noise.periods / first)
+    duration = max((last - first) / max(rate, 1e-9), FEWEST * test.noise.periods / first)
     text = "whether orders 2 and 3 count in the recommended sweep"
     return {
         "recommended_level": variable((), answer.level.values[row], "m/s2", "level to test at"),

@@ -79,9 +79,9 @@ def signs(
     xarray.Dataset
         Over ``sign`` and ``channel``: ``value``; ``floor``, what noise alone makes of it; ``sound``
         and ``sound_highest``, the median and the largest value of sound structures under the same
-        box with the same noise; ``exceeds``, whether the value is above ``factor`` times the larger
-        of floor and ``sound_highest`` (or ``unknown``); ``frequency`` in Hz, where an order is
-        largest. All signs are numbers without a unit, NaN where the record cannot show them.
+        box with the same noise; ``exceeds``, whether the value is above ``factor`` times
+        ``sound_highest`` (else unknown) and any known floor; ``frequency`` in Hz, where an order
+        is largest. All signs are numbers without a unit, NaN where the record cannot show them.
         Coordinates over ``sign``: its ``meaning``, ``formula``, ``source`` and what else is known
         to move it, ``moved_by``. Over ``channel``: ``noise`` in m/s2. ``sound_f`` in Hz and
         ``sound_zeta`` are the sound structure's. The attribute ``seeds`` has the seeds.
@@ -286,7 +286,7 @@ def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset], factor: fl
     own, lags = drive_signs(run, others[0])
     values = {name: np.array([own.get(name, np.nan)]) for name in INDICATORS}
     floors = {name: np.array([lags.get(name, np.nan)]) for name in INDICATORS}
-    itself = [0.0 if name in own else math.nan for name in INDICATORS]  # against itself
-    shown, title = np.array(itself)[None, :, None], str(run.attrs.get("title", "run"))
+    shown = 0.0 * np.stack(list(floors.values()))[None]  # against itself; an unknown floor stays so
+    title = str(run.attrs.get("title", "run"))
     described = {"seeds": "none", "sound_from": "the run of the sound beam"}
     return signs_dataset(title, ["motor"], values, floors, shown, factor, described)

@@ -21,8 +21,8 @@ class SoundStructure:
 
     f: float  # natural frequency, Hz
     zeta: float  # damping ratio
-    # of each sensor, its acceleration over the force that excites it, far above the resonance;
-    # none where the box moves
+    # of each sensor, minus its acceleration over the force that excites it, far above the
+    # resonance; none where the box moves
     gains: tuple[float, ...] = ()
 
     @classmethod

@@ -14,12 +14,13 @@ from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import measured_phase
 from ..laboratory.pieces import Floats
 from ..laboratory.record import SHORT_NAMES
-from ..laboratory.record_checks import CLIPPED, clipped_share
+from ..laboratory.record_checks import clipped_share
 from .orders import Complexes, RecordOrders, assembled_orders, sine_windows
+from .settings import SETTINGS
 
 
 @dataclass(frozen=True, kw_only=True)
-class Settings:
+class WiringSettings:
     """Thresholds of the rule of :func:`wiring_notes`."""
 
     low: float = 0.7  # of the resonance's frequency: up to it the response is fitted
@@ -31,15 +32,21 @@ class Settings:
     delay: float = 1e-3  # s
     clear: float = 7.5  # phase of a delay at the lowest frequency, over the misfit
     dead: float = 0.05  # of the base's motion: a sensor without a resonance that moves less
+    peak: float = 3.0  # times the median response that a resonance reaches
     floor: float = 3.0  # times the amplitude between the orders that a line is above
-    hum: float = 6.0  # amplitude of a mains line over that of the lines next to it
+    mains: tuple[float, ...] = (50.0, 60.0)  # Hz
+    hum: float = 6.0  # amplitude of a mains line over that of the lines `beside` it
+    beside: tuple[float, ...] = (-3.0, -2.0, 2.0, 3.0)  # Hz
+    hum_time: float = 2.0  # s of a window in which they are taken
+    away: float = 5.0  # Hz between that line and orders 1/2, 1, 2 and 3
     coherence: float = 0.8  # of that line from one window to the next
     jump: float = 0.35  # rad of the base's phase, without whole turns
     usual: float = 10.0  # times the usual change, by noise, that a jump is
     samples: float = 10.0  # in a period of the resonance
+    clipped: float = SETTINGS.clipped  # share of a channel's samples at its extremes
 
 
-SETTINGS = Settings()
+WIRING = WiringSettings()
 
 
 @dataclass(frozen=True)
@@ -50,28 +57,29 @@ class Note:
     text: str
 
 
-def wiring_notes(channels: Channels, settings: Settings = SETTINGS) -> list[Note]:
+def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[Note]:
     """Return what is doubtful about the channels of a swept or stepped sine.
 
-    - Up to 0.7 of its resonance a sensor reads ``s exp(-i w t) (1 + G r^2/(1 - r^2))`` times the
-      base's order 1, with the ratio r of the frequencies: s < 0 is polarity, |s| near 9.8 or its
-      inverse a unit, |s| beyond 2.5 a scale, |t| above 1 ms, clear of the misfit, a delay; all in
-      `fewest` windows.
-    - Base and face are swapped where that describes the inverse of the response four times better;
-      a sensor is dead that is above the floor in less than half of the windows, or moves less than
-      0.05 times the base, without a resonance.
-    - Samples are lost where the base's phase, continued from both sides, jumps by 0.35 rad and ten
-      times as far as it usually does.
-    - A line at 50 or 60 Hz is hum if it is 6 times its neighbours and keeps its phase, while the
-      orders are elsewhere.
-    - A channel is clipped by the rule of `clipped_share`; samples are few below ten in a period.
+    - Up to `low` of its resonance a sensor reads ``s exp(-i w t) (1 + G r^2/(1 - r^2))`` times the
+      base's order 1, with the ratio r of the frequencies, in `fewest` windows within `misfit`:
+      s < 0 is polarity, |s| within `gravity` of 9.8 or its inverse a unit, |s| beyond `scale` a
+      scale, |t| above `delay`, `clear` of the misfit, a delay.
+    - Base and face are swapped where that describes the inverse of the response within `misfit` and
+      `swapped` times better; a sensor is dead that is above the `floor` in at most half of the
+      windows, or moves less than `dead` times the base without a `peak`.
+    - Samples are lost where the base's phase, continued from both sides, jumps by `jump`, whole
+      turns aside, and `usual` times as far as it usually does.
+    - A line of the `mains` is hum if it is `hum` times those `beside` it and keeps its phase
+      (`coherence`), while the orders are `away`.
+    - A channel is clipped by a `clipped_share` above `clipped`; few are less than `samples` in a
+      period of the resonance.
     """
     try:
         orders = assembled_orders(channels, *sine_windows(channels))
     except InputError:
         return list(notes_without_sine(channels, settings))
     notes = [note for row in orders.rows for note in sensor_notes(orders, row, settings)]
-    notes += clipped_notes(channels)
+    notes += clipped_notes(channels, settings)
     if any(note.kind == "swapped" for note in notes):
         return notes  # the base is none
     notes += lost_sample_notes(orders, settings)
@@ -87,7 +95,7 @@ def wiring_notes(channels: Channels, settings: Settings = SETTINGS) -> list[Note
     return notes
 
 
-def notes_without_sine(channels: Channels, settings: Settings) -> Iterator[Note]:
+def notes_without_sine(channels: Channels, settings: WiringSettings) -> Iterator[Note]:
     """Yield notes on a record whose base has no sine: another column's may be the base's."""
     base = channels.names.index(BOX)
     spread = channels.values.std(axis=1)
@@ -107,19 +115,19 @@ def notes_without_sine(channels: Channels, settings: Settings) -> Iterator[Note]
             yield Note("dead", f"the base has no sine and {face} moves: is the base's cable dead?")
         elif is_face:
             yield swapped_note(face)
-    yield from clipped_notes(channels)
+    yield from clipped_notes(channels, settings)
 
 
 # -- gains and delays -----------------------------------------------------------------------------
 
 
-def sensor_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator[Note]:
+def sensor_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> Iterator[Note]:
     """Yield notes on a sensor against the base: dead, swapped, polarity, unit, scale, delay."""
     name = SHORT_NAMES[orders.channels.names[row]]
     response = orders.amplitude[row, 0] / orders.order(1.0, BOX)
     size = np.abs(response)
     usual = float(np.median(size))
-    flat = size.max() < settings.floor * usual
+    flat = size.max() < settings.peak * usual
     if not is_heard(orders, row, settings) or (usual < settings.dead and flat):
         yield Note("dead", f"{name} moves {usual:.2g} times the base: is its cable dead?")
         return
@@ -135,8 +143,8 @@ def sensor_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator
         yield from straight.notes(name, settings)
 
 
-def is_heard(orders: RecordOrders, row: int, settings: Settings) -> bool:
-    """Return whether a channel's order 1 is above the floor in half of the windows."""
+def is_heard(orders: RecordOrders, row: int, settings: WiringSettings) -> bool:
+    """Return whether a channel's order 1 is above the floor in most of the windows."""
     above = np.abs(orders.amplitude[row, 0]) > settings.floor * orders.floor[row]
     return bool(above.mean() > 0.5)
 
@@ -158,7 +166,7 @@ class LowResponse:
 
     @classmethod
     def fitted(
-        cls, frequency: Floats, response: Complexes, settings: Settings
+        cls, frequency: Floats, response: Complexes, settings: WiringSettings
     ) -> LowResponse | None:
         """Fit a response in the windows below its peak; None where there are too few."""
         from scipy.optimize import least_squares
@@ -177,13 +185,14 @@ class LowResponse:
             return np.concatenate([rest.real, rest.imag])
 
         first = float(np.median(measured.real)) or 1.0
+        # the delay is in ms, the ratio is that of the resonance to the peak
         bounds = ([-np.inf, -12.0, 0.1, 0.75], [np.inf, 12.0, 1.8, 1.25])
         best = least_squares(residuals, (first, 0.0, 1.0, 1.0), bounds=bounds, x_scale="jac")
         factor, late, *_ = best.x
         misfit = float(np.sqrt(2.0 * best.cost / len(hertz)))
         return cls(float(hertz.min()), float(factor), 1e-3 * float(late), misfit)
 
-    def notes(self, name: str, settings: Settings) -> Iterator[Note]:
+    def notes(self, name: str, settings: WiringSettings) -> Iterator[Note]:
         """Yield notes on polarity, unit or scale, and delay, with what mends them."""
         word, size = name.replace(" ", ""), abs(self.factor)
         moves = f"{name} moves {self.factor:.2g} times the base at {self.frequency:.3g} Hz"
@@ -206,15 +215,15 @@ class LowResponse:
 # -- samples --------------------------------------------------------------------------------------
 
 
-def clipped_notes(channels: Channels) -> Iterator[Note]:
+def clipped_notes(channels: Channels, settings: WiringSettings) -> Iterator[Note]:
     """Yield notes on channels that are saturated."""
     for name, values in zip(channels.names, channels.values, strict=True):
-        if (share := clipped_share(values)) > CLIPPED:
+        if (share := clipped_share(values)) > settings.clipped:
             text = f"{SHORT_NAMES[name]} is saturated in {100.0 * share:.2g} % of its samples"
             yield Note("clipped", f"{text}: record it again with a wider range")
 
 
-def lost_sample_notes(orders: RecordOrders, settings: Settings) -> Iterator[Note]:
+def lost_sample_notes(orders: RecordOrders, settings: WiringSettings) -> Iterator[Note]:
     """Yield a note on the largest jump of the base's phase."""
     from scipy.signal import fftconvolve
 
@@ -237,18 +246,19 @@ def lost_sample_notes(orders: RecordOrders, settings: Settings) -> Iterator[Note
         yield Note("lost samples", f"{text}: are samples lost? cut the record there")
 
 
-def hum_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator[Note]:
+def hum_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> Iterator[Note]:
     """Yield a note on a line of the mains in a channel."""
     channels = orders.channels
-    count = int(2.0 * channels.sample_rate)
+    count = int(settings.hum_time * channels.sample_rate)
     starts = np.arange(0, len(channels.time) - count, count, dtype=np.intp)
-    middle = channels.time[starts] + 1.0
+    middle = channels.time[starts] + 0.5 * settings.hum_time
     swept = np.interp(middle, orders.windows.time, orders.windows.frequency)
-    for mains in (50.0, 60.0):
-        away = np.abs(np.outer((0.5, 1.0, 2.0, 3.0), swept) - mains).min(axis=0) > 5.0
+    for mains in settings.mains:
+        distance = np.abs(np.outer((0.5, 1.0, 2.0, 3.0), swept) - mains).min(axis=0)
+        away = distance > settings.away
         if away.sum() < settings.fewest:
             continue
-        beside = (mains + off for off in (0.0, -3.0, -2.0, 2.0, 3.0))  # Hz, itself the first
+        beside = (mains + off for off in (0.0, *settings.beside))  # Hz, itself the first
         lines = np.stack([line_amplitudes(channels, row, starts, count, hz) for hz in beside])
         size = np.median(np.abs(lines[:, away]), axis=1)
         pairs = away[1:] & away[:-1]

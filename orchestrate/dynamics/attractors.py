@@ -171,7 +171,7 @@ ABSENT_ROW: SettledRow = ([np.nan] * len(FEATURES), np.full(4, np.nan), ABSENT) 
 
 
 def settled_rows(decider: MotionDecider, starts: ArrayLike) -> list[SettledRow]:
-    """Return rows of what starts settle to: features, a state at phase 0, how decided."""
+    """Run starts until they settle; return features, a state at phase 0, how decided of each."""
     decided = decider.decide_all(starts)
     return [(motion.features, state, motion.decided) for motion, state in decided]
 

@@ -66,7 +66,7 @@ class SettledResponse(NamedTuple):
 def run_until_settled(
     instance: Instance, point: Point, starts: ArrayLike, settings: AttractorSettings
 ) -> list[SettledResponse]:
-    """Simulate from states at phase 0 until samples repeat or the limit; return the responses."""
+    """Run starts at phase 0 until they repeat by :mod:`.decision`, or end; return the responses."""
     ends, converged = np.reshape(np.asarray(starts, dtype=float), (-1, 4)), settings.converged
     loop, loose = response_loop(instance), settings.apart * converged
     dropped = transient_periods(
@@ -114,7 +114,11 @@ def numbered(
 
 
 def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[np.intp]:
-    """Cluster irregular responses' feature rows by single linkage; return a label per row."""
+    """Cluster irregular responses' feature rows by single linkage; return a label per row.
+
+    The distance is Euclidean: of the logarithm of the largest gap, of mean and deviation over it,
+    and of the impacts a period times `count_weight`.
+    """
     table = np.asarray(rows, dtype=float).reshape(-1, len(FEATURES))
     scale = np.maximum(np.abs(table[:, 2]), 1e-300)
     counts = settings.count_weight * table[:, 1]

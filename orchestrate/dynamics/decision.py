@@ -1,7 +1,8 @@
 """Decide to which motion a response settles; thresholds are those of ``AttractorSettings``.
 
-- It is run on until its state repeats within `converged`, for at most `longest` periods; at their
-  end it may repeat within `apart` times that with a deviation that dies.
+- It is run on until its state repeats within `converged` and after fewer periods not even within
+  `apart` times that, for at most `longest` periods; at their end it may repeat within the latter
+  with a deviation that dies: that halves from one stretch to the next.
 - It is on an *orbit* that Newton's method finds from its impacts over these periods: a possible
   motion, stable, to which the FMU `returns` with the same impacts, and to which the response, if
   nearer than `near`, comes at least half as fast as the multipliers say, or lies within `same`.
@@ -42,6 +43,8 @@ from .settled_motion import Floats, SettledMotion
 from .turning_points import rotate_to_phase_zero
 
 PIECES = 64  # of a period, among which a stretch without impacts is sought
+OTHER_PHASE = 2.4  # rad: where a response is sampled that may repeat, but was not seen to at 0
+DYING, ROUNDING = 0.1, 1e-9  # of a deviation: until when it is watched, and what is left
 
 
 class MotionDecider:
@@ -109,9 +112,10 @@ class MotionDecider:
     def possible_periods(self, response: Response) -> list[int]:
         """Return candidate periods of a response, from its repetition at another phase."""
         begin(self.plain, *self.point, response.end)
-        self.plain.step(0.0, 2.4 / self.point.excitation.frequency)
+        self.plain.step(0.0, OTHER_PHASE / self.point.excitation.frequency)
         there = self.plain.get(*STATE)
-        begin(self.plain, self.point.structure, self.point.excitation.replace(phase=2.4), there)
+        shifted = self.point.excitation.replace(phase=OTHER_PHASE)
+        begin(self.plain, self.point.structure, shifted, there)
         states, gap = stroboscopic_samples(
             self.plain, self.point.excitation.period, 0, self.settings.irregular_samples
         )
@@ -180,13 +184,13 @@ class MotionDecider:
         if before < self.settings.same or not before < self.settings.near:
             return before < self.settings.same
         rate = max(motion.multiplier, 1e-3)
-        turns = math.ceil(math.log(0.1) / math.log(rate))  # until it should be a tenth
+        turns = math.ceil(math.log(DYING) / math.log(rate))
         turns = max(1, min(turns, self.settings.longest // periods))
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)
         after = states.nearest(self.plain.get(*STATE))[1]
-        return after <= max(0.5 * (1.0 + rate**turns) * before, 1e-9)  # rounding
+        return after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
 
     # -- orbits -----------------------------------------------------------------------------------
 

@@ -64,7 +64,7 @@ class AttractorsAtValue:
         groups = irregular_clusters(features[irregular], settings)
         for group in range(int(groups.max(initial=-1)) + 1):
             members = irregular[groups == group]
-            self.motions.append(self.mean_irregular_motion(features[members], ends[members[0]]))
+            self.motions.append(self.median_irregular_motion(features[members], ends[members[0]]))
             self.labels[members] = len(self.motions) - 1
 
     def motion_from_features(self, row: Floats, state: Floats, decided: int) -> SettledMotion:
@@ -81,7 +81,7 @@ class AttractorsAtValue:
             decider.known.append(known)
         return known
 
-    def mean_irregular_motion(self, rows: Floats, state: Floats) -> SettledMotion:
+    def median_irregular_motion(self, rows: Floats, state: Floats) -> SettledMotion:
         """Return one irregular motion with the median features of a cluster of responses."""
         _, impacts, gap = np.median(rows[:, :3], axis=0)
         length = self.decider.point.length

@@ -38,7 +38,7 @@ from .variational import impact_matrices, period_in_tau
 
 PERIODIC, NEUTRAL, CHAOTIC = -1, 0, 1
 WORDS = {PERIODIC: "periodic", NEUTRAL: "neutral", CHAOTIC: "chaotic"}
-LARGEST = "largest Lyapunov exponent"
+LARGEST, SAYS = "largest Lyapunov exponent", "what the exponent says of the response"
 ORDER = "exponent's place, the largest first"
 BLOCKS, BATCHES, SIGMAS, WANDER = 40, 8, 3.0, 10.0  # defaults of the parameters of these names
 Floats = NDArray[np.float64]
@@ -101,7 +101,7 @@ def decay_rate(damping: float, square: float) -> float:
 def classify_exponents(
     exponent: ArrayLike, error: ArrayLike, floor: ArrayLike, sigmas: float = SIGMAS
 ) -> NDArray[np.int8]:
-    """Classify exponents: 1 chaotic, -1 periodic, 0 neutral within `sigmas` errors or `floor`."""
+    """Classify: 1 chaotic, -1 periodic, 0 neutral (within `sigmas` errors or `floor`, or NaN)."""
     value = np.asarray(exponent, dtype=float)
     distance = np.fmax(sigmas * np.asarray(error, dtype=float), floor)
     verdicts = np.where(value > distance, CHAOTIC, np.where(value < -distance, PERIODIC, NEUTRAL))
@@ -171,7 +171,7 @@ class LyapunovJob(ImpactsQuestion):
         variables: dict[str, Variable] = {
             "exponent": variable(along, exponent, "1", f"{LARGEST}, per unit of tau"),
             "standard_error": variable(along, error, "1", "standard error of the exponent"),
-            "verdict": flags(along, verdicts, "what the exponent says of the response", WORDS),
+            "verdict": flags(along, verdicts, SAYS, WORDS),
             "impacts_per_period": variable(along, impacts, "1", "impacts per excitation period"),
         }
         coordinates = self.series.coordinates()

@@ -7,6 +7,7 @@ leads to.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
@@ -43,7 +44,8 @@ from ..running.job import Fmus, Table, plain
 from ..running.options import Running, RunOptions
 from .clusters import transient_periods
 from .following import follow_impacts
-from .lyapunov import exponent_of
+from .lyapunov import SAYS, WANDER, WORDS, classify_exponents, exponent_of
+from .variational import period_in_tau
 
 FIELDS = {
     "impacts_per_period": "impacts per excitation period",
@@ -158,6 +160,12 @@ class MapJob(Question):
         variables = column_variables(names, texts, table["rows"].T.reshape(shape))
         decided = variables["multiplicity_decided"][1]
         variables["multiplicity_decided"] = flags(names, decided, HOW_DECIDED, DECIDED)
+        if self.exponent:
+            etas = (point.excitation.eta(point.structure) for point in self.points)
+            spans = self.periods * np.array([period_in_tau(eta) for eta in etas])
+            exponent, error = table["rows"].T[-len(EXPONENT) :]
+            verdicts = classify_exponents(exponent, error, math.log(WANDER) / spans)
+            variables["verdict"] = flags(names, verdicts.reshape(shape[1:]), SAYS, WORDS)
         coordinates = {
             name: parameter_variable(name, name, values) for name, values in axes.items()
         }
@@ -236,8 +244,8 @@ def map(
         Over both parameters, the excitation's first: ``impacts_per_period``; ``multiplicity``, 0
         where irregular, and ``multiplicity_decided``, how it was decided; ``xi_rel_max``;
         ``impulse_max``, the largest impulse over m1 omega a eta^2 in half the periods kept; and
-        where asked for ``exponent`` per unit of tau, with its
-        ``standard_error``, NaN where there are too few impacts.
+        where asked for ``exponent`` per unit of tau, with its ``standard_error``, NaN where there
+        are too few impacts, and its ``verdict`` as of :func:`orchestrate.lyapunov`.
 
     Raises
     ------

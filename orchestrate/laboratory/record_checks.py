@@ -85,12 +85,12 @@ def first_hole(values: Floats) -> int | None:
 def clipped_share(values: Floats) -> float:
     """Return the share of samples at repeated extreme values, as a saturated channel has them.
 
-    - A sample is at an extreme within 0.1 % of the peak-to-peak value, or one step of the digits.
-    - It counts in a row of three or more such samples.
+    - A sample is at an extreme within 0.1 % of the peak-to-peak value, or less than a step of the
+      digits away. It counts in a row of three or more such samples.
     - An extreme counts where these outnumber the samples in the ten times wider band next to it: of
       a sine, coarsely digitized or not, there are fewer than half as many.
-    - It counts where it is a quarter of the peak-to-peak value or more from the median: a signal at
-      rest is not saturated.
+    - An extreme counts a quarter of the peak-to-peak value or more from the median alone: a signal
+      at rest is not saturated.
 
     Examples
     --------

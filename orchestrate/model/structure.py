@@ -642,7 +642,7 @@ class Structure(Described):
         return dict(vars(self))
 
     def _pair(self, letter: str) -> str:
-        """Return a parameter of both halves as text for a label: ``k1.0-2.0``."""
+        """Return a letter and its parameter of both halves, for a label: ``k1.0-2.0``."""
         first, second = (format_short(self.get(f"{letter}{half}")) for half in (1, 2))
         return f"{letter}{first}-{second}"
 

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ..dynamics.stable_windows import StableWindow
+from ..flags import runs_of
 
 Edges = tuple[float, float]  # two neighbouring frequencies
 NOWHERE = float("nan"), float("nan")
@@ -24,13 +25,6 @@ def between(data: xr.Dataset, low: float, high: float) -> xr.Dataset:
     return data.sel(eta=slice(low - 1e-9, high + 1e-9))
 
 
-def runs(flags: np.ndarray) -> list[tuple[int, int]]:
-    """Return first and last index of each run of true values."""
-    padded = np.concatenate([[False], np.asarray(flags, dtype=bool), [False]])
-    edges = np.flatnonzero(padded[1:] != padded[:-1])
-    return list(zip(edges[0::2].tolist(), (edges[1::2] - 1).tolist(), strict=True))
-
-
 def edges_of_run(data: xr.Dataset, run: tuple[int, int] | None) -> tuple[Edges, Edges]:
     """Return lower and upper edge of a run, each as the two etas it lies between."""
     if run is None:
@@ -41,15 +35,15 @@ def edges_of_run(data: xr.Dataset, run: tuple[int, int] | None) -> tuple[Edges, 
 
 
 def edges_around(data: xr.Dataset, flags: np.ndarray, inside: float) -> tuple[Edges, Edges]:
-    """Return the edges of the run of true flags around a frequency."""
+    """Return lower and upper edge of the run of true flags around a frequency."""
     index = int(np.abs(data.eta.values - inside).argmin())
-    there = (run for run in runs(flags) if run[0] <= index <= run[1])
+    there = (run for run in runs_of(flags) if run[0] <= index <= run[1])
     return edges_of_run(data, next(there, None))
 
 
 def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
     """Return the edges of the longest run of true flags."""
-    longest = max(runs(flags), key=lambda run: run[1] - run[0], default=None)
+    longest = max(runs_of(flags), key=lambda run: run[1] - run[0], default=None)
     return edges_of_run(data, longest)
 
 

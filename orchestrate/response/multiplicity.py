@@ -96,5 +96,5 @@ def apply_rule(
         getattr(compiled, RULES[name])(memory.ctypes.data)
         return memory
     numbers = memory.tolist()  # quicker one by one than an array
-    getattr(repetition, name)(numbers, 0.0)
+    getattr(repetition, name)(numbers, 0.0)  # a kernel's functions have a time, of no use here
     return np.array(numbers)

@@ -37,23 +37,8 @@ MAX_SHEET_NAME = 31  # letters, Excel's limit
 def write(data: xr.Dataset, path: Path) -> list[Path]:
     """Export a dataset as .csv, .mat or .xlsx, by the path's suffix; return the paths written.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-    path : Path
-        With one of the endings of ``WRITERS``.
-
-    Returns
-    -------
-    list of Path
-        Of CSV several where the dataset has variables over several sets of dimensions.
-
-    Raises
-    ------
-    InputError
-        Where the format has no room for the data, or is unknown.
-    StoreError
-        Where a file cannot be written; what stood there before still does.
+    Of CSV there are several where variables are over several sets of dimensions. ``InputError`` if
+    the format has no room for the data; ``StoreError``, and the former file, if it is not written.
     """
     ending = path.suffix.lstrip(".")
     if ending not in WRITERS:

@@ -86,7 +86,7 @@ class Store:
         """Release all files and locks of the store."""
 
     def table(self, count: int, bulk: Sequence[str] = ()) -> Table:
-        """Return the first ``count`` chunks as one dict of arrays, joined along the first axis."""
+        """Return the arrays of the first ``count`` chunks joined; ``bulk`` is for those on disk."""
         parts = [self.get(index) for index in range(count)]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
@@ -200,7 +200,7 @@ class Disk(Store):
         STARTED.add(self.journal.path)
 
     def table(self, count: int, bulk: Sequence[str] = ()) -> Table:
-        """Return all chunks' arrays joined, those of ``bulk`` as :class:`StoredRows`."""
+        """Return ``count`` chunks' arrays joined, those of ``bulk`` as :class:`StoredRows`."""
         columns: dict[str, list[np.ndarray]] = {}
         shapes: dict[str, list[tuple[int, ...]]] = {name: [] for name in bulk}
         for first in range(0, count, JOINED):

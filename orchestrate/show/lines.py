@@ -164,7 +164,7 @@ def set_gap_scale(axes: Axes, samples: np.ndarray, decades: int = 6) -> None:
 
 
 def set_impact_scale(axes: Axes, impacts: np.ndarray) -> None:
-    """Set the axis of impacts per period; write "no impacts" if there are none."""
+    """Choose a linear, symlog or log axis for impacts per period; write "no impacts" if none."""
     above_zero = impacts[impacts > 0.0]
     if not above_zero.size:
         axes.set_ylim(0.0, 1.0)

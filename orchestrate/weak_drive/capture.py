@@ -79,11 +79,11 @@ class CaptureJob(Job):
             borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
-    def run_from_rest(self, fmus: Fmus, system: System, voltage: float) -> settling.Outcome:
+    def run_from_rest(self, fmus: Fmus, system: System, voltage: float) -> settling.CaptureOutcome:
         """Simulate one start from rest at a voltage until the speed has settled."""
         test = settling.settling_test(*system, self.stay, self.distance(system))
         if voltage <= system.drive.motor_constant * test.threshold:
-            return settling.Outcome(settling.NO_LOAD)
+            return settling.CaptureOutcome(settling.NO_LOAD)
         schedule = Constant(voltage, self.time_limit(system))
         job = couple_job(*system, schedule, self.scheme, 0.0, self.control)
         with begin_run(job, fmus) as run:
@@ -145,8 +145,8 @@ class CaptureJob(Job):
 
 
 def run_until_settled(
-    run: Run, steps: range, outcome: Callable[[np.ndarray, np.ndarray], settling.Outcome]
-) -> settling.Outcome:
+    run: Run, steps: range, outcome: Callable[[np.ndarray, np.ndarray], settling.CaptureOutcome]
+) -> settling.CaptureOutcome:
     """Simulate a run until its recorded speed decides the outcome, or to its end."""
     times, speeds = np.zeros(0), np.zeros(0)
     first = 0
@@ -158,7 +158,7 @@ def run_until_settled(
         if decision.decision != settling.UNDECIDED:
             return decision
         first += len(piece)
-    return settling.Outcome(settling.UNDECIDED)
+    return settling.CaptureOutcome(settling.UNDECIDED)
 
 
 class ThresholdEnd(NamedTuple):
@@ -170,8 +170,8 @@ class ThresholdEnd(NamedTuple):
 
 def threshold_voltage(
     voltages: Sequence[float],
-    outcomes: Sequence[settling.Outcome],
-    start: Callable[[float], settling.Outcome],
+    outcomes: Sequence[settling.CaptureOutcome],
+    start: Callable[[float], settling.CaptureOutcome],
     tolerance: float,
 ) -> tuple[ThresholdEnd, ThresholdEnd]:
     """Bracket by bisection the voltage from which a start passes the resonance."""

@@ -24,7 +24,7 @@ from ..running.job import Fmus, Table
 from ..running.options import Running
 from . import averaged, own_resonance
 from .controllers import Controller
-from .hysteresis import LOST, UNDECIDED, HysteresisLoop, Jump, Settings
+from .hysteresis import LOST, UNDECIDED, HysteresisLoop, HysteresisSettings, Jump
 from .master import Scheme
 from .ramp_record import NOT_SHOWN, RampRecord, Suspect, jump_labels, time_beyond, variables_shown
 from .revolutions import COLUMNS
@@ -43,7 +43,7 @@ MIRRORED = {  # where the motor turns backward
 class CoupleJob(CoupledRun):
     """Run the coupled FMUs in chunks of steps; then decide about jumps by a hysteresis loop."""
 
-    hysteresis: Settings = field(default_factory=Settings)
+    hysteresis: HysteresisSettings = field(default_factory=HysteresisSettings)
 
     chunk_size: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
@@ -298,7 +298,7 @@ def couple_job(
     speed_start: float | None = None,
     control: Controller | None = None,
     hold: float | None = None,
-    hysteresis: Settings | None = None,
+    hysteresis: HysteresisSettings | None = None,
 ) -> CoupleJob:
     """Check the arguments of a coupled run and build its job."""
     if control is not None and not isinstance(control, Controller):
@@ -313,7 +313,7 @@ def couple_job(
         hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
     check("hold", hold, "s", low=0.0)
     run = (structure, drive, schedule, scheme, start, float(hold), control)
-    job = CoupleJob(f"couple_{name}", *run, hysteresis or Settings())
+    job = CoupleJob(f"couple_{name}", *run, hysteresis or HysteresisSettings())
     steps = schedule.duration / scheme.h
     if steps <= MAX_STEPS and job.steps() < 1:
         raise InputError(
@@ -342,7 +342,7 @@ def couple(
     speed_start: float | None = None,
     control: Controller | None = None,
     hold: float | None = None,
-    hysteresis: Settings | None = None,
+    hysteresis: HysteresisSettings | None = None,
     step: float | None = None,
     tolerance: float | None = None,
     **running: Unpack[Running],
@@ -386,7 +386,7 @@ def couple(
         (4000 + 200/b)/omega by default, 1/b being the time in which the rotor settles. A jump that
         is undecided may need more. With 0 no voltage is held, and all suspected jumps are
         undecided.
-    hysteresis : Settings, optional
+    hysteresis : HysteresisSettings, optional
         Steps and thresholds of the rule that decides about jumps, of
         :mod:`orchestrate.weak_drive.hysteresis`.
     step : float, optional

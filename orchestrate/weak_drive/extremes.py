@@ -24,8 +24,8 @@ class Range(NamedTuple):
     low: Floats
     high: Floats
 
-    def widened(self, steps: Any, places: Sequence[Floats]) -> Range:
-        """Return the range with further positions in some steps; NaN counts as none."""
+    def widen(self, steps: Any, places: Sequence[Floats]) -> Range:
+        """Widen the range, in place, by positions in some steps; NaN counts as none; return it."""
         for position in places:
             self.low[steps] = np.fmin(self.low[steps], position)
             self.high[steps] = np.fmax(self.high[steps], position)
@@ -72,7 +72,7 @@ def extrema(series: Sequence[Any], first: Any, last: Any) -> list[Any]:
 
 
 def range_of_mass(structure: Structure, record: Record) -> Range:
-    """Return the lowest and the highest x1 within each step, also with an impact."""
+    """Return the lowest and the highest x1, of mass 1, within each step, by its turning points."""
     before, after = record.before.motion(), record.after.motion()
     cubic = record.after.acceleration()
     h = record.after["h"]
@@ -82,11 +82,11 @@ def range_of_mass(structure: Structure, record: Record) -> Range:
     turning = np.flatnonzero(impact | (before.v1 * after.v1 < 0.0))
     last = np.where(impact, hit, h)[turning]
     series = taylor_coefficients(structure, at(before, turning), at(cubic, turning))
-    found.widened(turning, extrema(series, 0.0 * last, last))
+    found.widen(turning, extrema(series, 0.0 * last, last))
     struck = np.flatnonzero(impact)
     end = end_derivatives(at(cubic, struck), h[struck])
     back = taylor_coefficients(structure, at(after, struck), end)
-    return found.widened(struck, extrema(back, (hit - h)[struck], 0.0 * h[struck]))
+    return found.widen(struck, extrema(back, (hit - h)[struck], 0.0 * h[struck]))
 
 
 def range_of_box(record: Record) -> Range:
@@ -97,7 +97,7 @@ def range_of_box(record: Record) -> Range:
     cubic = at(record.after.acceleration(), turning)
     h = record.after["h"][turning]
     series = (position[turning], velocity[turning], *cubic)
-    return found.widened(turning, extrema(series, 0.0 * h, h))
+    return found.widen(turning, extrema(series, 0.0 * h, h))
 
 
 def at(values: Any, steps: Any) -> Any:

@@ -5,7 +5,8 @@ loses the first. A steep but continuous branch is not a jump. The rule, for a st
 in which the ramp's record suggests a jump:
 
 - Voltages are held on a grid of steps `grid`, from the ramp's own state before the stretch to the
-  stretch's end, each taken to at `rate` and held until the speed has settled (:mod:`.settled`).
+  stretch's end, each taken to at `rate` and held until the speed has settled (:mod:`.settled`);
+  those at which it does not are left out.
 - Every step in which the speed gains `smallest` on the voltage, or moves by `against` against it,
   is halved, to `width`.
 - Then the voltage goes back over that step. The motion is *lost* there where the speed comes back
@@ -13,12 +14,13 @@ in which the ramp's record suggests a jump:
   Where it comes back, the step is halved further.
 - There is *no* jump where no such step is left, and on the way back the speed is nowhere `clear`
   away.
-- All else is *undecided*: a speed that does not settle, two motions nearer than `clear`, a step
-  that is still large at `finest`, another motion on the way back, a speed that moves against the
-  voltage and what comes after it, or more than `max_holds` held voltages.
+- All else is *undecided*: a first speed, or one on the way back, that does not settle, two motions
+  nearer than `clear`, a step still large at `finest`, another motion on the way back, a speed that
+  moves against the voltage and what comes after it, or after `max_rounds` of this.
 
-Non-dimensional: voltages over K omega, speeds over omega, times in 1/omega, in the mirror image in
-which the motor turns forward.
+From differences the `errors` of irregular motions' speeds are taken off, but not on the last way
+back. Non-dimensional: voltages over K omega, speeds over omega, times in 1/omega, in the mirror
+image in which the motor turns forward.
 """
 
 from __future__ import annotations
@@ -45,7 +47,7 @@ SAVED = (
 
 
 @dataclass(frozen=True)
-class Settings(SettledSettings):
+class HysteresisSettings(SettledSettings):
     """Set the steps and thresholds of the hysteresis loop; defaults serve all drives tried."""
 
     shown: float = 4e-3  # fall of the slip in a ramp's record that suggests a jump
@@ -64,7 +66,9 @@ class Settings(SettledSettings):
     again: int = 3  # times that the motions beside a jump are held again
     lag: float = 2.0  # rotor times 1/b by which a speed follows a ramp late, without a jump
     lead: float = 6.0  # how much earlier than the record a course begins, in rotor times 1/b
-    max_holds: int = 150  # of a course
+    max_rounds: int = 150  # of looking at the largest step of a course
+    errors: float = 3.0  # standard errors that are taken off a difference of speeds
+    parts: tuple[float, ...] = (0.5, 0.25, 0.75)  # of a step: where a speed between is sought
     left: float = 0.1  # of the way between two motions' speeds: with less to go, the first is left
     slots: int = 12  # jumps of a direction that are stored, by their voltages
 
@@ -103,12 +107,12 @@ class VoltageHolder:
         omega: float,
         volts: float,
         longest: float,
-        settings: Settings | None = None,
+        settings: HysteresisSettings | None = None,
     ) -> None:
         # `volts` is negative where the motor turns backward; `longest` is the longest hold, s
         self.begin, self.schedule, self.step = begin, schedule, step
         self.omega, self.volts, self.longest = omega, volts, longest
-        self.settings = settings or Settings()
+        self.settings = settings or HysteresisSettings()
         self.checkpoints: dict[int, Table] = {}
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
@@ -208,8 +212,8 @@ class HysteresisLoop(VoltageHolder):
         """Return the jumps shortly before the end of a ramp, which show after it only."""
         last = int(leg[-1])
         end = self.hold_step(record.step(last))
-        change = end.speed - record.speed(last)
-        if abs(change) - 3.0 * end.error - self.lag(record, leg, last) <= self.settings.shown:
+        change = abs(end.speed - record.speed(last)) - self.settings.errors * end.error
+        if change - self.lag(record, leg, last) <= self.settings.shown:
             return []
         jumps = self.jumps(self.first_point(record, leg, last), record.eta0(last))
         return [jump._replace(shown=Suspect(last, last, last)) for jump in jumps]
@@ -221,8 +225,8 @@ class HysteresisLoop(VoltageHolder):
         while True:
             point = self.hold_step(record.step(row))
             gained = record.sign * (point.speed - record.speed(row))
-            margin = 2.0 * self.settings.same
-            lasts = -margin - 3.0 * point.error < gained < margin + self.lag(record, leg, row)
+            margin, error = 2.0 * self.settings.same, self.settings.errors * point.error
+            lasts = -margin - error < gained < margin + self.lag(record, leg, row)
             if lasts or row == leg[0]:
                 return point
             row, back = max(int(leg[0]), row - back), 2 * back
@@ -234,42 +238,45 @@ class HysteresisLoop(VoltageHolder):
 
     def jumps(self, first: HeldPoint, last: float) -> list[Jump]:
         """Return the jumps between a held point and a voltage: an empty list for none."""
+        undecided = [Jump(UNDECIDED, first.voltage, last)]
         if math.isnan(first.speed):
-            return [Jump(UNDECIDED, first.voltage, last)]
+            return undecided
         sign = math.copysign(1.0, last - first.voltage)
         points = self.hold_grid(first, last)
         jumps: dict[tuple[float, float], Jump] = {}
-        for _ in range(self.settings.max_holds):
+        for _ in range(self.settings.max_rounds):
             i = self.largest_step(points, jumps, sign)
             if i is None:
                 break
-            low, high = points[i : i + 2]
-            length, middle = abs(high.voltage - low.voltage), None
-            if length > self.settings.width and (middle := self.hold_between(low, high)):
-                points.insert(i + 1, middle)
+            step = points[i].voltage, points[i + 1].voltage
+            is_wide = abs(step[1] - step[0]) > self.settings.width
+            if is_wide and self.insert_between(points, i):
                 continue
-            landed = self.hold_from(low, high.voltage)
-            outcome = self.way_back(low, landed)
-            points[i + 1] = high = landed if math.isfinite(landed.speed) else high
-            if outcome == NONE and length > self.settings.finest:
-                if self.excess(low, high, sign) <= 0.0:
-                    continue
-                if middle := self.hold_between(low, high):
-                    points.insert(i + 1, middle)
-                    continue
-            step, before = (low.voltage, high.voltage), low.voltage
-            if outcome == LOST:
-                outcome, before = self.confirm(points[: i + 1], sign)
-            jumps[step] = Jump(outcome or UNDECIDED, before, high.voltage)
-            if sign * (high.speed - low.speed) < 0.0:  # what a ramp comes to there is chance
-                jumps[step] = Jump(UNDECIDED, low.voltage, last)
-                del points[i + 2 :]
+            if jump := self.jump_over(points, i, last):
+                jumps[step] = jump
         else:
-            return [Jump(UNDECIDED, first.voltage, last)]
+            return undecided
         if not jumps and not self.comes_back(points):
-            return [Jump(UNDECIDED, first.voltage, last)]
+            return undecided
         steps = ((low.voltage, high.voltage) for low, high in pairwise(points))
         return [jumps[step] for step in steps if step in jumps]
+
+    def jump_over(self, points: list[HeldPoint], i: int, last: float) -> Jump | None:
+        """Return the jump over a step, by the way back; None where the step is small or halved."""
+        low, high = points[i : i + 2]
+        sign, length = math.copysign(1.0, last - low.voltage), abs(high.voltage - low.voltage)
+        landed, before = self.hold_from(low, high.voltage), low.voltage
+        outcome = self.way_back(low, landed)
+        points[i + 1] = high = landed if math.isfinite(landed.speed) else high
+        may_be_none = outcome == NONE and length > self.settings.finest
+        if may_be_none and (self.excess(low, high, sign) <= 0.0 or self.insert_between(points, i)):
+            return None
+        if sign * (high.speed - low.speed) < 0.0:  # what a ramp comes to there is chance
+            del points[i + 2 :]
+            return Jump(UNDECIDED, low.voltage, last)
+        if outcome == LOST:
+            outcome, before = self.confirm(points[: i + 1], sign)
+        return Jump(outcome or UNDECIDED, before, high.voltage)
 
     def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:
         """Step the voltage over the grid; return the points at which the speed settled."""
@@ -294,7 +301,7 @@ class HysteresisLoop(VoltageHolder):
 
     def excess(self, low: HeldPoint, high: HeldPoint, sign: float) -> float:
         """Return by how much the speed changes more than on one branch, on which it rises."""
-        scatter = min(difference_error(low, high), self.settings.smallest)
+        scatter = min(self.error(low, high), self.settings.smallest)
         gained, length = sign * (high.speed - low.speed), abs(high.voltage - low.voltage)
         against = -gained - self.settings.against
         return max(gained - self.settings.smallest - length, against) - scatter
@@ -302,7 +309,7 @@ class HysteresisLoop(VoltageHolder):
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
         """Return whether two motions exist at a step's lower voltage and the first is lost."""
         back = self.hold_from(landed, low.voltage)
-        distance = abs(back.speed - low.speed) - difference_error(back, low)
+        distance = self.distance(back, low)
         if distance <= self.settings.same:
             return NONE
         if math.isnan(back.speed) or distance < self.settings.clear:
@@ -327,21 +334,24 @@ class HysteresisLoop(VoltageHolder):
         later = point
         for _ in range(self.settings.again):
             later = self.hold_from(later, point.voltage)
-            if not self.is_same(later, point):
+            if not self.distance(later, point) <= self.settings.same:  # or not settled
                 return later
         return point
 
-    def hold_between(self, low: HeldPoint, high: HeldPoint) -> HeldPoint | None:
-        """Hold voltages between two points until one settles, the middle first; None if none."""
-        for part in (0.5, 0.25, 0.75):
+    def insert_between(self, points: list[HeldPoint], i: int) -> bool:
+        """Hold voltages within a step until one settles, and insert it; return whether one does."""
+        low, high = points[i : i + 2]
+        for part in self.settings.parts:
             voltage = low.voltage + part * (high.voltage - low.voltage)
             point = self.hold_from(low, voltage, high.speed)
             if math.isfinite(point.speed):
-                return point
-        return None
+                points.insert(i + 1, point)
+                return True
+        return False
 
     def comes_back(self, points: list[HeldPoint]) -> bool:
         """Return whether the speed comes back, less than `clear` away, over all voltages."""
+        # single ones between the ends need not settle
         last, settled = points[-1], True
         for point in reversed(points[:-1]):
             back = self.hold_from(last, point.voltage)
@@ -355,10 +365,13 @@ class HysteresisLoop(VoltageHolder):
                 return False
         return True
 
-    def is_same(self, point: HeldPoint, other: HeldPoint) -> bool:
-        """Return whether two points have settled at the same speed."""
-        distance = abs(point.speed - other.speed) - difference_error(point, other)
-        return distance <= self.settings.same
+    def distance(self, point: HeldPoint, other: HeldPoint) -> float:
+        """Return how far two settled speeds are apart at least, by their errors."""
+        return abs(point.speed - other.speed) - self.error(point, other)
+
+    def error(self, point: HeldPoint, other: HeldPoint) -> float:
+        """Return the error of the difference between two settled speeds."""
+        return self.settings.errors * math.hypot(point.error, other.error)
 
 
 def merge_overlapping(jumps: list[Jump], sign: float) -> list[Jump]:
@@ -372,8 +385,3 @@ def merge_overlapping(jumps: list[Jump], sign: float) -> list[Jump]:
         else:
             merged.append(jump)
     return merged
-
-
-def difference_error(point: HeldPoint, other: HeldPoint) -> float:
-    """Return three standard errors of the difference between two settled speeds."""
-    return 3.0 * math.hypot(point.error, other.error)

@@ -24,7 +24,7 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
-from .hysteresis import Settings
+from .hysteresis import HysteresisSettings
 from .master import Scheme
 from .schedule import Ramp
 
@@ -32,7 +32,7 @@ IGNORED = ("clearance", "e", "e_slope", "gamma")  # by the bonded structure
 KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
 COLUMNS = ("jumps", "jump_low", "jump_high")
-SLOTS = Settings().slots
+SLOTS = HysteresisSettings().slots
 SHOWN = ("ramp_voltage", "jump_speed_before")
 
 

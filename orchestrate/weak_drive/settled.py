@@ -6,9 +6,9 @@
 - If they go one way, it has converged where the limits extrapolated from them as an exponential
   approach (Aitken's process) agree within `agreement` of the tolerance; an approach slower than
   `slowest` a block, as by a fold, has not converged.
-- An irregular motion has settled where three long means, each a third of `blocks`, differ by less
-  than the tolerance, or `scatter` of the changes' deviation; its speed has an error then, at least
-  `deviation` of their standard deviation.
+- What has not settled by these, as an irregular motion, has where three long means, each a third of
+  `blocks`, differ by less than the tolerance, or `scatter` of the standard deviation of changes
+  between blocks; its speed has an error then, at least `deviation` of that of the blocks' means.
 - All else has not settled.
 """
 
@@ -34,7 +34,7 @@ class SettledSettings:
     slowest: float = 0.95  # of a change, what the next one is at most
     agreement: float = 0.5  # of the tolerance
     scatter: float = 0.5  # of the standard deviation of changes between blocks
-    deviation: float = 0.35  # of the standard deviation of the blocks
+    deviation: float = 0.35  # of the standard deviation of the blocks' means
 
 
 def settled_speed(speeds: np.ndarray, settings: SettledSettings) -> tuple[float, float]:

@@ -1,12 +1,15 @@
 """Decide whether a motor switched on has settled below or beyond the resonance.
 
-- The speed has settled by the one rule of :mod:`.settled`, to a tenth of the voltage's tolerance
-  (1e-6 to 1e-4). A motor whose no-load speed is below the resonance is captured, without a run.
+- The speed has settled by the rule of :mod:`.settled`, to `FINENESS` of the voltage's tolerance:
+  *converged*, or with an error *bounded*. A motor whose no-load speed is below the resonance is
+  captured, without a run.
 - It is *captured* where the settled speed is below the resonance, and *passed* where it is beyond,
   as its means have been for `stay` revolutions.
-- It has settled *at the resonance*, which is neither, where both are within the tolerance and three
-  errors.
+- It has settled *at the resonance*, which is neither, where both are within the tolerance and
+  `errors`.
 - All else is *undecided*: a motion that goes on to swing slowly, or across the resonance.
+
+The resonance is the speed that divides motions below it from those beyond (:mod:`.own_resonance`).
 """
 
 from __future__ import annotations
@@ -22,6 +25,8 @@ from ..model.structure import Structure
 from . import averaged, own_resonance
 from .settled import SettledSettings, settled_speed
 
+FINENESS = 0.1  # of a settled speed's tolerance, over that of the voltage
+MIN_TOLERANCE, MAX_TOLERANCE = 1e-6, 1e-4  # over omega
 UNDECIDED, CONVERGED, BOUNDED, NO_LOAD, NEITHER = range(5)
 DECISIONS = {
     UNDECIDED: "undecided",
@@ -32,7 +37,7 @@ DECISIONS = {
 }
 
 
-class Outcome(NamedTuple):
+class CaptureOutcome(NamedTuple):
     """Store whether and where the speed has settled, and how that was decided."""
 
     decision: int  # key of `DECISIONS`: how it was decided
@@ -55,27 +60,28 @@ class SettlingTest:
     omega: float  # unit of the speeds' changes, rad/s
     stay: int  # fewest revolutions on one side
     rule: SettledSettings
+    errors: float = 3.0  # of the settled speed, within which it may be on either side
 
-    def judge_record(self, time: np.ndarray, speed: np.ndarray) -> Outcome:
+    def judge_record(self, time: np.ndarray, speed: np.ndarray) -> CaptureOutcome:
         """Decide from the speed's record: captured, passed or undecided."""
         speeds, block = np.abs(speed) / self.omega, self.rule.block
         mean, error = settled_speed(speeds, self.rule)
         if math.isnan(mean):
-            return Outcome(UNDECIDED)
+            return CaptureOutcome(UNDECIDED)
         threshold = self.threshold / self.omega
-        if abs(mean - threshold) <= self.rule.tolerance + 3.0 * error:
-            return Outcome(NEITHER, speed=mean * self.omega)
+        if abs(mean - threshold) <= self.rule.tolerance + self.errors * error:
+            return CaptureOutcome(NEITHER, speed=mean * self.omega)
         means = np.convolve(speeds, np.full(block, 1.0 / block), "valid")
         since = last_crossing(means > threshold)
         passed = bool(mean > threshold)
         if len(means) - since < self.stay or passed != (means[-1] > threshold):
-            return Outcome(UNDECIDED)
+            return CaptureOutcome(UNDECIDED)
         decision = BOUNDED if error else CONVERGED
         if not passed:
-            return Outcome(decision, speed=mean * self.omega)
+            return CaptureOutcome(decision, speed=mean * self.omega)
         near = speeds[since : since + block] > threshold
         crossed = float(time[since + last_crossing(near)])
-        return Outcome(decision, True, crossed, mean * self.omega)
+        return CaptureOutcome(decision, True, crossed, mean * self.omega)
 
 
 def last_crossing(beyond: np.ndarray) -> int:
@@ -88,7 +94,7 @@ def settling_test(structure: Structure, drive: Drive, stay: int, distance: float
     """Create the test of a structure and its drive, for a tolerance of the voltage over K omega."""
     omega = structure.omega
     threshold = own_resonance.dividing_speed(structure, drive) * omega
-    tolerance = min(max(0.1 * distance, 1e-6), 1e-4)
+    tolerance = min(max(FINENESS * distance, MIN_TOLERANCE), MAX_TOLERANCE)
     return SettlingTest(threshold, omega, stay, SettledSettings(tolerance=tolerance))
 
 

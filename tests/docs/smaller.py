@@ -5,7 +5,7 @@ import inspect
 
 import numpy as np
 
-from orchestrate.weak_drive.hysteresis import Settings
+from orchestrate.weak_drive.hysteresis import HysteresisSettings
 
 VALUES = 4  # of a list, at most
 MOST = {
@@ -54,7 +54,7 @@ def smaller(question):
         if "rate" in keywords:
             ends = np.ravel(keywords["voltage"])
             keywords |= {"rate": float(abs(ends[-1] - ends[0])), "settle": 1.0}
-            keywords["hysteresis"] = Settings(max_holds=2)
+            keywords["hysteresis"] = HysteresisSettings(max_rounds=2)
         return question(*arguments, **keywords)
 
     return asked

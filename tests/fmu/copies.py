@@ -24,17 +24,9 @@ def copy_sources(folder, changes=()):
 
 
 def export_copy(folder, changes=(), model="TwoMassImpactOscillator", **environment):
-    """Path of the pythonfmu FMU of a copy of the sources.
+    """Path of the pythonfmu FMU of a copy of the sources in a folder.
 
-    Parameters
-    ----------
-    folder : Path
-        Where the copy goes.
-    changes : sequence of (str, str, str)
-        File below ``fmu_src``, text that stands there once, and what replaces it.
-    model : str
-    **environment : str
-        Variables of the process that exports.
+    Changes are a file below ``fmu_src``, text that stands there once, and what replaces it.
     """
     copy_sources(folder, changes)
     environment = {**os.environ, "PYTHONPATH": str(folder), **environment}

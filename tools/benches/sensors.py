@@ -17,44 +17,18 @@ TAPS = 46  # of it, for each sample left out: 80 dB from 0.95 of half the sampli
 
 @dataclass(frozen=True, kw_only=True)
 class Sensor:
-    """One accelerometer: bandwidth, gain, delay, noise and range.
+    """One accelerometer: bandwidth, gain, delay, noise and range."""
 
-    Attributes
-    ----------
-    bandwidth : float
-        Hz, 3 dB down.
-    order : int
-        Of its low-pass filter (Butterworth).
-    gain : float
-        1.03 reads 3 % too much.
-    delay : float
-        s, beside that of the filter.
-    noise : float
-        Standard deviation over the root mean square of the signal.
-    range : float
-        Largest reading over the largest value of the signal: below 1 the sensor saturates.
-    """
-
-    bandwidth: float = 2000.0
-    order: int = 2
-    gain: float = 1.0
-    delay: float = 0.0
-    noise: float = 0.01
+    bandwidth: float = 2000.0  # Hz, 3 dB down
+    order: int = 2  # of its low-pass filter (Butterworth)
+    gain: float = 1.0  # 1.03 reads 3 % too much
+    delay: float = 0.0  # s, beside that of the filter
+    noise: float = 0.01  # standard deviation over the root mean square of the signal
+    # largest reading over the largest value of the signal: below 1 the sensor saturates
     range: float = math.inf
 
     def read(self, signal: Floats, rate: float, factor: int, rng: np.random.Generator) -> Floats:
-        """Return the samples that the sensor gives of a signal: filtered, delayed, with noise.
-
-        Parameters
-        ----------
-        signal : ndarray
-            At the integration's rate.
-        rate : float
-            That, Hz.
-        factor : int
-            Each how many of these are one sample.
-        rng : numpy.random.Generator
-        """
+        """Return samples of a signal at `rate`, Hz, one of `factor`: filtered, late, with noise."""
         sections = butter(self.order, self.bandwidth, fs=rate, output="sos")
         taps = self.gain * delay_filter(antialiasing_filter(factor), self.delay * rate)
         sampled = resample_poly(sosfilt(sections, signal), 1, factor, window=taps)

@@ -21,7 +21,7 @@ def impacts_decrease(data: Datasets, claim: Claim) -> Measured:
 def interchange(data: Datasets, claim: Claim) -> Measured:
     """Find T-periodic responses from 0.43 to 0.89, and what is between them."""
     settled = reading.between(data.settled("elastic"), 0.43, 0.89)
-    windows = reading.runs(settled.multiplicity.values == 1)
+    windows = reading.runs_of(settled.multiplicity.values == 1)
     chaotic, neutral = data.shares("elastic", 0.43, 0.89)
     text = (
         "T-periodic with so many impacts: "
@@ -89,7 +89,7 @@ def irregular_impacts(data: Datasets, claim: Claim) -> Measured:
 
 
 def one_impact_beside(data: Datasets, claim: Claim) -> Measured:
-    """Measure the share of responses with one impact in the windows beside the second region."""
+    """Measure the share of one-impact responses in the T and 2T windows beside region 2."""
     text, parts = [], []
     for n, low, high in ((1, 1.37, 2.61), (2, 3.77, 4.74)):
         part = reading.between(data.settled("elastic"), low, high)

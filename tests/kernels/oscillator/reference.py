@@ -27,14 +27,9 @@ def opening(values, x, v):
 
 
 def event_by_event(values, state, stop):
-    """Events in high precision from a flight.
+    """Events in high precision from a flight, and the state at ``stop``: x1, v1, x2, v2.
 
-    Returns
-    -------
-    events : list of (time, kind)
-        Kind: "impact", "stick", "release".
-    state : tuple
-        x1, v1, x2, v2 at ``stop``.
+    Events are (time, kind): "impact", "stick", "release".
     """
     omega = mp.sqrt(mp.mpf(values["k1"]) / values["m1"])
     time, mode, events, blind = mp.mpf(0), FLIGHT, [], 0.0

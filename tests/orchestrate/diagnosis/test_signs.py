@@ -187,6 +187,19 @@ def test_a_weak_drive_jumps_earlier_and_takes_more_power():
         orchestrate.signs(drive_run(6.3, 1.3))
 
 
+def test_a_motor_that_turns_backward_has_the_same_signs():
+    first, second = drive_run(6.3, 1.3), drive_run(7.0, 1.0)
+    signed = ("speed", "voltage", "jumps", "jump_lag")
+    one, other = (run.assign({name: -run[name] for name in signed}) for run in (first, second))
+    assert orchestrate.signs(one, other=other).equals(orchestrate.signs(first, other=second))
+
+
+def test_a_fall_whose_floor_is_unknown_is_unknown():
+    run = drive_run(6.3, 1.3).assign(jump_lag=("jump", [np.nan]))
+    answer = orchestrate.signs(run, other=drive_run(7.0, 1.0)).sel(channel="motor")
+    assert [of(answer, s, "exceeds") for s in ("jump_voltage_fall", "extra_power")] == [-1, 1]
+
+
 def test_every_sign_says_what_it_is(tmp_path):
     answer = orchestrate.signs(record({1: 6.0}, noise=0.01), seeds=1)
     assert list(answer.sign.values) == list(INDICATORS)

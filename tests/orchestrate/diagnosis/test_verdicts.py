@@ -8,7 +8,7 @@ import pytest
 from orchestrate.diagnosis.decision_rule import Findings, resampled_share
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import reported_derivatives
-from orchestrate.diagnosis.hypotheses import Delaminated
+from orchestrate.diagnosis.hypotheses import Delaminated, PositiveStop
 
 from .records import BEAM, record
 
@@ -84,7 +84,7 @@ def test_what_keeps_a_record_from_being_called_delaminated_is_named():
     partly = replace(OPENED, sound_misfit=1.216, share=0.7)
     assert "1.52 times as large" in partly.reason()
     assert "exceeds 1.5 in 0.7 of the records" in partly.reason() and "0.95" in partly.reason()
-    cracked = replace(OPENED, sound="bonded, with a stop in the positive direction", sound_misfit=1)
+    cracked = replace(OPENED, alike=PositiveStop.alike, sound_misfit=1)
     assert "a breathing crack or a clamp with play describes it" in cracked.reason()
     missed = replace(OPENED, apart=4.0, sound_misfit=4.77, delaminated_misfit=4.5)
     assert missed.verdict() == "not described"

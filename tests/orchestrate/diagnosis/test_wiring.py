@@ -103,13 +103,17 @@ def test_few_samples_are_named_and_a_short_sweep_above_the_resonance_says_nothin
     assert notes(changed(face=np.negative)(above)) == []
 
 
+@pytest.mark.filterwarnings("ignore::UserWarning")
 def test_a_dead_base_is_told_from_swapped_columns():
     still = np.random.default_rng(2).normal(0.0, 0.02, COUNT)
     (note,) = notes({**sweep(), BASE: still})
     assert note.kind == "dead" and "base's cable" in note.text
     guess = Structure.from_halves(m1=1.0, m2=1.0, f1=40.0, f2=50.0, zeta1=0.01)
-    with pytest.raises(InputError, match="no sine.*; .*is the base's cable dead"):
-        detect(record(sample_rate=RATE, **{**sweep(), BASE: still}), guess)
+    made = record(sample_rate=RATE, **ERRORS["clipped"][0]({**sweep(), BASE: still}))
+    with pytest.raises(InputError, match="no sine.*; .*is the base's cable dead.*saturated"):
+        detect(made, guess)
+    with pytest.raises(InputError, match="cable dead[?]$"):
+        detect(made, guess, settings={"clipped": 1.0})
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")

@@ -71,6 +71,7 @@ def test_exponents_are_those_of_the_responses(found):
     there = found.sel(eta=1.13, e=0.7)
     assert float(there.exponent) == one.exponent.item()
     assert float(there.standard_error) == one.standard_error.item()
+    assert there.verdict.item() == one.verdict.item()
     short = map(PAPER, eta=[4.0, 4.1], e=ES, exponent=True, periods=4, transient=5, settle=1.0)
     assert np.isnan(short.exponent).any()
 

@@ -6,7 +6,7 @@ import pytest
 from orchestrate import InputError, capture
 from orchestrate.weak_drive.averaged import dividing_speed
 from orchestrate.weak_drive.capture import threshold_voltage
-from orchestrate.weak_drive.settling import CONVERGED, UNDECIDED, Outcome
+from orchestrate.weak_drive.settling import CONVERGED, UNDECIDED, CaptureOutcome
 
 from . import bonded
 from .coupled import QUICK, drawn, rest
@@ -83,8 +83,8 @@ def test_undecided_starts_widen_the_border(known):
     def start(voltage):
         asked.append(voltage)
         if voltage < 1.28:
-            return Outcome(CONVERGED)
-        return Outcome(CONVERGED, True, 1.0) if voltage > 1.47 else Outcome(UNDECIDED)
+            return CaptureOutcome(CONVERGED)
+        return CaptureOutcome(CONVERGED, True, 1.0) if voltage > 1.47 else CaptureOutcome(UNDECIDED)
 
     ends = threshold_voltage(known, [start(voltage) for voltage in known], start, 0.01)
     low, high = (end.voltage for end in ends)

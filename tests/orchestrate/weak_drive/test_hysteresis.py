@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from orchestrate.weak_drive.hysteresis import LOST, UNDECIDED, HeldPoint, HysteresisLoop, Settings
+from orchestrate.weak_drive import hysteresis
+from orchestrate.weak_drive.hysteresis import LOST, UNDECIDED, HeldPoint, HysteresisLoop
 from orchestrate.weak_drive.ramp_record import RampRecord, find_falls, jump_labels
 from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.settled import settled_speed
@@ -185,7 +186,7 @@ def test_motions_of_nearly_one_speed_are_undecided():
         return 0.0045 if voltage > 1.52 or (motion and voltage > 1.51) else 0.0
 
     loop = Scripted(higher)
-    loop.settings = Settings(smallest=2e-3)
+    loop.settings = hysteresis.HysteresisSettings(smallest=2e-3)
     assert [jump.outcome for jump in loop.course()] == [UNDECIDED]
 
 
@@ -215,7 +216,7 @@ def test_falls_close_to_each_other_are_one_stretch():
     assert ramp.suspects(leg, 0.03, 0.1, 12) == []
 
 
-SETTLED = Settings()
+SETTLED = hysteresis.HysteresisSettings()
 
 
 def record(means):
@@ -276,7 +277,7 @@ def test_what_has_not_settled_is_undecided():
 def test_a_ramp_that_ends_before_the_jump_shows():
     """Past the fold at 1.5831; the bracket is as wide as the settings say."""
     quick = QUICK.as_bonded()
-    wide = {"back": False, "step": None, "hysteresis": Settings(width=2e-3)}
+    wide = {"back": False, "step": None, "hysteresis": hysteresis.HysteresisSettings(width=2e-3)}
     found = run(quick, (1.5, 1.59), 1e-4, **wide).sel(jump="up")
     low, high = bracket(found, quick)
     assert found.decided == "by held voltages"
