@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import zipfile
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 import xarray as xr
 
 from orchestrate import Drive, Structure, couple
-from orchestrate.cli import weak_drive
+from orchestrate.cli import drive, weak_drive
 from orchestrate.show import weak_drive as figures
 
 from .test_responses import shows_something
@@ -98,7 +99,9 @@ def test_what_is_undecided_is_printed_and_titled(ask, folder):
 
 def test_a_motor_of_one_s_own(ask, folder, motor):
     """Volts and seconds; voltages from a file; both kinds of controllers."""
-    own = ("couple", "--drive", motor, "--only", "delaminated")
+    files = {"drive": motor, "structure": "beam"}
+    own = ("couple", "--drive", motor, "--structure", "beam", "--only", "delaminated")
+    own += ("--set", "clearance=20um")
     volts = ("--voltage", "5:5.2", "--volt-rate", "0.2", "--one-way", "--settle", "20")
     ask(*own, *volts, "--plot", "none").success()
     course = motor.with_name("course.csv")
@@ -112,6 +115,9 @@ def test_a_motor_of_one_s_own(ask, folder, motor):
     found = results(folder)
     assert len(found) == 4 and len(list(folder.glob("*.png"))) == 1
     assert any(abs(float(data.voltage[-1]) - 6.0) < 1e-9 for data in found.values())
+    assert all(name.startswith("couple_motor_beam_") for name in found)
+    title = drive.picture_title(argparse.Namespace(**files), found, "6.5 V")
+    assert title.startswith("motor, beam: 6.5 V; $f_1$ = 11.94 Hz") and "clearance 20 µm" in title
 
 
 @pytest.mark.slow
