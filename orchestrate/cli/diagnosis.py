@@ -351,12 +351,15 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
         yield f"pressed together: it opens from {lowest}, at {where}"
     elif not data.attrs["clearance"]:
         yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
-    best = data.distance_harmonics.max("frequency") / data.threshold
+    best = data.distance_harmonics.max("frequency")
     rows = parameter_column(data, "level", data.level.values, ".3g")
-    rows["orders 2 and 3 over what counts"] = [f"{value:.3g}" for value in best.values]
-    largest = data.opening.max("frequency", keep_attrs=True)
-    rows |= columns_of(largest.to_dataset().assign_attrs(data.attrs), "opening", form=".3g")
-    rows["sensor"] = ["overload" if flag else "" for flag in data.overload.values]
+    title = f"orders 2 and 3 over noise ({float(data.threshold):g} counts)"
+    rows[title] = [f"{value:.3g}" for value in best.values]
+    gaps = data[["opening"]].max("frequency", keep_attrs=True)
+    for name, cells in columns_of(gaps, "opening", form=".3g").items():
+        rows[name.replace("opening", "largest gap")] = cells
+    if data.overload.any():
+        rows["sensor"] = ["overload" if flag else "" for flag in data.overload.values]
     yield from table(rows)
 
 
