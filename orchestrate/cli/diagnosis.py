@@ -64,8 +64,12 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
     """Run ``diagnose``: compute a verdict per record; print it; write results and reports."""
     import orchestrate
 
+    from ..laboratory.record_files import check_file
+
     Files.from_options(arguments, "", fresh=True)  # before records are read
+    participation_by_sensor(arguments)
     if arguments.structure is None:
+        check_file(arguments.records[0])  # a name may be wrong too
         text = "expected a TOML file with a guess of the beam, within some 10 %"
         raise InputError(f"--structure is missing; {text}")
     guess = read_structure_options(arguments)
@@ -155,12 +159,15 @@ def participation_by_sensor(arguments: argparse.Namespace) -> dict[str, float] |
     """Parse ``--participation G,...`` into a dict by face; None if it is not given."""
     if arguments.participation is None:
         return None
+    from ..laboratory.sensors import PARTICIPATION
+
     texts = arguments.participation.split(",")
     faces = list(CHANNELS)[2:]
     try:
-        return dict(zip(faces[: len(texts)], map(float, texts), strict=True))
+        factors = [PARTICIPATION.check(float(text)) for text in texts]
+        return dict(zip(faces[: len(texts)], factors, strict=True))
     except ValueError:
-        expected = "expected a number for face 1, or for both faces, such as 1.57 or 0.53,0.6"
+        expected = "expected -10 to 10 for face 1, or for both faces, such as 1.57 or 0.53,0.6"
         raise InputError(f"--participation {arguments.participation}: {expected}") from None
 
 

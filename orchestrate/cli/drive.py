@@ -40,8 +40,8 @@ DRIVE = (
     Group(
         "structure, motor and box",
         """
-        --drive SET|FILE = quick  TOML file with [motor], [box] and [structure], or a set: quick,
-            beam, rig
+        --drive SET|FILE = quick  TOML file with [motor], [box] and [structure], or a set: quick
+            (no real one: jumps come soon), beam (some kg on a small motor), rig (near the paper's)
         --structure SET|FILE  file or set with another [structure] than that of --drive
         --set NAME=VALUE ...  a parameter of the structure, or of motor and box in SI; may be
             repeated

@@ -13,7 +13,7 @@ from os import PathLike
 import numpy as np
 
 from ..errors import InputError
-from ..files import read_text
+from ..files import read_text, reason
 
 
 def check(
@@ -193,8 +193,7 @@ class Course(Schedule):
         try:
             lines = read_text(path, 1 << 22).splitlines()  # bytes: some hundred thousand rows
         except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise InputError(f"{path}: cannot be read ({reason}); expected a CSV file") from None
+            raise InputError(f"{path}: {reason(error)}; expected a CSV file") from None
         rows: list[list[float]] = []
         for number, line in enumerate(lines, start=1):
             if not line.strip() or line.lstrip().startswith("#"):

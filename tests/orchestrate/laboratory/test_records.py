@@ -438,6 +438,11 @@ def test_names_of_a_base_in_several_languages(tmp_path, heading):
     assert f'base "{heading}"' in read_record(path).attrs["columns"]
 
 
+def test_a_stored_result_of_shake_is_read_as_a_record(tmp_path):
+    drawn(300).rename(acceleration1="a1_abs").to_netcdf(tmp_path / "a.nc")
+    assert read_record(tmp_path / "a.nc").acceleration1.equals(drawn(300).acceleration1)
+
+
 @pytest.mark.parametrize("ending", [".uff", ".mat", ".nc", ".wav"])
 @pytest.mark.parametrize("damage", ["cut", "noise"])
 def test_damaged_files_are_refused_in_one_line(tmp_path, ending, damage):
@@ -461,7 +466,7 @@ def test_huge_files_and_unknown_ones_are_refused(tmp_path, monkeypatch):
         read_record(path)
     with pytest.raises(InputError, match="expected a file that ends in .csv"):
         read_record(tmp_path / "a.xyz")
-    with pytest.raises(InputError, match="No such file"):
+    with pytest.raises(InputError, match="no such file; expected a record"):
         read_record(tmp_path / "b.csv")
     with pytest.raises(InputError, match="no ordinary file"):
         (tmp_path / "folder.csv").mkdir()
