@@ -380,5 +380,6 @@ def attractors(
     (array([1., 2.]), array([0.825, 0.175]))
     """
     if starts is None:
-        starts = 60 if max(map(np.size, (eta, frequency, amplitude, values))) > 1 else 600
+        several = any(x is not None and np.size(x) > 1 for x in (eta, frequency, amplitude, values))
+        starts = 60 if several else 600
     return ask(AttractorsJob, locals(), settings=attractor_settings(locals()))

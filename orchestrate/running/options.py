@@ -80,13 +80,7 @@ class RunOptions:
 
     @classmethod
     def from_keywords(cls, running: Mapping[str, object]) -> RunOptions:
-        """Return the options from keyword arguments; raise TypeError for an unknown one.
-
-        Raises
-        ------
-        TypeError
-            Where one of them is unknown, as Python does.
-        """
+        """Return the options from keyword arguments; raise TypeError for an unknown one."""
         known = [field.name for field in fields(cls)]
         for name in running:
             if name not in known:

@@ -77,14 +77,7 @@ class Constant(Schedule):
 
 @dataclass(frozen=True)
 class Ramp(Schedule):
-    """Ramp the voltage from the first to the last one, and back.
-
-    Examples
-    --------
-    >>> ramp = Ramp(first=1.0, last=1.2, rate=0.001, settle=50.0)
-    >>> [round(ramp.voltage(time), 6) for time in (0.0, 50.0, 150.0, 250.0, 350.0, 450.0)]
-    [1.0, 1.0, 1.1, 1.2, 1.1, 1.0]
-    """
+    """Ramp the voltage from the first to the last one, and back."""
 
     # V
     first: float
