@@ -211,6 +211,9 @@ def read_netcdf(path: Path) -> Columns:
     if "time" not in data.variables or data.time.dims != ("time",):
         raise InputError(f"{path}: no variable time over itself; expected a record")
     if "a1_abs" in data:  # a result of shake
+        if data.sizes.get("impact"):
+            text = "expected what sensors read of it: orchestrate.measure, then write_record"
+            raise InputError(f"{path}: simulated accelerations leave out the impacts; {text}")
         shaken = {stored: name for name, stored in ACCELERATIONS.items() if stored in data}
         data = data[list(shaken)].rename(shaken)
     columns = [

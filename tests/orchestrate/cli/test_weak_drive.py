@@ -99,9 +99,8 @@ def test_what_is_undecided_is_printed_and_titled(ask, folder):
 
 def test_a_motor_of_one_s_own(ask, folder, motor):
     """Volts and seconds; voltages from a file; both kinds of controllers."""
-    files = {"drive": motor, "structure": "beam"}
-    own = ("couple", "--drive", motor, "--structure", "beam", "--only", "delaminated")
-    own += ("--set", "clearance=20um")
+    options = "couple --structure beam --set clearance=20um --only delaminated --drive"
+    own = (*options.split(), motor)
     volts = ("--voltage", "5:5.2", "--volt-rate", "0.2", "--one-way", "--settle", "20")
     ask(*own, *volts, "--plot", "none").success()
     course = motor.with_name("course.csv")
@@ -116,7 +115,8 @@ def test_a_motor_of_one_s_own(ask, folder, motor):
     assert len(found) == 4 and len(list(folder.glob("*.png"))) == 1
     assert any(abs(float(data.voltage[-1]) - 6.0) < 1e-9 for data in found.values())
     assert all(name.startswith("couple_motor_beam_") for name in found)
-    title = drive.picture_title(argparse.Namespace(**files), found, "6.5 V")
+    files = argparse.Namespace(drive=motor, structure="beam")
+    title = drive.picture_title(files, found, "6.5 V")
     assert title.startswith("motor, beam: 6.5 V; $f_1$ = 11.94 Hz") and "clearance 20 µm" in title
 
 

@@ -438,9 +438,13 @@ def test_names_of_a_base_in_several_languages(tmp_path, heading):
     assert f'base "{heading}"' in read_record(path).attrs["columns"]
 
 
-def test_a_stored_result_of_shake_is_read_as_a_record(tmp_path):
-    drawn(300).rename(acceleration1="a1_abs").to_netcdf(tmp_path / "a.nc")
-    assert read_record(tmp_path / "a.nc").acceleration1.equals(drawn(300).acceleration1)
+def test_a_stored_result_of_shake_is_a_record_if_it_has_no_impacts(tmp_path):
+    shaken, path = drawn(300).rename(acceleration1="a1_abs"), tmp_path / "a.nc"
+    shaken.to_netcdf(path)
+    assert read_record(path).acceleration1.equals(drawn(300).acceleration1)
+    shaken.assign(impulse=("impact", [1.0])).to_netcdf(path)
+    with pytest.raises(InputError, match=r"leave out the impacts; expected .*measure"):
+        read_record(path)
 
 
 @pytest.mark.parametrize("ending", [".uff", ".mat", ".nc", ".wav"])
