@@ -74,6 +74,12 @@ def check_path_encoding(path: str | os.PathLike[str]) -> None:
         raise InputError(f"{path}: a path that is not UTF-8; expected one that is") from None
 
 
+def reason(error: BaseException) -> str:
+    """Return why a file cannot be read: that there is none, or the system's or a reader's word."""
+    missing = isinstance(error, FileNotFoundError)
+    return "no such file" if missing else str(getattr(error, "strerror", None) or error)
+
+
 def format_write_error(error: BaseException, folder: Path) -> str:
     """Return why a file could not be written: the error's text and the disk's free bytes."""
     text = getattr(error, "strerror", None) or (str(error).splitlines() or [""])[0]

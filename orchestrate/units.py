@@ -42,13 +42,7 @@ class Units:
 
     @classmethod
     def from_text(cls, text: str, option: str = "units") -> Units:
-        """Read units from a list such as ``Hz, mm, g``: at most one of each kind, in any order.
-
-        Examples
-        --------
-        >>> Units.from_text("mm, Hz")
-        Units(frequency='Hz', length='mm', acceleration='', time='')
-        """
+        """Read units from a list such as ``Hz, mm, g``: at most one of each kind, in any order."""
         chosen: dict[str, str] = {}
         for part in text.replace(",", " ").split():
             word = ALIKE.get(part.lower(), part)
@@ -104,13 +98,6 @@ def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
     """Return datasets with display lengths in m, mm or um, so that the largest is 1 at least.
 
     Answers stay as they are where a unit of length was asked for, or a structure is not in SI.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> beam = xr.Dataset({"x": ("t", [2e-5, 0.0], {"units": "m"})}, attrs={"k1": 4.0, "m1": 1.0})
-    >>> str(units_of(*with_readable_lengths(beam)))
-    'um'
     """
     if not all(has_own_frequency(data) and not units_of(data).length for data in answers):
         return list(answers)
@@ -143,13 +130,6 @@ def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
     """Return a eta^2 in m; None where omega changes or the box's motion is not known.
 
     The paper's displacements xi are over this length.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> beam = xr.Dataset(attrs={"k1": 4.0, "m1": 1.0, "level": 0.2})
-    >>> length_of_ratio(beam)
-    0.05
     """
     names = ("level", "amplitude", "frequency")
     known: dict[str, Any] = {name: data[name] for name in names if name in data.coords}
@@ -182,16 +162,7 @@ def period_of(data: xr.Dataset) -> float:
 
 
 def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
-    """Return the divisor from an SI unit to the display unit of a dataset, and that unit's name.
-
-    Units are rad/s, Hz, m, m/s, s, m/s2 or a density over or of it; others stay.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> scale_of(with_units(xr.Dataset(), "mm, g"), "m/s")
-    (0.001, 'mm/s')
-    """
+    """Return the divisor from an SI unit to the display unit of a dataset, and that unit's name."""
     units = units_of(data)
     word, factor = unit, 1.0
     if unit in ("rad/s", "Hz") and units.frequency:

@@ -64,8 +64,12 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
     """Run ``diagnose``: compute a verdict per record; print it; write results and reports."""
     import orchestrate
 
+    from ..laboratory.record_files import check_file
+
     Files.from_options(arguments, "", fresh=True)  # before records are read
+    participation_by_sensor(arguments)
     if arguments.structure is None:
+        check_file(arguments.records[0])  # a name may be wrong too
         text = "expected a TOML file with a guess of the beam, within some 10 %"
         raise InputError(f"--structure is missing; {text}")
     guess = read_structure_options(arguments)
@@ -155,12 +159,15 @@ def participation_by_sensor(arguments: argparse.Namespace) -> dict[str, float] |
     """Parse ``--participation G,...`` into a dict by face; None if it is not given."""
     if arguments.participation is None:
         return None
+    from ..laboratory.sensors import PARTICIPATION
+
     texts = arguments.participation.split(",")
     faces = list(CHANNELS)[2:]
     try:
-        return dict(zip(faces[: len(texts)], map(float, texts), strict=True))
+        factors = [PARTICIPATION.check(float(text)) for text in texts]
+        return dict(zip(faces[: len(texts)], factors, strict=True))
     except ValueError:
-        expected = "expected a number for face 1, or for both faces, such as 1.57 or 0.53,0.6"
+        expected = "expected -10 to 10 for face 1, or for both faces, such as 1.57 or 0.53,0.6"
         raise InputError(f"--participation {arguments.participation}: {expected}") from None
 
 
@@ -351,12 +358,15 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
         yield f"pressed together: it opens from {lowest}, at {where}"
     elif not data.attrs["clearance"]:
         yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
-    best = data.distance_harmonics.max("frequency") / data.threshold
+    best = data.distance_harmonics.max("frequency")
     rows = parameter_column(data, "level", data.level.values, ".3g")
-    rows["orders 2 and 3 over what counts"] = [f"{value:.3g}" for value in best.values]
-    largest = data.opening.max("frequency", keep_attrs=True)
-    rows |= columns_of(largest.to_dataset().assign_attrs(data.attrs), "opening", form=".3g")
-    rows["sensor"] = ["overload" if flag else "" for flag in data.overload.values]
+    title = f"orders 2 and 3 over noise ({float(data.threshold):g} counts)"
+    rows[title] = [f"{value:.3g}" for value in best.values]
+    gaps = data[["opening"]].max("frequency", keep_attrs=True)
+    for name, cells in columns_of(gaps, "opening", form=".3g").items():
+        rows[name.replace("opening", "largest gap")] = cells
+    if data.overload.any():
+        rows["sensor"] = ["overload" if flag else "" for flag in data.overload.values]
     yield from table(rows)
 
 

@@ -40,8 +40,8 @@ DRIVE = (
     Group(
         "structure, motor and box",
         """
-        --drive SET|FILE = quick  TOML file with [motor], [box] and [structure], or a set: quick,
-            beam, rig
+        --drive SET|FILE = quick  TOML file with [motor], [box] and [structure], or a set: quick
+            (no real one: jumps come soon), beam (some kg on a small motor), rig (near the paper's)
         --structure SET|FILE  file or set with another [structure] than that of --drive
         --set NAME=VALUE ...  a parameter of the structure, or of motor and box in SI; may be
             repeated
@@ -325,16 +325,31 @@ def display(
 def result_name(
     arguments: argparse.Namespace, structure: Structure, drive: Drive, question: Any
 ) -> str:
-    """Return a result's file name: command, the drive's name, and a digest of all."""
+    """Return a result's file name: command, names of drive and structure, a digest of all."""
     digits = digest(structure.as_delaminated().parameters(), drive.parameters(), question)
-    return f"{arguments.row.function}_{Path(arguments.drive).stem}_{digits}"
+    return f"{arguments.row.function}_{'_'.join(source_names(arguments))}_{digits}"
+
+
+def source_names(arguments: argparse.Namespace) -> Iterable[str]:
+    """Return the names of the drive's file and, if it is another, of the structure's."""
+    return dict.fromkeys(Path(p).stem for p in (arguments.drive, arguments.structure) if p)
+
+
+def picture_title(
+    arguments: argparse.Namespace, results: Mapping[str, xr.Dataset], words: str
+) -> str:
+    """Return a picture's title: names of the files, what is shown, the structure."""
+    from ..show.labels import title_from_attributes
+
+    structure = title_from_attributes(list(results.values())[-1])  # delaminated, if it is there
+    return f"{', '.join(source_names(arguments))}: {words}; {structure}"
 
 
 def answer_drive(arguments: argparse.Namespace) -> None:
     """Run a command: ask for each structure, or for both at once; print, write files, draw."""
     import orchestrate
 
-    row, stem = arguments.row, Path(arguments.drive).stem
+    row = arguments.row
     structure, drive, question = row.ask(arguments)
     base, results = result_name(arguments, structure, drive, question), {}
     states = structures_by_name(arguments, structure) if "only" in arguments else {"": structure}
@@ -348,7 +363,7 @@ def answer_drive(arguments: argparse.Namespace) -> None:
     print_units_note(arguments, *shown.values())
     for state, data in asked.items():
         files[state].write(data)
-    title = f"{stem}: {row.title(shown, question)}"
+    title = picture_title(arguments, shown, row.title(shown, question))
     draw = row.draw or (lambda results, _, title: orchestrate.plot(*results.values(), title=title))
     picture = common_files(arguments, base, files.values())
     picture.write_pictures(lambda: draw(shown, arguments, title))

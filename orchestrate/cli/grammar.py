@@ -13,7 +13,7 @@ from decimal import Decimal, InvalidOperation
 from typing import TypeVar
 
 from ..errors import InputError
-from ..model.ranges import expected_one_of
+from ..model.ranges import expected_one_of, known_units, number_with_unit
 
 Parsed = TypeVar("Parsed")
 Reader = Callable[[str, str], Parsed]
@@ -21,12 +21,6 @@ AxisSpec = tuple[str, float, float, int]
 MAX_VALUES = 10_000_000
 RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
 
-SET_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # of parameters in --set, over their own
-    ("clearance", "preload"): {"mm": "1e-3", "um": "1e-6", "µm": "1e-6", "m": "1"},
-    ("zeta1", "zeta2", "D", "D1", "D2"): {"%": "0.01"},
-    ("f1", "f2"): {"Hz": "1"},
-    ("m1", "m2"): {"kg": "1"},
-}
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 
 # -- numbers --------------------------------------------------------------------------------------
@@ -242,17 +236,13 @@ def parse_changed_value(name: str, value: str) -> float | bool:
 
 def parse_with_unit(option: str, name: str, value: str, other: str = "") -> float:
     """Parse a number, with a unit if the parameter of this name allows it."""
-    known = next((units for names, units in SET_UNITS.items() if name in names), {})
-    unit = next((unit for unit in known if value.endswith(unit)), None)  # mm before m
     try:
-        if unit is not None:
-            number = value.removesuffix(unit).strip()
-            check_digits(number)
-            return float(Decimal(number) * Decimal(known[unit]))  # what one would write without it
-        return plain_float(value)
-    except (ValueError, InvalidOperation):
+        number = number_with_unit(name, value)
+        return plain_float(value) if number is None else number
+    except ValueError:
         check_name(name)  # before its unit
-        words = f", with {' or '.join(known)} if you like" if known else other
+        known = " or ".join(known_units(name))
+        words = f", with {known} if you like" if known else other
         text = f"{value} is not a number; expected one{words}"
         raise InputError(f"{option}{value}: {text}") from None
 

@@ -371,8 +371,6 @@ def read_record_file(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
         if arguments.sensor is not None and "impulse" in stored:
             return apply_sensor(stored, arguments.sensor)
         return stored if units <= {"m/s2"} else read_record(path)
-    if not path.is_file():
-        raise InputError(f"{path}: no such file; expected a record")
     reading = values_of(arguments, (COLUMNS, READING))
     if path.suffix.lower() != ".wav":  # the scale is of the others
         reading.pop("scale", None)

@@ -89,6 +89,8 @@ def run_resonance(arguments: argparse.Namespace) -> None:
 
 def resonance_summary(data: xr.Dataset) -> Iterator[str]:
     """Yield peaks and jumps, or the largest responses at each level; and the threshold."""
+    from .. import model
+
     sizes = "x1_max x2_max a1_max a2_max x_rel_max"
     if "level" in data.dims:
         yield from table(level_columns(data), data.sizes["level"])
@@ -114,6 +116,10 @@ def resonance_summary(data: xr.Dataset) -> Iterator[str]:
         level = format_parameter(data, "level", float(data.lowest_threshold), ".3g")
         where = format_parameter(data, "frequency", data.lowest_threshold_frequency, ".4g")
         yield f"in this range it first {event} at {where}: {level}"
+    if data.attrs.get("clearance", 0.0) < 0.0:
+        at_rest = model.Structure.from_attributes(data.attrs).as_delaminated().at_rest
+        ends = " and ".join(text_of(data, abs(x), "m", ".4g") for x in at_rest)
+        yield f"x1 and x2 count from the box's middle: the preload alone holds them {ends} from it"
 
 
 def level_columns(data: xr.Dataset) -> Columns:

@@ -34,8 +34,10 @@ from .drive import (
     make_controller,
     make_schedule,
     parse_ramp_ends,
+    picture_title,
     read_drive_options,
     result_name,
+    source_names,
     structures_by_name,
     times_in_seconds,
 )
@@ -218,7 +220,7 @@ def run_couple(arguments: argparse.Namespace) -> None:
     asked, shown = display(arguments, results)
     if arguments.branches:
         digits = digest(structure.as_delaminated().parameters(), drive.parameters())
-        store = arguments.output / f"branches_{Path(arguments.drive).stem}_{digits}.nc"
+        store = arguments.output / f"branches_{'_'.join(source_names(arguments))}_{digits}.nc"
         running = read_running_options(arguments, store)
         branches = orchestrate.drive_branch(structure, drive, **running)
         branches = with_units(branches, drive_units(arguments))
@@ -227,10 +229,9 @@ def run_couple(arguments: argparse.Namespace) -> None:
     for one, data in zip(files, asked.values(), strict=True):
         one.write(data)
     picture = common_files(arguments, jobs[0].name.rpartition("_")[0], files)
-    name = Path(arguments.drive).stem
-    picture.write_pictures(partial(draw_couple, name, shown, structure, drive, jobs[0], branches))
+    title = picture_title(arguments, shown, format_title(shown, jobs[0].control))
+    picture.write_pictures(partial(draw_couple, title, shown, structure, drive, jobs[0], branches))
     if any(data.jumps.notnull().any() for data in results.values()):
-        title = f"{name}: {format_title(shown)}"
         draw = partial(orchestrate.plot, *shown.values(), part="jumps", title=title)
         picture.write_pictures(draw, "jumps")
 
@@ -251,7 +252,7 @@ def write_package(
 
 
 def draw_couple(
-    name: str,
+    title: str,
     results: Results,
     structure: Structure,
     drive: Drive,
@@ -266,7 +267,6 @@ def draw_couple(
     from ..weak_drive import averaged, own_resonance
     from ..weak_drive.schedule import Ramp
 
-    title = f"{name}: {format_title(results, job.control)}"
     if job.control or not isinstance(job.schedule, Ramp):
         resonance = own_resonance.dividing_speed(structure, drive) * structure.omega
         return draw_run(results, resonance, title)

@@ -291,13 +291,7 @@ def digits(value: float, limit: float = math.nan) -> str:
 
 
 def factor_outside(value: float, low: float, high: float) -> float:
-    """Return by which factor a value lies below or above a range; at most 1 inside.
-
-    Examples
-    --------
-    >>> factor_outside(10.0, 20.0, 30.0), factor_outside(45.0, 20.0, 30.0)
-    (2.0, 1.5)
-    """
+    """Return by which factor a value lies below or above a range; at most 1 inside."""
     return max(value / high, low / value)
 
 

@@ -23,16 +23,6 @@ def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
     With M = m1 + m2, K = k1 + k2, D = d1 + d2 and the box's acceleration A sin(w t), the motion of
     both masses in the box has the complex amplitude X = -M A/(K - w^2 M + i w D), and the force on
     mass 2 is m2 A + (k2 - w^2 m2 + i w d2) X.
-
-    Examples
-    --------
-    >>> from orchestrate.model import Structure
-    >>> halves = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "zeta1": 0.01, "zeta2": 0.01}
-    >>> alike = Structure.from_halves(f2=42.0, **halves)
-    >>> bool(opening_force(alike, 30.0) < 1e-12)
-    True
-    >>> bool(opening_force(Structure.from_halves(f2=55.0, **halves), 30.0) > 0.1)
-    True
     """
     w = TURN * np.asarray(frequency, dtype=float)
     m, k = structure.m1 + structure.m2, structure.k1 + structure.k2
@@ -53,10 +43,5 @@ def sweep_rate(f: float, zeta: float) -> float:
 
     54 f^2/Q^2 Hz/min with Q = 1/(2 zeta): ISO 7626-2, and Gloth and Sinapius, Mech. Syst. Signal
     Process. 18 (2004) 1421-1441.
-
-    Examples
-    --------
-    >>> round(sweep_rate(50.0, 0.01), 3)
-    0.9
     """
     return 54.0 * math.pow(2.0 * zeta * f, 2) / 60.0

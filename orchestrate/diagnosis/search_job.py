@@ -119,7 +119,8 @@ class SearchJob(Job):
     sound: tuple[int, ...] = tuple(range(len(SOUND)))  # which of `SOUND`
     delaminated: bool = True  # whether that is searched too
     gathers: ClassVar[bool] = True
-    item: ClassVar[str] = "search"
+    last_weight: ClassVar[int] = 40  # refining takes about twice as long as all searches
+    item: ClassVar[str] = "step"
 
     @property
     def evidence(self) -> Evidence:
@@ -144,6 +145,10 @@ class SearchJob(Job):
             parts += [Delaminated.parts] * (1 + ("clearance" in self.free))
         longest_first = reversed(list(enumerate(parts)))
         return [*((h, part) for h, count in longest_first for part in range(count)), (-1, 0)]
+
+    def progress_note(self, first: int) -> str:
+        """Return a note for the progress bar while the last item refines, else none."""
+        return "refining the best fits" if first == self.count() - 1 else ""
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[tuple[int, int]], previous: Table | None

@@ -278,7 +278,7 @@ def attractors(
     amplitude: ArrayLike | None = None,
     over: str | None = None,
     values: ArrayLike | None = None,
-    starts: int = 60,
+    starts: int | None = None,
     seed: int = 0,
     scale: ArrayLike | None = None,
     width: float = 3.0,
@@ -299,8 +299,8 @@ def attractors(
     structure : Structure
     eta, frequency, amplitude, over, values
         As in :func:`orchestrate.sweep`.
-    starts : int
-        Random starts at each value.
+    starts : int, optional
+        Random starts at each value: by default 60, and 600 where there is one value alone.
     seed : int
         Of their random numbers: the same seed, the same starts.
     scale : array_like, optional
@@ -379,4 +379,7 @@ def attractors(
     >>> found.multiplicity.values[0], found.share.values[0]
     (array([1., 2.]), array([0.825, 0.175]))
     """
+    if starts is None:
+        several = any(x is not None and np.size(x) > 1 for x in (eta, frequency, amplitude, values))
+        starts = 60 if several else 600
     return ask(AttractorsJob, locals(), settings=attractor_settings(locals()))

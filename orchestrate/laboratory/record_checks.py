@@ -91,12 +91,6 @@ def clipped_share(values: Floats) -> float:
       a sine, coarsely digitized or not, there are fewer than half as many.
     - An extreme counts a quarter of the peak-to-peak value or more from the median alone: a signal
       at rest is not saturated.
-
-    Examples
-    --------
-    >>> sine = np.sin(np.linspace(0.0, 300.0, 9000))
-    >>> clipped_share(sine), round(clipped_share(np.clip(sine, -0.5, 0.5)), 2)
-    (0.0, 0.67)
     """
     ordered = np.sort(values)
     spread = float(ordered[-1] - ordered[0])

@@ -12,8 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError
-from ..files import check_path_encoding, write_whole
+from ..files import check_path_encoding, reason, write_whole
 from ..lazy import xr
+from .analysis.channels import CHANNELS as ACCELERATIONS
 from .columns import Column, Columns, converted_channels
 from .conversion import ByChannel, number_by_channel
 from .record import CHANNELS, Reading, checked_record, unit_of_channel
@@ -191,7 +192,7 @@ def check_file(path: Path) -> None:
     try:
         status = path.stat()
     except OSError as error:
-        raise InputError(f"{path}: {error.strerror}; expected a file to read") from None
+        raise InputError(f"{path}: {reason(error)}; expected a record") from None
     if not stat.S_ISREG(status.st_mode):
         raise InputError(f"{path}: no ordinary file; expected one")
     if not 0 < status.st_size <= MOST_BYTES:
@@ -209,6 +210,12 @@ def read_netcdf(path: Path) -> Columns:
         raise unreadable(path, error, "NetCDF") from None
     if "time" not in data.variables or data.time.dims != ("time",):
         raise InputError(f"{path}: no variable time over itself; expected a record")
+    if "a1_abs" in data:  # a result of shake
+        if data.sizes.get("impact"):
+            text = "expected what sensors read of it: orchestrate.measure, then write_record"
+            raise InputError(f"{path}: simulated accelerations leave out the impacts; {text}")
+        shaken = {stored: name for name, stored in ACCELERATIONS.items() if stored in data}
+        data = data[list(shaken)].rename(shaken)
     columns = [
         Column(str(name), str(one.attrs.get("units", "")), one.values.astype(float))
         for name, one in data.variables.items()

@@ -6,7 +6,9 @@ import difflib
 import math
 import numbers
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
 from typing import Any, TypeVar
 
 from fmu_src.export.description_common import UNITS
@@ -17,6 +19,12 @@ from fmu_src.models.oscillator import variables as oscillator
 from ..errors import InputError
 
 Described = TypeVar("Described")
+WRITTEN_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # in texts, over a parameter's own
+    ("clearance", "preload"): {"mm": "1e-3", "um": "1e-6", "µm": "1e-6", "m": "1"},
+    ("zeta1", "zeta2", "D", "D1", "D2"): {"%": "0.01"},
+    ("f1", "f2", "f1_hz", "f2_hz"): {"Hz": "1"},
+    ("m1", "m2"): {"kg": "1"},
+}
 
 
 @dataclass(frozen=True)
@@ -47,6 +55,9 @@ class Quantity:
     def check(self, value: Any) -> float:
         """Return ``value`` as a float; raise ``InputError`` if it is no number or out of range."""
         number = plain(value)
+        if isinstance(number, str):
+            with suppress(ValueError):
+                number = number_with_unit(self.name, number)
         if isinstance(number, bool) or not isinstance(number, numbers.Real):
             raise InputError(f"{self.name} = {value!r}: expected a number, {self.expected}")
         try:
@@ -57,6 +68,26 @@ class Quantity:
             unit = "" if self.unit == "1" else f" {self.unit}"
             raise InputError(f"{self.name} = {number!r}{unit}: expected {self.expected}")
         return number + 0.0  # no negative zero
+
+
+def known_units(name: str) -> dict[str, str]:
+    """Return the units that a text may have for a parameter, over its own; empty for most."""
+    return next((units for names, units in WRITTEN_UNITS.items() if name in names), {})
+
+
+def number_with_unit(name: str, text: str) -> float | None:
+    """Return the number of a text such as ``0.7 %``; None if it does not end in a unit."""
+    known = known_units(name)
+    unit = next((unit for unit in known if text.endswith(unit)), None)  # mm before m
+    if unit is None:
+        return None
+    number = text.removesuffix(unit).strip()
+    if not number.isascii() or "_" in number:
+        raise ValueError(text)
+    try:
+        return float(Decimal(number) * Decimal(known[unit]))  # what one would write without it
+    except InvalidOperation:
+        raise ValueError(text) from None
 
 
 def plain(value: Any) -> Any:

@@ -265,8 +265,8 @@ class Structure(Described):
         m2: float,
         f1: float,
         f2: float,
-        zeta1: float = 0.0,
-        zeta2: float = 0.0,
+        zeta1: float | str = 0.0,
+        zeta2: float | str = 0.0,
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
         bonded: bool = False,
@@ -280,8 +280,8 @@ class Structure(Described):
             Masses, kg.
         f1, f2 : float
             Undamped natural frequencies sqrt(k_i/m_i)/(2 pi) of each half alone, Hz.
-        zeta1, zeta2 : float
-            Damping ratios d_i/(2 sqrt(k_i m_i)) of each half at its own frequency; 0.007 is 0.7 %.
+        zeta1, zeta2 : float or str
+            Damping ratios d_i/(2 sqrt(k_i m_i)) of each half at its frequency, 0.007 or "0.7 %".
             The paper's ``D_i`` (8) refer to the frequency of mass 1 instead: ``D1`` is ``zeta1``,
             ``D2`` is ``zeta2 f2/f1``.
         e, gamma, bonded, **added

@@ -339,11 +339,6 @@ def round_state(
     Rounding never settles: what has converged to one response from two sides goes on to differ in
     its last digits for good. Without them it is the same to the last bit, and parts of a sweep that
     are begun elsewhere join it.
-
-    Examples
-    --------
-    >>> round_state(np.array([0.25, 0.3, 1.0, -1.0]))
-    (0.25, 0.30000000000001137, 1.0, -1.0)
     """
     x1, x2, v1, v2 = state.tolist()
     velocities = round_to_bits(v1, v2, bits)

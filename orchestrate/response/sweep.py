@@ -38,16 +38,17 @@ from .response_loop import LoopSettings, periods_to_sample, response_loop
 
 Direction = Literal["up", "down", "both", "given"]
 DIRECTIONS = ("up", "down", "both", "given")
+DISTANCE = "largest distance of mass {} from the box's middle, its rest under a preload included"
 RESPONSE_QUANTITIES = {  # one a response: units, long name
     "xi_rel_max": ("1", "largest gap over the sampled periods, between samples too"),
     "impacts_per_period": (
         "1",
         "impacts per excitation period: exact where the response repeats, else mean over samples",
     ),
-    "x1_max": ("m", "largest distance of mass 1 from the box's middle"),
-    "x2_max": ("m", "largest distance of mass 2 from the box's middle"),
-    "xi1_max": ("1", "largest distance of mass 1 from the box's middle over a eta^2"),
-    "xi2_max": ("1", "largest distance of mass 2 from the box's middle over a eta^2"),
+    "x1_max": ("m", DISTANCE.format(1)),
+    "x2_max": ("m", DISTANCE.format(2)),
+    "xi1_max": ("1", f"{DISTANCE.format(1)}, over a eta^2"),
+    "xi2_max": ("1", f"{DISTANCE.format(2)}, over a eta^2"),
     "a1_max": ("m/s2", "largest absolute acceleration of mass 1 between impacts"),
     "a2_max": ("m/s2", "largest absolute acceleration of mass 2 between impacts"),
 }
@@ -330,6 +331,8 @@ def sweep(
     >>> found = sweep(Structure.nondimensional(), eta=[1.046, 1.047], transient=100, samples=40)
     >>> found.xi_rel_max.values.round(2)
     array([21.21, 21.56])
+    >>> len(found.drop_dims(["sample", "coordinate"]).to_dataframe())  # a table, a row per value
+    2
     >>> found = sweep(Structure(), over="e", values=[0.3, 0.7], eta=0.4, transient=50)
     >>> found.impacts_per_period.values
     array([10., 30.])

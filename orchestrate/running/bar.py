@@ -60,11 +60,5 @@ def refresh(bar: Any, label: str) -> None:
 
 
 def shortened(label: str) -> str:
-    """Return a label of at most ``MAX_LABEL`` characters.
-
-    Examples
-    --------
-    >>> shortened("sweep_e0.7_D0.005_eta0.1-8_up")
-    'sweep_e0.7_D0.005_eta...'
-    """
+    """Return a label of at most ``MAX_LABEL`` characters."""
     return label if len(label) <= MAX_LABEL else f"{label[: MAX_LABEL - 3]}..."

@@ -43,6 +43,7 @@ class Job(ABC):
     chunk_size: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
     gathers: ClassVar[bool] = False  # the last item starts from all others, in a chunk of its own
+    last_weight: ClassVar[int] = 1  # of a gathering job's last item, in the progress bar
     warmup_items: ClassVar[int] = 0  # after which a sequential job has forgotten its beginning
     in_threads: ClassVar[bool] = False  # whether its work is in the FMU, past Python
     bulk: ClassVar[tuple[str, ...]] = ()  # columns that a store on disk gives as `StoredRows`
@@ -58,6 +59,10 @@ class Job(ABC):
     def count(self) -> int:
         """Return the number of items."""
         return len(self.items())
+
+    def total(self) -> int:
+        """Return what the progress bar counts to: all items, the last by its weight."""
+        return self.count() + self.last_weight - 1
 
     def independent_series(self) -> int:
         """Return how many equally long, independent series a sequential job's items form."""

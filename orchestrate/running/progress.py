@@ -103,8 +103,9 @@ class Progress:
         return self.result is not None
 
     def done(self) -> int:
-        """Return the number of items computed so far, those of guessed chunks included."""
-        return self._stored_items + sum(map(self.size, self.guesses))
+        """Return how far the progress bar is: items computed, those of guessed chunks included."""
+        last = self.job.last_weight - 1 if self.complete else 0
+        return self._stored_items + sum(map(self.size, self.guesses)) + last
 
     def size(self, index: int) -> int:
         """Return the number of items of a chunk."""

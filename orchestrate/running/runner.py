@@ -122,14 +122,14 @@ class Runner:
         return (threads if self.in_threads else processes)(count)
 
     def done(self) -> int:
-        """Return the number of computed items of all jobs together."""
+        """Return how far the progress bar is, over all jobs together."""
         return sum(state.done() for state in self.states.values())
 
     def little_left(self) -> bool:
         """Return whether the rest is too short, by time or tasks, to be worth parallel workers."""
         if self.options.processes == 1 or not self.computed_items:
             return True
-        left = sum(state.job.count() for state in self.states.values()) - self.done()
+        left = sum(state.job.total() for state in self.states.values()) - self.done()
         seconds = (time.perf_counter() - self.start_time) / self.computed_items * left
         return seconds < MIN_PARALLEL_SECONDS or self.busy_workers() < 2
 
@@ -139,7 +139,7 @@ class Runner:
 
     def bar(self) -> Any:
         """Return a progress bar over the items of all jobs."""
-        total = sum(state.job.count() for state in self.states.values())
+        total = sum(state.job.total() for state in self.states.values())
         unit = self.jobs[0].item if len(self.jobs) == 1 else "item"
         shown = self.options.progress
         return progress_bar(self.title(), shown, total=total, initial=self.done(), unit=unit)

@@ -98,8 +98,10 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
 def draw_distance_map(figure: Figure, plane: Axes, data: xr.Dataset) -> None:
     """Draw the distance by orders 2 and 3 over frequency and level, with the recommended sweep."""
     values = data.distance_harmonics
-    top = max(float(values.max()), 10.0 * float(data.threshold))
-    colours: Any = {"norm": LogNorm(1e-4 * top, top), "shading": "nearest", "rasterized": True}
+    limit = float(data.threshold)
+    top = max(float(values.max()), 10.0 * limit)
+    norm = LogNorm(min(1e-4 * top, 0.5 * limit), top)
+    colours: Any = {"norm": norm, "shading": "nearest", "rasterized": True}
     mesh = plane.pcolormesh(data.frequency, data.level, np.maximum(values, 1e-4 * top), **colours)
     ends = float(data.level.min()) / 1.3, float(data.level.max()) * 1.3
     if bool(((data.smallest_level >= ends[0]) & (data.smallest_level <= ends[1])).any()):
@@ -114,8 +116,9 @@ def draw_distance_map(figure: Figure, plane: Axes, data: xr.Dataset) -> None:
     use_plain_log(plane)
     plane.set_ylabel(label_with_unit("level of the box", data.level))
     plane.grid(visible=False)
-    words = "difference by orders 2 and 3\nin standard deviations of the noise"
-    figure.colorbar(mesh, ax=plane, label=words, aspect=20)
+    words = "difference by orders 2 and 3 in standard\ndeviations of the noise; above red it counts"
+    bar = figure.colorbar(mesh, ax=plane, label=words, aspect=20)
+    bar.ax.axhline(limit, color=RED, linewidth=1.6)
 
 
 def draw_distances(plane: Axes, data: xr.Dataset) -> None:

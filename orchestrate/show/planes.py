@@ -50,9 +50,13 @@ STATES = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent co
 def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
     """Draw maps over two parameters, one row per dataset, under borders; return the figure."""
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
-    size = (max(3.1 * len(columns), 4.5), 0.4 + 2.8 * len(maps))
+    rows = -(-len(columns) // 3) if len(maps) == 1 else 1  # of each: so that it fits a slide
+    across, down = -(-len(columns) // rows), rows * len(maps)
     words = title or (title_from_attributes(maps[0]) if len(maps) == 1 else "")
-    figure, axes = make_panels(len(maps), len(columns), size, words)
+    size = (max(3.1 * across, 4.5), 0.4 + 2.8 * down)
+    figure, axes = make_panels(down, across, size, words)
+    for plane in axes[len(maps) * len(columns) :]:
+        plane.remove()
     for row, data in enumerate(maps):
         first, second = varied_dimensions(data[columns[0]], 2)
         up, right = (second, first) if first in ("eta", "frequency") else (first, second)
@@ -63,16 +67,15 @@ def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] =
             draw_values(plane, values.transpose(up, right), x.values, y.values)
             words = "" if column or title or len(maps) == 1 else title_from_attributes(data)
             plane.set_title("\n".join(filter(None, [words, label])))
-            plane.set(ylabel="" if column else y.label, xlabel=x.label)
+            plane.set(ylabel="" if column % across else y.label, xlabel=x.label)
             limits = plane.axis()
             for curve in overlay:
-                scales = (parameter_scale(data, name)[0] for name in (right, up))
-                across, along = (
-                    curve[n] / scale for n, scale in zip((right, up), scales, strict=True)
-                )
+                scales = [parameter_scale(data, name)[0] for name in (right, up)]
+                across_line, along = curve[right] / scales[0], curve[up] / scales[1]
                 kind = str(curve.attrs["kind"])
-                draw_line(plane, across, along, "-", "white", 2.6)
-                draw_line(plane, across, along, "-", BORDERS[kind], 1.3, kind)
+                draw_line(plane, across_line, along, "-", "white", 2.6)
+                draw_line(plane, across_line, along, "-", BORDERS[kind], 1.3, kind)
+                mark_codimension_two(plane, curve, (right, up), scales)
             plane.axis(limits)
     if overlay:
         legend_below(figure, axes)
@@ -240,23 +243,27 @@ def draw_border(*curves: xr.Dataset, title: str = "") -> Figure:
     over = [str(name) for name in curves[0].attrs["over"]]
     figure, (plane,) = make_panels(1, 1, (9.6, 4.4), title or branch_title(curves[0], over))
     (x_unit, x_label), (y_unit, y_label) = (parameter_scale(curves[0], name) for name in over)
-    shown: dict[str, None] = {}  # each kind is in the legend once
     for curve in curves:
-        kind = str(curve.attrs["kind"])
-        x, y = curve[over[0]] / x_unit, curve[over[1]] / y_unit
-        draw_line(plane, x, y, "-", BORDERS[kind], 1.2, None if kind in shown else kind)
-        shown[kind] = None
-    for curve in (curve for curve in curves if curve.sizes.get("codimension_two")):
-        words = flag_words(curve.codimension_two_kind.attrs)
-        points = zip(*(curve[f"codimension_two_{name}"].values for name in over), strict=True)
-        for kind, (right, up) in zip(curve.codimension_two_kind.values, points, strict=True):
-            word, marker = words[int(kind)], MARKERS[int(kind) % len(MARKERS)]
-            label = None if word in shown else word
-            plane.plot(right / x_unit, up / y_unit, marker, color=BLACK, label=label)
-            shown[word] = None
+        x, y, kind = curve[over[0]] / x_unit, curve[over[1]] / y_unit, str(curve.attrs["kind"])
+        draw_line(plane, x, y, "-", BORDERS[kind], 1.2, kind)
+    for curve in curves:
+        mark_codimension_two(plane, curve, over, (x_unit, y_unit))
     plane.set(xlabel=x_label, ylabel=y_label)
-    figure.legend(loc="outside lower right", ncols=min(4, len(shown)))
+    legend_below(figure, [plane])
     return figure
+
+
+def mark_codimension_two(
+    plane: Axes, curve: xr.Dataset, over: Sequence[str], units: Sequence[float]
+) -> None:
+    """Mark the codimension-two points of a bifurcation curve, a marker for each kind."""
+    if not curve.sizes.get("codimension_two"):
+        return
+    words = flag_words(curve.codimension_two_kind.attrs)
+    x, y = (curve[f"codimension_two_{n}"] / unit for n, unit in zip(over, units, strict=True))
+    for kind, right, up in zip(curve.codimension_two_kind.values, x.values, y.values, strict=True):
+        style: Any = {"color": BLACK, "markeredgecolor": "white", "label": words[int(kind)]}
+        plane.plot(right, up, MARKERS[int(kind) % len(MARKERS)], linestyle="none", **style)
 
 
 @styled

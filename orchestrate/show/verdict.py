@@ -25,7 +25,7 @@ NAMES_OF_CHANNELS = (
 
 
 def make_verdict(answer: xr.Dataset) -> Verdict:
-    """Return the verdict of a ``detect`` result: its word and one sentence."""
+    """Return the verdict of a ``detect`` result: its word, and what was seen and fitted."""
     word = str(answer.verdict.values)
     sentences = {
         "delaminated": delaminated_statement,
@@ -36,7 +36,19 @@ def make_verdict(answer: xr.Dataset) -> Verdict:
         ),
         "undecided": lambda _: "This record does not tell a delaminated beam from a sound one.",
     }
-    return Verdict(make_sentence(word), sentences[word](answer), TONES.get(word, "open"))
+    statement = sentences[word](answer) + fitted_frequencies(answer)
+    return Verdict(make_sentence(word), statement, TONES.get(word, "open"))
+
+
+def fitted_frequencies(answer: xr.Dataset) -> str:
+    """Return a sentence with the natural frequencies of the best stated fit; empty without one."""
+    if "value" not in answer or "parameter" not in answer.dims:
+        return ""
+    in_hertz = answer.isel(parameter=answer.unit.values == "Hz")
+    stated = [one for one in sort_by_misfit(in_hertz) if np.isfinite(one.value).any()][:1]
+    known = [at for one in stated for _, at in one.groupby("parameter") if np.isfinite(at.value)]
+    texts = [f"{at.parameter.item()} = {format_parameter(at.squeeze(), 'Hz')}" for at in known]
+    return f" Natural frequencies fitted: {', '.join(texts)}." if texts else ""
 
 
 def delaminated_statement(answer: xr.Dataset) -> str:
@@ -183,7 +195,7 @@ def fits_section(answer: xr.Dataset) -> Section | None:
     if "measured" not in answer or "fitted" not in answer:
         return None
     picture = draw_detect(answer.assign_attrs(title=""))
-    picture.set_size_inches(max(9.0, picture.get_figwidth()), 5.6)  # wide, as the page is
+    picture.set_size_inches(max(7.6, 0.7 * picture.get_figwidth()), 4.0)  # near that on paper
     words = "What was measured, and what the best structures of each kind do, order by order."
     return Section("The measurement over the fits", picture=picture, caption=words, place="front")
 

@@ -13,7 +13,7 @@ from os import PathLike
 import numpy as np
 
 from ..errors import InputError
-from ..files import read_text
+from ..files import read_text, reason
 
 
 def check(
@@ -77,14 +77,7 @@ class Constant(Schedule):
 
 @dataclass(frozen=True)
 class Ramp(Schedule):
-    """Ramp the voltage from the first to the last one, and back.
-
-    Examples
-    --------
-    >>> ramp = Ramp(first=1.0, last=1.2, rate=0.001, settle=50.0)
-    >>> [round(ramp.voltage(time), 6) for time in (0.0, 50.0, 150.0, 250.0, 350.0, 450.0)]
-    [1.0, 1.0, 1.1, 1.2, 1.1, 1.0]
-    """
+    """Ramp the voltage from the first to the last one, and back."""
 
     # V
     first: float
@@ -193,8 +186,7 @@ class Course(Schedule):
         try:
             lines = read_text(path, 1 << 22).splitlines()  # bytes: some hundred thousand rows
         except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise InputError(f"{path}: cannot be read ({reason}); expected a CSV file") from None
+            raise InputError(f"{path}: {reason(error)}; expected a CSV file") from None
         rows: list[list[float]] = []
         for number, line in enumerate(lines, start=1):
             if not line.strip() or line.lstrip().startswith("#"):

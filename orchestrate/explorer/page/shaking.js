@@ -46,7 +46,9 @@ export class Shaking {
     onNumber(level, (value) => change(this.structure, levelFrom(value, this.level)));
     this.at("own-beam").addEventListener("click", () => {
       if (!inHertz(this.level)) change(...this.converted(true));
-      /** @type {HTMLInputElement} */ (this.at("f1")).select(); // the first of the fields, ready to be typed into
+      const first = /** @type {HTMLInputElement} */ (this.at("f1")); // ready to be typed into
+      first.scrollIntoView({ block: innerWidth > 900 ? "nearest" : "center" });
+      first.select();
     });
     this.at("units").addEventListener("change", ({ target }) => {
       change(...this.converted(/** @type {HTMLSelectElement} */ (target).value === "own"));

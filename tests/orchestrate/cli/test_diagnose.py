@@ -36,7 +36,8 @@ def sine(tmp_path):
 
 MISTAKES = """
     FILE : --structure is missing | guess of the beam
-    lost.csv GUESS : lost.csv | expected a file to read
+    lost.csv : lost.csv: no such file; expected a record
+    FILE GUESS --participation 99 : --participation 99: expected -10 to 10
     FILE --structure lost.toml : lost.toml
     FILE GUESS --columns 0 : --columns 0 | time, base, face 1
     FILE GUESS --columns 0,1 : no acceleration of a face in time | base | --columns

@@ -65,7 +65,7 @@ MISTAKES = {  # options of each command, then what its line says
         --random 5:1,9:nan --duration 2 : --random 5:1,9:nan | HZ:VALUE
         --random 5:1,9:1 : --random | --duration
         --shock sawtooth --g 1 : --shock | --length
-        --record no.csv : no.csv | a file to read
+        --record no.csv : no.csv: no such file; expected a record
         --record a.csv --g 1 : --g: expected with --swept-sine or --stepped-sine or --shock alone
         --swept-sine 8:20 --g 1 --unit g : --unit | with --record alone
     """,
@@ -146,7 +146,7 @@ MISTAKES = {  # options of each command, then what its line says
         --rate 0 : --rate 0 | > 0
         --rate 1e-4,5e-5 : --rate 1e-4,5e-5 | expected one | jump-voltages
         --rate 1e-4 --volt-rate 1 : --rate and --volt-rate
-        --course nowhere.csv : nowhere.csv | cannot be read
+        --course nowhere.csv : nowhere.csv: no such file
         --course a.csv --eta0 1:2 : --course and --eta0
         --set armature_resistance=1e-3 : does not jump | --eta0 or --voltage
         --speed-control 1.5 --speed-gradient : --speed-control and --speed-gradient

@@ -67,6 +67,12 @@ def test_scale_is_three_times_the_largest_gap_from_rest():
         attractors(PAPER, **asked, scale=-1.0)
 
 
+def test_one_value_alone_has_ten_times_the_starts():
+    with patch("orchestrate.dynamics.attractors.ask", lambda _, asked, **more: asked["starts"]):
+        assert attractors(PAPER, eta=TWO) == attractors(PAPER, over="e", values=0.7, eta=TWO) == 600
+        assert attractors(PAPER, over="e", values=[0.3, 0.7], eta=TWO) == 60
+
+
 def test_a_bonded_structure_has_nothing_to_tell():
     with pytest.raises(InputError, match="bonded = True: expected a delaminated structure"):
         attractors(PAPER.as_bonded(), eta=1.0)

@@ -68,6 +68,18 @@ def test_six_tasks_are_done_by_the_page_alone(first):
     first.until("return document.getElementById('sentence').textContent.includes('4 impacts')")
 
 
+def test_on_a_telephone_the_diagram_and_the_fields_of_one_s_own_beam_are_seen(first):
+    place = "return document.getElementById(arguments[0]).getBoundingClientRect().top"
+    screen = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+    first.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+    try:
+        assert first.run(place, "diagram") < 720
+        first.run(WORDS, "button", "your own beam")
+        assert 0 < first.run(place, "f1") < 800
+    finally:
+        first.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
 @pytest.mark.slow
 def test_from_which_level_on_a_pressed_beam_opens_is_the_closed_forms(browser):
     browser.run(WORDS, "a", "6 Pressed shut")

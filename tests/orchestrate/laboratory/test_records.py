@@ -438,6 +438,15 @@ def test_names_of_a_base_in_several_languages(tmp_path, heading):
     assert f'base "{heading}"' in read_record(path).attrs["columns"]
 
 
+def test_a_stored_result_of_shake_is_a_record_if_it_has_no_impacts(tmp_path):
+    shaken, path = drawn(300).rename(acceleration1="a1_abs"), tmp_path / "a.nc"
+    shaken.to_netcdf(path)
+    assert read_record(path).acceleration1.equals(drawn(300).acceleration1)
+    shaken.assign(impulse=("impact", [1.0])).to_netcdf(path)
+    with pytest.raises(InputError, match=r"leave out the impacts; expected .*measure"):
+        read_record(path)
+
+
 @pytest.mark.parametrize("ending", [".uff", ".mat", ".nc", ".wav"])
 @pytest.mark.parametrize("damage", ["cut", "noise"])
 def test_damaged_files_are_refused_in_one_line(tmp_path, ending, damage):
@@ -461,7 +470,7 @@ def test_huge_files_and_unknown_ones_are_refused(tmp_path, monkeypatch):
         read_record(path)
     with pytest.raises(InputError, match="expected a file that ends in .csv"):
         read_record(tmp_path / "a.xyz")
-    with pytest.raises(InputError, match="No such file"):
+    with pytest.raises(InputError, match="no such file; expected a record"):
         read_record(tmp_path / "b.csv")
     with pytest.raises(InputError, match="no ordinary file"):
         (tmp_path / "folder.csv").mkdir()

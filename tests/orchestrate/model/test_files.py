@@ -167,7 +167,7 @@ m1 = 1.5
 m2 = 1.2
 f1_hz = 42.0
 f2_hz = 55.0
-zeta1 = 0.007
+zeta1 = "0.7 %"
 zeta2 = 0.01
 e = 0.6
 """
@@ -238,7 +238,7 @@ def test_a_motor_by_its_datasheet(file, speed, rotor):
 
 
 def test_halves_by_frequency_and_damping_ratio(file):
-    numbers = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.01}
+    numbers = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": "1 %"}
     assert read(file(HALVES))["structure"] == Structure.from_halves(**numbers, e=0.6)
 
 

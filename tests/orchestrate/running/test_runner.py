@@ -201,6 +201,13 @@ def test_an_unknown_keyword_is_an_error_of_pythons_kind(find):
         answer(JOB, {"job": 2}, find)
 
 
+def test_in_the_bar_a_last_chunk_counts_as_much_as_it_takes(find, monkeypatch, capfd):
+    monkeypatch.setattr(bar, "DELAY", 0.0)
+    monkeypatch.setattr(Gathered, "last_weight", 30)
+    answer(Gathered("all", size=10), {"jobs": 1}, find)
+    assert re.findall(r"(\d+)/40", capfd.readouterr().err)[-2:] == ["10", "40"]
+
+
 def test_in_a_log_the_bar_is_a_line_every_ten_per_cent(find, monkeypatch, capfd):
     """Its label is short; what the last chunk does is said before, as the bar stands still then."""
     monkeypatch.setattr(bar, "DELAY", 0.0)

@@ -9,8 +9,10 @@ import xarray as xr
 from orchestrate.dynamics.branches import branch
 from orchestrate.model import Structure
 from orchestrate.show.lines import draw_branch
-from orchestrate.show.planes import draw_border
+from orchestrate.show.planes import draw_border, draw_map
 from orchestrate.units import with_units
+
+from .made import mapped
 
 PAPER = Structure.nondimensional()
 
@@ -48,13 +50,18 @@ def test_a_border_is_a_line_over_both_parameters_with_its_points():
     made |= {"codimension_two_eta": ("codimension_two", [2.8])}
     made |= {"codimension_two_e": ("codimension_two", [0.7])}
     attributes = {**PAPER.parameters(), "over": ["eta", "e"], "kind": "period doubling"}
-    figure = draw_border(xr.Dataset(made, sides, attributes))
+    curve = xr.Dataset(made, sides, attributes)
+    figure = draw_border(curve)
     line, point = figure.axes[0].get_lines()
     assert line.get_xdata() == pytest.approx([2.7, 2.8, 2.9])
     assert line.get_ydata() == pytest.approx([0.69, 0.7, 0.71])
     assert (point.get_xdata()[0], point.get_ydata()[0]) == (2.8, 0.7)
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert words == ["period doubling", "fold flip"]
+    figure = draw_map(mapped(False), overlay=[curve])
+    marks = [plane.get_lines()[2] for plane in figure.axes if plane.get_lines()]
+    assert len(marks) == 4 and len({round(plane.get_position().y0, 2) for plane in figure.axes}) > 1
+    assert all(mark.get_xdata()[0] == 2.8 and mark.get_ydata()[0] == 0.7 for mark in marks)
 
 
 def test_gaps_of_a_branch_are_lengths_where_they_are_asked_for():

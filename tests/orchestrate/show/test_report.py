@@ -15,7 +15,12 @@ import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.show.answers import title_of
 from orchestrate.show.page import Page, Section, Table, Verdict, format_number, format_with_error
-from orchestrate.show.verdict import format_odds, measured_record, verdict_sections
+from orchestrate.show.verdict import (
+    format_odds,
+    make_verdict,
+    measured_record,
+    verdict_sections,
+)
 
 EVIL = "<script>alert(\"1\")</script> & 'others'"
 RATE = 1000.0
@@ -188,6 +193,7 @@ def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is(verdict):
     rows = dict(row[:1] + row[1:2] for row in sections["Parameters"].tables[0].rows)
     assert rows["f1, frequency of half 1"] == "42.00 ± 0.50 Hz"
     assert "stop, stiffness of a stop" in rows
+    assert make_verdict(verdict).sentence.endswith("frequencies fitted: f1 = 42.00 ± 0.50 Hz.")
     odds = [words for words in sections["Why"].points if words.startswith("The odds")]
     assert "300 to 1" in odds[0] and "blocks" in odds[0]
     without = verdict.assign_attrs(m1=float("nan"))
