@@ -31,9 +31,6 @@ FLAGS = (
 CLANG_FLAGS = (  # which gcc does not know
     "-Xclang",  # ziglang takes -O3 for -O2
     "-O3",
-    # LLVM does not count what moving two numbers side by side and back costs: an impact takes a
-    # tenth longer by it
-    "-fno-slp-vectorize",
     # a loop for each mode of the state, not a question in every turn of one
     *("-mllvm", "-unswitch-threshold=200"),
     *("-mllvm", "-inline-threshold=1000"),  # each function where it is called

@@ -215,6 +215,12 @@ class Findings:
         return self.settings.delaminated_apart if is_parted else self.settings.delaminated
 
     @property
+    def is_described(self) -> bool:
+        """Whether the delaminated model describes the record so well that its numbers are stated."""
+        limits = self.settings
+        return self.delaminated_misfit <= limits.delaminated and self.ratio >= limits.ratio
+
+    @property
     def odds(self) -> float:
         """Odds of a ratio that decides, by the records put together of blocks."""
         return (self.share * RESAMPLED + 0.5) / ((1.0 - self.share) * RESAMPLED + 0.5)
@@ -243,12 +249,11 @@ class Findings:
 
     def imperfection(self) -> list[str]:
         """Return a sentence on a model that decides but describes the record poorly, if it does."""
-        described = self.delaminated_misfit <= self.settings.delaminated
-        if self.verdict() != DELAMINATED or (described and self.ratio >= self.settings.ratio):
+        if self.verdict() != DELAMINATED or self.is_described:
             return []
         return [
             "What decides is that the faces move apart: two masses describe this structure only "
-            "so well, and their numbers say little about it."
+            "so well, and their numbers are not stated."
         ]
 
     def next_measurement(self) -> str:

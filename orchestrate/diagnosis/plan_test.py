@@ -86,7 +86,7 @@ def plan_test(
     periods: float = 16.0,
     gain_error: float = 0.03,
     threshold: float = 5.0,
-    margin: float = 2.0,
+    margin: float = 4.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Find frequencies and levels at which a delamination shows best.
