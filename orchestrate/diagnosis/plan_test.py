@@ -64,9 +64,8 @@ class Noise:
     def distances(self, sweep: Sweep, frequency: Floats) -> tuple[Floats, Floats]:
         """Compute the distance between both structures by order 1, and by orders 2 and 3.
 
-        In standard deviations of a complex amplitude. Least squares with Hann's weights over n
-        samples of a noise of variance s^2 have the variance 6 s^2/n; with a density of c^2 at the
-        rate r that is s^2 = c^2 r/2, and n = r periods/f.
+        In standard deviations of a complex amplitude, by least squares with Hann's weights: of n
+        samples of noise of variance s^2 = c^2 r/2 it is 6 s^2/n, with n = r periods/f.
         """
         variance = 3.0 * self.density[:, None] ** 2 * frequency / self.periods
         gap = np.abs(sweep.delaminated - sweep.sound) ** 2

@@ -185,11 +185,8 @@ class SearchJob(Job):
     def finish(self, previous: Table, player: Player) -> Table:
         """Refine the best solutions of each hypothesis, and compute all misfits and errors.
 
-        - What each search found is ranked, together with the best numbers of a hypothesis that is
-          contained in this one.
-        - The best, of two halves also the next one where it is close, is improved by regressions
-          over clouds near the resonance, and the better of them on the whole record.
-        - Errors follow for the bonded fit, the best sound one, and those of two halves.
+        What was found, with the best of a hypothesis that this one contains, is improved near the
+        resonance, then on the whole record; errors follow for those that a verdict may state.
         """
         worth = is_worth_a_search(self.data)
         made: list[tuple[Search, list[Solution]]] = []

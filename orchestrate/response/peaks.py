@@ -66,13 +66,8 @@ def peaks(
 ) -> dict[str, Floats]:
     """Return the largest displacements and accelerations of both masses in each response.
 
-    Notes
-    -----
-    Intervals of length h are exact to about ``(w h)^4/400`` of the largest value, with w the
-    fastest of the frequencies of excitation and masses: with 200 intervals, to ``1e-8 p^4`` where
-    p periods of the excitation are looked at and it is the fastest. Of several impacts in one
-    interval, as in chattering, the first is seen alone: an acceleration that is largest between
-    the others may then be missed by up to ``w h`` of it.
+    Intervals of length h are exact to about ``(w h)^4/400``, w the fastest frequency; of several
+    impacts in one interval the first is seen alone, an acceleration between them may be missed.
     """
     count = states.shape[1] - 1
     rates = MotionCoefficients.from_structures(point.structure for point in points)

@@ -146,8 +146,7 @@ class DelaminatedBeam:
     def node_selector(self, layer: int, node: int) -> Floats:
         """Return the (3, all) matrix that selects a layer's displacements at a node.
 
-        Where the whole beam ends at a node that belongs to the layers, they are those of layer 1,
-        referred to its own axis.
+        Where the whole beam ends at a node of the layers, they are those of layer 1.
         """
         size = 3 * len(self.node_numbers)
         known = (layer, node) in self.node_numbers

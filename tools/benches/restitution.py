@@ -10,10 +10,7 @@ from scipy.optimize import brentq
 def linear_restitution(ratio: float) -> float:
     """Return the restitution of a spring-dashpot contact without pull, by damping ratio.
 
-    Notes
-    -----
-    The contact ends where its force is zero, before the depth is: with cos(b) = ratio that is at
-    the phase 2 b, and ``e = exp(-2 b ratio/sqrt(1 - ratio**2))``.
+    It ends where the force is zero, before the depth is: at the phase 2 b with cos(b) = ratio.
     """
     return math.exp(-2.0 * math.acos(ratio) * ratio / math.sqrt(1.0 - ratio * ratio))
 
@@ -26,10 +23,7 @@ def linear_damping_ratio(e: float) -> float:
 def hunt_crossley_restitution(damping: float, speed: float) -> float:
     """Return the restitution of ``k d**n (1 + damping d')`` at a closing speed, any k and n.
 
-    Notes
-    -----
-    The law's power balance can be integrated over the depth: with y = damping speed,
-    ``y (1 + e) = ln((1 + y)/(1 - e y))``. For small y, e = 1 - 2 y/3.
+    By the power balance over the depth, with y = damping speed: y (1 + e) = ln((1 + y)/(1 - e y)).
     """
     y = damping * speed
     if y < 1e-9:
