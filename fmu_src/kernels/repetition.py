@@ -97,7 +97,7 @@ def repeat(m, time):
 
 
 def conclude(m, n, decided):
-    """Write the result into the memory."""
+    """Write multiplicity and decision into the memory; return 0."""
     m[MULTIPLICITY] = n
     m[DECIDED] = decided
     return 0
@@ -112,7 +112,7 @@ def longest(m):
 
 
 def scale(m, first):
-    """Divide the states from one on by the motion's size, which makes them homogeneous.
+    """Write the states from ``first`` on, divided by the motion's size, as a row per co-ordinate.
 
     The length is the largest of all displacements, and velocities over the frequency, among them.
     The gap is compared with the largest gap, and its rate with the larger one of that and itself.

@@ -171,7 +171,7 @@ class Findings:
 
     @property
     def stops(self) -> list[Condition]:
-        """Return what stops the verdict: of the record, or of the verdict that is nearest."""
+        """Return the unmet conditions that stop a verdict: the record's, else the nearest one's."""
         nearest = (
             self.delaminated_conditions() if self.is_opening_seen else self.no_opening_conditions()
         )
@@ -216,13 +216,13 @@ class Findings:
 
     @property
     def is_described(self) -> bool:
-        """Whether the delaminated model describes the record so well that its numbers are stated."""
+        """Whether the delaminated model fits the record so well that its numbers are stated."""
         limits = self.settings
         return self.delaminated_misfit <= limits.delaminated and self.ratio >= limits.ratio
 
     @property
     def odds(self) -> float:
-        """Odds of a ratio that decides, by the records put together of blocks."""
+        """Odds that the ratio of misfits decides, from its share of block-bootstrap samples."""
         return (self.share * RESAMPLED + 0.5) / ((1.0 - self.share) * RESAMPLED + 0.5)
 
     def reason(self) -> str:

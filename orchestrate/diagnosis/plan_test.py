@@ -339,7 +339,7 @@ def plan_dataset(
 def smallest_detectable(
     test: SweepComputation, sweeps: Sequence[Sweep], limit: float, higher: Floats, opening: Floats
 ) -> dict[str, Any]:
-    """Return the smallest levels and openings that count, and where sensors overload."""
+    """Return variables: the smallest levels and openings that count, and levels that overload."""
     force = largest_opening_force(test.structure, test.frequency)
     with np.errstate(divide="ignore", invalid="ignore"):
         smallest = np.where(higher[-1] > 0.0, limit * sweeps[-1].level / higher[-1], np.inf)

@@ -110,7 +110,7 @@ class MotionDecider:
         return None, unstable
 
     def possible_periods(self, response: Response) -> list[int]:
-        """Return candidate periods of a response, from its repetition at another phase."""
+        """Simulate on, sampled at another phase; return periods after which it may repeat there."""
         begin(self.plain, *self.point, response.end)
         self.plain.step(0.0, OTHER_PHASE / self.point.excitation.frequency)
         there = self.plain.get(*STATE)

@@ -83,7 +83,7 @@ TEXTS = {  # what a field is that is no number
 
 
 def names_of_face(number: str, plain: str) -> dict[str, str]:
-    """Return the patterns of the columns of a face in a resonance curve, by what they are."""
+    """Return regular expressions of a face's column names in a resonance curve, by quantity."""
     motion, alone = f"(?:{MOTION}|{RATIO}){plain}", "|order|harmonic" if number == "1" else ""
     return {
         f"amplitude{number}": f"{motion}|(?:{MOTION}|{RATIO}){number}order1",

@@ -230,7 +230,7 @@ def construct_or_explain(
 
 
 def exact_inverse(guess: float, forward: Callable[[float], float], target: float) -> float:
-    """Return the float near ``guess`` for which ``forward`` gives ``target`` exactly, if any."""
+    """Return the float near ``guess`` that ``forward`` maps to ``target``, else ``guess``."""
     # of the few numbers that do, the one with the fewest digits: the one that somebody wrote down
     near = [guess]
     for _ in range(3):

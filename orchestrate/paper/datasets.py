@@ -51,7 +51,7 @@ class Datasets:
         return self.get(name, orchestrate.sweep, CASES[case], eta=eta, **more)
 
     def protocol(self) -> dict[str, Any]:
-        """Return the paper's periods dropped and kept: n = 500(1)700 has both ends."""
+        """Return as keywords the periods dropped and kept: n = 500(1)700 has both ends."""
         return {"transient": self.size.transient - 1, "samples": self.size.samples + 1}
 
     def up(self, case: str) -> xr.Dataset:
@@ -109,7 +109,7 @@ class Datasets:
         return self.get(name, orchestrate.lyapunov, CASES[case], eta=settled.eta.values, **more)
 
     def largest(self, case: str) -> xr.Dataset:
-        """Return long runs of the two frequencies with the largest exponents of each region."""
+        """Return exponents of longer runs at the two eta of each region where they are largest."""
         etas: set[float] = set()
         for region in self.regions(case):
             part = between(self.exponent(case), region.low, region.high).exponent
@@ -254,7 +254,7 @@ class Datasets:
     # -- beyond the paper --------------------------------------------------------------------------
 
     def settling(self) -> dict[str, Any]:
-        """Return how long responses from many starts are run."""
+        """Return as keywords how long responses from many starts are run."""
         return {"transient": self.size.settle, "longest": self.size.settle_most}
 
     def attractors(self) -> xr.Dataset:

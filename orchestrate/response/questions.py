@@ -180,7 +180,7 @@ def make_series(
 
 
 def table_of(points: Points, row: Callable[[Point], ArrayLike], width: int) -> NDArray[np.float64]:
-    """Return numbers of each point, shape (n, width)."""
+    """Return ``row`` of each point as an array, shape (n, width)."""
     return np.fromiter(map(row, points), np.dtype((float, (width,))), len(points))
 
 

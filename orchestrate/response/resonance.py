@@ -46,7 +46,7 @@ class ResonanceJob(SweepJob):
             raise InputError("direction = 'given': expected one of up, down, both")
 
     def parameters(self) -> dict[str, Any]:
-        """Return the parameters; the start is none of them."""
+        """Return the job's parameters for its identity, without the start."""
         return {name: value for name, value in super().parameters().items() if name != "start"}
 
     def independent_series(self) -> int:

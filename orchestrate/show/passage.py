@@ -138,7 +138,7 @@ def format_passage(data: xr.Dataset) -> str:
 
 
 def time_origin(data: xr.Dataset) -> tuple[float, str]:
-    """Return the time, s, at which a passage's axis has 0, and its name."""
+    """Return the time, s, at which a passage's axis has 0, and words for it: from the jump up."""
     jumps = data.jump_time.values
     known = np.flatnonzero(np.isfinite(jumps))
     if known.size:

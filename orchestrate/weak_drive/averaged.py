@@ -149,7 +149,7 @@ def smallest_slope(structure: Structure, drive: Drive, count: int = 10_001) -> f
 
 
 def growth_rates(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
-    """Return the growth rates of small slow disturbances of a stationary motion."""
+    """Return a motion's complex growth rates of slow disturbances, the fastest growing first."""
     pull, masses, box = mechanical_polynomials(structure, drive)
     above = (pull + masses) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
     below = box * (pull + masses) + pull * masses
@@ -208,7 +208,7 @@ def stability_limits(
 def branch_stability(
     structure: Structure, drive: Drive
 ) -> tuple[list[BifurcationPoint], list[bool]]:
-    """Return all folds and Neimark-Sacker points by speed, and which motions are stable."""
+    """Return all folds and Neimark-Sacker points by speed, and whether parts between are stable."""
     speed = resonance(structure, drive)
     torus = neimark_sacker_points(structure, drive)
     points = sorted([*folds(structure, drive), *torus], key=lambda point: point.Omega)

@@ -221,7 +221,7 @@ class CosimulateJob(Question):
         return next((way for way in ways if math.isfinite(way)), math.nan)
 
     def inputs_at_start(self, drive: Description) -> Iterator[str]:
-        """Yield the drive's inputs that nothing is given for, with their start values."""
+        """Yield ``name = start unit`` of each of the drive's inputs that nothing is given for."""
         links = checked_links(dict(self.connect), drive).values()
         given = {*(link.theirs for link in links), *Inputs(self.inputs, drive).names}
         for name, one in drive.variables.items():
@@ -229,7 +229,7 @@ class CosimulateJob(Question):
                 yield f"{name} = {one.start} {one.unit or ''}".rstrip()
 
     def finenesses(self) -> tuple[int, ...]:
-        """Return into how many parts each step is divided: none, and two for the error."""
+        """Return into how many parts steps are divided: 1, and 2 in a second run for the error."""
         return (1, 2) if self.estimate else (1,)
 
     def motion(self, oscillator: Path, steps: Table) -> Table:
@@ -424,7 +424,7 @@ def warn_of_sign(run: xr.Dataset, links: Mapping[str, Link]) -> None:
 
 
 def warn_of_error(run: xr.Dataset, missing: Sequence[str]) -> None:
-    """Warn where the error of the coupling is large enough to hide or to make impacts."""
+    """Warn where the coupling's error may hide or make impacts; ``missing`` could be connected."""
     if "coupling_error" not in getattr(run, "data_vars", ()):  # a job alone
         return
     size = max(float(abs(run[name]).max()) for name in ("x1", "x2"))
@@ -465,7 +465,7 @@ def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Val
 def checked_inputs(
     inputs: Mapping[str, Any], drive: Description, duration: float
 ) -> tuple[tuple[str, Input], ...]:
-    """Return the drive's other inputs as courses over time, or controlled."""
+    """Return the drive's other inputs by name: a ``Course`` each, or the control as it is given."""
     courses: list[tuple[str, Input]] = []
     for name, value in inputs.items():
         checked_variable(drive, name, "input")

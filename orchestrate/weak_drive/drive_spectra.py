@@ -70,7 +70,7 @@ class DriveSpectraJob(Job):
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
     def record_displacements(self, fmus: Fmus, structure: Structure) -> tuple[np.ndarray, float]:
-        """Hold the voltage; return displacements (2, samples), m, and speed, rad/s."""
+        """Simulate ramp and hold; return displacements (2, samples), m, and mean speed, rad/s."""
         scheme = scheme_from_arguments(structure, self.step, 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
         steps = range(math.ceil((self.approach.duration + self.hold) / self.step))
@@ -85,7 +85,7 @@ class DriveSpectraJob(Job):
             return self.sample_displacements(run, TURN / speed / self.points), float(speed)
 
     def sample_displacements(self, run: Run, interval: float) -> np.ndarray:
-        """Sample both masses' absolute displacements at equal times, m."""
+        """Run on at equal steps; return both masses' absolute displacements, m, (2, samples)."""
         count = self.revolutions * self.points
         found = run.master.run([self.approach.last] * count, h=interval).at_ends()
         rest_1, rest_2 = run.job.structure.at_rest
@@ -93,7 +93,7 @@ class DriveSpectraJob(Job):
         return np.array([found["x1"] - rest_1 + box, found["x2"] - rest_2 + box])
 
     def hangs_at_resonance(self, fmus: Fmus) -> bool:
-        """Return whether the delaminated structure still hangs at the resonance."""
+        """Simulate, and return whether the delaminated structure still hangs at the resonance."""
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         threshold = own_resonance.dividing_speed(structure, self.drive) * structure.omega
         return short.record_displacements(fmus, structure)[1] < threshold

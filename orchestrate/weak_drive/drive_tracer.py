@@ -179,7 +179,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return self.shooter.size + 1, [self.speeds]
 
     def go_on_from(self, point: Motion) -> Motion:
-        """Continue from a motion whose period is begun far from impacts."""
+        """Set the stepper to a motion, begun far from impacts, for the next step; return it."""
         motion = start_far_from_impacts(self.shooter, point)
         self.stepper.move_to(motion)
         self.shot = self.shooter.shoot(motion.root.unknowns)
@@ -200,7 +200,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return float(np.prod([1.0 - a * b for a, b in combinations(values, 2)]).real)
 
     def confirms(self, kind: Kind, point: Motion, part: float) -> bool:
-        """Return whether a Neimark-Sacker point has a complex pair on the unit circle."""
+        """Return True, but for a torus whether a complex pair lies on the unit circle."""
         pairs = point.multipliers[np.abs(point.multipliers.imag) > 1e-6]
         return kind != Kind.TORUS or bool((np.abs(np.abs(pairs) - 1.0) < 1e-4).any())
 
@@ -214,7 +214,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return (HALVED if self.half_period_change @ change < 0.0 else ""), ()
 
     def end_without_root(self, segment: BranchSegment[Motion]) -> None:
-        """Set why a leg ends where Newton's method fails, such as at a grazing."""
+        """Set why a leg ends where Newton's method fails; thin out its points next to a grazing."""
         # had a late motion a contact phase, it is that which is lost
         if any(motion.period.sticks for motion in segment.points[-12:]):
             segment.end = UNFINISHED
@@ -263,7 +263,7 @@ def double_period(shooter: Shooter, flip: Motion) -> Motion:
 
 
 def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
-    """Move the start of a motion's period to where the gap is widest."""
+    """Return a motion begun far from impacts: the same, or begun ``period.clear`` steps later."""
     # a motion that begins with an impact has no derivative
     period, together = motion.period, motion.period.together
     if period.share > 0.3 and together == motion.together:

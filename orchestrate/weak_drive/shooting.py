@@ -212,7 +212,7 @@ class Shooter:
         return Period(amplitude, impacts, self.turns, *self.best_start(record.before))
 
     def best_start(self, kept: Record) -> tuple[int, float, bool, bool]:
-        """Find the point of a period that is farthest from impacts, to begin there."""
+        """Find the step farthest from impacts; return a Period's clear, share, together, sticks."""
         sizes = kept["x_rel"]
         together, sticks = self.together and not sizes.any(), False
         if self.structure.preload > 0.0:

@@ -19,7 +19,7 @@ ROUNDING = 1e-6
 
 
 def compare(what: str, printed: float, right: float, form: str) -> Measured:
-    """Return what the printed and the right form leave; the printed one holds if it is nothing."""
+    """Judge a printed form by its residual and the right form's: it holds if nothing is left."""
     text = f"{what}: {printed:.2g} as printed, {right:.2g} with {form}"
     return Measured(text, [printed < ROUNDING] if right < ROUNDING else [])
 

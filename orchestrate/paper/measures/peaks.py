@@ -12,7 +12,7 @@ SAME_ORDER = 10.0**0.5  # two numbers within such a factor are of the same order
 
 
 def peak(data: Datasets, case: str) -> float:
-    """Return the frequency of a case's largest gap."""
+    """Return the eta at which a case's up-sweep has its largest gap."""
     return float(data.up(case).xi_rel_max.idxmax())
 
 
