@@ -201,9 +201,9 @@ def stated_hypotheses(results: Results, findings: Findings) -> NDArray[np.bool_]
     """Return of each hypothesis whether its numbers are stated: it describes a decided record."""
     word, count = findings.verdict(), len(results.job.sound)
     sound = word == NOT_SEEN and results.misfit[:count] <= findings.settings.sound
-    parted = word == DELAMINATED and findings.is_described
-    parted = parted and results.misfit[count:] <= findings.settings.delaminated
-    return np.concatenate([np.full(count, sound), np.full(len(results.misfit) - count, parted)])
+    is_parted = word == DELAMINATED and findings.is_described
+    parted = is_parted & (results.misfit[count:] <= findings.settings.delaminated)
+    return np.concatenate([np.full(count, sound), parted])
 
 
 def findings_from_results(results: Results) -> Findings:

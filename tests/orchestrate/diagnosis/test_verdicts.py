@@ -1,11 +1,13 @@
 """The rule of the verdict, number by number."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from orchestrate.diagnosis.decision_rule import Findings, resampled_share
+from orchestrate.diagnosis.detect import stated_hypotheses
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import reported_derivatives
 from orchestrate.diagnosis.hypotheses import Delaminated, PositiveStop
@@ -116,10 +118,13 @@ def test_the_reason_has_the_numbers_that_decided():
 def test_a_verdict_by_a_model_that_describes_the_record_only_so_well_says_so():
     hardly_better = replace(OPENED, sound_misfit=0.9, apart=4.0)
     bad = replace(OPENED, delaminated_misfit=3.5, sound_misfit=6.0, apart=4.0)
+    fits = SimpleNamespace(job=SimpleNamespace(sound=[1]), misfit=np.array([3.0, 0.8, 3.1]))
     for findings in (hardly_better, bad):
         assert findings.verdict() == "delaminated"
         assert "describe this structure only so well" in findings.reason()
+        assert not stated_hypotheses(fits, findings).any()
     assert "only so well" not in replace(OPENED, apart=4.0).reason()
+    assert stated_hypotheses(fits, replace(OPENED, apart=4.0)).tolist() == [False, True, False]
     assert "1.1 times as large, where 1.05 times is enough" in hardly_better.reason()
 
 
