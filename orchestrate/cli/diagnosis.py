@@ -348,6 +348,7 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
     level = text_of(data, data.recommended_level, "m/s2", ".3g")
     ends = range_text(data, float(data.recommended_first), float(data.recommended_last), "Hz")
     yield f"sweep {ends} at {level}, up and down, {float(data.recommended_duration):.0f} s each way"
+    yield "(past the resonance, at four times the level that shows or opens it, if there is one)"
     if not data.counts:
         yield "orders 2 and 3 do not count at any of these levels: raise --g, or lower the --noise"
     opens = data.opening_level.values
@@ -360,8 +361,8 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
         yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
     best = data.distance_harmonics.max("frequency")
     rows = parameter_column(data, "level", data.level.values, ".3g")
-    title = f"orders 2 and 3 over noise ({float(data.threshold):g} counts)"
-    rows[title] = [f"{value:.3g}" for value in best.values]
+    title = f"orders 2 and 3 over noise (seen from {float(data.threshold):g} on)"
+    rows[title] = [f"{value:.3g}" if value < 1e3 else f"{value:,.0f}" for value in best.values]
     gaps = data[["opening"]].max("frequency", keep_attrs=True)
     for name, cells in columns_of(gaps, "opening", form=".3g").items():
         rows[name.replace("opening", "largest gap")] = cells

@@ -218,8 +218,8 @@ def parse_changes(texts: Iterable[str]) -> dict[str, float | bool]:
         names = SET_NAMES.get(name, (name,))
         value = parse_changed_value(names[0], text)
         if name == "preload":  # as a length: in N it depends on the springs
-            if text[-1:] != "m":
-                raise InputError(f"--set preload={text}: expected a length, such as preload=20um")
+            if text[-1:] != "m" or value < 0.0:
+                raise InputError(f"--set preload={text}: expected a length above 0, such as 20um")
             names, value = ("clearance",), -value
         if twice := changes.keys() & set(names):
             raise InputError(f"--set {name}={text}: {min(twice)} is set already; expected once")

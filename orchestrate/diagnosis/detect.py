@@ -168,7 +168,7 @@ class DetectJob(SearchJob):
             analysis="detect",
             title=f"Verdict: {findings.verdict()}",
             reason=findings.reason(),
-            settle="First mend the wiring. " * bool(wiring) + findings.next_measurement(),
+            settle="Mend the wiring, and ask again." if wiring else findings.next_measurement(),
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
             direction=sweep_direction(whole.windows.frequency),

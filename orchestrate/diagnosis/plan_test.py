@@ -125,7 +125,8 @@ def plan_test(
         ``distance_harmonics`` (orders 2 and 3, which no linear one has); ``opening``, the largest
         gap in m; ``closing_force`` in N: faces pressed together by more stay shut there, and half
         way to the neighbouring frequencies.
-        Over ``frequency``: ``smallest_level`` in m/s2 from which orders 2 and 3 count, and
+        Over ``frequency``: ``smallest_level`` in m/s2 from which orders 2 and 3 count (with
+        clearance, preload or ``e_slope`` one of ``levels``; infinite where none is enough), and
         ``opening_level`` in m/s2 from which a preloaded structure opens (0 without preload). Over
         ``level``: ``smallest_opening`` in m and ``smallest_split`` (difference between the halves'
         frequencies, relative to the guess's) that count at the best frequency, and ``overload``,
@@ -343,6 +344,9 @@ def smallest_detectable(
     force = largest_opening_force(test.structure, test.frequency)
     with np.errstate(divide="ignore", invalid="ignore"):
         smallest = np.where(higher[-1] > 0.0, limit * sweeps[-1].level / higher[-1], np.inf)
+        if test.structure.has_scale:  # not in proportion to the level
+            levels = np.array([[sweep.level] for sweep in sweeps])
+            smallest = np.where(higher >= limit, levels, np.inf).min(axis=0)
         open_from = test.structure.preload / force
         smallest_gap = np.where(higher > 0.0, opening * limit / higher, np.inf).min(axis=1)
     ranges = min(one.range for name, one in test.sensors.items() if name != BOX)

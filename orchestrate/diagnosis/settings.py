@@ -33,8 +33,8 @@ class Settings:
     sound: float = 1.2
     delaminated: float = 3.0
     delaminated_apart: float = 4.0
-    # of records put together of blocks in which the ratio has to be exceeded: of a ratio that one of
-    # the twenty blocks makes, it is at most 0.64
+    # of records put together of blocks in which the ratio has to be exceeded: of a ratio that one
+    # of twenty blocks makes, it is at most 0.64
     share: float = 0.75
     hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
     clipped: float = CLIPPED  # share of a channel's samples at its extremes: it is saturated

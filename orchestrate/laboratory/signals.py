@@ -87,12 +87,7 @@ def along_profile(profile: Profile, frequency: Floats) -> Floats:
 class ExcitationSignal(ABC):
     """An acceleration of the box over a time that begins at 0.
 
-    ``one + other`` is both together.
-
-    Attributes
-    ----------
-    duration : float
-        s.
+    ``one + other`` is both together; ``duration`` is in s.
     """
 
     duration: float

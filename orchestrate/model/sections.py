@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -56,6 +56,7 @@ QUANTITIES = {
     **{q.name: q for q in (*SHAKER.values(), *DATASHEET.values())},
     **{q.name: q for q in (*STRUCTURE.values(), *EXCITATION.values(), *DRIVE.values())},
     **RATIO_QUANTITIES,
+    "preload": replace(STRUCTURE["clearance"], name="preload", minimum=0.0),
     **{
         f"{what}_{unit}": Quantity(f"{what}_{unit}", "1", "", SMALLEST, LARGEST)
         for what in ("omega", "frequency", "no_load_speed")
@@ -161,8 +162,10 @@ class Section:
 
 def read_structure(section: Section) -> Structure:
     """Return the ``Structure`` that a section ``[structure]`` describes, SI or non-dimensional."""
-    section.allow(*COMMON_KEYS, *MECHANICS, *HALVES, *RATIOS)
+    section.allow(*COMMON_KEYS, "preload", *MECHANICS, *HALVES, *RATIOS)
     values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
+    if section.at_most_one(("clearance", "preload")) == "preload":
+        values["clearance"] = -section.number("preload")
     if "bonded" in section.values:
         values["bonded"] = section.flag("bonded")
     if section.present(HALVES):

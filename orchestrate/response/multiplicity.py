@@ -60,9 +60,8 @@ def find_repetition(
 ) -> Repetition:
     """Find the least n after which states repeat within a tolerance; return n, deviation.
 
-    Only the later half of the samples is compared: at low damping and high frequency a transient
-    outlives hundreds of periods. A quasi-periodic response narrower than the tolerance counts as
-    periodic. Where no n up to a quarter of the samples does, the response is irregular: n is 0.
+    Only the later half of the samples is compared: a transient may outlive hundreds of periods. n
+    is 0 where none up to a quarter of the samples is found.
     """
     memory = apply_rule("repeat", samples, (frequency, gap, tolerance))
     return Repetition(int(memory[repetition.MULTIPLICITY]), float(memory[repetition.DEVIATION]))
@@ -71,14 +70,7 @@ def find_repetition(
 def decide_multiplicity(
     samples: ArrayLike, frequency: float, gap: float, tolerance: float
 ) -> Decision:
-    """Decide a response's multiplicity: its deviations must have died or be decaying.
-
-    Deviations in the later half of the samples are compared, those early in it with those late.
-    Where n is above a quarter of them a state comes back too seldom for that: such a deviation
-    counts as none below a thousandth of the tolerance. Where no n up to a quarter of all samples
-    repeats, but one up to three quarters does within the tolerance, its period is longer than the
-    samples can show: undecided.
-    """
+    """Decide a response's multiplicity by the rule of ``kernels.repetition.decide``."""
     memory = apply_rule("decide", samples, (frequency, gap, tolerance))
     return Decision(int(memory[repetition.MULTIPLICITY]), int(memory[repetition.DECIDED]))
 

@@ -336,9 +336,8 @@ def round_state(
 ) -> tuple[float, ...]:
     """Round a state to 44 bits (13 digits), so that it hardly depends on its history.
 
-    Rounding never settles: what has converged to one response from two sides goes on to differ in
-    its last digits for good. Without them it is the same to the last bit, and parts of a sweep that
-    are begun elsewhere join it.
+    What converged from two sides differs in its last digits for good: rounded, it is the same, and
+    parts of a sweep that are begun elsewhere join it.
     """
     x1, x2, v1, v2 = state.tolist()
     velocities = round_to_bits(v1, v2, bits)

@@ -37,6 +37,8 @@ def make_verdict(answer: xr.Dataset) -> Verdict:
         "undecided": lambda _: "This record does not tell a delaminated beam from a sound one.",
     }
     statement = sentences[word](answer) + fitted_frequencies(answer)
+    if wiring := answer.attrs.get("wiring"):
+        statement = f"The wiring is doubtful: {wiring}. As it is: {statement}"
     return Verdict(make_sentence(word), statement, TONES.get(word, "open"))
 
 
@@ -103,7 +105,9 @@ def measured_record(answer: xr.Dataset) -> Section | None:
         ("columns of the file", words.get("record_columns", "")),
         ("sensors", words.get("sensors", "")),
         ("participation of the sensors", participation_text(answer)),
-        ("unit of its accelerations", words.get("record_unit_note", "") or unit),
+        ("unit of its numbers", words.get("record_unit_note", "") or unit),
+        ("converted", words.get("record_converted", "")),
+        ("times", words.get("record_time_base", "")),
         ("sampling rate", known_text(answer, "sample_rate", "Hz", 6)),
         ("duration", known_text(answer, "record_duration", "s", 4)),
         ("sweep", sweep_text(answer)),

@@ -157,7 +157,7 @@ def test_a_page_says_what_the_record_is_and_how_the_page_was_made(run):
         rows = dict(zip(cells, cells[1:], strict=False))
         assert rows["file of the record"] == "parted.csv"
         assert "acceleration1" in rows["columns of the file"]
-        assert (rows["sampling rate"], rows["unit of its accelerations"]) == ("600 Hz", "m/s²")
+        assert (rows["sampling rate"], rows["unit of its numbers"]) == ("600 Hz", "m/s²")
         assert rows["duration"].startswith("4") and " Hz upwards" in rows["sweep"]
         assert rows["level of the base, peak"].endswith(f" {unit}")
         assert (

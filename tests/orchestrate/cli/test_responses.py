@@ -388,7 +388,7 @@ def test_a_plan(ask, folder):
     test = (*test, "--range", "1e-3")
     done = ask("plan", "--structure", "beam", *test).success()
     assert done.out.startswith("sweep 1") and "preload=20um" in done.out
-    assert "orders 2 and 3 over noise (5 counts)  largest gap" in done.out
+    assert "orders 2 and 3 over noise (seen from 5 on)  largest gap" in done.out
     assert done.out.count("overload") == 2 and shows_something(next(folder.glob("plan_*.png")))
     done = ask("plan", "--structure", "beam", *test, "--units", "rpm,m/s2").success()
     assert "rpm at 0.0196 m/s2" in done.out and " g" not in done.out.splitlines()[0]

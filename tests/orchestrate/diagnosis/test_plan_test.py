@@ -85,6 +85,7 @@ def test_a_preloaded_delamination_shows_from_the_level_that_opens_it(exported):
     assert plan.opening.isel(level=0).max() < 1e-9 < plan.opening.isel(level=1).max()
     # with a margin, and past the resonance of both together, 46.7 Hz
     assert shut < 0.05 * opened and near > 10.0
+    assert (plan.smallest_level > plan.opening_level).all() and np.isinf(plan.smallest_level[0])
     assert float(plan.recommended_level) == 3.0 * needed
     assert float(plan.recommended_first) < 37.0 and float(plan.recommended_last) > 58.0
     assert (plan.closing_force.isel(level=0) < force).all()

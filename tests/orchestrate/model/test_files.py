@@ -97,6 +97,7 @@ def test_resolve(tmp_path):
         ("omega_rad_s = 75\nm1 = 1.5", Structure.nondimensional(omega=75, m1=1.5)),
         ("omega_hz = 12.0", Structure.nondimensional(omega=2.0 * math.pi * 12.0)),
         ("omega_rpm = 720", Structure.nondimensional(omega=2.0 * math.pi * 720.0 / 60.0)),
+        ('preload = "20 um"', Structure.nondimensional(clearance=-2e-5)),
     ],
 )
 def test_structures(file, text, expected):
@@ -192,6 +193,7 @@ WRONG = [
     (f"{S}mu = 1.0\nm2 = 1.0", ["structure.mu = 1.0: beside m2", "one kind", "kappa"]),
     (f"{S}k1 = 1.0\nomega_hz = 1.0", ["structure.omega_hz = 1.0: beside k1", "one kind"]),
     (f"{S}D = 0.1\nD1 = 0.1", ["structure.D1 = 0.1: beside D", "one kind: D, or D1, D2"]),
+    (f"{S}preload = -1e-5", ["structure.preload = -1e-05 m: expected 0 <= preload"]),
     (f"{S}D1 = 0.1", ["structure.D2: missing", "expected all of D1, D2"]),
     (f"{S}omega_hz = 1\nomega_rpm = 60", ["structure.omega_rpm = 60: conflicts with omega_hz"]),
     (f"{S}omega_hz = 1e20", ["[structure]:", "omega = 6.28", "k1 = 3.9", "expected 1e-30 <= k1"]),

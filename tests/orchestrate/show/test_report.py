@@ -15,12 +15,7 @@ import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.show.answers import title_of
 from orchestrate.show.page import Page, Section, Table, Verdict, format_number, format_with_error
-from orchestrate.show.verdict import (
-    format_odds,
-    make_verdict,
-    measured_record,
-    verdict_sections,
-)
+from orchestrate.show.verdict import format_odds, make_verdict, measured_record, verdict_sections
 
 EVIL = "<script>alert(\"1\")</script> & 'others'"
 RATE = 1000.0
@@ -194,6 +189,8 @@ def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is(verdict):
     assert rows["f1, frequency of half 1"] == "42.00 ± 0.50 Hz"
     assert "stop, stiffness of a stop" in rows
     assert make_verdict(verdict).sentence.endswith("frequencies fitted: f1 = 42.00 ± 0.50 Hz.")
+    doubted = make_verdict(verdict.assign_attrs(wiring="face 1: polarity?")).sentence
+    assert doubted.startswith("The wiring is doubtful: face 1: polarity?.")
     odds = [words for words in sections["Why"].points if words.startswith("The odds")]
     assert "300 to 1" in odds[0] and "blocks" in odds[0]
     without = verdict.assign_attrs(m1=float("nan"))
@@ -218,11 +215,11 @@ def test_the_record_is_described_in_the_units_that_are_asked_for():
     assert rows["level of the base, peak"] == "0.398 to 0.408 g"
     assert rows["sweep"] == "20 to 90 Hz downwards; compared with models: 30 to 70 Hz"
     assert (rows["sampling rate"], rows["duration"]) == ("1250 Hz", "40 s")
-    assert rows["unit of its accelerations"] == "m/s²"  # one spelling on the page
+    assert rows["unit of its numbers"] == "m/s²"  # one spelling on the page
     assert rows["command that made it"] == "diagnose" and "sensors" not in rows
     noted = answer.assign_attrs(record_unit_note="--unit g was used, although the file says m/s2")
     rows = dict(measured_record(noted).tables[0].rows)
-    assert "although" in rows["unit of its accelerations"]
+    assert "although" in rows["unit of its numbers"]
     assert measured_record(xr.Dataset()) is None
 
 
