@@ -589,8 +589,8 @@ def ask_jump_voltages(arguments: argparse.Namespace) -> tuple[Structure, Drive, 
 def jump_voltages_title(_: Results, question: Question) -> str:
     """Return a part of the picture's title: the ramps' voltages and rates."""
     ends = "{:.4g} V to {:.4g} V".format(*question["voltage"])
-    slowest, fastest = min(question["rates"]), max(question["rates"])
-    return f"{ends}, {slowest:.2g} V/s to {fastest:.2g} V/s, and at rate 0"
+    rates = dict.fromkeys(f"{end(question['rates']):.2g} V/s" for end in (min, max))
+    return f"{ends}, {' to '.join(rates)}, and at rate 0"
 
 
 def jump_voltage_lines(results: Results) -> Iterator[str]:
