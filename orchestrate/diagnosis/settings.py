@@ -33,7 +33,7 @@ class Settings:
     sound: float = 1.2
     delaminated: float = 3.0
     delaminated_apart: float = 4.0
-    # of records put together of blocks in which the ratio has to be exceeded: of a ratio that one of
+    # of records put together of blocks in which the ratio is to be exceeded: of a ratio that one of
     # the twenty blocks makes, it is at most 0.64
     share: float = 0.75
     hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
