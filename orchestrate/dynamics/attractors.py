@@ -32,7 +32,7 @@ from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
 from .global_continuation import MatchedAttractors, continue_attractors, instance_pair
 
-ATTRACTOR = "attractor, the most frequent one first"
+ATTRACTOR = "attractor: periodic first, then by periods, impacts per period, largest gap"
 OF_ATTRACTORS = {
     "multiplicity": "excitation periods after which it repeats; 0: irregular",
     "impacts_per_period": "impacts per excitation period",
@@ -191,11 +191,10 @@ def attractor_columns(matched: MatchedAttractors) -> Table:
     states = np.full((*shape, 4), np.nan)
     for i, motions in enumerate(matched.motions):
         for number, motion in zip(matched.numbers[i], motions, strict=True):
-            columns["multiplicity"][i, number] = motion.multiplicity
-            columns["impacts_per_period"][i, number] = motion.impacts_per_period
-            columns["xi_rel_max"][i, number] = motion.gap / motion.point.length
-            columns["multiplier"][i, number] = motion.multiplier
-            how[i, number], states[i, number] = motion.decided, motion.states[0]
+            own = *motion.features[:3], motion.multiplier
+            for name, feature in zip((*OF_ATTRACTORS, "multiplier"), own, strict=True):
+                columns[name][i, number] = feature
+            how[i, number], states[i, number] = motion.decided, motion.state
             if len(matched.labels[i]):
                 share[i, number] = np.mean(matched.labels[i] == number)
     labels = np.array(matched.labels)
@@ -207,7 +206,7 @@ def attractor_variables(
 ) -> dict[str, Variable]:
     """Return dataset variables of attractors (share, features, state) from arrays by name."""
     dims = (*along, "attractor")
-    text = "a state on it at phase 0: x1, x2 in m, v1, v2 in m/s"
+    text = "a state at phase 0, of a periodic one the least x1: x1, x2 in m, v1, v2 in m/s"
     return {
         "share": variable(dims, columns["share"], "1", f"share of the {of}"),
         **{name: variable(dims, columns[name], "1", OF_ATTRACTORS[name]) for name in OF_ATTRACTORS},
@@ -338,16 +337,17 @@ def attractors(
     Returns
     -------
     xarray.Dataset
-        Over the parameter: ``number``; over ``attractor``, the most frequent one first, where one
-        number is the same attractor at all values: ``share`` of the random starts, 0 where carrying
-        alone has found it; ``multiplicity``, ``impacts_per_period``, ``xi_rel_max``, NaN where it
-        does not exist; ``multiplier``, the largest absolute value of its Floquet multipliers;
-        ``decided_by``, how it was decided, as CF flags: ``orbit`` (a stable orbit of Newton's
-        method), ``repeated`` (states repeat, Newton's method finds no orbit), ``irregular`` or
-        ``undecided`` (states nearly repeat, near an unstable orbit, or before impacts that have to
-        come at this level), ``absent``; ``state`` on it at phase 0 (x1, x2 in m, v1, v2 in m/s);
-        ``first_found`` and ``last_found``, between which values it is there. Over ``start``:
-        ``attractor_of`` and the ``features`` of what a start has settled to.
+        Over the parameter: ``number``; over ``attractor``, where one number is the same attractor
+        at all values, given at the lowest one that has it: periodic before irregular ones, then by
+        ``multiplicity``, ``impacts_per_period`` and ``xi_rel_max``, which are NaN where it does not
+        exist; ``share`` of the random starts, 0 where carrying alone has found it; ``multiplier``,
+        the largest absolute Floquet multiplier; ``decided_by``, as CF flags: ``orbit`` (a stable
+        orbit of Newton's method), ``repeated`` (states repeat, Newton's method finds no orbit),
+        ``irregular`` or ``undecided`` (states nearly repeat, near an unstable orbit, or before
+        impacts that have to come at this level), ``absent``; ``state`` at phase 0 (x1, x2 in m, v1,
+        v2 in m/s), of a periodic one that with the smallest x1; ``first_found``, ``last_found``,
+        between which values it is there. Over ``start``: ``attractor_of`` and the ``features`` of
+        what a start has settled to.
 
     Raises
     ------
@@ -363,8 +363,7 @@ def attractors(
     unit circle, and if the response comes nearer to it as they say. So multiplicity and impacts are
     those of the orbit, and two attractors are two orbits. What has not repeated after ``longest``
     periods is irregular, a torus or chaos; how many of these there are depends on
-    ``alike_irregular``. An FMU without events (FMI 2.0) reports no impacts: there states that
-    repeat decide.
+    ``alike_irregular``. An FMU of FMI 2.0 reports no impacts: there states that repeat decide.
 
     Global continuation (Datseris, Rossi and Wagemakers, Chaos 33, 073151, 2023): every attractor
     is carried to both neighbouring values, its state as a further start, or its orbit by Newton's

@@ -269,11 +269,11 @@ def basin(
     Returns
     -------
     xarray.Dataset
-        ``attractor_of`` over y and x: the number of the attractor, the most frequent one first; -1
-        where x2 < x1, which counts in no share. Over ``attractor``: ``share`` of the plane, 0 where
-        an attractor is known to which no start of it leads; ``multiplicity``,
-        ``impacts_per_period``, ``xi_rel_max``, ``multiplier``, ``decided_by``, and ``state`` on it
-        at phase 0 (x1, x2 in m, v1, v2 in m/s).
+        ``attractor_of`` over y and x: the number of the attractor; -1 where x2 < x1, which counts
+        in no share. Over ``attractor``, numbered by the motions as in
+        :func:`orchestrate.attractors`: ``share`` of the plane, 0 where an attractor is known to
+        which no start of it leads; ``multiplicity``, ``impacts_per_period``, ``xi_rel_max``,
+        ``multiplier``, ``decided_by``, and ``state`` at phase 0 as there.
 
     Raises
     ------

@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -131,8 +132,7 @@ class MatchedAttractors:
     """Attractors at all values of a parameter; the same attractor has one number everywhere."""
 
     motions: Sequence[Sequence[SettledMotion]]  # of each value
-    # numbers of these along the parameter, the most frequent attractor first
-    numbers: Sequence[Sequence[int]]
+    numbers: Sequence[Sequence[int]]  # of these, along the parameter
     labels: Sequence[NDArray[np.intp]]  # number of the attractor that each random start leads to
 
     @property
@@ -182,25 +182,16 @@ def continue_to_neighbours(values: Sequence[AttractorsAtValue]) -> Links:
 def number_attractors(
     values: Sequence[AttractorsAtValue], links: Links, distance: float = AttractorSettings.neighbour
 ) -> list[list[int]]:
-    """Return the attractors' numbers at each value: equal if matched, 0 for the largest share."""
-    chains: list[list[int]] = []
-    count = 0
+    """Return the attractors' numbers at each value: equal if matched, new ones by their rank."""
+    numbers: list[list[int]] = []
+    free = count()
     for j, value in enumerate(values):
-        own = [-1] * len(value.motions)
-        if j:
-            for a, b in match_neighbours(values[j - 1], value, j - 1, links, distance):
-                own[b] = chains[j - 1][a]
-        for b, number in enumerate(own):
-            if number < 0:
-                own[b], count = count, count + 1
-        chains.append(own)
-    shares = np.zeros(count)
-    for value, own in zip(values, chains, strict=True):
-        counts = np.bincount(value.labels, minlength=len(own))
-        shares[own] += counts / max(1, len(value.labels))
-    rank = np.empty(count, dtype=int)
-    rank[np.argsort(-shares.round(12), kind="stable")] = np.arange(count)
-    return [[int(rank[number]) for number in own] for own in chains]
+        pairs = match_neighbours(values[j - 1], value, j - 1, links, distance) if j else []
+        own = {b: numbers[j - 1][a] for a, b in pairs}
+        ordered = sorted(range(len(value.motions)), key=lambda k: value.motions[k].rank)
+        own |= {b: next(free) for b in ordered if b not in own}
+        numbers.append([own[b] for b in range(len(own))])
+    return numbers
 
 
 def match_neighbours(

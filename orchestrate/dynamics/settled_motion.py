@@ -58,6 +58,16 @@ class SettledMotion:
             free_phase=free_phase,
         )
 
+    @property
+    def state(self) -> Floats:
+        """Return the state at phase 0 with the smallest x1, of equal ones x2, v1, v2."""
+        return np.array(min(self.states.tolist()))
+
+    @property
+    def rank(self) -> tuple[float, ...]:
+        """Return what attractors are numbered by: periodic first, periods, impacts, gap, state."""
+        return (self.multiplicity == 0, *self.features[:3], *self.state)
+
     @cached_property
     def features(self) -> list[float]:
         """Return features that do not depend on the phase: period, impacts, gap statistics."""

@@ -35,7 +35,7 @@ SHADES = (  # of multiplicity
 )
 MULTIPLICITIES = ("1", "2", "3", "4", "5", "6", "7", "8+", "not\nperiodic")
 NOTHING = "#d9d9d9"  # no impacts
-BASINS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the most frequent attractors
+BASINS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the first attractors
 OTHER = "#bbbbbb"
 BORDERS = {
     **{"fold": ORANGE, "period doubling": RED, "Neimark-Sacker": BLUE},

@@ -53,11 +53,8 @@ def test_starts_are_states_in_their_box():
 
 
 def test_scale_is_three_times_the_largest_gap_from_rest():
-    gap = float(
-        sweep(PAPER, eta=TWO, transient=transient_periods(300, 300.0, TWO), samples=48).xi_rel_max[
-            0
-        ]
-    )
+    dropped = transient_periods(300, 300.0, TWO)
+    gap = float(sweep(PAPER, eta=TWO, transient=dropped, samples=48).xi_rel_max[0])
     asked = {**ASKED, "eta": TWO, "starts": 4}
     one, two = attractors(PAPER, **asked), attractors(PAPER, **asked, scale=3.0 * gap)
     np.testing.assert_allclose(one.features, two.features, rtol=1e-9)

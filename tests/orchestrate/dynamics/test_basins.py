@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, basin, run_to_phase_zero
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.errors import InputError
@@ -69,7 +70,6 @@ def test_starts_that_overlap_count_in_no_share(found):
     assert (labels[:, 1:] >= 0).all()
     np.testing.assert_allclose(found.share, np.bincount(labels[labels >= 0]) / 16)
     assert float(found.share.sum()) == pytest.approx(1.0)
-    assert (np.diff(found.share) <= 0.0).all()
 
 
 @pytest.mark.usefixtures("exported")
@@ -144,7 +144,10 @@ def test_the_default_plane_holds_the_attractors_and_shows_both_basins(structure,
     asked = {"frequency": 1.315 * structure.omega, "amplitude": 1e-4}
     found = basin(structure, **asked)
     assert found.attractor_of.dims == ("v_rel", "x_rel")
-    assert sorted(found.multiplicity.values.tolist()) == [1.0, 2.0]
+    assert found.multiplicity.values.tolist() == [1.0, 2.0]
+    from_random = attractors(structure, **asked, starts=12, seed=3).isel(frequency=0)
+    for name in ("attractor", "multiplicity", "impacts_per_period", "xi_rel_max", "state"):
+        np.testing.assert_allclose(found[name], from_random[name], rtol=1e-8)
     assert (found.share > 0.05).all()  # not one flat colour
     gap, rate = found.state[:, 1] - found.state[:, 0], found.state[:, 3] - found.state[:, 2]
     assert (gap < found.x_rel.max()).all() and (abs(rate) < found.v_rel.max()).all()
@@ -154,16 +157,10 @@ def test_the_default_plane_holds_the_attractors_and_shows_both_basins(structure,
 
 def test_what_is_known_is_told_though_no_start_of_the_plane_leads_there(found):
     one, two = (found.state.values[found.multiplicity.values == n][0] for n in (1, 2))
-    job = BasinJob(
-        name="basin",
-        structure=PAPER,
-        excitation=POINT.excitation,
-        x=PlaneAxis("v1", one[2] - 1e-4, one[2] + 1e-4, 2),
-        y=PlaneAxis("v2", one[3] - 1e-4, one[3] + 1e-4, 2),
-        at=tuple(one.tolist()),
-        known=(tuple(two.tolist()),),
-        settings=AttractorSettings(),
-    )
+    x, y = (PlaneAxis(f"v{i - 1}", one[i] - 1e-4, one[i] + 1e-4, 2) for i in (2, 3))
+    asked = {"name": "basin", "structure": PAPER, "excitation": POINT.excitation, "x": x, "y": y}
+    states = {"at": tuple(one.tolist()), "known": (tuple(two.tolist()),)}
+    job = BasinJob(**asked, **states, settings=AttractorSettings())
     near = answer(job, {}, finder({}))
     assert near.share.values.tolist() == [1.0, 0.0]
     assert near.multiplicity.values.tolist() == [1.0, 2.0]

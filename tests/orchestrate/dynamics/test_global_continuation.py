@@ -7,11 +7,13 @@ import pytest
 
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.global_continuation import BY_NEWTON, BY_SIMULATION, match_neighbours
+from orchestrate.dynamics.settled_motion import SettledMotion
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import ORBIT
 from orchestrate.response.questions import Point
 
 PAPER = Structure.nondimensional()
+POINT = Point(Structure(), Excitation(frequency=1.0, amplitude=1.0))
 pytestmark = pytest.mark.usefixtures("exported")
 
 
@@ -28,20 +30,25 @@ def test_an_attractor_has_one_number_as_far_as_it_exists(line):
         assert (n == n[0]).all()
         assert (np.diff(np.flatnonzero(there[:, k])) == 1).all()  # no value is left out
     assert line.sizes["attractor"] == 2
-    two = int(np.flatnonzero(line.multiplicity.values[0] == 2)[0])
-    assert float(line.first_found[two]) == 1.31
-    assert float(line.last_found[two]) == 1.36  # it ends in a fold at 1.3657
-    assert float(line.last_found[1 - two]) == 1.38
+    assert line.multiplicity.values[0].tolist() == [1.0, 2.0]
+    assert line.first_found.values.tolist() == [1.31, 1.31]
+    assert line.last_found.values.tolist() == [1.38, 1.36]  # 2T ends in a fold at 1.3657
 
 
 def test_shares_count_random_starts_alone(line):
     np.testing.assert_allclose(line.share.sum("attractor"), 1.0)
     labels = line.attractor_of.values
     for i in range(line.sizes["eta"]):
-        expected = np.bincount(labels[i], minlength=2) / 8
-        np.testing.assert_array_equal(line.share.values[i], expected)
+        np.testing.assert_array_equal(line.share[i], np.bincount(labels[i], minlength=2) / 8)
     carried = (line.decided_by.values == ORBIT) & (line.share.values == 0.0)
     assert carried.any()  # found by carrying alone
+
+
+def test_motions_are_numbered_by_what_they_are():
+    rows = [(1, 2.0, 3.0), (2, 1.0, 3.0), (2, 1.5, 1.0), (2, 1.5, 2.0), (0, 0.5, 0.5)]
+    ordered = [SettledMotion(POINT, ORBIT, np.eye(4), *row) for row in rows]
+    assert sorted(ordered[2:] + ordered[:2], key=lambda motion: motion.rank) == ordered
+    assert ordered[0].state.tolist() == [0.0, 0.0, 0.0, 1.0]
 
 
 def value(*motions):
@@ -49,12 +56,11 @@ def value(*motions):
 
 
 def motion(n, impacts):
-    point = Point(Structure(), Excitation(frequency=1.0, amplitude=1.0))
     states = np.ones((max(n, 1), 4))
     return SimpleNamespace(
         multiplicity=n,
         impacts_per_period=impacts,
-        point=point,
+        point=POINT,
         states=states,
         nearest=lambda state: (0, 0.0),
     )
