@@ -33,7 +33,7 @@ class Settings:
     sound: float = 1.2
     delaminated: float = 3.0
     delaminated_apart: float = 4.0
-    # of records put together of blocks in which the ratio has to be exceeded: of a ratio that one of
+    # of records put together of blocks where the ratio has to be exceeded: of a ratio that one of
     # the twenty blocks makes, it is at most 0.64
     share: float = 0.75
     hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
@@ -107,13 +107,7 @@ SETTINGS = Settings()
 
 
 def checked_settings(changes: Changes) -> Settings:
-    """Return the settings with a caller's changes, whose names and values are checked.
-
-    Examples
-    --------
-    >>> checked_settings({"ratio": 2.0}).ratio, checked_settings(None).ratio
-    (2.0, 1.5)
-    """
+    """Return the settings with a caller's changes, whose names and values are checked."""
     names = [one.name for one in fields(Settings)]
     if unknown := [name for name in changes or {} if name not in names]:
         raise InputError(f"settings: {unknown[0]!r} is none; expected some of {', '.join(names)}")
