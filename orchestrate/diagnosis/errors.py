@@ -188,11 +188,7 @@ def motions_under_base_noise(
     count: int,
     rng: np.random.Generator,
 ) -> Iterator[Floats]:
-    """Yield motions of a fit while the base moves with more noise, of the size of its floor.
-
-    Noise is drawn when a motion is asked for: what a caller draws between two motions comes between
-    them in the generator's sequence.
-    """
+    """Yield motions of a fit while the base moves with more noise, of the size of its floor."""
     hypothesis, values, player = fit
     size = noise_of_samples(evidence.orders)[BOX]
     for _ in range(count):

@@ -1,9 +1,4 @@
-"""The force that would open the faces of a sound structure, in closed form.
-
-While the faces stay together both masses move as one, and the force between them is that of a
-linear oscillator. Faces that are pressed together by a larger force never part, and no record can
-tell such a structure from a sound one.
-"""
+"""The force that would open the faces of a sound structure: pressed by more, they never part."""
 
 from __future__ import annotations
 
@@ -18,12 +13,7 @@ from ..model import Structure
 
 
 def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
-    """Return the force amplitude between bonded faces, over the box's acceleration, in kg.
-
-    With M = m1 + m2, K = k1 + k2, D = d1 + d2 and the box's acceleration A sin(w t), the motion of
-    both masses in the box has the complex amplitude X = -M A/(K - w^2 M + i w D), and the force on
-    mass 2 is m2 A + (k2 - w^2 m2 + i w d2) X.
-    """
+    """Return the force amplitude between bonded faces, over the box's acceleration, in kg."""
     w = TURN * np.asarray(frequency, dtype=float)
     m, k = structure.m1 + structure.m2, structure.k1 + structure.k2
     motion = -m / (k - w**2 * m + 1j * w * (structure.d1 + structure.d2))
@@ -39,9 +29,6 @@ def largest_opening_force(structure: Structure, frequency: Floats) -> Floats:
 
 
 def sweep_rate(f: float, zeta: float) -> float:
-    """Return the fastest linear sweep that shows a resonance as a steady sine does, Hz/s.
-
-    54 f^2/Q^2 Hz/min with Q = 1/(2 zeta): ISO 7626-2, and Gloth and Sinapius, Mech. Syst. Signal
-    Process. 18 (2004) 1421-1441.
-    """
+    """Return the fastest linear sweep that shows a resonance as a steady sine does, Hz/s."""
+    # ISO 7626-2; Gloth and Sinapius, Mech. Syst. Signal Process. 18 (2004) 1421: 54 f^2/Q^2 Hz/min
     return 54.0 * math.pow(2.0 * zeta * f, 2) / 60.0

@@ -76,11 +76,7 @@ class OrderWindows:
         )
 
     def displacement_operator(self) -> csr_array:
-        """Return the sparse matrix from displacements to the orders of their accelerations.
-
-        Rows are orders, real and imaginary parts, and windows, in this order. A channel's second
-        differences at its samples stand for its acceleration; at both ends the next ones do.
-        """
+        """Return the sparse matrix from displacements to the orders of their accelerations."""
         from scipy.sparse import coo_array, csr_array, vstack
 
         count = self.samples

@@ -115,12 +115,8 @@ def window_of_largest(power: Floats) -> NDArray[np.intp]:
 
 
 def noise_from_off_orders(windows: Sequence[Window], powers: Sequence[Floats]) -> Floats:
-    """Estimate the root mean square of white noise from the off-orders, m/s2.
-
-    Least squares with Hann's weights over n samples make of white noise of variance s^2 an
-    amplitude whose square is 6 s^2/n on average, and 6 ln(2) s^2/n in the median: impacts raise few
-    windows, and the median hardly.
-    """
+    """Estimate the root mean square of white noise from the off-orders, m/s2."""
+    # Hann's weights over n samples leave 6 ln(2) s^2/n in the median, which impacts hardly raise
     samples = np.array([window.part.stop - window.part.start for window in windows])
     medians = [median_of_columns(power * samples) for power in powers]
     return np.asarray(np.sqrt(np.fmin.reduce(medians) / (6.0 * math.log(2.0))))

@@ -183,11 +183,7 @@ class SearchJob(Job):
     # -- the end of it ----------------------------------------------------------------------------
 
     def finish(self, previous: Table, player: Player) -> Table:
-        """Refine the best solutions of each hypothesis, and compute all misfits and errors.
-
-        What was found, with the best of a hypothesis that this one contains, is improved near the
-        resonance, then on the whole record; errors follow for those that a verdict may state.
-        """
+        """Refine the best solutions of each hypothesis, and compute all misfits and errors."""
         worth = is_worth_a_search(self.data)
         made: list[tuple[Search, list[Solution]]] = []
         for position in range(len(self.hypotheses)):

@@ -92,10 +92,7 @@ class SoundStructure:
 
 
 def transmissibility(frequency: Floats, f: float, zeta: float) -> Floats:
-    """Return the absolute acceleration of an oscillator over that of its base, complex.
-
-    As sines of both: (1 + 2 i zeta r)/(1 - r^2 + 2 i zeta r) with r the ratio of the frequencies.
-    """
+    """Return the absolute acceleration of an oscillator over that of its base, complex."""
     r = frequency / f
     loss = 2.0j * zeta * r
     return np.asarray((1.0 + loss) / (1.0 - r**2 + loss))

@@ -27,6 +27,7 @@ class WiringSettings:
     fewest: int = 5  # windows there, else nothing is said of gains and delays
     misfit: float = 0.15  # of the response: a fit that misses more says nothing
     swapped: float = 4.0  # times better a fit describes the exchanged channels
+    derived: float = 1.5  # times better it describes a velocity or a displacement
     scale: float = 2.5  # factor of the base's motion beyond which a sensor's scale is wrong
     gravity: float = 0.25  # distance of a factor's logarithm from that of 9.80665 for a unit
     delay: float = 1e-3  # s
@@ -53,7 +54,7 @@ WIRING = WiringSettings()
 class Note:
     """A doubt about a channel, and how to read the record where it is right."""
 
-    kind: str  # polarity, unit, scale, delay, swapped, dead, clipped, lost samples, hum, sampling
+    kind: str  # polarity, unit, scale, delay, quantity, swapped, dead, clipped, hum, ...
     text: str
 
 
@@ -65,8 +66,10 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
       s < 0 is polarity, |s| within `gravity` of 9.8 or its inverse a unit, |s| beyond `scale` a
       scale, |t| above `delay`, `clear` of the misfit, a delay.
     - Base and face are swapped where that describes the inverse of the response within `misfit` and
-      `swapped` times better; a sensor is dead that is above the `floor` in at most half of the
-      windows, or moves less than `dead` times the base without a `peak`.
+      `swapped` times better; one is a velocity (n = 1) or displacement (2) where it so
+      describes that one times ``(i w)^n``, `derived` times better; a sensor is dead that is above
+      the `floor` in at most half of the windows, or moves less than `dead` times the base without a
+      `peak`.
     - Samples are lost where the base's phase, continued from both sides, jumps by `jump`, whole
       turns aside, and `usual` times as far as it usually does.
     - A line of the `mains` is hum if it is `hum` times those `beside` it and keeps its phase
@@ -78,10 +81,10 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
         orders = assembled_orders(channels, *sine_windows(channels))
     except InputError:
         return list(notes_without_sine(channels, settings))
-    notes = [note for row in orders.rows for note in sensor_notes(orders, row, settings)]
-    notes += clipped_notes(channels, settings)
-    if any(note.kind == "swapped" for note in notes):
-        return notes  # the base is none
+    found = (note for row in orders.rows for note in sensor_notes(orders, row, settings))
+    notes = [*dict.fromkeys(found), *clipped_notes(channels, settings)]
+    if any(note.kind in ("swapped", "quantity") for note in notes):
+        return notes  # to be read anew first
     notes += lost_sample_notes(orders, settings)
     notes += [
         note for row in range(len(channels.names)) for note in hum_notes(orders, row, settings)
@@ -122,7 +125,7 @@ def notes_without_sine(channels: Channels, settings: WiringSettings) -> Iterator
 
 
 def sensor_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> Iterator[Note]:
-    """Yield notes on a sensor against the base: dead, swapped, polarity, unit, scale, delay."""
+    """Yield notes on a sensor against the base, except on its samples."""
     name = SHORT_NAMES[orders.channels.names[row]]
     response = orders.amplitude[row, 0] / orders.order(1.0, BOX)
     size = np.abs(response)
@@ -131,14 +134,19 @@ def sensor_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> It
     if not is_heard(orders, row, settings) or (usual < settings.dead and flat):
         yield Note("dead", f"{name} moves {usual:.2g} times the base: is its cable dead?")
         return
-    frequency = orders.windows.frequency
-    straight = LowResponse.fitted(frequency, response, settings)
-    inverse = LowResponse.fitted(frequency, 1.0 / response, settings)
-    if straight is None:
+    hertz = orders.windows.frequency
+    made = {order: response * (1j * TURN * hertz) ** order for order in range(-2, 3)}
+    tried = {order: LowResponse.fitted(hertz, one, settings) for order, one in made.items()}
+    fits = {order: fit for order, fit in tried.items() if fit is not None}
+    if (straight := fits.get(0)) is None:
         return
-    limit = min(settings.misfit, straight.misfit / settings.swapped)
+    inverse = LowResponse.fitted(hertz, 1.0 / response, settings)
+    order, best = min(fits.items(), key=lambda item: item[1].misfit)
+    limit = min(settings.misfit, best.misfit, straight.misfit / settings.swapped)
     if inverse is not None and inverse.misfit < limit:
         yield swapped_note(name)
+    elif best.misfit < min(settings.misfit, straight.misfit / settings.derived):
+        yield quantity_note(name if order > 0 else "base", order, best)
     elif straight.misfit < settings.misfit:
         yield from straight.notes(name, settings)
 
@@ -153,6 +161,15 @@ def swapped_note(face: str) -> Note:
     """Return the note on exchanged channels."""
     text = f"{face} moves as a base and the base as {face}: swapped? exchange both in columns="
     return Note("swapped", text)
+
+
+def quantity_note(name: str, order: int, fit: LowResponse) -> Note:
+    """Return the note on a velocity or displacement read as an acceleration."""
+    motion, unit = {1: ("velocity", "m/s"), 2: ("displacement", "m")}[abs(order)]
+    thousands = np.log10(abs(fit.factor)) / 3.0 * np.sign(order)
+    prefix = ("", "m", "u", "n")[int(np.clip(np.rint(thousands), 0, 3))]
+    text = f"{name} moves as a {motion}, not an acceleration, at {fit.frequency:.3g} Hz: its unit?"
+    return Note("quantity", f'{text} unit="{name.replace(" ", "")}={prefix}{unit}"')
 
 
 @dataclass(frozen=True)

@@ -189,15 +189,13 @@ def converted_channels(
         raise InputError(f"{table.path}: no channel; expected one of {', '.join(CHANNELS)}")
     units = by_channel("unit", unit, list(places))
     stated = by_channel("sensitivity", sensitivity, list(places))
+    used = {name: table.columns[place] for name, place in places.items()}
+    of_all = isinstance(sensitivity, str) and "=" not in sensitivity and units
+    check_units(table, used, units, {} if of_all else stated)  # not all are in volts where some are
     channels = {}
-    for name, place in places.items():
-        column = table.columns[place]
+    for name, column in used.items():
         own = units.get(name, column.unit)
         sensor = stated.get(name, column.sensitivity)
-        of_all = isinstance(sensitivity, str) and "=" not in sensitivity
-        if of_all and units and not own:  # it may not be in volts
-            text = "no unit, where others have one; expected its unit too: give it by unit="
-            raise InputError(f"{column_label(table, column)}: {text}")
         factor, derivatives = unit_factor(
             column_label(table, column), own, sensor, OF_FORCES if name == FORCE else OF_MOTIONS
         )
@@ -205,8 +203,21 @@ def converted_channels(
             expected = f"expected volts: a sensitivity does not act on a column in {own}"
             raise InputError(f"{column_label(table, column)}: sensitivity {sensor}; {expected}")
         channels[name] = Channel(scaled_values(table, column, factor), derivatives)
-    used = {name: table.columns[place] for name, place in places.items()}
     return time, channels, read_as | unit_attributes(used, unit, units)
+
+
+def check_units(
+    table: Columns, used: Mapping[str, Column], units: Mapping[str, str], stated: Mapping[str, str]
+) -> None:
+    """Raise where columns have no unit, with the option that gives it to each."""
+    known = {n: units.get(n, one.unit) or stated.get(n, one.sensitivity) for n, one in used.items()}
+    if unknown := [name for name, text in known.items() if not text]:
+        labels = ", ".join(f'column "{used[n].name}" ({SHORT_NAMES[n]})' for n in unknown)
+        words = {name: SHORT_NAMES[name].replace(" ", "") for name in (*units, *unknown)}
+        option = ",".join(f"{words[n]}={units.get(n) or '...'}" for n in used if n in words)
+        usual = "N, kN, V" if unknown == [FORCE] else "m/s2, g, mm/s, um, V"
+        text = f"{labels}: no unit; expected one such as {usual}: give it by unit="
+        raise InputError(f'{table.path}, {text}"{option}"')
 
 
 def unit_attributes(

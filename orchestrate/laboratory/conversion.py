@@ -97,10 +97,8 @@ def unit_factor(
     for derivatives, factors in known.items():
         if plain in factors:
             return factors[plain], derivatives
-    text = f"unit = {unit!r}" if unit else "no unit"
     names = "m/s2, g, mm/s, um, V" if known is OF_MOTIONS else "N, kN, V"
-    expected = f"expected one such as {names}: give it by unit="
-    raise InputError(f"{label}: {text}; {expected}")
+    raise InputError(f"{label}: unit = {unit!r}; expected one such as {names}: give it by unit=")
 
 
 def factor_of_voltage(label: str, unit: str, sensitivity: str, known: Tables) -> tuple[float, int]:

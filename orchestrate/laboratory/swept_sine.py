@@ -152,10 +152,8 @@ class SweptSine(signals.Sine):
         return [time for time in times if 0.0 < time < self.duration]
 
     def _bounds(self, nodes: Floats) -> Floats:
-        """Return each piece's error bound (:mod:`.pieces`) from the largest fourth derivative.
-
-        Of ``A sin(phase)`` by Leibniz's and Faa di Bruno's rules, each term at its largest.
-        """
+        """Return each piece's error bound (:mod:`.pieces`) from the largest fourth derivative."""
+        # of A sin(phase) by Leibniz's and Faa di Bruno's rules, each term at its largest
         ends = np.stack([nodes[:-1], nodes[1:]])
         f = self.frequency(ends)
         w = TURN * f.max(axis=0)

@@ -130,11 +130,11 @@ class CompiledMaster(Master):
             self.drive.channel.begin()
             into = addresses[0] + at * width * rows.itemsize, addresses[1] + first * ends.itemsize
             known = now.buffer_info()[0], *into, values.buffer_info()[0]
-            if not run(byref(pair), *known, size, h):
+            worked, self.row = run(byref(pair), *known, size, h), now.tolist()
+            if not worked:
                 raise self._failure(pair)
             ends[first:end] += at
             at = int(ends[end - 1]) if size else 0
-            self.row = now.tolist()
         return Record.of_rows(self.names, rows[: at + 1], ends, recorded)
 
     @functools.cached_property

@@ -19,7 +19,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import InputError
+from ..errors import FmuError, InputError
 from ..fmu.begin import REST, begin
 from ..fmu.description import Description, describe, describe_runnable
 from ..fmu.exported import finder
@@ -59,6 +59,7 @@ IN_TIME_TOO = {
 BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
 MAX_STEPS = 10_000_000
 NOTHING = np.empty((0, 0))
+DIVERGED = 1e12  # N: no drive bears a larger force on its box
 NOTICED = 0.01  # of the largest displacement: a larger coupling error gives a warning
 Values = tuple[tuple[str, float | bool], ...]
 
@@ -86,7 +87,13 @@ class Coupling:
         recorded = []
         if self.master.connection.recorded and not steps.start:
             recorded = [np.array([self.master.recorded(self.inputs.at(np.zeros(1))[0])])]
-        record = self.run(steps)
+        try:
+            record = self.run(steps)
+        except FmuError:
+            self.check_force(self.master.time, self.master.motion.box_force)
+            raise
+        first = int(np.argmax(np.abs(record["box_force"]) > DIVERGED))
+        self.check_force(record["time"][first], record["box_force"][first])
         nodes = record["time"].copy()
         nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 : steps.stop + 1]
         after = record.after
@@ -98,6 +105,15 @@ class Coupling:
         if self.master.connection.recorded:
             table["recorded"] = np.concatenate([*recorded, record.recorded])
         return table
+
+    def check_force(self, time: float, force: float) -> None:
+        """Raise ``FmuError`` with what to look at where the coupling diverges."""
+        if abs(force) > DIVERGED:
+            links = self.master.connection.links
+            motion = " and ".join(links[name].theirs for name in MOTION if name in links)
+            text = f"the coupling diverges at t = {time:.3g} s (box_force = {force:.2g} N)"
+            text += f": look at the unit of {motion} and the sign of box_force"
+            raise FmuError(f"{text}, connect {turned(links)}; or reduce the step") from None
 
     def run(self, steps: range) -> Record:
         """Run both FMUs over some steps."""
@@ -204,11 +220,7 @@ class CosimulateJob(Question):
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
 
     def moved_by_force(self) -> float:
-        """Return by how much 1 N more moves the box in a step: position, velocity or acceleration.
-
-        The one of them that is connected, in this order: the sign of the first is sure whatever
-        springs the drive has.
-        """
+        """Return by how much 1 N more moves the box in a step, by its connected motion."""
         moved = []
         for force in (0.0, 1.0):
             with Instance(self.drive, "drive") as drive:
@@ -217,6 +229,7 @@ class CosimulateJob(Question):
                 side.put((force, 0.0, 0.0, 0.0), ())
                 side.channel.step(0.0, self.step)
                 moved.append(side.get()[: len(BOX)])
+        # the first that is connected: its sign is sure whatever springs the drive has
         ways = (after - before for before, after in zip(*moved, strict=True))
         return next((way for way in ways if math.isfinite(way)), math.nan)
 
@@ -417,10 +430,14 @@ def cosimulate(
 def warn_of_sign(run: xr.Dataset, links: Mapping[str, Link]) -> None:
     """Warn where a force on the box moves the box against it."""
     if (moved := getattr(run, "attrs", {}).get("moved_by_1_N", 0.0)) < 0.0:
-        force = links["box_force"]
-        turned = ("-" if force.scale > 0.0 else "") + force.theirs
         text = f"1 N of box_force moves the box by {moved:.2g} in a step, against the force"
-        warnings.warn(f"{text}; connect box_force={turned}, unless that is meant", stacklevel=3)
+        warnings.warn(f"{text}; connect {turned(links)}, unless that is meant", stacklevel=3)
+
+
+def turned(links: Mapping[str, Link]) -> str:
+    """Return the connection of the force with the other sign."""
+    force = links["box_force"]
+    return f"box_force={'-' if force.scale > 0.0 else ''}{force.theirs}"
 
 
 def warn_of_error(run: xr.Dataset, missing: Sequence[str]) -> None:
@@ -432,7 +449,7 @@ def warn_of_error(run: xr.Dataset, missing: Sequence[str]) -> None:
     if error > NOTICED * size:
         more = f" and connect {', '.join(missing)} if the drive has it" if missing else ""
         text = f"coupling error {error:.2g} m of displacements up to {size:.2g} m: "
-        text += "it diverges" if error > size else "impacts may be missed or added"
+        text += "it diverges: look at units" if error > size else "impacts may be missed or added"
         warnings.warn(f"{text}; reduce the step{more}", stacklevel=3)
 
 

@@ -281,11 +281,8 @@ def window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Wind
 
 
 def fit(channels: Channels, window: Window, orders: tuple[float, ...]) -> tuple[Floats, Floats]:
-    """Fit orders in a window by least squares; return each channel's amplitudes and residual.
-
-    Complex ``A exp(i theta)`` of ``A sin(n phase + theta)`` in the middle, shape (channels,
-    orders), and the weighted root mean square of the rest, shape (channels,).
-    """
+    """Fit orders in a window by least squares; return each channel's amplitudes and residual."""
+    # complex A exp(i theta) of A sin(n phase + theta) in the middle, shape (channels, orders)
     limit = NYQUIST * channels.sample_rate
     resolved = [n for n in orders if n * window.frequency <= limit]
     columns = [np.ones_like(window.offset)]

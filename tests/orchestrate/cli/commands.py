@@ -46,13 +46,7 @@ class Done:
 
 
 class Commands:
-    """Commands with one folder of results and one for temporary files.
-
-    Parameters
-    ----------
-    folder : Path
-        Where both lie.
-    """
+    """Commands with one folder of results and one for temporary files."""
 
     def __init__(self, folder: Path) -> None:
         self.output, self.temporary = folder / "results", folder / "temporary"

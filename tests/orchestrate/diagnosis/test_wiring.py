@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from scipy.signal import detrend
 
 from orchestrate import InputError, detect, read_record, record, signs
 from orchestrate.diagnosis.orders import sensor_channels
@@ -81,6 +82,18 @@ def test_each_error_is_named_alone_with_what_mends_it(kind):
     assert note.kind == kind and re.search(words, note.text)
 
 
+@pytest.mark.parametrize(("name", "unit"), [(FACE, "m/s"), (FACE, "um"), (BASE, "mm/s")])
+def test_a_velocity_or_displacement_that_is_read_as_an_acceleration_is_named(name, unit):
+    channels, (prefix, _, per) = sweep(noise=1e-3), unit.rpartition("m")
+    for _ in range(1 if per else 2):
+        channels[name] = detrend(np.cumsum(detrend(channels[name]))) / RATE
+    channels[name] *= {"": 1.0, "m": 1e3, "u": 1e6}[prefix]
+    (note,) = notes(channels)
+    asked = f'at 20.9 Hz: its unit? unit="{"base" if name == BASE else "face1"}={unit}"'
+    assert note.kind == "quantity" and note.text.endswith(asked)
+    assert f"moves as a {'velocity' if per else 'displacement'}, not an acc" in note.text
+
+
 @pytest.mark.parametrize("participation", [0.3, 0.8, 1.6])
 def test_a_clean_record_has_no_note(participation):
     assert notes(sweep(participation)) == []
@@ -127,7 +140,8 @@ def test_what_a_note_says_mends_the_record(tmp_path):
         "Time,Table,Laser tip\n" + "".join(f"{t:.5g},{b:.6g},{v:.6g}\n" for t, b, v in rows)
     )
     options = {}
-    for said in ('"Table": no unit.*unit=', '"Table": in V, without a sens.*sensitivity="?'):
+    asked = '"Table" .base., column "Laser tip" .face 1.: no unit.*unit="base=...,face1=..."$'
+    for said in (asked, '"Table": in V, without a sens.*sensitivity="?'):
         with pytest.raises(InputError, match=said):
             read_record(path, **options)
         if "unit" in options:

@@ -363,7 +363,7 @@ def test_a_record_says_which_unit_was_taken_in_place_of_the_file_s(tmp_path):
             "t [s],base [V]\n0,1\n1,2\n2,3\n3,1\n",
             'column "base": in V, without a sensitivity; expected one',
         ),
-        ("t,base\n0,1\n1,2\n2,3\n3,1\n", 'column "base": no unit; expected one such as m/s2, g'),
+        ("t,base\n0,1\n1,2\n2,3\n3,1\n", 'column "base" (base): no unit; expected one such'),
         ("t [s],base [g]\n0,1\n1,2\n", "base_acceleration"),
         ("\0\1\2", "no text; expected columns of numbers"),
         (counted(9, 17), 'column "n", row 10: 9 after 7; expected equal steps: samples are lost'),
@@ -507,7 +507,7 @@ def test_matlabs_matrices_and_rates(tmp_path):
     path, data = tmp_path / "a.mat", drawn()
     matrix = np.stack([data[name].values for name in CHANNELS], axis=1)
     scipy.io.savemat(path, {"data": matrix, "Fs": RATE, "remark": "x"})
-    with pytest.raises(InputError, match=r'column "data\[0\]": no unit'):
+    with pytest.raises(InputError, match=r'column "data\[0\]" .base., .*: no unit'):
         read_record(path)
     same(read_record(path, unit="m/s2"), data)
     named = read_record(path, unit="m/s2", columns={"acceleration1": "data[1]"})
@@ -631,7 +631,7 @@ def test_velocities_displacements_and_voltages_become_accelerations(tmp_path):
 
 def test_a_sensitivity_of_all_columns_asks_for_the_units_that_are_missing(tmp_path):
     path = table_file(tmp_path / "a.csv", "t [s],base,tip", *swept(50)[:3])
-    with pytest.raises(InputError, match='column "tip": no unit, where others have one'):
+    with pytest.raises(InputError, match='column "tip" .face 1.: no unit.* unit="base=V,face1=...'):
         read_record(path, unit="base=V", sensitivity="100 mV/g")
     read_record(path, unit="base=V,face1=V", sensitivity="100 mV/g")
 

@@ -1,7 +1,4 @@
-"""The bonded system by Runge and Kutta in plain Python, with a voltage held over each step.
-
-Written apart from the library: what controllers and captures have to agree with.
-"""
+"""The bonded system by Runge and Kutta, apart from the library: voltages held over each step."""
 
 import math
 

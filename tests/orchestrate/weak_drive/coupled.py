@@ -43,10 +43,7 @@ QUICK, BEAM = (
 
 
 def drawn(seed, number):
-    """A system drawn at random: of those that a seed makes one after the other, one by its number.
-
-    The quantities are drawn in the order in which they stand here.
-    """
+    """A system drawn at random from a seed, by its number."""
     rng = np.random.default_rng(seed)
     for _ in range(number + 1):
         D, b = rng.uniform(0.006, 0.03), math.exp(rng.uniform(math.log(0.01), math.log(0.5)))

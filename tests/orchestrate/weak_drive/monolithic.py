@@ -15,17 +15,7 @@ ROUNDING = 4e-16  # of displacements: a gap that is no more is none
 
 
 class Monolith:
-    """The whole system.
-
-    Parameters
-    ----------
-    structure : Structure
-    drive : Drive
-    voltage : float or callable
-        V, or V at a time in s.
-    tolerance : mapping, optional
-        Of ``solve_ivp``.
-    """
+    """The whole system; a voltage or one at a time in s, and the tolerances of ``solve_ivp``."""
 
     def __init__(self, structure, drive, voltage, tolerance=None):
         self.o, self.s, self.tolerance = structure, drive, tolerance or TOLERANCE
@@ -95,10 +85,7 @@ class Monolith:
         return np.array(after), sticks
 
     def solve(self, state, times):
-        """States at ``times`` from ``state`` at the first of them, and the number of impacts.
-
-        It begins in flight or, where the gap is 0, in contact.
-        """
+        """States at ``times`` from ``state`` at the first of them, and the number of impacts."""
         rows, state = [np.array(state)], np.array(state)
         state[2] += self.clearance
         if abs(state[2] - state[0]) <= ROUNDING * (abs(state[0]) + abs(self.clearance)):

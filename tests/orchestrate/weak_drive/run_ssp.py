@@ -1,8 +1,4 @@
-"""Run an SSP package in a tool: ``run_ssp.py TOOL FILE STEP COUNT NAME`` prints x1, x2 and what
-the shaker calls so.
-
-Exit code 3: the tool is not installed.
-"""
+"""Run an SSP package: ``TOOL FILE STEP COUNT NAME``; exit code 3: the tool is not installed."""
 
 import ctypes
 import json

@@ -112,9 +112,7 @@ def test_the_bonded_structure_ignores_it():
 
 @pytest.mark.parametrize("system", SYSTEMS.values(), ids=SYSTEMS)
 def test_all_scaled_the_motion_scales(system):
-    """Unbalance and gap twice, the slope of e(v) half, rotor and motor's torque four times:
-    amplitudes twice, the same speeds, energies four times; to the last bit.
-    """
+    """Lengths twice, the slope of e(v) half, torques four times: equal speeds, energies 4 times."""
     drive = system.drive
     twice = drive.replace(
         unbalance_radius=2.0 * drive.unbalance_radius,

@@ -1,12 +1,14 @@
 """Somebody else's drive, coupled: against both as one system, and connections that cannot be."""
 
 import math
+import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.errors import InputError
+from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu.description import describe
 from orchestrate.weak_drive import cosimulate
 from orchestrate.weak_drive.compiled import CompiledMaster
@@ -239,6 +241,24 @@ def test_an_error_that_may_hide_impacts_gives_a_warning(drive):
     turned = {**CONNECT, "box_force": "-specimen_force"}
     with pytest.warns(UserWarning, match="connect box_force=specimen_force, unless"):
         orchestrate.cosimulate(STRUCTURE, drive, connect=turned, **run)
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize("duration", [0.4, 8.0])  # to a force that is none, and to a refused step
+def test_a_coupling_that_diverges_says_what_to_look_at(drive, tmp_path, duration):
+    """By an acceleration in mm/s2 without a unit in compiled steps, by a sign in Python's."""
+    one = draw(2)
+    far = replace(one, c=1e3 * one.c, d=1e3 * one.d)
+    turned = {**CONNECT, "box_force": "-specimen_force"}
+    for path, connect, parameters, command, (unit, force) in (
+        (far.write(tmp_path), one.connect, far.parameters, one.names[1], (one.names[2], "njnp4")),
+        (drive, turned, {"mass": 0.005}, "volts", ("table_acc", "specimen_force")),
+    ):
+        run = {**RUN, "connect": connect, "inputs": {command: 3.0}, "duration": duration}
+        with pytest.raises(FmuError) as raised:
+            orchestrate.cosimulate(STRUCTURE, path, parameters=parameters, step=0.01, **run)
+        words = rf"at t = [\d.]+ s \(box_force = .* N\): look at the unit of {unit} .*={force}; or"
+        assert re.fullmatch(f"the coupling diverges {words} reduce the step", str(raised.value))
 
 
 def test_derivatives_of_a_polynomial_through_points():

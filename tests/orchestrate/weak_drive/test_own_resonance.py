@@ -16,10 +16,7 @@ OWN_LOSSES = (1.4370, 1.4460)  # over K omega: where held voltages lose its moti
 
 
 def closure(system, Omega):
-    """How far the elastic system is from closing a revolution with one impact and no gap there.
-
-    In absolute coordinates, by the matrix exponential: the least singular value.
-    """
+    """How far the elastic system is from closing a revolution with one impact and no gap there."""
     structure, drive = system
     beta, mu, kappa = drive.beta(structure), structure.mu, structure.kappa
     masses = np.array([beta, beta * mu, 1.0])

@@ -1,8 +1,4 @@
-"""Random sets against one system of equations: trajectories, folds, Neimark-Sacker points.
-
-The truth is :class:`.monolithic.Monolith`, with shooting of its own: nothing of it knows the FMUs
-but the state that it starts from.
-"""
+"""Random sets against :class:`.monolithic.Monolith`: trajectories, folds, Neimark-Sacker points."""
 
 import numpy as np
 

@@ -38,10 +38,7 @@ def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator
 
 @pytest.mark.slow
 def test_estimators_where_the_noise_is():
-    """H1 is right with noise on the response, H2 with noise on the box, Hv with the same on both.
-
-    A gain of 2 and a delay of a sample, known exactly.
-    """
+    """H1 is right with noise on the response, H2 with noise on the box, Hv with both alike."""
     draw = np.random.default_rng(3).normal
     box = draw(size=100_001)
     response, noise, other = 2.0 * box[:-1], 0.8 * draw(size=100_000), 0.8 * draw(size=100_000)
