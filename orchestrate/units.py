@@ -205,8 +205,7 @@ def shown_number(
 def as_shown(data: xr.Dataset) -> xr.Dataset:
     """Convert a dataset's values and ``units`` attributes from SI to its display units.
 
-    A frequency ratio stands beside the frequency already, which stays in rad/s then; what is named
-    for its unit keeps it.
+    Beside a frequency ratio a frequency stays in rad/s; what is named for its unit keeps it.
     """
     if SHOWN_IN not in data.attrs:
         return data

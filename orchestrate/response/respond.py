@@ -53,12 +53,9 @@ class Response:
     def conclude(self, decision: Decision, impacts: int) -> tuple[Decision, float]:
         """Return a decision, undecided where impacts contradict it, and impacts per period.
 
-        ``impacts`` are those of the next n periods. A repeated response is undecided if
-
-        - the samples do not have that number of impacts per n periods, up to one at either end, or
-        - there are none though n > 1 or no motion without impacts exists.
-
-        Impacts per period are exact where it repeats, else the mean over the samples.
+        A repeated response is undecided if the samples do not have the ``impacts`` of its next n
+        periods, up to one at either end, or if there are none though n > 1 or no motion without
+        impacts exists. Impacts per period are exact where it repeats, else the samples' mean.
         """
         (n, decided), mean = decision, self.impacts_per_period
         if decided != REPEATED:

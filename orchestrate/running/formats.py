@@ -37,8 +37,7 @@ MAX_SHEET_NAME = 31  # letters, Excel's limit
 def write(data: xr.Dataset, path: Path) -> list[Path]:
     """Export a dataset as .csv, .mat or .xlsx, by the path's suffix; return the paths written.
 
-    Of CSV there are several where variables are over several sets of dimensions. ``InputError`` if
-    the format has no room for the data; ``StoreError``, and the former file, if it is not written.
+    Of CSV there is one for each set of dimensions; a file that cannot be written stays as it was.
     """
     ending = path.suffix.lstrip(".")
     if ending not in WRITERS:
