@@ -242,7 +242,7 @@ def verdict_lines(
     from ..show.verdict import make_verdict
 
     shown = make_verdict(verdict)
-    yield f"{sweep}: {shown.word} {shown.sentence}"
+    yield f"{sweep}: {shown.word} {with_option_names(shown.sentence, arguments)}"
     for name, label in LINES.items():
         if verdict.attrs.get(name):
             yield f"  {label}: {with_option_names(verdict.attrs[name], arguments)}"
