@@ -242,7 +242,7 @@ class Findings:
             other = f'the model "{self.delaminated}" has {self.delaminated_misfit:.3g}'
             enough = f"{self.deciding_ratio:g} times is enough to decide"
             ratio = digits(self.ratio, self.deciding_ratio)
-            misfit += f", {other}: that is {ratio} times as large, where {enough}"
+            misfit += f", {other}: the first is {ratio} times the second, where {enough}"
         sentences.append(f"{misfit}.")
         stops = [one.otherwise for one in self.stops]
         return " ".join([*sentences, MISFIT_MEANING, *stops, *self.imperfection()])

@@ -168,7 +168,8 @@ def quantity_note(name: str, order: int, fit: LowResponse) -> Note:
     motion, unit = {1: ("velocity", "m/s"), 2: ("displacement", "m")}[abs(order)]
     thousands = np.log10(abs(fit.factor)) / 3.0 * np.sign(order)
     prefix = ("", "m", "u", "n")[int(np.clip(np.rint(thousands), 0, 3))]
-    text = f"{name} moves as a {motion}, not an acceleration, at {fit.frequency:.3g} Hz: its unit?"
+    moves = f"{name} moves as a {motion}, not an acceleration, at {fit.frequency:.3g} Hz"
+    text = f"{moves}: its unit, or the other's?"
     return Note("quantity", f'{text} unit="{name.replace(" ", "")}={prefix}{unit}"')
 
 

@@ -104,7 +104,7 @@ def unit_factor(
 def factor_of_voltage(label: str, unit: str, sensitivity: str, known: Tables) -> tuple[float, int]:
     """Return the factor of a voltage by its sensitivity, such as ``100 mV/g``."""
     usual = "100 mV/g or 50 mV/(mm/s)" if known is OF_MOTIONS else "22 mV/N"
-    expected = f"expected one such as {usual}: give it by sensitivity="
+    expected = f"expected one such as {usual}, or base=... for one channel: give it by sensitivity="
     if not sensitivity:
         raise InputError(f"{label}: in {unit}, without a sensitivity; {expected}")
     parts = SENSITIVITY.fullmatch(sensitivity.strip())

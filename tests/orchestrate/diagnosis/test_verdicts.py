@@ -85,7 +85,7 @@ def test_what_keeps_a_quiet_record_from_its_verdict_is_named(name):
 
 def test_what_keeps_a_record_from_being_called_delaminated_is_named():
     partly = replace(OPENED, sound_misfit=1.216, share=0.7)
-    assert "1.52 times as large" in partly.reason()
+    assert "the first is 1.52 times the second" in partly.reason()
     assert "exceeds 1.5 in 0.7 of the records" in partly.reason() and "0.75" in partly.reason()
     cracked = replace(OPENED, alike=PositiveStop.alike, sound_misfit=1)
     assert "a breathing crack or a clamp with play describes it" in cracked.reason()
@@ -126,7 +126,7 @@ def test_a_verdict_by_a_model_that_describes_the_record_only_so_well_says_so():
         assert not stated_hypotheses(fits, findings).any()
     assert "only so well" not in replace(OPENED, apart=4.0).reason()
     assert stated_hypotheses(fits, replace(OPENED, apart=4.0)).tolist() == [False, True, False]
-    assert "1.1 times as large, where 1.05 times is enough" in hardly_better.reason()
+    assert "the first is 1.1 times the second, where 1.05 times is enough" in hardly_better.reason()
 
 
 def test_what_strikes_is_named_and_what_was_not_listened_for_too():

@@ -89,7 +89,7 @@ def test_a_velocity_or_displacement_that_is_read_as_an_acceleration_is_named(nam
         channels[name] = detrend(np.cumsum(detrend(channels[name]))) / RATE
     channels[name] *= {"": 1.0, "m": 1e3, "u": 1e6}[prefix]
     (note,) = notes(channels)
-    asked = f'at 20.9 Hz: its unit? unit="{"base" if name == BASE else "face1"}={unit}"'
+    asked = f'the other\'s? unit="{"base" if name == BASE else "face1"}={unit}"'
     assert note.kind == "quantity" and note.text.endswith(asked)
     assert f"moves as a {'velocity' if per else 'displacement'}, not an acc" in note.text
 
