@@ -15,16 +15,8 @@ TOLERANCE = 1e-12
 class Motion:
     """One motion, from rest or from start values, impact by impact.
 
-    Attributes
-    ----------
-    state : ndarray, shape (4,)
-        x1, v1, x2, v2 at ``time``.
-    mode : str
-        FLIGHT or CONTACT.
-    impacts, sticks : list
-        Times, and whether contact follows.
-    releases : int
-        Ends of permanent contact.
+    ``state`` is x1, v1, x2, v2 at ``time``, ``mode`` FLIGHT or CONTACT; ``impacts`` are times,
+    ``sticks`` whether contact follows, ``releases`` the number of its ends.
     """
 
     def __init__(self, values, acceleration=None):

@@ -39,7 +39,7 @@ RUNS = {  # outputs, inputs, and one output that shows that something went on
         ["box_position", "current", "energy"],
         {"command": 5.0},
         "energy",
-        2e4,
+        2.5e4,
     ),
     "MotorShaker": (["box_position", "speed", "angle"], {"voltage": 5.0}, "angle", 1e5),
 }

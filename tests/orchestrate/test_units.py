@@ -11,7 +11,16 @@ import xarray as xr
 import orchestrate
 from orchestrate import InputError, Structure
 from orchestrate.running import formats
-from orchestrate.units import Units, as_shown, scale_of, text_of, units_of, with_units
+from orchestrate.units import (
+    Units,
+    as_shown,
+    length_of_ratio,
+    scale_of,
+    text_of,
+    units_of,
+    with_readable_lengths,
+    with_units,
+)
 
 TURN, G = 2.0 * np.pi, 9.80665
 BEAM = Structure.from_halves(
@@ -92,6 +101,9 @@ def test_numbers_are_divided_by_what_the_unit_says():
     assert text_of(with_units(data, "eta, periods"), 3.0, "rad/s") == "eta = 1.5"
     assert text_of(with_units(data, "periods"), 3.0, "s") == "3 periods"
     assert scale_of(data, "N") == (1.0, "N")
+    assert length_of_ratio(xr.Dataset(attrs={"k1": 4.0, "m1": 1.0, "level": 0.2})) == 0.05
+    beam = xr.Dataset({"x": ("t", [2e-5, 0.0], {"units": "m"})}, attrs={"k1": 4.0, "m1": 1.0})
+    assert str(units_of(*with_readable_lengths(beam))) == "um"
     assert scale_of(with_units(xr.Dataset(), "eta"), "rad/s") == (1.0, "rad/s")  # no omega
 
 

@@ -32,6 +32,7 @@ MISTAKES = {  # options of each command, then what its line says
         --set e=abc : --set e=abc | abc is not a number
         --set ee=1% : --set ee: no parameter | did you mean e?
         --set zeta=1% --set zeta2=0.1 : zeta2 is set already
+        --set preload=20 : preload=20: expected a length
         --set preload=-20um : preload=-20um: expected a length above 0
         --set e=0.1 --set e=0.2 : --set e=0.2 | each name once
         --set e=1.2 : e = 1.2 | 0 <= e <= 1

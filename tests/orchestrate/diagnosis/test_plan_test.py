@@ -41,6 +41,7 @@ def test_the_opening_force_is_that_of_the_bonded_motion(exported, hertz):
 
 
 def test_halves_that_move_alike_are_never_opened():
+    assert sweep_rate(50.0, 0.01) == pytest.approx(0.9)  # Hz/s
     assert opening_force(HALVES, 46.0) > 1.0
     alike = scale_split(HALVES, 0.0)
     assert opening_force(alike, 46.0) < 1e-9

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from orchestrate.diagnosis.decision_rule import Findings, resampled_share
+from orchestrate.diagnosis.decision_rule import Findings, factor_outside, resampled_share
 from orchestrate.diagnosis.detect import stated_hypotheses
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import reported_derivatives
@@ -156,6 +156,10 @@ def test_a_ratio_that_one_part_of_the_record_makes_is_not_certain():
     burst = one.copy()
     burst[..., 50:60] *= 12.0
     assert 0.02 < resampled_share(burst, one, 1.5) < SETTINGS.share
+
+
+def test_a_factor_outside_a_range():
+    assert (factor_outside(10.0, 20.0, 30.0), factor_outside(45.0, 20.0, 30.0)) == (2.0, 1.5)
 
 
 def test_a_number_beyond_its_limit_is_not_written_as_the_limit():

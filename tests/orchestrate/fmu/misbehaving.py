@@ -61,15 +61,7 @@ def misbehaving(
 ) -> Path:
     """Copy an FMI 3.0 FMU for Linux with one call that goes wrong.
 
-    Parameters
-    ----------
-    source, target : Path
-    kind : str
-        Of ``BODIES``; or ``"NaN"``, which is what its ``first`` and later readings are.
-    function : str
-        The call.
-    first : int
-        Readings that are good.
+    The kind is one of ``BODIES``, or ``"NaN"``: what all but the ``first`` readings are.
     """
     compiler = shutil.which("cc") or shutil.which("gcc")
     command = [compiler] if compiler else [sys.executable, "-m", "ziglang", "cc"]

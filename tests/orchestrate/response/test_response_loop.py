@@ -99,6 +99,7 @@ def test_ends_are_rounded_alike(instance, scale):
     for loop in loops(instance):
         results = loop.respond([Point(structure, excitation)], [(0.0,) * 4], settings)
         assert tuple(results.ends[0]) == round_state(results.states[0, -1])
+    assert round_state(np.array([0.25, 0.3, 1.0, -1.0])) == (0.25, 0.30000000000001137, 1.0, -1.0)
 
 
 def test_what_the_fmu_refuses_is_its_own_message(instance):
