@@ -348,7 +348,6 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
     level = text_of(data, data.recommended_level, "m/s2", ".3g")
     ends = range_text(data, float(data.recommended_first), float(data.recommended_last), "Hz")
     yield f"sweep {ends} at {level}, up and down, {float(data.recommended_duration):.0f} s each way"
-    yield "(past the resonance, at four times the level that shows or opens it, if there is one)"
     if not data.counts:
         yield "orders 2 and 3 do not count at any of these levels: raise --g, or lower the --noise"
     opens = data.opening_level.values
@@ -356,7 +355,8 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
         at = int(opens.argmin())
         where = text_of(data, data.frequency[at], "Hz", ".4g")
         lowest = text_of(data, opens[at], "m/s2", ".3g")
-        yield f"pressed together: it opens from {lowest}, at {where}"
+        times = float(data.recommended_level) / opens[at]
+        yield f"pressed together: it opens from {lowest}, at {where}: {times:.2g} times less"
     elif not data.attrs["clearance"]:
         yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
     best = data.distance_harmonics.max("frequency")

@@ -73,11 +73,11 @@ class Findings:
           smaller than the best sound one; `delaminated_apart` and `ratio_apart` where two faces
           move apart and order 2 or bursts exceed their thresholds; `ratio_difference` where the
           faces' difference is all there is; in `share` of records put together of its blocks.
-        - "no opening seen": order 2, the difference of the faces and bursts (too slowly sampled
-          ones too) are below their thresholds, a sound misfit is at most `sound`, noise hides no
+        - "no opening seen": order 2, the difference of the faces and bursts, where the sampling
+          tells them, are below their thresholds, a sound misfit is at most `sound`, noise hides no
           order 2 of `hidden`.
         - "not described": no sound misfit is at most `sound`, and the delaminated one exceeds its
-          limit of the second rule.
+          limit in the second bullet.
         - "undecided": all else.
         """
         usable = all(one.holds for one in self.record_conditions())

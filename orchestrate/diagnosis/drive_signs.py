@@ -9,6 +9,7 @@ import numpy as np
 from ..errors import InputError
 from ..laboratory.pieces import Floats
 from ..lazy import xr
+from ..model.drive import sense_of
 
 REQUIRED_VARIABLES = ("time", "speed", "voltage", "motor")
 MIN_SPEEDS = 8  # speeds that both runs have
@@ -68,7 +69,7 @@ def power_below_jump(run: xr.Dataset) -> tuple[Floats, Floats]:
     time, speed, voltage, work = (run[name].values for name in REQUIRED_VARIABLES)
     if not len(time) > 1:
         raise InputError("record: a run of less than two revolutions; expected more of them")
-    sense = -1.0 if -voltage.min() > voltage.max() else 1.0  # -1: the motor turns backward
+    sense = sense_of(voltage)
     voltage, speed = sense * voltage, sense * speed
     power = np.diff(work) / np.diff(time)
     jump = jump_voltage(run)

@@ -343,10 +343,11 @@ def smallest_detectable(
     """Return variables: the smallest levels and openings that count, and levels that overload."""
     force = largest_opening_force(test.structure, test.frequency)
     with np.errstate(divide="ignore", invalid="ignore"):
-        smallest = np.where(higher[-1] > 0.0, limit * sweeps[-1].level / higher[-1], np.inf)
+        levels = np.array([[sweep.level] for sweep in sweeps])
         if test.structure.has_scale:  # not in proportion to the level
-            levels = np.array([[sweep.level] for sweep in sweeps])
             smallest = np.where(higher >= limit, levels, np.inf).min(axis=0)
+        else:
+            smallest = np.where(higher[-1] > 0.0, limit * levels[-1] / higher[-1], np.inf)
         open_from = test.structure.preload / force
         smallest_gap = np.where(higher > 0.0, opening * limit / higher, np.inf).min(axis=1)
     ranges = min(one.range for name, one in test.sensors.items() if name != BOX)

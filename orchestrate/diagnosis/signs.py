@@ -80,8 +80,9 @@ def signs(
         Over ``sign`` and ``channel``: ``value``; ``floor``, what noise alone makes of it; ``sound``
         and ``sound_highest``, the median and the largest value of sound structures under the same
         box with the same noise; ``exceeds``, whether the value is above ``factor`` times
-        ``sound_highest`` (else unknown) and any known floor; ``frequency`` in Hz, where an order
-        is largest. All signs are numbers without a unit, NaN where the record cannot show them.
+        ``sound_highest`` and the floor, where that is known; unknown without the other two;
+        ``frequency`` in Hz, where an order is largest. All signs are numbers without a unit, NaN
+        where the record cannot show them.
         Coordinates over ``sign``: its ``meaning``, ``formula``, ``source`` and what else is known
         to move it, ``moved_by``. Over ``channel``: ``noise`` in m/s2. ``sound_f`` in Hz and
         ``sound_zeta`` are the sound structure's. The attribute ``seeds`` has the seeds.

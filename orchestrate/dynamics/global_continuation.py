@@ -91,10 +91,7 @@ class AttractorsAtValue:
         )
 
     def find_or_add(self, motion: SettledMotion) -> int:
-        """Return the index of a motion among the attractors here; append it if it is new.
-
-        Irregular ones are joined by the nearest gap, as the rule in :mod:`.decision` says.
-        """
+        """Return a motion's index here, of irregular ones by the nearest gap; append a new one."""
         if motion.decided == IRREGULAR:
             alike = [k for k, known in enumerate(self.motions) if known.decided == IRREGULAR]
             if alike:

@@ -7,7 +7,7 @@ grazing impacts and in chattering are never both near enough and far enough.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -98,6 +98,11 @@ def decay_rate(damping: float, square: float) -> float:
     return damping if excess >= 0.0 else square / (damping + math.sqrt(-excess))
 
 
+def wander_floor(etas: Iterable[float], periods: int, wander: float = WANDER) -> Floats:
+    """Return what a deviation that only wanders, by this factor, makes of exponents at most."""
+    return math.log(wander) / (periods * np.array([period_in_tau(eta) for eta in etas]))
+
+
 def classify_exponents(
     exponent: ArrayLike, error: ArrayLike, floor: ArrayLike, sigmas: float = SIGMAS
 ) -> NDArray[np.int8]:
@@ -166,8 +171,8 @@ class LyapunovJob(ImpactsQuestion):
 
     def dataset(self, table: Table) -> xr.Dataset:
         along, (exponent, error, impacts) = self.series.name, table["rows"].T[:3]
-        spans = self.periods * np.array([period_in_tau(eta) for eta in self.series.etas])
-        verdicts = classify_exponents(exponent, error, np.log(self.wander) / spans, self.sigmas)
+        floor = wander_floor(self.series.etas, self.periods, self.wander)
+        verdicts = classify_exponents(exponent, error, floor, self.sigmas)
         variables: dict[str, Variable] = {
             "exponent": variable(along, exponent, "1", f"{LARGEST}, per unit of tau"),
             "standard_error": variable(along, error, "1", "standard error of the exponent"),

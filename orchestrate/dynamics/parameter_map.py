@@ -7,7 +7,6 @@ leads to.
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
@@ -44,8 +43,7 @@ from ..running.job import Fmus, Table, plain
 from ..running.options import Running, RunOptions
 from .clusters import transient_periods
 from .following import follow_impacts
-from .lyapunov import SAYS, WANDER, WORDS, classify_exponents, exponent_of
-from .variational import period_in_tau
+from .lyapunov import SAYS, WORDS, classify_exponents, exponent_of, wander_floor
 
 FIELDS = {
     "impacts_per_period": "impacts per excitation period",
@@ -162,9 +160,8 @@ class MapJob(Question):
         variables["multiplicity_decided"] = flags(names, decided, HOW_DECIDED, DECIDED)
         if self.exponent:
             etas = (point.excitation.eta(point.structure) for point in self.points)
-            spans = self.periods * np.array([period_in_tau(eta) for eta in etas])
             exponent, error = table["rows"].T[-len(EXPONENT) :]
-            verdicts = classify_exponents(exponent, error, math.log(WANDER) / spans)
+            verdicts = classify_exponents(exponent, error, wander_floor(etas, self.periods))
             variables["verdict"] = flags(names, verdicts.reshape(shape[1:]), SAYS, WORDS)
         coordinates = {
             name: parameter_variable(name, name, values) for name, values in axes.items()

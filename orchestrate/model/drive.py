@@ -6,11 +6,15 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from os import PathLike
+from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from .described import Described
 from .ranges import DRIVE, RATIO_QUANTITIES, construct_or_explain, exact_inverse
 from .structure import Structure, damping_from_ratio
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -275,3 +279,8 @@ def torque_line(
 def suspension_stiffness(ratio: float, omega: float, mass: float) -> float:
     """Return the stiffness k_b, N/m, of the box's suspension: M_t (Omega_b omega)^2."""
     return mass * (ratio * omega) ** 2
+
+
+def sense_of(voltage: np.ndarray) -> float:
+    """Return a motor's sense of rotation by its voltages: -1 where it turns backward, else 1."""
+    return -1.0 if -voltage.min(initial=0.0) > voltage.max(initial=0.0) else 1.0

@@ -285,10 +285,7 @@ def excitation_numbers(name: str, value: ArrayLike | None) -> Numbers | None:
 
 
 def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[np.float64]:
-    """Return start states (n, 4) in m, m/s, rest by default; raise if masses overlap.
-
-    Displacements count from the unloaded springs; zeros mean rest, with a preload too.
-    """
+    """Return start states (n, 4), from unloaded springs, rest by default; raise on overlap."""
     expected = "expected x1, x2 in m, v1, v2 in m/s with x2 >= x1"
     if structure.gap_offset:
         expected += f" - clearance, clearance = {structure.clearance!r} m"

@@ -46,10 +46,7 @@ def blocks(shape: tuple[int, ...]) -> Iterator[Index]:
 def lazy_rows(
     leading: tuple[int, ...], width: int, read: Callable[[NDArray[np.intp]], NDArray[np.float64]]
 ) -> Any:
-    """Return data of an xarray variable (*leading, width) whose rows are read where indexed.
-
-    ``read`` returns the rows (n, width) of given numbers, counted along the leading axes.
-    """
+    """Return an xarray variable's data (*leading, width) whose rows ``read`` gives by number."""
     import_module("xarray")  # whole before its parts: another thread may be importing it
     from xarray.backends import BackendArray
     from xarray.core import indexing

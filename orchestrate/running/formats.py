@@ -35,10 +35,7 @@ MAX_SHEET_NAME = 31  # letters, Excel's limit
 
 
 def write(data: xr.Dataset, path: Path) -> list[Path]:
-    """Export a dataset as .csv, .mat or .xlsx, by the path's suffix; return the paths written.
-
-    Of CSV there is one for each set of dimensions; a file that cannot be written stays as it was.
-    """
+    """Export a dataset as .csv, .mat or .xlsx, by the path's suffix; return the paths written."""
     ending = path.suffix.lstrip(".")
     if ending not in WRITERS:
         raise InputError(f"{path}: format {ending!r}; expected one of {', '.join(WRITERS)}")

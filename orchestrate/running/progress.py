@@ -135,10 +135,7 @@ class Progress:
                 yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
 
     def previous_table(self, chunk: Chunk) -> Table | None:
-        """Return the rows that a chunk continues from; None for a chunk that starts by itself.
-
-        A gathering chunk gets all preceding tables.
-        """
+        """Return the rows a chunk continues from, all if it gathers; None if it starts alone."""
         if chunk.after is None:
             return None
         if self.job.gathers and chunk.index == len(self.chunks) - 1:

@@ -44,12 +44,11 @@ def make_verdict(answer: xr.Dataset) -> Verdict:
 
 def fitted_frequencies(answer: xr.Dataset) -> str:
     """Return a sentence with the natural frequencies of the best stated fit; empty without one."""
-    if "value" not in answer or "parameter" not in answer.dims:
-        return ""
-    in_hertz = answer.isel(parameter=answer.unit.values == "Hz")
-    stated = [one for one in sort_by_misfit(in_hertz) if np.isfinite(one.value).any()][:1]
-    known = [at for one in stated for _, at in one.groupby("parameter") if np.isfinite(at.value)]
-    texts = [f"{at.parameter.item()} = {format_parameter(at.squeeze(), 'Hz')}" for at in known]
+    texts = []
+    for best in stated_fits(answer)[:1]:
+        for name in best.parameter.values[best.unit.values == "Hz"]:
+            text = format_parameter(best.sel(parameter=name), "Hz")
+            texts += [f"{name} = {text}"] if text != MISSING else []
     return f" Natural frequencies fitted: {', '.join(texts)}." if texts else ""
 
 
@@ -238,9 +237,8 @@ def hypothesis_table(answer: xr.Dataset) -> Table:
 
 def parameter_section(answer: xr.Dataset) -> Section | None:
     """Return a section with the parameters and errors that are stated; None without any."""
-    if "value" not in answer or "parameter" not in answer.dims:
+    if not (shown := stated_fits(answer)[:3]):
         return None
-    shown = [one for one in sort_by_misfit(answer) if np.isfinite(one.value).any()][:3]
     names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
     rows = []
     for name in map(str, answer.parameter.values):
@@ -255,6 +253,13 @@ def parameter_section(answer: xr.Dataset) -> Section | None:
     )
     table = Table(("parameter", *names), rows)
     return Section("Parameters", [text], tables=[table], place="appendix") if rows else None
+
+
+def stated_fits(answer: xr.Dataset) -> list[xr.Dataset]:
+    """Return the hypotheses whose numbers are stated, the best fit first."""
+    if "value" not in answer or "parameter" not in answer.dims:
+        return []
+    return [one for one in sort_by_misfit(answer) if np.isfinite(one.value).any()]
 
 
 def sort_by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:

@@ -59,7 +59,7 @@ IN_TIME_TOO = {
 BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
 MAX_STEPS = 10_000_000
 NOTHING = np.empty((0, 0))
-DIVERGED = 1e12  # N: no drive bears a larger force on its box
+DIVERGED = 1e12  # m: springs that a force on the box would stretch so far are none
 NOTICED = 0.01  # of the largest displacement: a larger coupling error gives a warning
 Values = tuple[tuple[str, float | bool], ...]
 
@@ -90,10 +90,9 @@ class Coupling:
         try:
             record = self.run(steps)
         except FmuError:
-            self.check_force(self.master.time, self.master.motion.box_force)
+            self.check_forces([self.master.time], [self.master.motion.box_force])
             raise
-        first = int(np.argmax(np.abs(record["box_force"]) > DIVERGED))
-        self.check_force(record["time"][first], record["box_force"][first])
+        self.check_forces(record["time"], record["box_force"])
         nodes = record["time"].copy()
         nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 : steps.stop + 1]
         after = record.after
@@ -106,9 +105,11 @@ class Coupling:
             table["recorded"] = np.concatenate([*recorded, record.recorded])
         return table
 
-    def check_force(self, time: float, force: float) -> None:
+    def check_forces(self, times: ArrayLike, forces: ArrayLike) -> None:
         """Raise ``FmuError`` with what to look at where the coupling diverges."""
-        if abs(force) > DIVERGED:
+        limit = DIVERGED * (self.job.structure.k1 + self.job.structure.k2)
+        rows = np.column_stack([times, forces])
+        for time, force in rows[np.abs(rows[:, 1]) > limit][:1]:
             links = self.master.connection.links
             motion = " and ".join(links[name].theirs for name in MOTION if name in links)
             text = f"the coupling diverges at t = {time:.3g} s (box_force = {force:.2g} N)"

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..model.drive import sense_of
 from ..response.labels import Variable, variable
 from ..running.job import Table
 from .run import CoupledRun
@@ -44,9 +45,8 @@ class RampRecord:
 
     @property
     def sense(self) -> float:
-        """Return the sense of rotation: -1 where the motor turns backward, else 1."""
-        voltage = self.table["voltage"]
-        return -1.0 if -voltage.min(initial=0.0) > voltage.max(initial=0.0) else 1.0
+        """Return the sense of rotation of the run."""
+        return sense_of(self.table["voltage"])
 
     @property
     def sign(self) -> float:

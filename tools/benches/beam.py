@@ -144,10 +144,7 @@ class DelaminatedBeam:
         return kept.T @ stiffness @ kept, kept.T @ inertia @ kept, kept.T @ inertia @ rigid
 
     def node_selector(self, layer: int, node: int) -> Floats:
-        """Return the (3, all) matrix that selects a layer's displacements at a node.
-
-        Where the whole beam ends at a node of the layers, they are those of layer 1.
-        """
+        """Return the (3, all) matrix of a layer's, else of layer 1's displacements at a node."""
         size = 3 * len(self.node_numbers)
         known = (layer, node) in self.node_numbers
         number = self.node_numbers[layer, node] if known else self.node_numbers[1, node]

@@ -114,10 +114,7 @@ def to_c_system(system: ModalSystem) -> tuple[list[Floats], CSystem]:
 
 
 def equilibrium(system: ModalSystem) -> Floats:
-    """Return the modes' positions at rest, as the end of a critically damped motion.
-
-    Zero where no contact is closed there.
-    """
+    """Return the modes' positions at rest, by a critically damped motion; 0 without contact."""
     contacts = system.contacts
     start = np.zeros(system.modes)
     if contacts is None or (contacts.clearance >= 0.0).all():

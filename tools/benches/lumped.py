@@ -163,10 +163,7 @@ class Clamp:
 
 
 def cubic_stiffness(change: float, f: float, amplitude: float) -> float:
-    """Return the cubic stiffness over mass, N/(kg m3), for a relative change of frequency.
-
-    By the first approximation of Duffing's oscillator, ``w**2 = w0**2 + 3/4 cubic amplitude**2``.
-    """
+    """Return the cubic stiffness over mass, N/(kg m3), for a relative change of frequency."""
     return 4.0 / 3.0 * (TURN * f) ** 2 * ((1.0 + change) ** 2 - 1.0) / amplitude**2
 
 
