@@ -69,10 +69,10 @@ class Findings:
 
         - A record of a saturated channel (`clipped`), of a sweep that does not pass the resonance
           (`end_response`), or of one far from the guess's (`guess_factor`) is "undecided".
-        - "delaminated": order 2 is seen and the misfit is at most `delaminated` and `ratio` times
-          smaller than the best sound one; `delaminated_apart` and `ratio_apart` where two faces
-          move apart and order 2 or bursts exceed their thresholds; `ratio_difference` where the
-          faces' difference is all there is; in `share` of records put together of its blocks.
+        - "delaminated": order 2 is seen, bursts are `heard` where the sampling tells them, and the
+          misfit is at most `delaminated` and `ratio` times smaller than the best sound one; where
+          two faces move apart, `delaminated_apart` and `ratio_apart` if order 2 or bursts exceed
+          their thresholds, else `ratio_difference`; in `share` of records put together of blocks.
         - "no opening seen": order 2, the difference of the faces and bursts, where the sampling
           tells them, are below their thresholds, a sound misfit is at most `sound`, noise hides no
           order 2 of `hidden`.
@@ -127,6 +127,10 @@ class Findings:
             ratio = f"The faces' difference {alone} from a ratio of {enough:g} on."
         return [
             Condition(self.is_opening_seen, "Neither order 2 nor a difference of faces is seen."),
+            Condition(
+                self.apart > 1.0 or not self.bursts < self.settings.heard,  # NaN: not told
+                f"Faces that strike make bursts of {self.settings.heard:g} times the threshold.",
+            ),
             Condition(
                 self.delaminated_misfit <= most,
                 f"The delaminated model's misfit is {digits(self.delaminated_misfit, most)}, where "

@@ -33,9 +33,11 @@ class Settings:
     sound: float = 1.2
     delaminated: float = 3.0
     delaminated_apart: float = 4.0
-    # of records put together of blocks in which the ratio has to be exceeded: of a ratio that one
-    # of twenty blocks makes, it is at most 0.64
+    # of records put together of blocks in which the ratio has to be exceeded: one block makes 0.64
     share: float = 0.75
+    # bursts over their threshold where faces are not seen to move apart: of two masses, in a loose
+    # clamp up to 2.8, delaminated from 15 on
+    heard: float = 4.0
     hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
     clipped: float = CLIPPED  # share of a channel's samples at its extremes: it is saturated
     # response at an end of the sweep over the largest one: above, the resonance is not passed

@@ -16,7 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from .lumped import TURN, Faces
+from orchestrate.constants import TURN
+
+from .lumped import Faces
 from .system import Contacts, Floats, ModalSystem
 
 AXIAL, DEFLECTION, SLOPE = range(3)  # of a node's displacements

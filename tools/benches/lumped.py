@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import eigh
 
+from orchestrate.constants import TURN
+
 from . import restitution
 from .system import Contacts, CubicSprings, Floats, Frictions, ModalSystem
-
-TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,15 +90,19 @@ class Halves:
             frictions=dry if friction else None,
         )
 
-    def bonded_with_torsion(self, torsion: Torsion) -> ModalSystem:
-        """Return a ``ModalSystem`` of the bonded beam that twists too, seen by its two sensors."""
+    def bonded_with_torsion(self, ratio: float, participation: float, offset: float) -> ModalSystem:
+        """Return a ``ModalSystem`` of the bonded beam that twists too, its sensors not opposite.
+
+        Parameters are torsion's natural frequency and excitation by the base over those of bending,
+        and what the sensors read of it over bending: one plus, one minus.
+        """
         whole = self.bonded_beam()
         root = math.sqrt(whole.mass)
-        faces = np.array([[1.0, torsion.offset], [1.0, -torsion.offset]])
+        faces = np.array([[1.0, offset], [1.0, -offset]])
         return ModalSystem(
-            frequency=TURN * np.array([whole.f, torsion.ratio * whole.f]),
+            frequency=TURN * np.array([whole.f, ratio * whole.f]),
             damping_ratio=np.full(2, whole.zeta),
-            participation=root * np.array([1.0, torsion.participation]),
+            participation=root * np.array([1.0, participation]),
             output_rows=faces / root,
         )
 
@@ -109,45 +114,13 @@ class Halves:
         w = math.sqrt(stiffness / mass)
         return BondedBeam(float(mass), w / TURN, float(damper / (2.0 * mass * w)))
 
-    def in_rattling_clamp(self, clamp: Clamp) -> ModalSystem:
-        """Return a ``ModalSystem`` of the bonded beam in a clamp with play."""
-        whole = self.bonded_beam()
-        root = clamp.mass * whole.mass
-        spring = whole.mass * (TURN * whole.f) ** 2
-        centring = clamp.centring * spring
-        masses = np.array([root, whole.mass])
-        stiffness = np.array([[spring + centring, -spring], [-spring, spring]])
-        squares, shapes = eigh(stiffness, np.diag(masses))
-        stops = np.array([shapes[0], -shapes[0]])
-        play = np.array([clamp.play, clamp.play if clamp.both_sides else np.inf])
-        touching = slice(None) if clamp.both_sides else slice(1)
-        frequency = np.sqrt(squares)
-        return ModalSystem(
-            frequency=frequency,
-            damping_ratio=np.full(2, whole.zeta),
-            participation=shapes.T @ masses,
-            output_rows=np.array([shapes[1], shapes[1]]),
-            contacts=clamp.faces.contacts(stops[touching], play[touching], root),
-        )
 
-
-@dataclass(frozen=True)
-class BondedBeam:
+class BondedBeam(NamedTuple):
     """A bonded beam: mass in kg, natural frequency in Hz, damping ratio."""
 
     mass: float
     f: float
     zeta: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Torsion:
-    """A torsion mode of a sound beam, with two sensors that are not exactly opposite."""
-
-    ratio: float  # its natural frequency over that of bending
-    participation: float  # its excitation by the base, over that of bending
-    # what the sensors read of it, over what they read of bending: one plus, one minus
-    offset: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,6 +133,22 @@ class Clamp:
     both_sides: bool = True  # whether there are two stops
     mass: float = 0.1  # of the root, parts of the beam's
     centring: float = 3.0  # stiffness that holds the root, parts of the beam's
+
+
+def in_rattling_clamp(own: ModalSystem, mass: float, clamp: Clamp) -> ModalSystem:
+    """Return a sound beam of a mass, kg, in a clamp with play, from its modes in a firm one."""
+    whole, part = np.full((1, 1), (1.0 + clamp.mass) * mass), own.participation[np.newaxis]
+    inertia = np.block([[whole, part], [part.T, np.eye(own.modes)]])
+    centring = clamp.centring * (own.participation[0] * own.frequency[0]) ** 2
+    squares, shapes = eigh(np.diag([centring, *own.frequency**2]), inertia)
+    stops = np.array([shapes[0], -shapes[0]])[: 1 + clamp.both_sides]
+    return ModalSystem(
+        frequency=np.sqrt(squares),
+        damping_ratio=np.full(own.modes + 1, own.damping_ratio[0]),
+        participation=shapes.T @ inertia[0],
+        output_rows=np.column_stack([np.ones(2), own.output_rows]) @ shapes,
+        contacts=clamp.faces.contacts(stops, np.full(len(stops), clamp.play), clamp.mass * mass),
+    )
 
 
 def cubic_stiffness(change: float, f: float, amplitude: float) -> float:

@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from orchestrate import Structure, plan_test
+from orchestrate.constants import TURN
 from orchestrate.lazy import xr
 
 from .beam import DelaminatedBeam
 from .bench import Bench
 from .excitation import Excitation, Random, Stepped, Swept
 from .integrator import UnboundedMotionError
-from .lumped import TURN, Clamp, Faces, Halves, Torsion, cubic_stiffness, frequency_change
+from .lumped import Clamp, Faces, Halves, cubic_stiffness, frequency_change, in_rattling_clamp
 from .sensors import Sensor
 from .system import ModalSystem, Motion
 
@@ -208,31 +210,36 @@ def draw_with_friction(rng: np.random.Generator, level: float, conditions: Condi
     return bonded_specimen(own, own.bonded(friction=level * rng.uniform(0.05, 0.5)))
 
 
-def draw_in_clamp(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw a bonded beam in a clamp with play, pressed against one side or loose."""
-    own = draw_halves(rng)
+def draw_clamp(rng: np.random.Generator) -> Clamp:
+    """Draw a clamp with play, the root pressed against one side or loose."""
     play = draw_log_uniform(rng, 2e-5, 3e-4) * (-1.0 if rng.random() < 0.3 else 1.0)
     stops = Faces(frequency=draw_log_uniform(rng, 400.0, 1000.0), restitution=rng.uniform(0.3, 0.8))
-    held = Clamp(
+    return Clamp(
         faces=stops,
         play=play,
         both_sides=play > 0.0 and bool(rng.random() < 0.7),
         mass=rng.uniform(0.1, 0.5),
         centring=draw_log_uniform(rng, 0.3, 3.0),
     )
-    return bonded_specimen(own, own.in_rattling_clamp(held))
+
+
+def draw_in_clamp(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a bonded beam in a rattling clamp."""
+    own = draw_halves(rng)
+    mass = own.bonded_beam().mass
+    return bonded_specimen(own, in_rattling_clamp(own.bonded(), mass, draw_clamp(rng)))
 
 
 def draw_with_torsion(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
     """Draw a bonded, linear beam with a torsion mode 3 to 13 % above (or below) bending."""
     own = draw_halves(rng)
     ratio = rng.uniform(1.03, 1.13)
-    torsion = Torsion(
+    system = own.bonded_with_torsion(
         ratio=ratio if rng.random() < 0.7 else 1.0 / ratio,
         participation=rng.uniform(0.3, 0.6),
         offset=rng.uniform(0.1, 0.3),
     )
-    return bonded_specimen(own, own.bonded_with_torsion(torsion))
+    return bonded_specimen(own, system)
 
 
 def draw_place(
@@ -259,14 +266,16 @@ def draw_finite_elements(
 
 
 def draw_intact_finite_elements(
-    rng: np.random.Generator, level: float, conditions: Conditions
+    rng: np.random.Generator, level: float, conditions: Conditions, clamped: bool = True
 ) -> Specimen:
-    """Draw a finite-element cantilever without a delamination."""
+    """Draw a finite-element cantilever without a delamination, in a firm or a rattling clamp."""
     thickness = DelaminatedBeam.thickness * rng.uniform(0.9, 1.5)
     beam = DelaminatedBeam(first=0.0, last=0.0, thickness=thickness)
-    zeta = draw_log_uniform(rng, 0.005, 0.02)
-    system = beam.system(Faces(), zeta, modes=4, sensor=draw_place(rng, beam, conditions))
+    zeta, modes = draw_log_uniform(rng, 0.005, 0.02), 4 if clamped else 10
+    system = beam.system(Faces(), zeta, modes=modes, sensor=draw_place(rng, beam, conditions))
     f = float(system.frequency[0]) / TURN
+    if not clamped:
+        system = in_rattling_clamp(system, beam.section(1.0).mass * beam.length, draw_clamp(rng))
     return Specimen(system, 0.5, 0.5, f, f, zeta, zeta, sound=True, size=0.0)
 
 
@@ -283,6 +292,7 @@ KINDS: Mapping[str, Maker] = {
     "preloaded": draw_preloaded,
     "elements": draw_finite_elements,
     "intact elements": draw_intact_finite_elements,
+    "rattling elements": partial(draw_intact_finite_elements, clamped=False),
 }
 
 

@@ -15,7 +15,7 @@ from orchestrate.lazy import xr
 from .beam import DelaminatedBeam
 from .bench import Bench
 from .excitation import Swept
-from .lumped import Clamp, Faces, Halves
+from .lumped import Clamp, Faces, Halves, in_rattling_clamp
 from .sensors import Sensor
 from .system import ModalSystem
 
@@ -60,7 +60,7 @@ class Beam:
 BEAMS: Mapping[str, Beam] = {
     "beam_a": Beam("A", lambda: BEAM.delaminated(FACES), 71),
     "beam_b": Beam("B", BEAM.bonded, 72),
-    "beam_c": Beam("C", lambda: BEAM.in_rattling_clamp(CLAMP), 73),
+    "beam_c": Beam("C", lambda: in_rattling_clamp(BEAM.bonded(), BEAM.m1 + BEAM.m2, CLAMP), 73),
 }
 
 

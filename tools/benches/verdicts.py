@@ -29,6 +29,7 @@ GROUPS: Mapping[str, tuple[str, Conditions]] = {  # name in the table -> kind, c
     "pressed, opens": ("preloaded", replace(ANYWHERE, planned=True)),
     "FE 0.3 to 0.5": ("elements", Conditions(size=(0.3, 0.5), anywhere=True, sensor=PLACES)),
     "FE 0.5 to 0.7": ("elements", Conditions(size=(0.5, 0.7), anywhere=True, sensor=PLACES)),
+    "FE clamp": ("rattling elements", Conditions(sensor=PLACES)),
 }
 
 
@@ -47,8 +48,7 @@ def table_rows(names: list[str], seed: int, count: int, budget: float) -> Iterat
             verdict, smallest = str(answer.verdict.item()), float(answer.smallest_opening)
             wrong = verdict_problem(verdict, case.truth, "", smallest)
             counts[name][WRONG if wrong else verdict] += 1
-            misfits = answer.misfit.values
-            numbers = f"ratio {float(answer.ratio):.2f}, misfits {misfits.round(2).tolist()}"
+            numbers = f"ratio {answer.ratio:.2f}, misfits {answer.misfit.values.round(2).tolist()}"
             spent = f"{time.process_time() - begin:.0f} s"
             yield f"{name} {number}: {verdict}; {numbers}; {spent} {wrong or case.truth}"
     columns = (DELAMINATED, NO_OPENING, UNDECIDED, "not described", WRONG)

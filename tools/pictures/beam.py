@@ -14,7 +14,7 @@ from matplotlib.patches import Polygon, Rectangle
 from orchestrate.show.colours import BLACK, BLUE, GREY, RED
 from orchestrate.show.style import styled
 
-from .oscillator import draw_damper, draw_spring, hide_frame
+from .oscillator import draw_masses, hide_frame
 
 LENGTH, THICKNESS = 6.0, 0.5  # of the beam that is drawn
 SLIT = (2.2, 5.2)  # where its halves part
@@ -54,15 +54,7 @@ def draw_two_masses() -> Figure:
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     draw_beam(left, 0.55, RED)
     left.set_title("a beam, delaminated along its middle", fontsize=9)
-    right.add_patch(Rectangle((0, 0), 10, 4, fill=False, lw=2.0))
-    for x, name in ((2.9, "$m_1$"), (5.5, "$m_2$")):
-        right.add_patch(Rectangle((x, 1.0), 1.6, 2.0, facecolor="0.85", edgecolor="k", lw=1.2))
-        right.text(x + 0.8, 2.0, name, ha="center", va="center", fontsize=11)
-    for x, stiffness, dashpot in ((0.0, "$k_1$", "$d_1$"), (7.1, "$k_2$", "$d_2$")):
-        draw_spring(right, x, 2.5, 2.9)
-        draw_damper(right, x, 1.5, 2.9)
-        right.text(x + 1.45, 2.95, stiffness, ha="center", fontsize=10)
-        right.text(x + 1.45, 0.62, dashpot, ha="center", fontsize=10)
+    draw_masses(right, 1.0, 10)
     right.text(5.0, 2.25, "gap", ha="center", fontsize=9, color=RED)
     right.annotate("", (5.5, 2.0), (4.5, 2.0), arrowprops={"arrowstyle": "<->", "color": RED})
     right.annotate("", (6.4, -0.5), (3.6, -0.5), arrowprops={"arrowstyle": "<->", "lw": 1.6})

@@ -12,7 +12,7 @@ from orchestrate.diagnosis.fitting import Search, Solution, without_neighbours
 from orchestrate.diagnosis.hypotheses import FREE, STARTING_SPLITS
 from tools.benches.bench import Bench
 from tools.benches.excitation import Swept
-from tools.benches.lumped import Faces, Halves, Torsion
+from tools.benches.lumped import Faces, Halves
 from tools.benches.sensors import Sensor
 
 from ...sparing import ordinary
@@ -134,11 +134,10 @@ def test_a_sound_beam_that_twists_between_two_sensors_is_not_delaminated():
     """A torsion mode 8 % above bending, and sensors that are not exactly opposite."""
     halves = Halves(f1=46.0, f2=46.0)
     sensor = Sensor(noise=0.02)
-    torsion = Torsion(ratio=1.08, participation=0.5, offset=0.2)
     bench = Bench(
         excitation=Swept(36.0, 60.0, 6.0, 3.0), box=sensor, face1=sensor, face2=sensor, rate=700.0
     )
-    twisted, _ = bench.measure(halves.bonded_with_torsion(torsion), seed=3)
+    twisted, _ = bench.measure(halves.bonded_with_torsion(1.08, 0.5, 0.2), seed=3)
     answer = orchestrate.detect(twisted, guess(f1=42.0, f2=50.0), **LIMIT)
     assert float(answer.faces_apart) > 10.0 and float(answer.misfit.min()) < 0.5
     assert int(answer.misfit.argmin()) == list(answer.hypothesis).index("bonded, with two modes")

@@ -45,6 +45,9 @@ the same, sampled too slowly for impacts: excess=0.3 misfit=0.3 bursts=nan -> no
 no order 2, one mass explains it, but something strikes: excess=0.3 misfit=0.3 -> undecided
 no order 2, and nothing explains it: excess=0.3 other=3.5 misfit=6 -> not described
 no order 2, but the halves alone explain it: excess=0.3 -> undecided
+order 2, and no impact is heard, as in a loose clamp: bursts=2.8 -> undecided
+the same, sampled too slowly for impacts: bursts=nan -> delaminated
+the same, and the faces move apart: bursts=2.8 apart=4 -> delaminated
 order 2, both explain it: misfit=0.9 -> undecided
 order 2, one mass explains it better: misfit=0.2 other=1.2 -> undecided
 order 2, and nothing explains it: other=3.5 misfit=6 -> not described
