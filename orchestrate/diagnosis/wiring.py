@@ -44,7 +44,8 @@ class WiringSettings:
     jump: float = 0.35  # rad of the base's phase, without whole turns
     usual: float = 10.0  # times the usual change, by noise, that a jump is
     samples: float = 10.0  # in a period of the resonance
-    clipped: float = SETTINGS.clipped  # share of a channel's samples at its extremes
+    clipped: float = SETTINGS.clipped  # share of a channel's samples at its extremes,
+    plateau: int = 1  # each in a row of so many: impacts are spikes
 
 
 WIRING = WiringSettings()
@@ -74,8 +75,8 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
       turns aside, and `usual` times as far as it usually does.
     - A line of the `mains` is hum if it is `hum` times those `beside` it and keeps its phase
       (`coherence`), while the orders are `away`.
-    - A channel is clipped by a `clipped_share` above `clipped`; few are less than `samples` in a
-      period of the resonance.
+    - A channel is clipped by a `clipped_share` above `clipped` (of `plateau`); few are less than
+      `samples` in a period of the resonance.
     """
     try:
         orders = assembled_orders(channels, *sine_windows(channels))
@@ -236,7 +237,7 @@ class LowResponse:
 def clipped_notes(channels: Channels, settings: WiringSettings) -> Iterator[Note]:
     """Yield notes on channels that are saturated."""
     for name, values in zip(channels.names, channels.values, strict=True):
-        if (share := clipped_share(values)) > settings.clipped:
+        if (share := clipped_share(values, settings.plateau)) > settings.clipped:
             text = f"{SHORT_NAMES[name]} is saturated in {100.0 * share:.2g} % of its samples"
             yield Note("clipped", f"{text}: record it again with a wider range")
 

@@ -82,15 +82,14 @@ def first_hole(values: Floats) -> int | None:
     return int(holes[0]) + 1 if len(holes) else None
 
 
-def clipped_share(values: Floats) -> float:
+def clipped_share(values: Floats, plateau: int = PLATEAU) -> float:
     """Return the share of samples at repeated extreme values, as a saturated channel has them.
 
     - A sample is at an extreme within 0.1 % of the peak-to-peak value, or less than a step of the
-      digits away. It counts in a row of three or more such samples.
-    - An extreme counts where these outnumber the samples in the ten times wider band next to it: of
-      a sine, coarsely digitized or not, there are fewer than half as many.
-    - An extreme counts a quarter of the peak-to-peak value or more from the median alone: a signal
-      at rest is not saturated.
+      digits away. It counts in a row of `plateau` or more such samples.
+    - An extreme counts where these are three at least and outnumber the samples in the ten times
+      wider band next to it: of a sine, coarsely digitized or not, there are less than half as many.
+    - It has to be a quarter of the peak-to-peak value from the median: rest is no saturation.
     """
     ordered = np.sort(values)
     spread = float(ordered[-1] - ordered[0])
@@ -102,9 +101,9 @@ def clipped_share(values: Floats) -> float:
     for extreme in (ordered[0], ordered[-1]):
         distance = np.abs(values - extreme)
         at = distance < band
-        row = np.convolve(at, np.ones(PLATEAU), "valid") > PLATEAU - 0.5
-        repeated = int(np.convolve(row, np.ones(PLATEAU)).astype(bool).sum())
+        row = np.convolve(at, np.ones(plateau), "valid") > plateau - 0.5
+        repeated = int(np.convolve(row, np.ones(plateau)).astype(bool).sum())
         near = int(((distance >= band) & (distance < 11.0 * band)).sum())
-        if repeated > near and abs(extreme - median) >= 0.25 * spread:
+        if repeated >= max(near + 1, PLATEAU) and abs(extreme - median) >= 0.25 * spread:
             share += repeated / len(values)
     return share

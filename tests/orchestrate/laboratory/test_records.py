@@ -580,14 +580,16 @@ def test_repeated_extreme_values_are_those_of_a_saturated_channel():
     tones = [np.sin(2.0 * np.pi * hertz * time) for hertz in (50.0, 5.0)]
     sound = [rng.normal(size=20_000), pulse, *tones, *(np.round(sweep, n) for n in (0, 1, 2, 3))]
     assert [clipped_share(values) for values in sound] == [0.0] * len(sound)
+    spiked = sweep + 9.0 * (rng.random(20_000) < 1e-3) * rng.random(20_000)
+    cut = spiked.clip(-5.0, 7.0)
+    assert clipped_share(spiked, 1) == clipped_share(cut) == 0.0 < clipped_share(cut, 1)
     for noise in (0.0, 0.05):
         values = passed + rng.normal(0.0, noise, len(passed))
         peak = np.abs(values).max()
         limited = [np.clip(values, -share * peak, share * peak) for share in (0.8, 0.5)]
         assert clipped_share(values) == 0.0 and clipped_share(limited[0]) > 0.01
-        assert clipped_share(limited[1]) == pytest.approx(
-            np.mean(np.abs(limited[1]) == 0.5 * peak), rel=0.02
-        )
+        at = np.mean(np.abs(limited[1]) == 0.5 * peak)
+        assert clipped_share(limited[1]) == pytest.approx(at, rel=0.02)
 
 
 def swept(count=4000, rate=1000.0):
