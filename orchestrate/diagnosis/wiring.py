@@ -26,7 +26,7 @@ class WiringSettings:
     low: float = 0.7  # of the resonance's frequency: up to it the response is fitted
     fewest: int = 5  # windows there, else nothing is said of gains and delays
     misfit: float = 0.15  # of the response: a fit that misses more says nothing
-    swapped: float = 4.0  # times better a fit describes the exchanged channels
+    swapped: float = 3.0  # times the face's peak over its median that the base's is
     derived: float = 1.5  # times better it describes a velocity or a displacement
     scale: float = 2.5  # factor of the base's motion beyond which a sensor's scale is wrong
     gravity: float = 0.25  # distance of a factor's logarithm from that of 9.80665 for a unit
@@ -66,11 +66,10 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
       base's order 1, with the ratio r of the frequencies, in `fewest` windows within `misfit`:
       s < 0 is polarity, |s| within `gravity` of 9.8 or its inverse a unit, |s| beyond `scale` a
       scale, |t| above `delay`, `clear` of the misfit, a delay.
-    - Base and face are swapped where that describes the inverse of the response within `misfit` and
-      `swapped` times better; one is a velocity (n = 1) or displacement (2) where it so
-      describes that one times ``(i w)^n``, `derived` times better; a sensor is dead that is above
-      the `floor` in at most half of the windows, or moves less than `dead` times the base without a
-      `peak`.
+    - Base and face are swapped where the base's peak, over its median, is `swapped` times the
+      face's; one is a velocity (n = 1) or displacement (2) where the formula describes that one
+      times ``(i w)^n`` within `misfit`, `derived` times better; a sensor is dead that is above the
+      `floor` in half of the windows at most, or below `dead` times the base and without a `peak`.
     - Samples are lost where the base's phase, continued from both sides, jumps by `jump`, whole
       turns aside, and `usual` times as far as it usually does.
     - A line of the `mains` is hum if it is `hum` times those `beside` it and keeps its phase
@@ -135,18 +134,19 @@ def sensor_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> It
     if not is_heard(orders, row, settings) or (usual < settings.dead and flat):
         yield Note("dead", f"{name} moves {usual:.2g} times the base: is its cable dead?")
         return
+    sizes = np.abs(orders.order(1.0, BOX)), np.abs(orders.amplitude[row, 0])
+    peak_of_base, peak = (float(one.max() / np.median(one)) for one in sizes)
+    if peak_of_base > settings.swapped * peak:
+        yield swapped_note(name)
+        return
     hertz = orders.windows.frequency
     made = {order: response * (1j * TURN * hertz) ** order for order in range(-2, 3)}
     tried = {order: LowResponse.fitted(hertz, one, settings) for order, one in made.items()}
     fits = {order: fit for order, fit in tried.items() if fit is not None}
     if (straight := fits.get(0)) is None:
         return
-    inverse = LowResponse.fitted(hertz, 1.0 / response, settings)
     order, best = min(fits.items(), key=lambda item: item[1].misfit)
-    limit = min(settings.misfit, best.misfit, straight.misfit / settings.swapped)
-    if inverse is not None and inverse.misfit < limit:
-        yield swapped_note(name)
-    elif best.misfit < min(settings.misfit, straight.misfit / settings.derived):
+    if best.misfit < min(settings.misfit, straight.misfit / settings.derived):
         yield quantity_note(name if order > 0 else "base", order, best)
     elif straight.misfit < settings.misfit:
         yield from straight.notes(name, settings)
