@@ -35,8 +35,8 @@ class Settings:
     delaminated_apart: float = 4.0
     # of records put together of blocks in which the ratio has to be exceeded: one block makes 0.64
     share: float = 0.75
-    # bursts over their threshold where faces are not seen to move apart: two masses that do not part,
-    # a loose clamp among them, came to 3.2, those that part and meet to 15 and more
+    # bursts over their threshold where faces are not seen to move apart: two masses that stay shut,
+    # or in a loose clamp, came to 3.2, those that part and meet to 15 and more
     heard: float = 4.0
     hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
     clipped: float = CLIPPED  # share of a channel's samples at its extremes: it is saturated
