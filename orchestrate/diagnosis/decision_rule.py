@@ -71,8 +71,8 @@ class Findings:
           (`end_response`), or of one far from the guess's (`guess_factor`) is "undecided".
         - "delaminated": order 2 is seen, bursts are `heard` where the sampling tells them, and the
           misfit is at most `delaminated` and `ratio` times smaller than the best sound one; where
-          two faces move apart, `delaminated_apart` and `ratio_apart` if order 2 or bursts exceed
-          their thresholds, else `ratio_difference`; in `share` of records put together of blocks.
+          two faces move apart, `ratio_apart` times if order 2 or bursts exceed their thresholds,
+          else `ratio_difference` times; in `share` of records put together of blocks.
         - "no opening seen": order 2, the difference of the faces and bursts, where the sampling
           tells them, are below their thresholds, a sound misfit is at most `sound`, noise hides no
           order 2 of `hidden`.
@@ -86,7 +86,7 @@ class Findings:
         if usable and (delaminated or not_seen):
             return DELAMINATED if delaminated else NOT_SEEN
         described = self.sound_misfit <= self.settings.sound
-        described |= self.delaminated_misfit <= self.largest_misfit
+        described |= self.delaminated_misfit <= self.settings.delaminated
         return UNDECIDED if described or not usable else NOT_DESCRIBED
 
     def record_conditions(self) -> list[Condition]:
@@ -119,7 +119,7 @@ class Findings:
 
     def delaminated_conditions(self) -> list[Condition]:
         """Return the conditions of "delaminated"."""
-        enough, most = self.deciding_ratio, self.largest_misfit
+        enough, most = self.deciding_ratio, self.settings.delaminated
         alone = "is all that is seen, as two modes of a sound beam show it too: it decides"
         alike = f": {self.alike} about as well" if self.alike else ""
         ratio = f"The ratio is {self.ratio:.3g}, where {enough:g} is enough{alike}."
@@ -213,16 +213,9 @@ class Findings:
         return self.settings.ratio_apart if self.apart > 1.0 else self.settings.ratio
 
     @property
-    def largest_misfit(self) -> float:
-        """Return the misfit up to which the delaminated model describes the record."""
-        is_parted = self.apart > 1.0 and not self.is_difference_alone
-        return self.settings.delaminated_apart if is_parted else self.settings.delaminated
-
-    @property
     def is_described(self) -> bool:
-        """Whether the delaminated model fits the record so well that its numbers are stated."""
-        limits = self.settings
-        return self.delaminated_misfit <= limits.delaminated and self.ratio >= limits.ratio
+        """Whether a delaminated verdict's model is so much better that its numbers are stated."""
+        return self.ratio >= self.settings.ratio
 
     @property
     def odds(self) -> float:

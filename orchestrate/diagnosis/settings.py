@@ -25,14 +25,12 @@ class Settings:
     # by which the delaminated misfit has to be smaller than the best sound one: where order 2 is
     # seen, where two faces move apart as well, and where their difference is all that is seen
     ratio: float = 1.5
-    ratio_apart: float = 1.05
+    ratio_apart: float = 1.2
     ratio_difference: float = 5.0
-    # largest misfit of a sound hypothesis, and of a delaminated one, that describes a record; the
-    # last where order 2 or bursts show as well that two faces part: real contacts are not the
-    # model's
+    # largest misfit of a sound hypothesis, and of a delaminated one, that describes a record: real
+    # contacts are not the model's
     sound: float = 1.2
     delaminated: float = 3.0
-    delaminated_apart: float = 4.0
     # of records put together of blocks in which the ratio has to be exceeded: one block makes 0.64
     share: float = 0.75
     # bursts over their threshold where faces are not seen to move apart: two masses that stay shut,

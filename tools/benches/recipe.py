@@ -230,8 +230,10 @@ def draw_in_clamp(rng: np.random.Generator, level: float, conditions: Conditions
     return bonded_specimen(own, in_rattling_clamp(own.bonded(), mass, draw_clamp(rng)))
 
 
-def draw_with_torsion(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw a bonded, linear beam with a torsion mode 3 to 13 % above (or below) bending."""
+def draw_with_torsion(
+    rng: np.random.Generator, level: float, conditions: Conditions, clamped: bool = True
+) -> Specimen:
+    """Draw a bonded beam with torsion 3 to 13 % above or below bending, also in a loose clamp."""
     own = draw_halves(rng)
     ratio = rng.uniform(1.03, 1.13)
     system = own.bonded_with_torsion(
@@ -239,6 +241,8 @@ def draw_with_torsion(rng: np.random.Generator, level: float, conditions: Condit
         participation=rng.uniform(0.3, 0.6),
         offset=rng.uniform(0.1, 0.3),
     )
+    if not clamped:  # both modes together move less than this mass
+        system = in_rattling_clamp(system, 1.5 * own.bonded_beam().mass, draw_clamp(rng))
     return bonded_specimen(own, system)
 
 
@@ -292,6 +296,7 @@ KINDS: Mapping[str, Maker] = {
     "preloaded": draw_preloaded,
     "elements": draw_finite_elements,
     "intact elements": draw_intact_finite_elements,
+    "rattling torsion": partial(draw_with_torsion, clamped=False),
     "rattling elements": partial(draw_intact_finite_elements, clamped=False),
 }
 

@@ -29,6 +29,7 @@ GROUPS: Mapping[str, tuple[str, Conditions]] = {  # name in the table -> kind, c
     "pressed, opens": ("preloaded", replace(ANYWHERE, planned=True)),
     "FE 0.3 to 0.5": ("elements", Conditions(size=(0.3, 0.5), anywhere=True, sensor=PLACES)),
     "FE 0.5 to 0.7": ("elements", Conditions(size=(0.5, 0.7), anywhere=True, sensor=PLACES)),
+    "torsion clamp": ("rattling torsion", replace(ANYWHERE, sensors=2)),
     "FE clamp": ("rattling elements", Conditions(sensor=PLACES)),
 }
 

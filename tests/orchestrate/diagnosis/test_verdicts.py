@@ -60,10 +60,9 @@ a channel is saturated: clipped=0.01 -> undecided
 the sweep does not pass the resonance: end_response=0.98 -> undecided
 the times are in ms: resonance=0.046 -> undecided
 the halves explain it hardly better: misfit=1.1 -> undecided
-the same, and the faces move apart: misfit=0.9 apart=4 -> delaminated
-they move apart, and one mass explains it as well: misfit=0.82 apart=4 -> undecided
-they move apart, and the halves explain it badly: other=3.5 misfit=6 apart=4 -> delaminated
-they move apart, and nothing explains it: other=4.5 misfit=9 apart=4 -> not described
+the same, and the faces move apart: misfit=1.0 apart=4 -> delaminated
+they move apart, and one mass explains it as well: misfit=0.94 apart=4 -> undecided
+they move apart, and nothing explains it: other=3.5 misfit=9 apart=4 -> not described
 """  # what is changed of a record that opens -> its verdict
 MISFITS = {"misfit": "sound_misfit", "other": "delaminated_misfit"}
 
@@ -92,9 +91,9 @@ def test_what_keeps_a_record_from_being_called_delaminated_is_named():
     assert "exceeds 1.5 in 0.7 of the records" in partly.reason() and "0.75" in partly.reason()
     cracked = replace(OPENED, alike=PositiveStop.alike, sound_misfit=1)
     assert "a breathing crack or a clamp with play describes it" in cracked.reason()
-    missed = replace(OPENED, apart=4.0, sound_misfit=4.77, delaminated_misfit=4.5)
+    missed = replace(OPENED, apart=4.0, sound_misfit=4.77, delaminated_misfit=3.5)
     assert missed.verdict() == "not described"
-    assert "misfit is 4.5, where at most 4 describes" in missed.reason()
+    assert "misfit is 3.5, where at most 3 describes" in missed.reason()
     torsion = replace(OPENED, excess=0.25, bursts=0.8, apart=40.0, sound_misfit=1.4)
     assert "two modes of a sound beam" in torsion.reason()
     assert "opposite" in torsion.next_measurement()
@@ -120,16 +119,14 @@ def test_the_reason_has_the_numbers_that_decided():
 
 
 def test_a_verdict_by_a_model_that_describes_the_record_only_so_well_says_so():
-    hardly_better = replace(OPENED, sound_misfit=0.9, apart=4.0)
-    bad = replace(OPENED, delaminated_misfit=3.5, sound_misfit=6.0, apart=4.0)
+    hardly_better = replace(OPENED, sound_misfit=1.0, apart=4.0)
     fits = SimpleNamespace(job=SimpleNamespace(sound=[1]), misfit=np.array([3.0, 0.8, 3.1]))
-    for findings in (hardly_better, bad):
-        assert findings.verdict() == "delaminated"
-        assert "describe this structure only so well" in findings.reason()
-        assert not stated_hypotheses(fits, findings).any()
+    assert hardly_better.verdict() == "delaminated"
+    assert "describe this structure only so well" in hardly_better.reason()
+    assert not stated_hypotheses(fits, hardly_better).any()
     assert "only so well" not in replace(OPENED, apart=4.0).reason()
     assert stated_hypotheses(fits, replace(OPENED, apart=4.0)).tolist() == [False, True, False]
-    assert "the first is 1.1 times the second, where 1.05 times is enough" in hardly_better.reason()
+    assert "the first is 1.25 times the second, where 1.2 times is enough" in hardly_better.reason()
 
 
 def test_what_strikes_is_named_and_what_was_not_listened_for_too():
