@@ -143,7 +143,7 @@ def grid_problem(system: System, way: str, jumps: Sequence[Jump], rate: float) -
         return f"none, but two motions last at {at:.5f}: speeds {apart:.4f} apart"
     for i in np.flatnonzero((gained > GRID + CHANGE) & (behind > CHANGE)):
         ends = sorted(voltages[i : i + 2])
-        if not any(jump.contains(*ends, EARLY) for jump in jumps):
+        if not any(jump.contains(*ends, GRID + EARLY) for jump in jumps):  # steep before a fold
             return f"not lost from {ends[0]:.5f} to {ends[1]:.5f}, where held speeds jump"
     return ""
 
