@@ -25,7 +25,7 @@ class Settings:
     # by which the delaminated misfit has to be smaller than the best sound one: where order 2 is
     # seen, where two faces move apart as well, and where their difference is all that is seen
     ratio: float = 1.5
-    ratio_apart: float = 1.2
+    ratio_apart: float = 1.1
     ratio_difference: float = 5.0
     # largest misfit of a sound hypothesis, and of a delaminated one, that describes a record: real
     # contacts are not the model's
