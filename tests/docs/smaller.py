@@ -48,7 +48,7 @@ def smaller(question):
         for name, most in MOST.items():
             if name in accepted and question.__name__ != "couple":
                 given = keywords.get(name, accepted[name].default)
-                keywords[name] = min(given, most)
+                keywords[name] = most if given is None else min(given, most)
         if question.__name__ == "lyapunov":
             keywords["periods"] = 400
         if "rate" in keywords:

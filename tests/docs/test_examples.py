@@ -21,7 +21,7 @@ SAID = {  # something of what each prints
     "fmpy_sweep": "eta = 1.045: largest gap 20.5801",
     "lyapunov_sweep": "chaotic at",
     "own_drive": "acceleration of the box -1.28",
-    "own_motor": "delaminated: the speed jumps at 6.3",
+    "own_motor": "delaminated: the speed jumps at 6.19 V on the way up",
     "parameter_map": "of the map repeats after one period",
     "resonance_curve": "bonded, up       : 3.18 mm at 12.7 Hz",
     "through_the_resonance": "swung by 8.73 V: 144 rad/s",
