@@ -141,9 +141,10 @@ def grid_problem(system: System, way: str, jumps: Sequence[Jump], rate: float) -
     if not jumps and (behind > CHANGE).any():
         at, apart = voltages[int(np.nanargmax(behind))], np.nanmax(behind)
         return f"none, but two motions last at {at:.5f}: speeds {apart:.4f} apart"
-    for i in np.flatnonzero((gained > GRID + CHANGE) & (behind > CHANGE)):
+    usual = np.fmax(GRID, np.roll(gained, 1))  # a branch is as steep as before, or steeper
+    for i in np.flatnonzero((gained > usual + CHANGE) & (behind > CHANGE)):
         ends = sorted(voltages[i : i + 2])
-        if not any(jump.contains(*ends, GRID + EARLY) for jump in jumps):  # steep before a fold
+        if not any(jump.contains(*ends, EARLY) for jump in jumps):
             return f"not lost from {ends[0]:.5f} to {ends[1]:.5f}, where held speeds jump"
     return ""
 

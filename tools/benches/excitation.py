@@ -10,9 +10,9 @@ from typing import Protocol
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from .system import Floats
+from orchestrate.constants import TURN
 
-TURN = 2.0 * math.pi
+from .system import Floats
 
 
 class Excitation(Protocol):
