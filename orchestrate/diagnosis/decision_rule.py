@@ -69,10 +69,10 @@ class Findings:
 
         - A record of a saturated channel (`clipped`), of a sweep that does not pass the resonance
           (`end_response`), or of one far from the guess's (`guess_factor`) is "undecided".
-        - "delaminated": order 2 is seen, bursts are `heard` where the sampling tells them, and the
-          misfit is at most `delaminated` and `ratio` times smaller than the best sound one; where
-          two faces move apart, `ratio_apart` times if order 2 or bursts exceed their thresholds,
-          else `ratio_difference` times; in `share` of records put together of blocks.
+        - "delaminated": order 2 is seen and bursts, where the sampling tells them, are `heard`, or
+          two faces move apart; the misfit is at most `delaminated` and `ratio` times smaller than
+          the best sound one; of faces that move apart `ratio_apart` times if order 2 or bursts
+          exceed their thresholds, else `ratio_difference`; in `share` of records made of blocks.
         - "no opening seen": order 2, the difference of the faces and bursts, where the sampling
           tells them, are below their thresholds, a sound misfit is at most `sound`, noise hides no
           order 2 of `hidden`.

@@ -306,16 +306,10 @@ class Evidence:
         changes = [allowed.gain_deviation * computed, late, part * (computed - self.base[0])]
         return np.stack(changes) / self.error[row, 0]
 
-    @cached_property
-    def is_tone(self) -> bool:
-        """Whether the base keeps one frequency, within what the longest window resolves."""
-        longest = max(part.stop - part.start for part in self.windows.parts) / self.rate
-        return float(np.ptp(self.frequency)) < 1.0 / longest
-
     def given_participation(self, row: int) -> float | None:
         """Return a sensor's participation factor if it is not fitted, as given or 1; else None."""
         given = self.participation[row] if self.participation else None
-        return 1.0 if given is None and self.is_tone else given
+        return 1.0 if given is None and self.windows.is_tone else given
 
     def participations(self, motion: Floats) -> Floats:
         """Return the participation factors with which a motion is nearest, shape (sensors,)."""

@@ -187,7 +187,7 @@ def check_tones(job: FitJob) -> None:
     evidence, hypothesis = job.evidence, job.hypotheses[-1]
     free, numbers = hypothesis.bounds(evidence), len(FITTED_ORDERS) * len(evidence.masses)
     is_level = np.ptp(evidence.level) < 0.1 * evidence.level.max()
-    if evidence.is_tone and is_level and len(free) >= numbers:
+    if evidence.windows.is_tone and is_level and len(free) >= numbers:
         text = f"one tone of {evidence.frequency.mean():.4g} Hz has {numbers} numbers"
         expected = "expected a sweep, or fewer in free="
         raise InputError(f"record: {text}, {len(free)} are fitted; {expected}")

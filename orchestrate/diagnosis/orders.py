@@ -62,6 +62,12 @@ class OrderWindows:
         """Return the number of windows."""
         return len(self.parts)
 
+    @property
+    def is_tone(self) -> bool:
+        """Whether the base keeps one frequency, within what the longest window resolves."""
+        longest = max(part.stop - part.start for part in self.parts) / self.sample_rate
+        return float(np.ptp(self.frequency)) < 1.0 / longest
+
     def select(self, windows: NDArray[np.intp], count: int) -> OrderWindows:
         """Return these windows with the first ``count`` orders, contiguous for fast products."""
         return OrderWindows(

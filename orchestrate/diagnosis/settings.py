@@ -31,7 +31,8 @@ class Settings:
     # contacts are not the model's
     sound: float = 1.2
     delaminated: float = 3.0
-    # of records put together of blocks in which the ratio has to be exceeded: one block makes 0.64
+    # of records put together of blocks in which the ratio has to be exceeded: of a ratio that one
+    # of twenty blocks makes, it is at most 0.64
     share: float = 0.75
     # bursts over their threshold where faces are not seen to move apart: two masses that stay shut,
     # or in a loose clamp, came to 3.2, those that part and meet to 15 and more

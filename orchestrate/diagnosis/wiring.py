@@ -14,7 +14,7 @@ from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import measured_phase
 from ..laboratory.pieces import Floats
 from ..laboratory.record import SHORT_NAMES
-from ..laboratory.record_checks import clipped_share
+from ..laboratory.record_checks import PLATEAU, clipped_share
 from .orders import Complexes, RecordOrders, assembled_orders, sine_windows
 from .settings import SETTINGS
 
@@ -26,7 +26,7 @@ class WiringSettings:
     low: float = 0.7  # of the resonance's frequency: up to it the response is fitted
     fewest: int = 5  # windows there, else nothing is said of gains and delays
     misfit: float = 0.15  # of the response: a fit that misses more says nothing
-    swapped: float = 3.0  # times the face's peak over its median that the base's is
+    swapped: float = 3.0  # times the face's peak over its larger end that the base's is
     derived: float = 1.5  # times better it describes a velocity or a displacement
     scale: float = 2.5  # factor of the base's motion beyond which a sensor's scale is wrong
     gravity: float = 0.25  # distance of a factor's logarithm from that of 9.80665 for a unit
@@ -45,7 +45,7 @@ class WiringSettings:
     usual: float = 10.0  # times the usual change, by noise, that a jump is
     samples: float = 10.0  # in a period of the resonance
     clipped: float = SETTINGS.clipped  # share of a channel's samples at its extremes,
-    plateau: int = 1  # each in a row of so many: impacts are spikes
+    plateau: int = 1  # each in a row of so many, of a sweep: impacts are spikes
 
 
 WIRING = WiringSettings()
@@ -66,7 +66,7 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
       base's order 1, with the ratio r of the frequencies, in `fewest` windows within `misfit`:
       s < 0 is polarity, |s| within `gravity` of 9.8 or its inverse a unit, |s| beyond `scale` a
       scale, |t| above `delay`, `clear` of the misfit, a delay.
-    - Base and face are swapped where the base's peak, over its median, is `swapped` times the
+    - Base and face are swapped where the base's peak, over its larger end, is `swapped` times the
       face's; one is a velocity (n = 1) or displacement (2) where the formula describes that one
       times ``(i w)^n`` within `misfit`, `derived` times better; a sensor is dead that is above the
       `floor` in half of the windows at most, or below `dead` times the base and without a `peak`.
@@ -82,7 +82,8 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
     except InputError:
         return list(notes_without_sine(channels, settings))
     found = (note for row in orders.rows for note in sensor_notes(orders, row, settings))
-    notes = [*dict.fromkeys(found), *clipped_notes(channels, settings)]
+    row = PLATEAU if orders.windows.is_tone else settings.plateau  # a tone's samples repeat
+    notes = [*dict.fromkeys(found), *clipped_notes(channels, settings.clipped, row)]
     if any(note.kind in ("swapped", "quantity") for note in notes):
         return notes  # to be read anew first
     notes += lost_sample_notes(orders, settings)
@@ -118,7 +119,7 @@ def notes_without_sine(channels: Channels, settings: WiringSettings) -> Iterator
             yield Note("dead", f"the base has no sine and {face} moves: is the base's cable dead?")
         elif is_face:
             yield swapped_note(face)
-    yield from clipped_notes(channels, settings)
+    yield from clipped_notes(channels, settings.clipped)
 
 
 # -- gains and delays -----------------------------------------------------------------------------
@@ -135,7 +136,7 @@ def sensor_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> It
         yield Note("dead", f"{name} moves {usual:.2g} times the base: is its cable dead?")
         return
     sizes = np.abs(orders.order(1.0, BOX)), np.abs(orders.amplitude[row, 0])
-    peak_of_base, peak = (float(one.max() / np.median(one)) for one in sizes)
+    peak_of_base, peak = (float(one.max() / max(one[0], one[-1])) for one in sizes)
     if peak_of_base > settings.swapped * peak:
         yield swapped_note(name)
         return
@@ -234,10 +235,10 @@ class LowResponse:
 # -- samples --------------------------------------------------------------------------------------
 
 
-def clipped_notes(channels: Channels, settings: WiringSettings) -> Iterator[Note]:
-    """Yield notes on channels that are saturated."""
+def clipped_notes(channels: Channels, clipped: float, row: int = PLATEAU) -> Iterator[Note]:
+    """Yield notes on channels that are saturated, in rows of so many samples at least."""
     for name, values in zip(channels.names, channels.values, strict=True):
-        if (share := clipped_share(values, settings.plateau)) > settings.clipped:
+        if (share := clipped_share(values, row)) > clipped:
             text = f"{SHORT_NAMES[name]} is saturated in {100.0 * share:.2g} % of its samples"
             yield Note("clipped", f"{text}: record it again with a wider range")
 

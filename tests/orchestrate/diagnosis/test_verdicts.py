@@ -62,7 +62,7 @@ the times are in ms: resonance=0.046 -> undecided
 the halves explain it hardly better: misfit=1.1 -> undecided
 the same, and the faces move apart: misfit=1.0 apart=4 -> delaminated
 they move apart, and one mass explains it as well: misfit=0.86 apart=4 -> undecided
-they move apart, and nothing explains it: other=3.5 misfit=9 apart=4 -> not described
+they move apart, and nothing explains it: other=3.5 misfit=4.77 apart=4 -> not described
 """  # what is changed of a record that opens -> its verdict
 MISFITS = {"misfit": "sound_misfit", "other": "delaminated_misfit"}
 
@@ -92,7 +92,6 @@ def test_what_keeps_a_record_from_being_called_delaminated_is_named():
     cracked = replace(OPENED, alike=PositiveStop.alike, sound_misfit=1)
     assert "a breathing crack or a clamp with play describes it" in cracked.reason()
     missed = replace(OPENED, apart=4.0, sound_misfit=4.77, delaminated_misfit=3.5)
-    assert missed.verdict() == "not described"
     assert "misfit is 3.5, where at most 3 describes" in missed.reason()
     torsion = replace(OPENED, excess=0.25, bursts=0.8, apart=40.0, sound_misfit=1.4)
     assert "two modes of a sound beam" in torsion.reason()
@@ -106,10 +105,8 @@ def test_each_case_has_its_word(case):
     pairs = (change.split("=") for change in changes.split())
     findings = replace(OPENED, **{MISFITS.get(n, n): float(value) for n, value in pairs})
     assert findings.verdict() == expected
-    assert findings.next_measurement()
-    assert (
-        "intact" not in f"{findings.next_measurement()} {findings.reason()} {findings.seen_up_to()}"
-    )
+    advice = findings.next_measurement()
+    assert advice and "intact" not in f"{advice} {findings.reason()} {findings.seen_up_to()}"
 
 
 def test_the_reason_has_the_numbers_that_decided():
@@ -130,10 +127,9 @@ def test_a_verdict_by_a_model_that_describes_the_record_only_so_well_says_so():
 
 
 def test_what_strikes_is_named_and_what_was_not_listened_for_too():
-    quiet = QUIET
-    assert "strikes" not in quiet.reason() and "too slowly" not in quiet.seen_up_to()
-    assert "strikes once a period" in replace(quiet, bursts=3.0).reason()
-    assert "sampled too slowly" in replace(quiet, bursts=float("nan")).seen_up_to()
+    assert "strikes" not in QUIET.reason() and "too slowly" not in QUIET.seen_up_to()
+    assert "strikes once a period" in replace(QUIET, bursts=3.0).reason()
+    assert "sampled too slowly" in replace(QUIET, bursts=float("nan")).seen_up_to()
 
 
 def test_numbers_at_their_bounds_are_reported_with_slopes():

@@ -101,6 +101,8 @@ def test_a_velocity_or_displacement_that_is_read_as_an_acceleration_is_named(nam
 def test_a_clean_record_has_no_note(participation):
     assert notes(sweep(participation)) == []
     assert notes(with_hum(sweep(noise=0.05), BASE)) != []
+    tone = 4.0 * np.sin(np.arange(COUNT) * np.pi / 8.0) + 1e-3 * sweep(noise=0.0)[BASE]
+    assert notes({BASE: tone, FACE: 3.0 * tone}) == []
 
 
 def test_noise_and_a_whole_turn_are_no_lost_samples():
@@ -125,7 +127,8 @@ def test_a_dead_base_is_told_from_swapped_columns():
     (note,) = notes({**sweep(), BASE: still})
     assert note.kind == "dead" and "base's cable" in note.text
     guess = Structure.from_halves(m1=1.0, m2=1.0, f1=40.0, f2=50.0, zeta1=0.01)
-    made = record(sample_rate=RATE, **ERRORS["clipped"][0]({**sweep(), BASE: still}))
+    limited = sweep()[FACE].clip(-60.0, 60.0)
+    made = record(sample_rate=RATE, box_acceleration=still, acceleration1=limited)
     with pytest.raises(InputError, match="no sine.*; .*is the base's cable dead.*saturated"):
         detect(made, guess)
     with pytest.raises(InputError, match="cable dead[?]$"):
