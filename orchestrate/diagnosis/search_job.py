@@ -84,13 +84,18 @@ def cached_coarse_evidence(data: RecordData | CurveData) -> Evidence:
 
 @lru_cache(maxsize=2)
 def is_worth_a_search(data: RecordData | CurveData) -> bool:
-    """Return whether the verdict may depend on the delaminated fit, by a short bonded fit."""
-    evidence = cached_evidence(data)
-    search = Search(SOUND[0], evidence)
-    best = search.minima(search.hypothesis.starts(evidence))[0]
-    motion = search.hypothesis.displacements(best.values, evidence, None)
-    even = even_orders(evidence, evidence.fitted_orders(motion))
-    return even.is_opening_seen or best.misfit > data.settings.sound
+    """Return whether the verdict may depend on the delaminated fit, by short sound fits."""
+    evidence, described = cached_evidence(data), data.settings.sound
+    for sound in SOUND:
+        search = Search(sound, evidence)
+        best = search.minima(sound.starts(evidence))[0]
+        if sound is SOUND[0]:
+            motion = sound.displacements(best.values, evidence, None)
+            if even_orders(evidence, evidence.fitted_orders(motion)).is_opening_seen:
+                return True
+        if best.misfit <= described or search.polish(best).misfit <= described:
+            return False
+    return True
 
 
 @lru_cache(maxsize=2)
