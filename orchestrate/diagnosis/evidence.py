@@ -17,6 +17,7 @@ from ..laboratory.pieces import Floats, Pieces
 from ..laboratory.sampled import Sampled
 from ..laboratory.sensors import PARTICIPATION
 from ..lazy import xr
+from .linear import clipped
 from .orders import (
     MIN_WINDOWS,
     ORDERS,
@@ -53,11 +54,6 @@ def checked_participation(given: Participation, sensors: Sequence[str]) -> tuple
         text = f"the record has {' and '.join(sensors)}"
         raise InputError(f"participation: {sorted(map(str, unknown))[0]!r} is no sensor; {text}")
     return tuple(PARTICIPATION.check(given[name]) if name in given else None for name in sensors)
-
-
-def clipped(value: float, most: float) -> float:
-    """Clip a number to a largest size."""
-    return float(np.clip(value, -most, most))
 
 
 def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
@@ -285,8 +281,9 @@ class Evidence:
             participation = float(np.clip(participation, 0.2, 1.7))
         read = base + participation * (computed - base)
         gain, delay = self.sensor_solution(row, read, target, 2)
-        gain = 1.0 + clipped(allowed.gain_deviation * gain, allowed.gain_error)
-        return participation, gain, clipped(allowed.delay_deviation * delay, allowed.delay)
+        most, latest = allowed.gain_error, allowed.delay
+        gain = 1.0 + clipped(allowed.gain_deviation * gain, (-most, most))
+        return participation, gain, clipped(allowed.delay_deviation * delay, (-latest, latest))
 
     def sensor_solution(
         self, row: int, computed: Complexes, target: Complexes, count: int = 3

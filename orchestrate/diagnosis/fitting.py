@@ -30,9 +30,7 @@ class Solution:
 
     name: str  # of the hypothesis
     values: Mapping[str, float]
-    # root mean square of the residuals, large ones by their size: 1 is as far as `model_error` and
-    # the noise allow
-    misfit: float
+    misfit: float  # see `misfit`; 1 is as far as `model_error` and the noise allow
 
 
 @dataclass

@@ -5,7 +5,7 @@ at the end of each hold. An answer on one direction of the voltage is wrong wher
 
 - it brackets a loss, but held past the bracket the speed goes on as before it, or it comes back;
 - it lacks a loss: on a grid, there and back, two motions last at a voltage before a step of the
-  speed that is in none of its brackets;
+  speed that is in none of its brackets, and a ramp straight to that step finds it too;
 - it brackets a loss, but on that grid the speed comes back everywhere;
 - the structure is bonded, and loses its motion elsewhere by the averaged theory, or not at all;
 - at another rate of the ramp it is the contrary.
@@ -144,7 +144,10 @@ def grid_problem(system: System, way: str, jumps: Sequence[Jump], rate: float) -
     usual = np.fmax(GRID, np.roll(gained, 1))  # a branch is as steep as before, or steeper
     for i in np.flatnonzero((gained > usual + CHANGE) & (behind > CHANGE)):
         ends = sorted(voltages[i : i + 2])
-        if not any(jump.contains(*ends, EARLY) for jump in jumps):
+        if any(jump.contains(*ends, EARLY) for jump in jumps):
+            continue
+        straight = np.diff(held_speeds(system, way, voltages[i : i + 2], RATE))
+        if not abs(straight[0]) < CHANGE:  # else the holds before led to another motion
             return f"not lost from {ends[0]:.5f} to {ends[1]:.5f}, where held speeds jump"
     return ""
 

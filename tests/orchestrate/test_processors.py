@@ -49,5 +49,4 @@ def test_decisions_do_not_depend_on_any_processor(exported):
 @pytest.mark.slow
 def test_decisions_do_not_depend_on_the_processor_on_whole_branches(exported):
     """Of three shipped drives and of two drawn at random, and the branch that had 263 points."""
-    found = answers("long", (*PROCESSORS, "Sandybridge"))
-    compare(found)
+    compare(answers("long", (*PROCESSORS, "Sandybridge")))

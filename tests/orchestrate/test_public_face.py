@@ -13,6 +13,8 @@ import xarray as xr
 import orchestrate
 from orchestrate import Drive, InputError, Structure
 
+from .laboratory.analysis.records import analyses
+
 ROOT = Path(__file__).resolve().parents[2]
 FUNCTIONS = (
     *("simulate", "resonance", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
@@ -107,7 +109,7 @@ def test_each_has_a_documented_example(name):
 def test_units_and_long_names_are_on_everything(answers):
     bare = [
         f"{question}: {name}.{attribute}"
-        for question, data in answers.items()
+        for question, data in {**answers, **analyses()}.items()
         for name, variable in data.variables.items()
         for attribute in ("units", "long_name")
         if attribute not in variable.attrs

@@ -6,11 +6,16 @@ from functools import lru_cache
 import numpy as np
 import xarray as xr
 
+import orchestrate
 from orchestrate import Random, Structure, SweptSine, shake
 
 DAMPED = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.04, zeta2=0.04, e=0.6)
 LIGHT = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.01, zeta2=0.01, e=0.6)
 SWEEP = SweptSine(first=30.0, last=60.0, duration=20.0, acceleration=5.0)
+ANALYSES = (
+    *("frf", "psd", "track_orders", "harmonics", "spectrogram"),
+    *("shock_spectrum", "probability_density"),
+)
 CHANNELS = ("box_acceleration", "acceleration1", "acceleration2")
 
 
@@ -51,3 +56,9 @@ def random_record(structure, seed, duration, rate=500.0):
 def swept_record(structure, sweep=SWEEP, rate=1000.0):
     """A swept sine."""
     return of_shaken(shake(structure, sweep, sample_rate=rate, progress=False))
+
+
+@lru_cache
+def analyses():
+    """The answers of all analyses of one record."""
+    return {name: getattr(orchestrate, name)(swept_record(LIGHT)) for name in ANALYSES}

@@ -11,12 +11,7 @@ import orchestrate
 from orchestrate import InputError, probability_density, shock_spectrum
 
 from ....sparing import ordinary
-from .records import DAMPED, LIGHT, SWEEP, make, swept_record
-
-ANALYSES = (
-    *("frf", "psd", "track_orders", "harmonics", "spectrogram"),
-    *("shock_spectrum", "probability_density"),
-)
+from .records import ANALYSES, DAMPED, SWEEP, analyses, make, swept_record
 
 # -- shock spectra --------------------------------------------------------------------------------
 
@@ -98,27 +93,9 @@ def test_a_channel_at_rest_has_no_shape():
 # -- all analyses ---------------------------------------------------------------------------------
 
 
-@pytest.fixture(scope="module")
-def answers():
-    record = swept_record(LIGHT)
-    return {name: getattr(orchestrate, name)(record) for name in ANALYSES}
-
-
-def test_units_and_long_names_are_on_everything(answers):
-    bare = [
-        f"{question}: {name}.{attribute}"
-        for question, data in answers.items()
-        for name, variable in data.variables.items()
-        for attribute in ("units", "long_name")
-        if attribute not in variable.attrs
-        and not (attribute == "units" and variable.dtype.kind in "SUO")
-    ]
-    assert bare == []
-
-
 @pytest.mark.parametrize("name", ANALYSES)
-def test_answers_can_be_written_and_read(answers, tmp_path, name):
-    data = answers[name]
+def test_answers_can_be_written_and_read(tmp_path, name):
+    data = analyses()[name]
     data.to_netcdf(tmp_path / "answer.nc")
     assert xr.load_dataset(tmp_path / "answer.nc").equals(data)
     assert data.attrs["analysis"] in name and data.attrs["title"].endswith(": record")
