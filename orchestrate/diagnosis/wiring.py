@@ -118,7 +118,8 @@ def notes_without_sine(channels: Channels, settings: WiringSettings) -> Iterator
         if spread[base] < settings.dead * spread[row]:
             yield Note("dead", f"the base has no sine and {face} moves: is the base's cable dead?")
         elif is_face:
-            yield swapped_note(face)
+            text = f"the base has no sine and {face} has: swapped? exchange both in columns="
+            yield Note("swapped", f"{text}; or does the base's reading drift?")
     yield from clipped_notes(channels, settings.clipped)
 
 

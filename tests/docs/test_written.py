@@ -11,7 +11,7 @@ from orchestrate import cli
 
 from ..orchestrate.weak_drive.drives import table
 from ..sparing import ordinary
-from .written import PAGES, commands, files, python_blocks
+from .written import DOCS, PAGES, commands, files, python_blocks
 
 LONG = {
     "analyse",
@@ -34,7 +34,8 @@ SHORT = {  # commands that are not only read
 
 
 def write_files(folder):
-    """The files that pages show."""
+    """The files that pages show, and the records they speak of."""
+    shutil.copytree(DOCS / "records", folder, dirs_exist_ok=True)
     for page in PAGES:
         for name, text in files(page).items():
             (folder / name).write_text(text, encoding="utf-8")
@@ -86,4 +87,9 @@ def test_commands_run(words, folder, small, capsys):
     write_files(folder)
     if "shaker.fmu" in words:
         shutil.copy(own_drive(), folder / "shaker.fmu")
-    assert cli.main(list(words)) == 0, capsys.readouterr().err
+    page, takes = [*map(tuple, commands(SHORT[words]))], {"--start", "--overlay"} & set(words)
+    first = [one for one in page[: page.index(words)] if takes and one[0] in ("branch", "border")]
+    for one in [*first, words]:  # those before make the files that it takes
+        names = (folder.glob(word) if "*" in word else [word] for word in one)  # as a shell does
+        code = cli.main([str(name) for every in names for name in every])
+        assert code == 0, capsys.readouterr().err
