@@ -3,6 +3,8 @@
 Property tests take the same examples on every machine, however slow: campaigns look for others.
 """
 
+import gc
+
 import pytest
 from hypothesis import HealthCheck, settings
 
@@ -30,6 +32,12 @@ def pytest_collection_modifyitems(config, items):
         for item in items:
             if getattr(getattr(item, "function", None), "is_hypothesis_test", False):
                 item.add_marker(pytest.mark.slow)
+
+
+def pytest_collection_finish():
+    """What is collected stays: the garbage collector need not look at it again."""
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
 
 
 def pytest_addoption(parser):

@@ -13,18 +13,10 @@ from ..orchestrate.weak_drive.drives import table
 from ..sparing import ordinary
 from .written import DOCS, PAGES, commands, files, python_blocks
 
-LONG = {
-    "analyse",
-    "build",
-    "capture",
-    "couple",
-    "diagnose",
-    "explore",
-    "jump-voltages",
-    "paper",
-    "passage",
-    "report",
-}  # read only
+LONG = {  # read only
+    *("analyse", "build", "capture", "couple", "diagnose", "explore", "jump-voltages", "paper"),
+    *("passage", "report"),
+}
 SHOWN = {words: page for page in reversed(PAGES) for words in map(tuple, commands(page))}
 SHORT = {  # commands that are not only read
     words: page
