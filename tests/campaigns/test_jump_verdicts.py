@@ -126,7 +126,7 @@ def grid_problem(system: System, way: str, jumps: Sequence[Jump], rate: float) -
     """Hold a grid of voltages there and back; return any contradiction.
 
     On the way there the speed lags until it jumps. Two motions the other way round exchange beside
-    the resonance, and no verdict is about them.
+    the resonance, and no verdict lacks them.
     """
     low, high = ramp_ends(system)
     first = min([low + 0.15, *(jump.low for jump in jumps)]) - AROUND[0]
@@ -136,7 +136,7 @@ def grid_problem(system: System, way: str, jumps: Sequence[Jump], rate: float) -
     speeds = held_speeds(system, way, [*voltages, *voltages[::-1]], rate, SHORT)
     there, back = speeds[: len(grid)], speeds[: len(grid) - 1 : -1]
     behind, gained = sign * (back - there), np.append(sign * np.diff(there), 0.0)
-    if any(jump.decided for jump in jumps) and not ((behind >= SAME) | np.isnan(behind)).any():
+    if any(jump.decided for jump in jumps) and (np.abs(behind) < SAME).all():
         return "lost, but held speeds come back everywhere"
     if not jumps and (behind > CHANGE).any():
         at, apart = voltages[int(np.nanargmax(behind))], np.nanmax(behind)
