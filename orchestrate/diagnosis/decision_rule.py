@@ -69,10 +69,10 @@ class Findings:
 
         - A record of a saturated channel (`clipped`), of a sweep that does not pass the resonance
           (`end_response`), or of one far from the guess's (`guess_factor`) is "undecided".
-        - "delaminated": order 2 is seen and bursts, where the sampling tells them, are `heard`, or
-          two faces move apart; the misfit is at most `delaminated` and `ratio` times smaller than
-          the best sound one; of faces that move apart `ratio_apart` times if order 2 or bursts
-          exceed their thresholds, else `ratio_difference`; in `share` of records made of blocks.
+        - "delaminated": order 2 is seen and bursts are `heard`, or two faces move apart; the misfit
+          is at most `delaminated` and `ratio` times smaller than the best sound one; of faces that
+          move apart `ratio_apart` times if order 2 or bursts exceed their thresholds, else
+          `ratio_difference`; in `share` of records made of blocks.
         - "no opening seen": order 2, the difference of the faces and bursts, where the sampling
           tells them, are below their thresholds, a sound misfit is at most `sound`, noise hides no
           order 2 of `hidden`.
@@ -122,28 +122,23 @@ class Findings:
         enough, most = self.deciding_ratio, self.settings.delaminated
         alone = "is all that is seen, as two modes of a sound beam show it too: it decides"
         alike = f": {self.alike} about as well" if self.alike else ""
-        ratio = f"The ratio is {self.ratio:.3g}, where {enough:g} is enough{alike}."
+        ratio, advice = f"The ratio is {self.ratio:.3g}, where {enough:g} is enough{alike}.", ""
         if self.is_difference_alone:
             ratio = f"The faces' difference {alone} from a ratio of {enough:g} on."
+            advice = "Sensors exactly opposite each other, on the beam's axis, and a higher level."
         return [
             Condition(self.is_opening_seen, "Neither order 2 nor a difference of faces is seen."),
             Condition(
-                self.apart > 1.0 or not self.bursts < self.settings.heard,  # NaN: not told
+                self.apart > 1.0 or self.bursts >= self.settings.heard,  # NaN: not told
                 f"Faces that strike make bursts of {self.settings.heard:g} times the threshold.",
+                "Sweeps at twice the level, of 12 samples a period or more, with both sensors.",
             ),
             Condition(
                 self.delaminated_misfit <= most,
                 f"The delaminated model's misfit is {digits(self.delaminated_misfit, most)}, where "
                 f"at most {most:g} describes a record.",
             ),
-            Condition(
-                self.ratio >= enough,
-                ratio,
-                "Both sensors exactly opposite each other, on the axis of the beam, and a higher "
-                "level."
-                if self.is_difference_alone
-                else "",
-            ),
+            Condition(self.ratio >= enough, ratio, advice),
             Condition(
                 self.ratio < enough or self.share >= self.settings.share,
                 f"The ratio exceeds {enough:g} in {self.share:.2g} of the records that are put "

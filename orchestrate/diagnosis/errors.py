@@ -9,8 +9,9 @@ weights W of the soft loss. Three covariances of d are taken:
   what the model misses hangs together over neighbours and is no noise;
 * discrepancy: what a model misses beyond noise, it may also have hidden in its numbers, where no
   residual shows it. Numbers at which the squares beyond noise are larger by ``hidden_share`` of
-  themselves are one standard deviation away; the restitution is in doubt by ``restitution_doubt``
-  beside, a damping ratio by the mean of both, each as far as the contact misses ``contact_misfit``.
+  themselves are one standard deviation away; beside that the restitution is in doubt by
+  ``restitution_doubt``, ln(f2/f1) by ``split_doubt``, a damping ratio by the mean of both, each as
+  far as the contact misses ``contact_misfit``.
 
 The first two are linear in what moves the numbers, and the misfit is rugged: impacts come and go,
 and a search ends in one of several minima that lie close. What that adds was measured, on 495
@@ -138,13 +139,13 @@ def estimate_with_covariances(
 def contact_covariance(
     values: Mapping[str, float], beyond: float, settings: Settings = SETTINGS
 ) -> Floats:
-    """Return the covariance of damping and restitution that is due to real contacts."""
+    """Return the covariance of damping, split and restitution that is due to real contacts."""
     size = min(1.0, math.sqrt(beyond) / settings.contact_misfit)
     damping = {
         name: math.exp(values[name]) for name in ("log_zeta1", "log_zeta2") if name in values
     }
     doubt = {name: float(np.mean(list(damping.values()))) / zeta for name, zeta in damping.items()}
-    doubt["e"] = settings.restitution_doubt
+    doubt |= {"e": settings.restitution_doubt, "split": settings.split_doubt}
     return np.diag([(size * doubt.get(name, 0.0)) ** 2 for name in values])
 
 

@@ -34,9 +34,9 @@ class Settings:
     # of records put together of blocks in which the ratio has to be exceeded: of a ratio that one
     # of twenty blocks makes, it is at most 0.64
     share: float = 0.75
-    # bursts over their threshold where faces are not seen to move apart: two masses that stay shut,
-    # or in a loose clamp, came to 3.2, those that part and meet to 15 and more
-    heard: float = 4.0
+    # bursts over their threshold where faces are not seen to move apart: two masses that stay shut
+    # came to 3.2, one mass in a loose clamp to 21, those that part and meet to 55 and more
+    heard: float = 30.0
     hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
     clipped: float = CLIPPED  # share of a channel's samples at its extremes: it is saturated
     # response at an end of the sweep over the largest one: above, the resonance is not passed
@@ -82,8 +82,9 @@ class Settings:
     slow: float = 0.01  # of the largest speed: below it dry friction is viscous
 
     # -- standard errors: see `errors` --
-    # doubt about a restitution; of damping ratios it is the mean of both halves'
+    # doubt about a restitution and ln(f2/f1); of damping ratios it is the mean of both halves'
     restitution_doubt: float = 0.12
+    split_doubt: float = 0.02
     contact_misfit: float = 0.3  # beyond noise: from here on a contact is another than the model's
     # part of the squares beyond noise by which they may be larger at the truth, and squares over
     # those that noise makes: less of them has no other cause

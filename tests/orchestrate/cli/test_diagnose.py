@@ -66,10 +66,10 @@ def make_records(folder):
     beam = orchestrate.Structure.from_halves(
         m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.01, zeta2=0.01, e=0.5
     )
-    sweep = orchestrate.SweptSine(first=40.0, last=56.0, duration=4.0, acceleration=4.0)
-    sensor = orchestrate.Sensor(bandwidth=250.0, sample_rate=600.0, noise=0.005, participation=1.4)
+    sweep = orchestrate.SweptSine(first=36.0, last=64.0, duration=5.0, acceleration=4.0)
+    sensor = orchestrate.Sensor(bandwidth=300.0, sample_rate=800.0, noise=0.005, participation=1.4)
     for name, structure in (("parted", beam), ("whole", beam.as_bonded())):
-        history = orchestrate.shake(structure, sweep, sample_rate=600.0, progress=False)
+        history = orchestrate.shake(structure, sweep, sample_rate=800.0, progress=False)
         felt = orchestrate.measure(history, sensor, excitation=sweep).drop_vars("acceleration2")
         orchestrate.write_record(felt, folder / f"{name}.csv")
     (folder / "beam.toml").write_text(GUESSED)
@@ -157,8 +157,8 @@ def test_a_page_says_what_the_record_is_and_how_the_page_was_made(run):
         rows = dict(zip(cells, cells[1:], strict=False))
         assert rows["file of the record"] == "parted.csv"
         assert "acceleration1" in rows["columns of the file"]
-        assert (rows["sampling rate"], rows["unit of its numbers"]) == ("600 Hz", "m/s²")
-        assert rows["duration"].startswith("4") and " Hz upwards" in rows["sweep"]
+        assert (rows["sampling rate"], rows["unit of its numbers"]) == ("800 Hz", "m/s²")
+        assert rows["duration"].startswith("5") and " Hz upwards" in rows["sweep"]
         assert rows["level of the base, peak"].endswith(f" {unit}")
         assert (
             "diagnose" in rows["command that made it"] and "--notes" in rows["command that made it"]

@@ -19,7 +19,7 @@ OPENED = Findings(
     excess=10.0,
     order2=0.2,
     apart=0.0,
-    bursts=5.0,
+    bursts=50.0,
     sound="bonded",
     sound_misfit=3.0,
     delaminated="delaminated",
@@ -45,8 +45,8 @@ the same, sampled too slowly for impacts: excess=0.3 misfit=0.3 bursts=nan -> no
 no order 2, one mass explains it, but something strikes: excess=0.3 misfit=0.3 -> undecided
 no order 2, and nothing explains it: excess=0.3 other=3.5 misfit=6 -> not described
 no order 2, but the halves alone explain it: excess=0.3 -> undecided
-order 2, and no impact is heard, as in a loose clamp: bursts=2.8 -> undecided
-the same, sampled too slowly for impacts: bursts=nan -> delaminated
+order 2, and impacts are as in a loose clamp: bursts=21 -> undecided
+the same, sampled too slowly for impacts: bursts=nan -> undecided
 the same, and the faces move apart: bursts=2.8 apart=4 -> delaminated
 order 2, both explain it: misfit=0.9 -> undecided
 order 2, one mass explains it better: misfit=0.2 other=1.2 -> undecided
