@@ -103,12 +103,13 @@ def test_what_noise_alone_makes_leaves_nothing_hidden_and_a_real_misfit_does():
     assert squares_beyond_noise(2.0 * rng.standard_normal((2, 4, 60)), changes) > 400.0
 
 
-def test_damping_and_restitution_are_in_doubt_where_the_contact_is_another():
+def test_damping_split_and_restitution_are_in_doubt_where_the_contact_is_another():
     values = {"common": 34.0, "log_zeta1": np.log(0.03), "log_zeta2": np.log(0.01), "e": 0.5}
+    values["split"] = 0.1
     assert not contact_covariance(values, 0.0).any()
     deviation = np.sqrt(np.diag(contact_covariance(values, 1.0)))
     np.testing.assert_allclose(deviation[1:3] * [0.03, 0.01], 0.02)  # of both, their mean
-    assert deviation[0] == 0.0 and 0.1 < deviation[3] < 0.2
+    assert deviation[0] == 0.0 and 0.1 < deviation[3] < 0.2 and 0.01 < deviation[4] < 0.03
     assert not contact_covariance({"f": 34.0, "log_zeta": -4.0}, 1.0).any()
 
 
