@@ -126,11 +126,13 @@ class Findings:
         if self.is_difference_alone:
             ratio = f"The faces' difference {alone} from a ratio of {enough:g} on."
             advice = "Sensors exactly opposite each other, on the beam's axis, and a higher level."
+        strike = f"Faces that strike make bursts of {self.settings.heard:g} times the threshold"
+        untold = "; the record is sampled too slowly for them" if math.isnan(self.bursts) else ""
         return [
             Condition(self.is_opening_seen, "Neither order 2 nor a difference of faces is seen."),
             Condition(
                 self.apart > 1.0 or self.bursts >= self.settings.heard,  # NaN: not told
-                f"Faces that strike make bursts of {self.settings.heard:g} times the threshold.",
+                f"{strike}{untold}.",
                 "Sweeps at twice the level, of 12 samples a period or more, with both sensors.",
             ),
             Condition(

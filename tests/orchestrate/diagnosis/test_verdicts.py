@@ -130,6 +130,7 @@ def test_what_strikes_is_named_and_what_was_not_listened_for_too():
     assert "strikes" not in QUIET.reason() and "too slowly" not in QUIET.seen_up_to()
     assert "strikes once a period" in replace(QUIET, bursts=3.0).reason()
     assert "sampled too slowly" in replace(QUIET, bursts=float("nan")).seen_up_to()
+    assert "sampled too slowly" in replace(OPENED, bursts=float("nan")).reason()
 
 
 def test_numbers_at_their_bounds_are_reported_with_slopes():
