@@ -63,9 +63,8 @@ def test_a_resonance_1_3_is_where_the_closed_form_has_it():
 
 @pytest.mark.slow
 def test_a_flip_neimark_sacker_point_is_on_both_curves():
-    limits = (1.05, 2.2)
     both = [
-        points(1, kind, "kappa", limits)["flip-Neimark-Sacker"][0]
+        points(1, kind, "kappa", (1.05, 2.2))["flip-Neimark-Sacker"][0]
         for kind in ("Neimark-Sacker", "period doubling")
     ]
     assert both[0] == pytest.approx(both[1], abs=1e-9)
@@ -76,9 +75,8 @@ def test_a_flip_neimark_sacker_point_is_on_both_curves():
 
 @pytest.mark.slow
 def test_a_period_doubling_ends_where_a_flight_grazes():
-    limits = (0.29, 0.71)
     both = [
-        points(2, kind, "e", limits)["grazing period doubling"][0]
+        points(2, kind, "e", (0.29, 0.71))["grazing period doubling"][0]
         for kind in ("period doubling", "grazing of a flight")
     ]
     assert both[0] == pytest.approx(both[1], abs=1e-9)
