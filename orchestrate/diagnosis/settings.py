@@ -35,7 +35,8 @@ class Settings:
     # of twenty blocks makes, it is at most 0.64
     share: float = 0.75
     # bursts over their threshold where faces are not seen to move apart: two masses that stay shut
-    # came to 3.2, one mass in a loose clamp to 21, those that part and meet to 55 and more
+    # came to 3.2, one mass in a loose clamp to 21, those that part and meet to 55 and more, but to
+    # 10 and more where a sweep of a third of the resonance has no quiet ends
     heard: float = 30.0
     hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
     clipped: float = CLIPPED  # share of a channel's samples at its extremes: it is saturated
