@@ -189,7 +189,7 @@ class SearchJob(Job):
 
     def finish(self, previous: Table, player: Player) -> Table:
         """Refine the best solutions of each hypothesis, and compute all misfits and errors."""
-        worth = is_worth_a_search(self.data)
+        worth = self.delaminated and is_worth_a_search(self.data)
         made: list[tuple[Search, list[Solution]]] = []
         for position in range(len(self.hypotheses)):
             search = Search(self.hypotheses[position], self.evidence, player)
