@@ -42,9 +42,9 @@ CASES = """
 opens, and the halves explain it: -> delaminated
 no order 2, one mass explains it: excess=0.3 misfit=0.3 bursts=0.8 -> no opening seen
 the same, sampled too slowly for impacts: excess=0.3 misfit=0.3 bursts=nan -> no opening seen
-no order 2, one mass explains it, but something strikes: excess=0.3 misfit=0.3 -> undecided
+no order 2, one mass explains it, but something strikes: excess=0.3 misfit=0.3 bursts=5 -> undecided
 no order 2, and nothing explains it: excess=0.3 other=3.5 misfit=6 -> not described
-no order 2, but the halves alone explain it: excess=0.3 -> undecided
+no order 2, but the halves alone explain it: excess=0.3 bursts=5 -> undecided
 order 2, and impacts are as in a loose clamp: bursts=21 -> undecided
 the same, sampled too slowly for impacts: bursts=nan -> undecided
 the same, and the faces move apart: bursts=2.8 apart=4 -> delaminated
@@ -52,7 +52,7 @@ order 2, both explain it: misfit=0.9 -> undecided
 order 2, one mass explains it better: misfit=0.2 other=1.2 -> undecided
 order 2, and nothing explains it: other=3.5 misfit=6 -> not described
 better, but not in most parts of the record: share=0.6 -> undecided
-no order 2, but the faces move apart and impacts are heard: excess=0.2 apart=4 -> delaminated
+no order 2, but the faces move apart, impacts are heard: excess=0.2 apart=4 bursts=5 -> delaminated
 the faces differ as by a torsion mode: excess=0.25 bursts=0.8 apart=40 misfit=1.4 -> undecided
 the same, and nothing hears impacts: excess=0.25 bursts=nan apart=40 misfit=1.4 -> undecided
 faces alone differ, halves are far better: excess=0.25 bursts=0.8 apart=40 misfit=9 -> delaminated
