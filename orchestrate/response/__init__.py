@@ -9,7 +9,6 @@ module                      idea
 :mod:`.multiplicity`        period of a response in excitation periods
 :mod:`.response_loop`       many steady-state responses by one call of compiled code
 :mod:`.respond`             steady-state response at one operating point
-:mod:`.peaks`               largest displacements and accelerations of both masses
 :mod:`.simulate`            a motion in time
 :mod:`.sweep`               responses along a parameter; the columns of their CSV
 :mod:`.resonance`           resonance curves, bonded against delaminated, with peaks and jumps

@@ -1,6 +1,6 @@
-/* Responses one after the other, compiled: initialise, transient, samples, how often they repeat, states for peaks.
+/* Responses one after the other, compiled: initialise, transient, samples, how often they repeat, peaks.
  *
- * respond.py, begin.py and peaks.py of Python say what is done and why; here are the same calls of the FMU in the same order, so the bits are the same. The
+ * respond.py and begin.py of Python say what is done and why; here are the same calls of the FMU in the same order, so the bits are the same. The
  * rule of repetition is fmu_src/kernels/repetition.py, translated. Structures are those of response_loop.py. No library is needed, nothing is allocated.
  */
 #include <stdbool.h>
@@ -23,6 +23,7 @@ EXPORT const char token[] = TOKEN;  /* of these sources: tells their library fro
 enum { DONE, FAILED };
 enum { NOT_FINITE = -1 };  /* a status that FMI does not have */
 enum { X1, X2, V1, V2, STATES };
+enum { PEAKS = 4 };  /* largest |x1|, |x2|, |a1|, |a2| */
 
 typedef struct {
     void *instance;
@@ -36,15 +37,15 @@ typedef struct {
     int (*get)(void *, const unsigned *references, size_t count, double *values, size_t value_count);
     int (*get_boolean)(void *, const unsigned *references, size_t count, bool *values, size_t value_count);
     int (*get_integer)(void *, const unsigned *references, size_t count, int32_t *values, size_t value_count);
-    const unsigned *reals, *booleans, *series;  /* what is set before the start; the samples kept in a step */
+    const unsigned *reals, *booleans, *series, *peaks;  /* what is set before the start; the samples kept in a step; PEAKS */
     size_t real_count, boolean_count, start_position, capacity;  /* of the start among the reals; samples of a step */
-    unsigned sample_count, x_rel_max, x_rel_max_on, impact_count, contact_count, in_contact;
+    unsigned sample_count, x_rel_max, x_rel_max_on, peaks_on, impact_count, contact_count, in_contact;
     const char *failed;  /* the function that did not answer OK */
     int status;
 } Calls;
 
 typedef struct {  /* what there is to do: a row a response */
-    size_t count, samples, peak_periods, points;  /* points: states over the periods looked at for peaks, or 0 */
+    size_t count, samples, peak_periods;  /* the periods looked at for peaks, at most */
     double tolerance, loose;  /* loose, unless 0: a wider tolerance; repetitions within both are found */
     bool decides, is_chain, has_gap;  /* the multiplicity is decided; each starts from the end of the one before; the gap that the first start belongs to is known */
     double gap;
@@ -54,7 +55,7 @@ typedef struct {  /* what there is to do: a row a response */
     const double *periods, *frequencies, *rests;  /* of each, rests: gap between unloaded springs, places of rest */
     const double *starts;  /* of each, or of the first of a chain */
     double *memory;  /* of the rule */
-    double *states, *ends, *largest, *deviations, *orbits;  /* results */
+    double *states, *ends, *largest, *deviations, *peaks;  /* results */
     int32_t *counts;
     double *series;  /* the samples of a step */
 } Task;
@@ -78,6 +79,10 @@ static bool step(Calls *calls, double time, double target) {
 
 static bool set_flag(Calls *calls, unsigned reference, bool value) {
     return answered(calls, "fmi3SetBoolean", calls->set_boolean(calls->instance, &reference, 1, &value, 1));
+}
+
+static bool set_sample_count(Calls *calls, int32_t count) {
+    return answered(calls, "fmi3SetInt32", calls->set_integer(calls->instance, &calls->sample_count, 1, &count, 1));
 }
 
 static bool get_integer(Calls *calls, unsigned reference, int32_t *value) {
@@ -148,8 +153,7 @@ static bool initialize(Calls *calls, const Task *task, size_t i, const double *s
 
 /* begin.py: last_samples of a step of its own. */
 static bool sample(Calls *calls, const Task *task, double time, double target, size_t count, double *states) {
-    int32_t number = (int32_t)count;
-    if (!answered(calls, "fmi3SetInt32", calls->set_integer(calls->instance, &calls->sample_count, 1, &number, 1)) || !step(calls, time, target)) return false;
+    if (!set_sample_count(calls, (int32_t)count) || !step(calls, time, target)) return false;
     if (!get_finite(calls, calls->series, STATES, task->series, STATES * calls->capacity)) return false;
     for (size_t k = 0; k < count; k++) for (int j = 0; j < STATES; j++) states[STATES * k + j] = task->series[j * calls->capacity + k];
     return true;
@@ -169,15 +173,10 @@ static bool sample_periods(Calls *calls, const Task *task, double period, size_t
     return true;
 }
 
-/* begin.py: sampled. */
-static bool sample_evenly(Calls *calls, const Task *task, double time, double target, double *states) {
-    double width = (target - time) / (double)task->points;
-    if (!set_flag(calls, calls->x_rel_max_on, false)) return false;
-    for (size_t done = 0; done < task->points; done += calls->capacity) {
-        size_t count = task->points - done < calls->capacity ? task->points - done : calls->capacity;
-        if (!sample(calls, task, time + (double)done * width, time + (double)(done + count) * width, count, states + STATES * done)) return false;
-    }
-    return true;
+/* response_loop.py: peaks_of_step. */
+static bool step_with_peaks(Calls *calls, double time, double target, double *peaks) {
+    return set_flag(calls, calls->x_rel_max_on, false) && set_sample_count(calls, 0) && set_flag(calls, calls->peaks_on, true)
+        && step(calls, time, target) && get_finite(calls, calls->peaks, PEAKS, peaks, PEAKS) && set_flag(calls, calls->peaks_on, false);
 }
 
 /* multiplicity.py: apply_rule. */
@@ -192,13 +191,12 @@ static int32_t apply_rule(const Task *task, size_t i, double tolerance, int (*ru
     return (int32_t)memory[MULTIPLICITY];
 }
 
-/* sweep.py: the states for peaks, and the impacts of a response that has repeated. */
-static bool look_at_periods(Calls *calls, const Task *task, double period, size_t first, const double *last, double *orbit, int32_t *counts) {
+/* The peaks, and the impacts of a response that has repeated. */
+static bool look_at_periods(Calls *calls, const Task *task, double period, size_t first, double *peaks, int32_t *counts) {
     size_t most = task->peak_periods, n = (size_t)counts[PERIODS], span = n < most ? n : most;
     if (!span) span = (most + 1) / 2;
-    if (task->points) for (int j = 0; j < STATES; j++) orbit[j] = last[j];
     double done = (double)(first + span) * period, end = (double)(first + n) * period;
-    if (!sample_evenly(calls, task, (double)first * period, done, orbit + STATES)) return false;
+    if (!step_with_peaks(calls, (double)first * period, done, peaks)) return false;
     if (counts[HOW] != REPEATED) return true;
     if (end > done && !step(calls, done, end)) return false;
     return get_integer(calls, calls->impact_count, &counts[LATER_IMPACTS]);
@@ -224,7 +222,7 @@ static bool respond(Calls *calls, const Task *task, size_t i, const double *star
     if (!task->decides) return true;
     counts[PERIODS] = apply_rule(task, i, task->tolerance, kernel_decide);
     counts[HOW] = (int32_t)task->memory[DECIDED];
-    return look_at_periods(calls, task, period, transient + task->samples, last, task->orbits + STATES * (task->points + 1) * i, counts);
+    return look_at_periods(calls, task, period, transient + task->samples, task->peaks + PEAKS * i, counts);
 }
 
 /* Compute the responses from number first up to, not including, last; returns DONE, or FAILED. */

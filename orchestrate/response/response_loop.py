@@ -26,7 +26,6 @@ from ..fmu import (
     function_addresses,
     gap_between,
     last_samples,
-    sampled,
     samples_per_step,
 )
 from ..model.outcomes import REPEATED
@@ -37,7 +36,11 @@ FUNCTIONS = (  # as Calls of the C source has them
     *("Reset", "EnterInitializationMode", "ExitInitializationMode", "DoStep"),
     *("SetFloat64", "SetBoolean", "SetInt32", "GetFloat64", "GetBoolean", "GetInt32"),
 )
-READ = ("sample_count", "x_rel_max", "x_rel_max_on", "impact_count", "contact_count", "in_contact")
+READ = (
+    *("sample_count", "x_rel_max", "x_rel_max_on", "peaks_on"),
+    *("impact_count", "contact_count", "in_contact"),
+)
+PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max")
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
 COUNTS = (*COUNTED, "multiplicity", "decided", "later_impacts", "nearly")
 NOT_FINITE = -1  # a status that FMI does not have
@@ -52,7 +55,7 @@ class Calls(ctypes.Structure):
 
     _fields_ = [
         *((name, c_void_p) for name in ("instance", *FUNCTIONS)),
-        *((name, POINTER(c_uint)) for name in ("reals", "booleans", "series")),
+        *((name, POINTER(c_uint)) for name in ("reals", "booleans", "series", "peaks")),
         *((name, c_size_t) for name in ("real_count", "boolean_count", "start", "capacity")),
         *((name, c_uint) for name in READ),
         ("failed", c_char_p),
@@ -64,13 +67,13 @@ class Task(ctypes.Structure):
     """C struct of what there is to do: sizes and settings, then addresses of rows."""
 
     _fields_ = [
-        *((name, c_size_t) for name in ("count", "samples", "peak_periods", "points")),
+        *((name, c_size_t) for name in ("count", "samples", "peak_periods")),
         *((name, c_double) for name in ("tolerance", "loose")),
         *((name, c_bool) for name in ("decides", "is_chain", "has_gap")),
         ("gap", c_double),
         *((name, c_void_p) for name in ("transients", "reals", "booleans", "periods")),
         *((name, c_void_p) for name in ("frequencies", "rests", "starts", "memory", "states")),
-        *((name, c_void_p) for name in ("ends", "largest", "deviations", "orbits", "counts")),
+        *((name, c_void_p) for name in ("ends", "largest", "deviations", "peaks", "counts")),
         ("series", c_void_p),
     ]
 
@@ -88,7 +91,6 @@ class LoopSettings:
     # gap between unloaded springs that the first start of a chain belongs to, m, where it is known
     chain_gap: float | None = None
     peak_periods: int = 0  # periods looked at for peaks, at most
-    peak_points: int = 0  # states over these periods
 
 
 class Responses(NamedTuple):
@@ -100,12 +102,11 @@ class Responses(NamedTuple):
     counts: dict[str, NDArray[np.int32]]  # by `COUNTS`
     # largest deviation of states from those `nearly` periods before, within the loose tolerance
     deviations: Floats
-    orbits: Floats  # states over the periods looked at for peaks, (n, points + 1, 4)
+    peaks: Floats  # largest displacements and accelerations as `PEAKS`, where it decides, (n, 4)
 
     @classmethod
     def empty(cls, count: int, settings: LoopSettings) -> Responses:
         """Return tables for so many responses."""
-        points = settings.peak_points
         counts = np.zeros((len(COUNTS), count), np.int32)
         return cls(
             states=np.empty((count, settings.samples, 4)),
@@ -113,17 +114,18 @@ class Responses(NamedTuple):
             x_rel_max=np.empty(count),
             counts=dict(zip(COUNTS, counts, strict=True)),
             deviations=np.zeros(count),
-            orbits=np.empty((count, points + 1, 4) if points else (0, 1, 4)),
+            peaks=np.zeros((count, len(PEAKS))),
         )
 
     def rows(self, chosen: NDArray[np.intp]) -> Responses:
-        """Return the results of chosen responses, without their orbits."""
+        """Return the results of chosen responses."""
         return self._replace(
             states=self.states[chosen],
             ends=self.ends[chosen],
             x_rel_max=self.x_rel_max[chosen],
             counts={name: numbers[chosen] for name, numbers in self.counts.items()},
             deviations=self.deviations[chosen],
+            peaks=self.peaks[chosen],
         )
 
 
@@ -197,14 +199,14 @@ class ResponseLoop:
     def run_on(
         self, point: Point, first: int, settings: LoopSettings, results: Responses, i: int
     ) -> None:
-        """Store states for peaks, and the impacts after the periods of what repeats."""
+        """Store the peaks, and the impacts after the periods of what repeats."""
         counts, n = results.counts, int(results.counts["multiplicity"][i])
         span = periods_to_sample(n, settings.peak_periods)
         begun, done, end = ((first + count) * point.excitation.period for count in (0, span, n))
-        self.instance.set(x_rel_max_on=False)
-        if settings.peak_points:
-            results.orbits[i, 0] = results.states[i, -1]
-            results.orbits[i, 1:] = sampled(self.instance, begun, done, settings.peak_points)
+        self.instance.set(x_rel_max_on=False, sample_count=0, peaks_on=True)
+        self.instance.step(begun, done)
+        results.peaks[i] = self.instance.get(*PEAKS)
+        self.instance.set(peaks_on=False)
         if counts["decided"][i] == REPEATED:
             if n > span:
                 self.instance.step(done, end)
@@ -230,7 +232,7 @@ class CompiledResponseLoop(ResponseLoop):
         booleans = [name for name, kind in kinds.items() if kind == "Boolean"]
         assert len(reals) + len(booleans) == len(kinds) and len(reals) <= MAX_REALS
         self.names = reals, booleans
-        tables = (self.references(some) for some in (*self.names, SAMPLE_SERIES))
+        tables = (self.references(some) for some in (*self.names, SAMPLE_SERIES, PEAKS))
         sizes = len(reals), len(booleans), reals.index(START_PARAMETERS[0]), self.capacity
         addresses = function_addresses(self.instance, FUNCTIONS)
         self.calls = Calls(*addresses, *tables, *sizes, *self.references(READ))
@@ -252,9 +254,9 @@ class CompiledResponseLoop(ResponseLoop):
         series, memory = np.empty(4 * self.capacity), np.empty(memory_size(chosen.samples))
         transients = np.full(len(points), chosen.transient, dtype=np.uint64)
         inputs = (transients, *self.rows(points), np.ascontiguousarray(starts, dtype=float), memory)
-        outputs = (*results[:3], results.deviations, results.orbits, counts, series)
+        outputs = (*results[:3], results.deviations, results.peaks, counts, series)
         task = Task(
-            *(len(points), chosen.samples, chosen.peak_periods, chosen.peak_points),
+            *(len(points), chosen.samples, chosen.peak_periods),
             *(chosen.tolerance, chosen.loose, chosen.decides),
             *(chosen.is_chain, chosen.chain_gap is not None, chosen.chain_gap or 0.0),
             *(table.ctypes.data for table in (*inputs, *outputs)),
@@ -297,13 +299,13 @@ class CompiledResponseLoop(ResponseLoop):
         if status != NOT_FINITE:
             return self.instance.failure(f"{function} failed with status {status}")
         if np.isfinite(series).all():
-            return self.instance.not_finite_error(("x_rel_max",), np.array([np.nan]))
+            return self.instance.not_finite_error(("x_rel_max", *PEAKS), np.array([np.nan]))
         names = [name for name in SAMPLE_SERIES for _ in range(self.capacity)]
         return self.instance.not_finite_error(names, series)
 
 
 def periods_to_sample(multiplicity: int, max_periods: int) -> int:
-    """Return how many periods to sample: the multiplicity, or half of the most if none."""
+    """Return the periods looked at for peaks: the multiplicity, or half of the most if none."""
     return min(multiplicity, max_periods) or (max_periods + 1) // 2
 
 

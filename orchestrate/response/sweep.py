@@ -31,10 +31,9 @@ from .labels import (
     yes_or_no,
 )
 from .multiplicity import DECIDED
-from .peaks import POINTS, peaks
 from .questions import Point, SeriesQuestion, answer_question
 from .respond import DecidedResponse, decisions_from, responses_from
-from .response_loop import LoopSettings, periods_to_sample, response_loop
+from .response_loop import PEAKS, LoopSettings, response_loop
 
 Direction = Literal["up", "down", "both", "given"]
 DIRECTIONS = ("up", "down", "both", "given")
@@ -114,15 +113,14 @@ class SweepJob(SeriesQuestion):
         """Return a chunk's table: responses one from the other, or each from its own start."""
         names = ("transient", "samples", "tolerance", "peak_periods")
         own: Any = {name: getattr(self, name) for name in names}
-        settings = LoopSettings(**own, decides=True, peak_points=POINTS, **chain)
+        settings = LoopSettings(**own, decides=True, **chain)
         with Instance(fmus[OSCILLATOR]) as instance:
             results = response_loop(instance).respond(points, starts, settings)
         responses = responses_from(results, points, self.tolerance)
         rows = [self.row(each) for each in decisions_from(results, responses)]
         table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
         table["end"] = results.ends
-        spans = [periods_to_sample(n, self.peak_periods) for n in results.counts["multiplicity"]]
-        return {**table, **peaks(points, spans, results.orbits)}
+        return {**table, **dict(zip(PEAKS, results.peaks.T, strict=True))}
 
     def row(self, decided: DecidedResponse) -> dict[str, Any]:
         """Return one response's numbers by column name."""
@@ -304,9 +302,8 @@ def sweep(
 
     Notes
     -----
-    The paper's section 3.1 and Figures 6, 10 and 11. Samples, impacts and the largest gap come
-    from the FMU and are exact to rounding; for amplitudes and accelerations see
-    :func:`orchestrate.response.peaks.peaks`.
+    The paper's section 3.1 and Figures 6, 10 and 11. Samples, impacts, the largest gap, amplitudes
+    and accelerations come from the FMU's closed form and are exact to rounding.
 
     A response has *repeated* where states ``multiplicity`` periods apart agree within the
     tolerance, and their deviation has died or dies. It is *undecided* where it nearly repeats: it

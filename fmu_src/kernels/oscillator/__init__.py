@@ -25,7 +25,8 @@ module                    the paper's equations
 :mod:`.impact`            restitution, end of chattering                          (15)-(17)
 :mod:`.contact`           contact force, the side on which a state begins         (18)-(20)
 :mod:`.motion`            the states and their sequence                    (1) (4) (5) (12) (14)
-:mod:`.maximum`           the largest gap over a step
+:mod:`.motion_signal`     displacements and accelerations as signals                          (6)
+:mod:`.maximum`           the largest values of gap, displacements and accelerations over a step
 :mod:`.outputs`           what an importer sees at a communication point
 :mod:`.rates`             time derivatives of the outputs: the entry point ``differentiate``  (6)
 :mod:`.restore`           a saved state that came from outside, checked and made whole

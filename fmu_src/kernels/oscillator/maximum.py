@@ -1,12 +1,15 @@
-"""The largest gap over a piece of flight.
+"""The largest values over a step: of the gap, of displacements and of accelerations.
 
-From summit to summit, with the certified steps of the root finder.
+From summit to summit, with the certified steps of the root finder. A signal is named by the slot
+of its maximum.
 """
 
 from ..numerics.first_root import EPS, LEAST_BOUND, clear_step, parabola_root
 from . import memory as at
 from .event_function import AHEAD, envelope, evaluate
 from .hermite import has_summit, interval_is_below
+from .motion_signal import evaluate_motion
+from .nodes import seek_interval
 from .roots import clear_from_node, cross_clear_intervals, step_inside_interval
 from .series import taylor_value
 
@@ -24,7 +27,7 @@ def walk_with_largest_gap(m, start, target):
         # a concave gap stays below its tangents at both ends
         rise, fall = m[at.SERIES_GAP + 2], -taylor_value(m, at.SERIES_GAP + 2, m[at.END])
         if rise * fall * m[at.END] > (rise + fall) * m[at.X_REL_MAX]:
-            m[at.X_REL_MAX] = largest_gap(m, start, stop, m[at.X_REL_MAX])
+            m[at.X_REL_MAX] = largest_value(m, at.X_REL_MAX, 1.0, start, stop, m[at.X_REL_MAX])
         return
     tau = start
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
@@ -49,7 +52,19 @@ def record_largest_gap(m, start, stop):
             highest = m[at.RIGHT_VALUES]
         m[at.X_REL_MAX] = highest
         return
-    m[at.X_REL_MAX] = largest_gap(m, start, stop, highest)
+    m[at.X_REL_MAX] = largest_value(m, at.X_REL_MAX, 1.0, start, stop, highest)
+
+
+def record_peaks(m, start, stop):
+    """Raise the recorded maxima of displacements and accelerations to those in a part of the
+    present state.
+    """
+    place = m[at.LEFT_AGE] + m[at.HALF_SPACING]
+    for slot in range(at.X1_MAX, at.A2_MAX + 1):
+        highest = largest_value(m, slot, 1.0, start, stop, m[slot])
+        m[slot] = largest_value(m, slot, -1.0, start, stop, highest)
+    if m[at.SERIES] == 0.0:
+        seek_interval(m, place)
 
 
 def step_to_summit(h1, h2, h3, h4, bound, reach):
@@ -95,19 +110,28 @@ def gap_rounding(m, tau):
     return 2.0 * EPS * size
 
 
-def largest_gap(m, start, stop, highest):
-    """Return the larger of ``highest`` and the present flight's largest gap in ``start <= tau <=
-    stop``.
+def evaluate_signal(m, slot, sign, tau):
+    """Return value, four derivatives, a bound of the fifth, and the value's rounding error."""
+    if slot == at.X_REL_MAX:
+        h0, h1, h2, h3, h4, bound = evaluate(m, tau)
+        return h0, h1, h2, h3, h4, bound, gap_rounding(m, tau)
+    h0, h1, h2, h3, h4, bound = evaluate_motion(m, slot, sign, tau)
+    return h0, h1, h2, h3, h4, bound, 4.0 * EPS * abs(h0)
 
-    From each point the walk goes on as far as the gap certainly stays below what is known, or,
-    climbing, to the first root of the gap's slope.
+
+def largest_value(m, slot, sign, start, stop, highest):
+    """Return the larger of ``highest`` and the largest value of ``sign`` times a signal of the
+    present state in ``start <= tau <= stop``.
+
+    From each point the walk goes on as far as the signal certainly stays below what is known, or,
+    climbing, to the first root of its slope.
     """
     tau = start
     reach = AHEAD * m[at.SPACING]
     least = SMALLEST * m[at.SPACING]
     summit = False
     while m[at.WORK] < m[at.WORK_LIMIT]:
-        h0, h1, h2, h3, h4, bound = evaluate(m, tau)
+        h0, h1, h2, h3, h4, bound, rounding = evaluate_signal(m, slot, sign, tau)
         if h0 > highest:
             highest = h0
         if tau >= stop:
@@ -117,7 +141,7 @@ def largest_gap(m, start, stop, highest):
             step, reached = step_to_summit(h1, h2, h3, h4, bound, reach)
         summit = reached
         if not summit:
-            room = (highest - h0) + gap_rounding(m, tau)
+            room = (highest - h0) + rounding
             step = max(step, scaled_clear_step(room, -h1, -h2, -h3, -h4, bound, reach))
         step = max(step, least)
         least *= GROWTH

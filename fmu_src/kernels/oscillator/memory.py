@@ -63,6 +63,11 @@ EVALUATIONS = slot()
 EVALUATION_LIMIT = slot()
 CLEARANCE = slot()
 E_SLOPE = slot()
+PEAKS_ON = slot()
+X1_MAX = slot()  # the four peaks follow one another
+X2_MAX = slot()
+A1_MAX = slot()
+A2_MAX = slot()
 TIME = slot()  # communication point reached, s (the independent variable)
 
 # -- constants derived from the parameters ---------------------------------------------------------

@@ -9,7 +9,7 @@ from . import memory as at
 from .event_function import evaluate
 from .excitation import begin_segment, inputs_changed
 from .hermite import has_summit
-from .maximum import walk_with_largest_gap
+from .maximum import record_peaks, walk_with_largest_gap
 from .motion import (
     begin_common,
     begin_flight,
@@ -60,6 +60,7 @@ def initialize(m, time):
         m[i] = 0.0
     for i in range(at.X1_SAMPLE, at.EVALUATION_LIMIT):
         m[i] = 0.0
+    clear_peaks(m)
     m[at.BOX_IMPULSE] = 0.0
     m[at.BOX_IMPULSE_MOMENT] = 0.0
     x1, x2, gap = starting_point(m)
@@ -80,7 +81,20 @@ def initialize(m, time):
     seen = outputs_at(m, 0.0)
     write_outputs(m, seen)
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
-    return check_finite(finite_check_sum(seen))
+    if m[at.PEAKS_ON] != 0.0:
+        record_peaks(m, 0.0, 0.0)
+    return check_finite(finite_check_sum(seen) + sum_of_peaks(m))
+
+
+def clear_peaks(m):
+    """Forget the peaks of the step before."""
+    for i in range(at.X1_MAX, at.A2_MAX + 1):
+        m[i] = 0.0
+
+
+def sum_of_peaks(m):
+    """Return a sum of the peaks: finite only where all are."""
+    return (m[at.X1_MAX] + m[at.X2_MAX]) + (m[at.A1_MAX] + m[at.A2_MAX])
 
 
 def starting_point(m):
@@ -138,6 +152,8 @@ def advance(m, time):
         m[at.IMPACT_COUNT],
     )
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
+    if m[at.PEAKS_ON] != 0.0:
+        clear_peaks(m)
     tau = run_samples(m, before, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:  # rarely
         m[at.REPORT] = m[at.START_TIME] + m[at.ORIGIN] / m[at.OMEGA]
@@ -158,7 +174,8 @@ def coast(m, time):
         OK, or UNFINISHED where there is more to do, or NOT_FINITE: then nothing has changed.
     """
     tau = local_time(m, time)
-    if not lasts_beyond(m, tau) or m[at.SAMPLE_COUNT] != 0.0 or inputs_changed(m):
+    plain = m[at.SAMPLE_COUNT] == 0.0 and m[at.PEAKS_ON] == 0.0
+    if not lasts_beyond(m, tau) or not plain or inputs_changed(m):
         return at.UNFINISHED
     now = local_time(m, m[at.TIME])
     highest = 0.0
@@ -208,7 +225,8 @@ def finish_step(m, time, tau, left, highest, same):
     if m[at.X_REL_MAX_ON] != 0.0 and gap > highest:
         highest = gap
     last = m[at.IMPACT_TIME] + m[at.IMPACT_VELOCITY] + m[at.IMPACT_ENERGY]
-    code = check_finite(finite_check_sum(seen) + (force + moment) + (highest + last))
+    sums = finite_check_sum(seen) + (force + moment) + (highest + last)
+    code = check_finite(sums + sum_of_peaks(m))
     if code == at.OK:
         m[at.TIME] = time
         m[at.STEP] = h
@@ -218,6 +236,8 @@ def finish_step(m, time, tau, left, highest, same):
         m[at.BOX_IMPULSE_MOMENT] = moment
         m[at.X_REL_MAX] = highest
         m[at.EVALUATIONS] = m[at.WORK]
+        if m[at.PEAKS_ON] == 0.0:
+            clear_peaks(m)
     return code
 
 
@@ -296,6 +316,8 @@ def run_states(m, time, now):
             walk_with_largest_gap(m, now, tau)
         else:
             walk(m, tau)
+        if m[at.PEAKS_ON] != 0.0:
+            record_peaks(m, now, tau if tau < m[at.END] else m[at.END])
         if m[at.END_KIND] == at.END_OPEN or m[at.END] > tau or m[at.WORK] >= m[at.WORK_LIMIT]:
             return tau
         impacts = m[at.IMPACT_COUNT]

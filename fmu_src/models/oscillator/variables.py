@@ -82,6 +82,12 @@ def samples(name: str, unit: str, description: str) -> tuple[Variable, ...]:
     )
 
 
+def peak(name: str, unit: str, signal: str) -> Variable:
+    """Return the local variable of a largest absolute value over the last step."""
+    text = f"Largest absolute {signal} over the last communication step, exact, not sampled"
+    return Variable(name, text, "local", unit, initial="calculated", minimum=0.0)
+
+
 SCALARS = (
     parameter("m1", "kg", 1.0, "Mass 1", minimum=TINY, maximum=LARGE),
     parameter("m2", "kg", 1.0, "Mass 2", minimum=TINY, maximum=LARGE),
@@ -298,6 +304,20 @@ SCALARS = (
         maximum=memory.SAMPLES,
     ),
 )
+PEAKS = (
+    parameter(
+        "peaks_on",
+        "",
+        0.0,
+        "true: x1_max, x2_max, a1_max and a2_max are computed; they cost time",
+        type=BOOLEAN,
+        variability="tunable",
+    ),
+    peak("x1_max", "m", "displacement x1"),
+    peak("x2_max", "m", "displacement x2"),
+    peak("a1_max", "m/s2", "acceleration in space, between impacts, of mass 1"),
+    peak("a2_max", "m/s2", "acceleration in space, between impacts, of mass 2"),
+)
 VARIABLES = numbered(
     SCALARS
     + samples("x1_sample", "m", "x1")
@@ -313,6 +333,7 @@ VARIABLES = numbered(
         ),
         evaluation_limit("event function"),
         *ADDED,
+        *PEAKS,
     ),
     memory,
 )
