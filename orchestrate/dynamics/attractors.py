@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -17,9 +17,7 @@ from ..model import Structure
 from ..model.arguments import (
     Numbers,
     checked,
-    checked_integer,
     checked_numbers,
-    checked_positive,
     positive,
     whole,
 )
@@ -28,7 +26,7 @@ from ..response.labels import Variable, flags, make_dataset, si_state_coordinate
 from ..response.questions import Point, SeriesQuestion, ask, require_delaminated
 from ..running.job import Fmus, Table
 from ..running.options import Running
-from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
+from .clusters import ABOUT, FEATURES, AttractorSettings, SettlingRun, run_until_settled
 from .decision import MotionDecider
 from .global_continuation import MatchedAttractors, continue_attractors, instance_pair
 
@@ -43,7 +41,6 @@ DECIDED_BY = (
     "how it was decided: by a stable orbit of Newton's method; by states that repeat; irregular; "
     "undecided: states repeat nearly, near an unstable orbit or before impacts that have to come"
 )
-KEYWORDS = ("transient", "settle", "samples", "converged", "longest", "alike", "alike_irregular")
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
 
 
@@ -65,7 +62,7 @@ class AttractorsJob(SeriesQuestion):
     seed: int = whole(0, 2**32 - 1)
     scale: Numbers | None = checked(half_widths)
     width: float = positive()
-    settings: AttractorSettings
+    settings: SettlingRun
     asked: ClassVar[str] = "attractors"
     chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
@@ -234,7 +231,7 @@ class SizeFromRest(NamedTuple):
     gap: float  # largest gap, m
 
 
-def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings) -> SizeFromRest:
+def size_from_rest(instance: Instance, point: Point, settings: SettlingRun) -> SizeFromRest:
     """Run from rest until settled; return a state there, largest displacement and gap, m."""
     response = run_until_settled(instance, point, REST, settings)[0].response
     begin(instance, *point, response.end)
@@ -261,14 +258,6 @@ def starts_in_both_boxes(
     return states
 
 
-def attractor_settings(call: Mapping[str, Any]) -> AttractorSettings:
-    """Return the ``AttractorSettings`` of a call, with its keywords, which are checked."""
-    least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
-    whole: dict[str, Any] = {n: checked_integer(n, call[n], low) for n, low in least.items()}
-    others = {n: checked_positive(n, call[n]) for n in KEYWORDS if n not in least}
-    return replace(call["settings"] or AttractorSettings(), **whole, **others)
-
-
 def attractors(
     structure: Structure,
     *,
@@ -284,10 +273,6 @@ def attractors(
     transient: int = 400,
     settle: float = 300.0,
     samples: int = 48,
-    converged: float = 1e-6,
-    longest: int = 20_000,
-    alike: float = 0.02,
-    alike_irregular: float = 0.25,
     settings: AttractorSettings | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
@@ -318,19 +303,9 @@ def attractors(
         e^{-D tau} with D = 0.005 goes on for a factor of ten thousand.
     samples : int
         Periods kept: more where attractors repeat after more than half as many.
-    converged : float
-        Relative deviation within which a repeated state decides.
-    longest : int
-        Periods up to which a response is run on that does not repeat, or that Newton's method does
-        not confirm; beyond it is irregular, or undecided. More where transients are long, near
-        bifurcations.
-    alike : float
-        Distance over the motion's size within which responses that repeat are one attractor where
-        Newton's method finds no stable orbit.
-    alike_irregular : float
-        Relative difference within which irregular responses belong to one attractor.
     settings : AttractorSettings, optional
-        Further thresholds of the rule that decides, of :mod:`orchestrate.dynamics.decision`.
+        Thresholds of the rule that decides: those of
+        :class:`orchestrate.dynamics.clusters.AttractorSettings` by default.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
 
@@ -381,4 +356,4 @@ def attractors(
     if starts is None:
         several = any(x is not None and np.size(x) > 1 for x in (eta, frequency, amplitude, values))
         starts = 60 if several else 600
-    return ask(AttractorsJob, locals(), settings=attractor_settings(locals()))
+    return ask(AttractorsJob, locals(), settings=SettlingRun.from_call(locals()))

@@ -34,15 +34,13 @@ from .attractors import (
     ABSENT_ROW,
     ATTRACTOR,
     COLUMNS,
-    KEYWORDS,
     attractor_columns,
-    attractor_settings,
     attractor_variables,
     attractors,
     settled_rows,
     settled_table,
 )
-from .clusters import AttractorSettings
+from .clusters import RUN_LENGTHS, AttractorSettings, SettlingRun
 from .decision import MotionDecider
 from .global_continuation import continue_attractors, instance_pair
 
@@ -123,7 +121,7 @@ class BasinJob(Question):
     y: PlaneAxis
     at: tuple[float, ...]
     known: tuple[tuple[float, ...], ...]  # states on attractors that are known, at phase 0
-    settings: AttractorSettings
+    settings: SettlingRun
     asked: ClassVar[str] = "basin"
     chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
@@ -235,10 +233,6 @@ def basin(
     transient: int = 400,
     settle: float = 300.0,
     samples: int = 48,
-    converged: float = 1e-6,
-    longest: int = 20_000,
-    alike: float = 0.02,
-    alike_irregular: float = 0.25,
     settings: AttractorSettings | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
@@ -261,7 +255,7 @@ def basin(
         where neither side is given either, the mean of the attractors' states at phase 0.
     phase
         As in :func:`orchestrate.simulate`.
-    transient, settle, samples, converged, longest, alike, alike_irregular, settings
+    transient, settle, samples, settings
         As in :func:`orchestrate.attractors`.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
@@ -295,7 +289,7 @@ def basin(
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
     point = checked_point(structure, eta, frequency, amplitude)
-    settings = attractor_settings(locals())
+    settings = SettlingRun.from_call(locals())
     known: KnownAttractors | None = None
     if x is None or y is None:
         known = find_known_attractors(point, settings, running)
@@ -329,11 +323,11 @@ class KnownAttractors(NamedTuple):
 
 
 def find_known_attractors(
-    point: Point, settings: AttractorSettings, running: Mapping[str, Any]
+    point: Point, settings: SettlingRun, running: Mapping[str, Any]
 ) -> KnownAttractors:
     """Find attractors from a few random starts, to lay the default plane around them."""
     structure, excitation = point
-    search: Any = {name: getattr(settings, name) for name in KEYWORDS} | {"settings": settings}
+    search: Any = {name: getattr(settings, name) for name in RUN_LENGTHS} | {"settings": settings}
     search |= {name: running[name] for name in running.keys() & {"fmu", "build_folder"}}
     search |= {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
     known = attractors(structure, starts=24, **search, jobs=1, progress=False).isel(frequency=0)

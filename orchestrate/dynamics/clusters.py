@@ -5,14 +5,16 @@ What a periodic response settles to is decided by its orbit: see :mod:`.decision
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import InputError
 from ..fmu import Instance
+from ..model.arguments import checked_integer, checked_positive
 from ..response.questions import Point
 from ..response.respond import Response, responses_from
 from ..response.response_loop import LoopSettings, response_loop
@@ -24,15 +26,17 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class AttractorSettings:
-    """Settings for settling and clustering responses from many starts."""
+    """Thresholds of what responses from many starts settle to, see :mod:`.decision`."""
 
-    # as in orchestrate.attractors
-    transient: int = 400
-    settle: float = 300.0
-    samples: int = 48
-    converged: float = 1e-6
+    converged: float = 1e-6  # relative deviation within which a repeated state decides
+    # periods up to which a response is run on that does not repeat, or that Newton's method does
+    # not confirm; beyond it is irregular, or undecided: more where transients are long, near
+    # bifurcations
     longest: int = 20_000
+    # distance over the motion's size within which responses that repeat are one attractor if
+    # Newton's method finds no stable orbit
     alike: float = 0.02
+    # relative difference within which irregular responses belong to one attractor
     alike_irregular: float = 0.25
     # over `converged`: within so much a state nearly repeats; states differ by more after fewer
     # periods than those of the response
@@ -50,6 +54,39 @@ class AttractorSettings:
     # beyond which attractors of neighbouring values may be different ones, other things equal
     neighbour: float = 0.2
 
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if isinstance(each.default, int):
+                checked_integer(each.name, value, 0)
+            else:
+                checked_positive(each.name, value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SettlingRun(AttractorSettings):
+    """Thresholds, and how long responses are run before they are looked at."""
+
+    transient: int  # periods dropped at least
+    settle: float  # the same over eta: a slow decay takes time, not periods
+    samples: int  # periods kept
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checked_integer("samples", self.samples, 4)
+
+    @classmethod
+    def from_call(cls, call: Mapping[str, Any]) -> SettlingRun:
+        """Return the run that a public function's keywords ask for."""
+        given = AttractorSettings() if call["settings"] is None else call["settings"]
+        if not isinstance(given, AttractorSettings):
+            raise InputError(f"settings = {given!r}: expected AttractorSettings(longest=..., ...)")
+        thresholds = {each.name: getattr(given, each.name) for each in fields(AttractorSettings)}
+        return cls(**thresholds, **{name: call[name] for name in RUN_LENGTHS})
+
+
+RUN_LENGTHS = ("transient", "settle", "samples")
+
 
 def transient_periods(transient: int, settle: float, eta: float) -> int:
     """Return the periods to drop: ``transient``, or ``settle * eta`` where that is more."""
@@ -64,7 +101,7 @@ class SettledResponse(NamedTuple):
 
 
 def run_until_settled(
-    instance: Instance, point: Point, starts: ArrayLike, settings: AttractorSettings
+    instance: Instance, point: Point, starts: ArrayLike, settings: SettlingRun
 ) -> list[SettledResponse]:
     """Run starts at phase 0 until they repeat by :mod:`.decision`, or end; return the responses."""
     ends, converged = np.reshape(np.asarray(starts, dtype=float), (-1, 4)), settings.converged

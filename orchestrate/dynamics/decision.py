@@ -27,7 +27,7 @@ from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, respond
 from ..response.response_loop import stroboscopic_samples
-from .clusters import AttractorSettings, run_until_settled
+from .clusters import SettlingRun, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting
 from .orbit_search import (
@@ -55,7 +55,7 @@ class MotionDecider:
         plain: Instance,
         eventful: EventInstance | None,
         point: Point,
-        settings: AttractorSettings,
+        settings: SettlingRun,
     ) -> None:
         self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
         excitation = point.excitation

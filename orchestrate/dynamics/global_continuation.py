@@ -24,7 +24,7 @@ from ..model.outcomes import IRREGULAR, ORBIT
 from ..response.questions import Point
 from ..response.response_loop import stroboscopic_samples
 from ..running.job import Table
-from .clusters import AttractorSettings, irregular_clusters
+from .clusters import AttractorSettings, SettlingRun, irregular_clusters
 from .decision import MotionDecider
 from .settled_motion import Floats, SettledMotion
 
@@ -142,7 +142,7 @@ def continue_attractors(
     instances: tuple[Instance, EventInstance | None],
     points: Sequence[Point],
     starts: Sequence[Table],
-    settings: AttractorSettings,
+    settings: SettlingRun,
     seeds: Sequence[Sequence[float]] = (),
 ) -> MatchedAttractors:
     """Return the attractors along a parameter from random starts, continued and matched."""

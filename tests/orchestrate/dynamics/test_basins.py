@@ -7,7 +7,6 @@ import pytest
 
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, basin, run_to_phase_zero
-from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, REST, STATE, Instance, begin, find, finder
 from orchestrate.model import Excitation, Structure
@@ -15,6 +14,8 @@ from orchestrate.response.questions import Point
 from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import sweep
 from orchestrate.running.runner import answer
+
+from .settling import settling_run
 
 PAPER = Structure.nondimensional()
 ETA = 1.315
@@ -160,7 +161,7 @@ def test_what_is_known_is_told_though_no_start_of_the_plane_leads_there(found):
     x, y = (PlaneAxis(f"v{i - 1}", one[i] - 1e-4, one[i] + 1e-4, 2) for i in (2, 3))
     asked = {"name": "basin", "structure": PAPER, "excitation": POINT.excitation, "x": x, "y": y}
     states = {"at": tuple(one.tolist()), "known": (tuple(two.tolist()),)}
-    job = BasinJob(**asked, **states, settings=AttractorSettings())
+    job = BasinJob(**asked, **states, settings=settling_run())
     near = answer(job, {}, finder({}))
     assert near.share.values.tolist() == [1.0, 0.0]
     assert near.multiplicity.values.tolist() == [1.0, 2.0]

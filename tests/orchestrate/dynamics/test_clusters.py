@@ -8,14 +8,18 @@ from scipy.cluster.hierarchy import fcluster, linkage
 
 from orchestrate.dynamics.clusters import (
     AttractorSettings,
+    SettlingRun,
     irregular_clusters,
     run_until_settled,
     single_linkage,
     transient_periods,
 )
+from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, REST, Instance, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
+
+from .settling import settling_run
 
 PAPER = Structure.nondimensional()
 
@@ -59,10 +63,24 @@ def test_irregular_responses_are_grouped_by_their_means():
 def test_a_response_is_run_on_until_it_is_known(exported, eta, multiplicity, least, most):
     point = Point(PAPER, Excitation.nondimensional(eta, PAPER))
     with Instance(find(OSCILLATOR).path) as instance:
-        ((response, periods),) = run_until_settled(instance, point, REST, AttractorSettings())
+        ((response, periods),) = run_until_settled(instance, point, REST, settling_run())
     assert response.multiplicity == multiplicity
     assert least <= periods <= most
 
 
 def test_short_periods_take_more_of_them():
     assert [transient_periods(400, 300.0, eta) for eta in (0.5, 1.5, 8.0)] == [400, 450, 2400]
+
+
+def test_settings_that_are_given_are_used():
+    lengths = {"transient": 30, "settle": 1.0, "samples": 8}
+    changed = {"alike": 0.5, "longest": 77, "returns": 1e-4}
+    run = SettlingRun.from_call({**lengths, "settings": AttractorSettings(**changed)})
+    assert {name: getattr(run, name) for name in (*lengths, *changed)} == {**lengths, **changed}
+    assert SettlingRun.from_call({**lengths, "settings": None}) == SettlingRun(**lengths)
+
+
+@pytest.mark.parametrize("wrong", [{"alike": 0.0}, {"longest": -1}, {"near": float("nan")}])
+def test_settings_out_of_range_are_refused(wrong):
+    with pytest.raises(InputError, match=next(iter(wrong))):
+        AttractorSettings(**wrong)

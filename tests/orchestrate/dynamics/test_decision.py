@@ -6,7 +6,6 @@ from scipy.optimize import brentq
 
 from orchestrate import orbit
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.decision import (
     MotionDecider,
     count_impacts_from_pause,
@@ -20,8 +19,10 @@ from orchestrate.model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
 
+from .settling import settling_run
+
 PAPER = Structure.nondimensional()
-USUAL = AttractorSettings()
+USUAL = settling_run()
 CONTACT = Structure.nondimensional(mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291)
 HEAVY = Structure.nondimensional(mu=3.0755, kappa=0.54559, D1=0.01281, D2=0.01196, e=0.30528)
 
@@ -93,7 +94,7 @@ def test_chattering_that_ends_in_contact_is_decided_by_its_orbit(eta, e):
 
 
 def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
-    motion, _ = decided_from(CONTACT, 3.0952, settings=AttractorSettings(transient=2000))
+    motion, _ = decided_from(CONTACT, 3.0952, settings=settling_run(transient=2000))
     assert motion.multiplicity in (2, 11)
     with Instance(find(OSCILLATOR).path) as instance:
         counts = {
@@ -104,7 +105,7 @@ def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
 
 
 def test_an_fmu_without_events_decides_by_repeated_states():
-    motion, _ = decided_from(PAPER, 1.315, form="fmi2", settings=AttractorSettings(longest=1500))
+    motion, _ = decided_from(PAPER, 1.315, form="fmi2", settings=settling_run(longest=1500))
     other, _ = decided_from(PAPER, 1.315)
     assert (motion.decided, other.decided) == (REPEATED, ORBIT)
     assert motion.features == pytest.approx(other.features, rel=1e-4)
@@ -116,7 +117,7 @@ def test_what_stays_near_an_unstable_orbit_is_undecided_and_settles_when_run_on(
     near = sweep(damped, eta=1.115, transient=3000, samples=10).end_state.values[0]
     start = orbit(damped, eta=1.116, guess=near).state.values[0]
     early, _ = decided_from(
-        damped, 1.116, start, AttractorSettings(transient=100, settle=1.0, longest=300)
+        damped, 1.116, start, settling_run(transient=100, settle=1.0, longest=300)
     )
     late, _ = decided_from(damped, 1.116, near)
     assert (early.decided, early.impacts_per_period) == (UNDECIDED, 1.0)
@@ -134,7 +135,7 @@ def two_periods():
     """A motion of two periods with three impacts."""
     with Instance(find(OSCILLATOR).path) as plain, EventInstance(find(OSCILLATOR).path) as events:
         point = point_of(PAPER, 1.28)
-        motion, _ = MotionDecider(plain, events, point, AttractorSettings()).decide(REST)
+        motion, _ = MotionDecider(plain, events, point, settling_run()).decide(REST)
     return motion
 
 
