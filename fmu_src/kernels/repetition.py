@@ -16,7 +16,7 @@ CHANCE = 1.0512710963760241  # exp(0.05): ratio of deviations that chance makes
 MAX_DRIFT = 1e-4  # of a distance that stays: change over the samples, of one that dies it is more
 MAX_DYING_RATIO = 0.8  # ratio of deviations late and early, below which they die
 MIN_VISITS = 5  # a quarter of the samples over it: periods after which states are seen often enough
-MAX_CONTRACTION = 0.5  # ratio of deviations that shrink, beyond chance
+MAX_CONTRACTION = 0.6  # over half of all samples: ratio of deviations that shrink, beyond chance
 NEGLIGIBLE = 1e-3  # of the tolerance: counts as no deviation where it is seen a few times only
 INFINITE = float("inf")
 
@@ -36,7 +36,7 @@ def decide(m, time):
     - An n above a quarter of these samples is seen too seldom for that: it counts if no smaller one
       agrees and the deviation is below ``NEGLIGIBLE`` of the tolerance.
     - *Undecided*, with the best guess: some n agrees but is not confirmed, or a deviation shrinks
-      by ``MAX_CONTRACTION`` (``MAX_DYING_RATIO`` where some n agrees).
+      (to ``MAX_DYING_RATIO`` if some n agrees, of all samples to ``MAX_CONTRACTION`` if none does).
     - *Undecided* too if only n up to three quarters of all samples agrees.
     - *Irregular*: all else, also where the states of each n that agrees drift steadily.
     """
@@ -69,17 +69,17 @@ def decide(m, time):
             nearly = n
         n = next_repetition(m, n, limit, tolerance)
     ratio = MAX_CONTRACTION
-    last = many
+    last = int(many / MIN_VISITS)
     if nearly > 0:
         ratio = MAX_DYING_RATIO
-        last = nearly
-    if last > int(many / MIN_VISITS):
-        last = int(many / MIN_VISITS)
+        if last > nearly:
+            last = nearly
+    else:
+        scale(m, 0)
     for shorter in range(1, last + 1):
         if contraction_ratio(m, shorter) < ratio:
             return conclude(m, shorter, UNDECIDED)
     if nearly == 0 and drifting == 0:  # of all samples: few states come back after so many periods
-        scale(m, 0)
         nearly = next_repetition(m, limit, int(m[COUNT]) - limit, tolerance)
     if nearly > 0:
         return conclude(m, nearly, UNDECIDED)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..fmu import Instance, four_numbers, gap_between
 from ..model import Excitation, Structure
-from ..model.outcomes import REPEATED, UNDECIDED
+from ..model.outcomes import IRREGULAR, REPEATED, UNDECIDED
 from .multiplicity import Decision, Repetition, decide_multiplicity, find_repetition
 from .questions import Point
 from .response_loop import COUNTS, LoopSettings, Responses, response_loop, round_state
@@ -55,9 +55,12 @@ class Response:
 
         A repeated response is undecided if the samples do not have the ``impacts`` of its next n
         periods, up to one at either end, or if there are none though n > 1 or no motion without
-        impacts exists. Impacts per period are exact where it repeats, else the samples' mean.
+        impacts exists. An irregular one is undecided if it has no impacts: then it is linear, and
+        converges. Impacts per period are exact where it repeats, else the samples' mean.
         """
         (n, decided), mean = decision, self.impacts_per_period
+        if decided == IRREGULAR and not mean:
+            return Decision(1, UNDECIDED), mean
         if decided != REPEATED:
             return decision, mean
         if self.lacks_impacts(impacts, n) or not self.repeats(impacts, n):

@@ -347,4 +347,15 @@ def test_impacts_of_all_samples_are_those_of_the_response(found, impacts, n, sam
     assert response.repeats(impacts, n) == same
     decided = response.conclude(Decision(n, REPEATED), impacts)[0].decided
     assert decided == (REPEATED if same else UNDECIDED)
-    assert response.conclude(Decision(n, IRREGULAR), impacts)[0].decided == IRREGULAR
+    # without impacts a motion is linear
+    irregular = response.conclude(Decision(0, IRREGULAR), impacts)[0]
+    assert irregular == (Decision(0, IRREGULAR) if found else Decision(1, UNDECIDED))
+
+
+@pytest.mark.parametrize(
+    ("halving", "expected"), [(55.0, UNDECIDED), (120.0, UNDECIDED), (500.0, IRREGULAR)]
+)
+def test_a_spiral_that_shrinks_is_not_irregular(halving, expected):
+    n = np.arange(200)
+    size, turns = 0.5 ** (n / halving), 2.0 * np.pi * GOLDEN * n
+    assert decide(four(size * np.cos(turns), size * np.sin(turns))).decided == expected

@@ -57,7 +57,7 @@ def test_against_dense_communication_points(structure, eta):
     step = 2.0 * np.pi * max(1.0, structure.omega_2 / eta, 1.0 / eta) / DENSE
     ratios = results.peaks[0] / expected
     assert (ratios >= 1.0 - 1e-12).all()
-    assert (ratios <= 1.0 + step**2 / 8.0 + 1e-12).all()
+    assert (ratios <= 1.0 + step**2 / 4.0 + 1e-12).all()
 
 
 @pytest.mark.parametrize(("multiplicity", "periods"), [(0, 4), (1, 1), (3, 3), (20, 8)])
