@@ -39,7 +39,8 @@ OF_ATTRACTORS = {
 MULTIPLIER = "largest absolute value of the orbit's Floquet multipliers"
 DECIDED_BY = (
     "how it was decided: by a stable orbit of Newton's method; by states that repeat; irregular; "
-    "undecided: states repeat nearly, near an unstable orbit or before impacts that have to come"
+    "undecided: states repeat nearly, near an unstable orbit or before impacts that have to come, "
+    "or other starts still leave such an irregular motion"
 )
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
 
@@ -163,21 +164,21 @@ class AttractorsJob(SeriesQuestion):
         }
 
 
-SettledRow = tuple[Sequence[float], NDArray[np.float64], int]  # features, a state, how decided
-ABSENT_ROW: SettledRow = ([np.nan] * len(FEATURES), np.full(4, np.nan), ABSENT)  # masses overlap
+SettledRow = tuple[Sequence[float], NDArray[np.float64], int, int]  # features, state, how, periods
+ABSENT_ROW: SettledRow = ([np.nan] * len(FEATURES), np.full(4, np.nan), ABSENT, 0)  # they overlap
 
 
 def settled_rows(decider: MotionDecider, starts: ArrayLike) -> list[SettledRow]:
-    """Run starts until they settle; return features, a state at phase 0, how decided of each."""
-    decided = decider.decide_all(starts)
-    return [(motion.features, state, motion.decided) for motion, state in decided]
+    """Run starts until they settle; return of each features, a state at phase 0, how and when."""
+    settled = decider.decide_all(starts)
+    return [(motion.features, state, motion.decided, when) for motion, state, when in settled]
 
 
 def settled_table(rows: Sequence[SettledRow]) -> Table:
     """Return the rows of settled starts as a dict of arrays."""
-    features, ends, decided = zip(*rows, strict=True)
+    features, ends, decided, periods = zip(*rows, strict=True)
     columns = {"features": np.array(features, dtype=float), "end": np.array(ends, dtype=float)}
-    return {**columns, "decided": np.array(decided, dtype=np.int8)}
+    return {**columns, "decided": np.array(decided, dtype=np.int8), "periods": np.array(periods)}
 
 
 def attractor_columns(matched: MatchedAttractors) -> Table:
@@ -319,7 +320,8 @@ def attractors(
         the largest absolute Floquet multiplier; ``decided_by``, as CF flags: ``orbit`` (a stable
         orbit of Newton's method), ``repeated`` (states repeat, Newton's method finds no orbit),
         ``irregular`` or ``undecided`` (states nearly repeat, near an unstable orbit, or before
-        impacts that have to come at this level), ``absent``; ``state`` at phase 0 (x1, x2 in m, v1,
+        impacts that have to come at this level; or irregular motion that other starts leave only
+        after half of ``longest``), ``absent``; ``state`` at phase 0 (x1, x2 in m, v1,
         v2 in m/s), of a periodic one that with the smallest x1; ``first_found``, ``last_found``,
         between which values it is there. Over ``start``: ``attractor_of`` and the ``features`` of
         what a start has settled to.

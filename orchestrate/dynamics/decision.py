@@ -8,8 +8,9 @@
   nearer than `near`, comes at least half as fast as the multipliers say, or lies within `same`.
 - Without such an orbit, states that repeat within `converged` are *repeated*.
 - They are *undecided* near an unstable orbit, or without the impacts that such a motion must have.
-- All else is *irregular*: a torus, or chaos. Those of starts are joined within `alike_irregular`;
-  one that comes later joins the nearest largest gap.
+- All else is *irregular*, a torus or chaos; undecided if another start repeats only after half of
+  `longest`: then it may be a long transient. Irregular motions of starts are joined within
+  `alike_irregular`; one that comes later joins the nearest largest gap.
 """
 
 from __future__ import annotations
@@ -68,12 +69,12 @@ class MotionDecider:
 
     def decide(self, state: ArrayLike) -> tuple[SettledMotion, Floats]:
         """Run from a state at phase 0 until its motion is known; return it and a state on it."""
-        return self.decide_all(np.asarray(state)[np.newaxis])[0]
+        return self.decide_all(np.asarray(state)[np.newaxis])[0][:2]
 
-    def decide_all(self, states: ArrayLike) -> list[tuple[SettledMotion, Floats]]:
-        """Run from states at phase 0, as :meth:`decide` from one."""
+    def decide_all(self, states: ArrayLike) -> list[tuple[SettledMotion, Floats, int]]:
+        """Run from states at phase 0, as :meth:`decide` from one; and until when they repeat."""
         settled = run_until_settled(self.plain, self.point, states, self.settings)
-        return [self.motion_of(*each) for each in settled]
+        return [(*self.motion_of(*each), each.periods) for each in settled]
 
     def motion_of(self, response: Response, done: int) -> tuple[SettledMotion, Floats]:
         """Run a settled response on until its motion is known; return it and a state on it."""

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..fmu import EventInstance, Instance, begin
 from ..fmu.description import describe
-from ..model.outcomes import IRREGULAR, ORBIT
+from ..model.outcomes import IRREGULAR, ORBIT, UNDECIDED
 from ..response.questions import Point
 from ..response.response_loop import stroboscopic_samples
 from ..running.job import Table
@@ -62,10 +62,13 @@ class AttractorsAtValue:
                 seen[key] = self.find_or_add(motion)
             self.labels[i] = seen[key]
         irregular = np.flatnonzero(decided == IRREGULAR)
+        late = (decided != IRREGULAR) & (starts["periods"] > settings.longest // 2)
+        outcome = UNDECIDED if late.any() else IRREGULAR
         groups = irregular_clusters(features[irregular], settings)
         for group in range(int(groups.max(initial=-1)) + 1):
             members = irregular[groups == group]
-            self.motions.append(self.median_irregular_motion(features[members], ends[members[0]]))
+            median = self.median_irregular_motion(features[members], ends[members[0]], outcome)
+            self.motions.append(median)
             self.labels[members] = len(self.motions) - 1
 
     def motion_from_features(self, row: Floats, state: Floats, decided: int) -> SettledMotion:
@@ -82,18 +85,18 @@ class AttractorsAtValue:
             decider.known.append(known)
         return known
 
-    def median_irregular_motion(self, rows: Floats, state: Floats) -> SettledMotion:
+    def median_irregular_motion(self, rows: Floats, state: Floats, outcome: int) -> SettledMotion:
         """Return one irregular motion with the median features of a cluster of responses."""
         _, impacts, gap = np.median(rows[:, :3], axis=0)
         length = self.decider.point.length
         return SettledMotion(
-            self.decider.point, IRREGULAR, state[np.newaxis], 0, float(impacts), gap * length
+            self.decider.point, outcome, state[np.newaxis], 0, float(impacts), gap * length
         )
 
     def find_or_add(self, motion: SettledMotion) -> int:
         """Return a motion's index here, of irregular ones by the nearest gap; append a new one."""
         if motion.decided == IRREGULAR:
-            alike = [k for k, known in enumerate(self.motions) if known.decided == IRREGULAR]
+            alike = [k for k, known in enumerate(self.motions) if not known.multiplicity]
             if alike:
                 return min(alike, key=lambda k: abs(np.log(self.motions[k].gap / motion.gap)))
         for k, known in enumerate(self.motions):

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.attractors import AttractorsJob, attractors, random_starts
-from orchestrate.dynamics.clusters import transient_periods
+from orchestrate.dynamics.clusters import AttractorSettings, transient_periods
 from orchestrate.errors import InputError
 from orchestrate.model import Structure
+from orchestrate.model.outcomes import IRREGULAR, ORBIT, UNDECIDED
 from orchestrate.response.sweep import sweep
 
 PAPER = Structure.nondimensional()
@@ -73,3 +74,14 @@ def test_one_value_alone_has_ten_times_the_starts():
 def test_a_bonded_structure_has_nothing_to_tell():
     with pytest.raises(InputError, match="bonded = True: expected a delaminated structure"):
         attractors(PAPER.as_bonded(), eta=1.0)
+
+
+@pytest.mark.parametrize(
+    ("eta", "e", "expected"), [(2.9, 0.7, [ORBIT, UNDECIDED]), (0.8, 0.9, [IRREGULAR])]
+)
+def test_irregular_motion_that_starts_still_leave_is_undecided(eta, e, expected):
+    """At 2.9 it lasts some ten thousand periods."""
+    asked = {"eta": eta, "starts": 24, "transient": 200, "settle": 1.0}
+    settings = AttractorSettings(longest=4000)
+    there = attractors(Structure.nondimensional(e=e, D=0.005), **asked, settings=settings)
+    assert there.decided_by.values.ravel().tolist() == expected
