@@ -45,7 +45,7 @@ CALLED = {  # what options call the channels
     **dict.fromkeys(("base", "box", "box_acceleration"), "box_acceleration"),
     **dict.fromkeys(("face", "face1", "acceleration1"), "acceleration1"),
     **dict.fromkeys(("face2", "acceleration2"), "acceleration2"),
-    "force": "force",
+    **{"force": "force", "time": "time"},
 }
 ByChannel = str | float | Mapping[str, Any] | None  # as an argument: of all, or by channel
 
@@ -56,8 +56,13 @@ def plain_unit(text: str) -> str:
     return plain.translate(str.maketrans("", "", "^*_. \u00b7[]()"))
 
 
-def by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[str, Any]:
-    """Return an argument by channel: of all, a mapping, or a text ``base=V,face=mm/s``."""
+def by_channel(
+    name: str, argument: ByChannel, channels: Sequence[str], also: Sequence[str] = ()
+) -> dict[str, Any]:
+    """Return an argument by channel: of all, a mapping, or a text ``base=V,face=mm/s``.
+
+    Those in ``also`` have it only where they are named.
+    """
     if argument is None:
         return {}
     if isinstance(argument, str) and "=" in argument:
@@ -67,8 +72,8 @@ def by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[
     values = {}
     for key, value in argument.items():
         plain = CALLED.get(str(key).strip().lower().replace(" ", ""), "")
-        if plain not in channels:
-            text = f"expected {', '.join(word for word, one in CALLED.items() if one in channels)}"
+        if plain not in (known := (*channels, *also)):
+            text = f"expected {', '.join(word for word, one in CALLED.items() if one in known)}"
             raise InputError(f"{name}: no channel {key!r}; {text}")
         values[plain] = value.strip() if isinstance(value, str) else value
     return values

@@ -59,7 +59,8 @@ def read_record(
     unit : str or mapping of str to str, optional
         Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face1=mm/s"``; ``base``,
         ``face1`` and ``face2`` stand for the names above): of an acceleration, velocity,
-        displacement or voltage. By default what stands in the file, which must be there.
+        displacement or voltage. By default what stands in the file, which must be there. Of
+        ``time`` (``"time=us"``) too; without any, s.
     sensitivity : str or mapping of str to str, optional
         Of voltages, such as ``"100 mV/g"`` or ``"base=100 mV/g,face1=50 mV/(mm/s)"``.
     sample_rate : float, optional

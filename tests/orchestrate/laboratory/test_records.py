@@ -783,3 +783,93 @@ def test_nested_structures_of_matlab(tmp_path):
         InputError, match=r"a frequency response or a spectrum \(run.H1\); expected"
     ):
         read_record(path)
+
+
+def timed(tmp_path, heading, step, count=9):
+    rows = "".join(f"{step * i:.12g},{i % 3},{i % 4}\n" for i in range(count))
+    path = tmp_path / "times.csv"
+    path.write_text(f"{heading},base [g],face [g]\n{rows}")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("step", "count", "unit", "rate"), [(2500, 9, "us", 400.0), (0.5, 8000, "ms", 2000.0)]
+)
+def test_times_without_a_unit_that_are_hardly_seconds_are_doubted(
+    tmp_path, recwarn, step, count, unit, rate
+):
+    path = timed(tmp_path, "t", step, count)
+    with pytest.warns(UserWarning, match=rf'column "t": no unit, taken as s: {step} s a sample'):
+        assert read_record(path).attrs["sample_rate"] == 1.0 / step
+    recwarn.clear()
+    data = read_record(path, unit=f"time={unit}")
+    assert data.attrs["sample_rate"] == rate and data.attrs["time_unit"] == unit
+    assert data.attrs["unit"] == "g" and "unit_in_file" not in data.attrs
+    assert read_record(path, unit={"time": unit, "base": "m/s2"}).attrs["unit"] == "m/s2, g"
+    assert read_record(path, unit={"time": unit}).equals(data)
+    assert not recwarn
+
+
+@pytest.mark.parametrize(
+    ("heading", "step", "rate"), [("t [s]", 4.0, 0.25), ("t [h]", 1, 1 / 3600)]
+)
+def test_slow_and_long_records_with_a_unit_of_time_are_not_doubted(
+    tmp_path, recwarn, heading, step, rate
+):
+    data = read_record(timed(tmp_path, heading, step, 2000))
+    assert data.attrs["sample_rate"] == pytest.approx(rate) and not recwarn
+
+
+def test_a_unit_of_time_is_kept_in_advice_and_a_wrong_one_is_one_line(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("t,base,tip [g]\n" + "".join(f"{i},{i % 3},{i % 4}\n" for i in range(9)))
+    with pytest.raises(InputError, match=r'give it by unit="time=us,base=\.\.\."$'):
+        read_record(path, unit="time=us")
+    with pytest.raises(InputError, match="unit = 'g'; expected one such as s, ms: .*time=...\"$"):
+        read_record(path, unit="time=g")
+    with pytest.raises(InputError, match="scale: no channel 'time'; expected base"):
+        read_record(path, unit="g", scale="time=2")
+
+
+@pytest.mark.parametrize("separator", [",", " ", ";"])
+def test_a_last_line_of_words_is_left_out_with_a_warning(tmp_path, separator):
+    path = tmp_path / "a.csv"
+    rows = lines().replace(",", separator)
+    path.write_text(rows)
+    whole = read_record(path, unit="m/s2", columns=[0, 1, 2])
+    path.write_text(f"{rows}\nRate 1344, overflows 0\nend\n")
+    with pytest.warns(UserWarning, match="row 43: 'Rate 1344, overflows 0' after the numbers is"):
+        data = read_record(path, unit="m/s2", columns=[0, 1, 2])
+    assert data.equals(whole) and "Rate 1344" in data.attrs["left_out"]
+    path.write_text(rows + separator.join(["0.04", "x", "1"]))
+    with pytest.raises(InputError, match="row 42: .*expected"):
+        read_record(path, unit="m/s2", columns=[0, 1, 2])
+
+
+def test_one_column_alone_asks_for_its_sampling_rate(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("0.1\n0.3\n-0.2\n0.1\n0.2\n")
+    with pytest.raises(InputError, match="no channel; .* or sample_rate= where there are none$"):
+        read_record(path)
+    assert read_record(path, sample_rate=100.0, unit="g").box_acceleration[1] == G * 0.3
+
+
+def test_a_mat_file_with_spectra_beside_named_channels_is_read(tmp_path):
+    time, acceleration, velocity, _ = swept(300)
+    path = tmp_path / "a.mat"
+    spectrum = {"X": np.fft.rfft(acceleration, 1024), "f": np.arange(513.0)}
+    scipy.io.savemat(path, {"time": time, "base": acceleration, "tip": velocity, **spectrum})
+    data = read_record(path, unit="m/s2")
+    assert (data.box_acceleration.values == acceleration).all()
+    assert data.attrs["spectra"] == "a frequency response or a spectrum (X)"
+    scipy.io.savemat(path, {"clock": time, "one": acceleration, "two": velocity, "X": 1j * time})
+    with pytest.raises(InputError, match=r"spectrum \(X\); expected acc.*: columns= names them"):
+        read_record(path, unit="m/s2")
+    with pytest.raises(InputError, match=r"spectrum \(X\); expected acc"):
+        read_record(path, unit="m/s2", columns={"box_acceleration": "one"})
+    for options in (
+        {"columns": {"time": "clock", "box_acceleration": "one"}},
+        {"columns": {"box_acceleration": "one"}, "sample_rate": 1000.0},
+    ):
+        read = read_record(path, unit="m/s2", **options)
+        assert (read.box_acceleration.values == acceleration).all()
