@@ -14,6 +14,7 @@ from ..errors import InputError
 from .pieces import Floats
 
 INCH = 0.0254
+SMALLEST, LARGEST = 1e-12, 1e12  # sizes of a channel's scale
 ACCELERATIONS = {  # in m/s2
     **dict.fromkeys(("m/s2", "m/s/s", "ms-2", "m/sec2", "ms2"), 1.0),
     **dict.fromkeys(("g", "gn", "g0", "gs", "gpk", "gpeak"), GRAVITY),
@@ -79,16 +80,19 @@ def by_channel(
     return values
 
 
-def number_by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[str, float]:
-    """Return numbers by channel; raise for one that is not finite."""
+def number_by_channel(
+    name: str, argument: ByChannel, channels: Sequence[str], smallest: float = 0.0
+) -> dict[str, float]:
+    """Return numbers by channel; raise unless their sizes are from ``smallest`` to ``LARGEST``."""
     numbers = {}
     for channel, value in by_channel(name, argument, channels).items():
         try:
             numbers[channel] = float(value)
         except (TypeError, ValueError):
             numbers[channel] = math.nan
-        if not math.isfinite(numbers[channel]):
-            raise InputError(f"{name} = {argument!r}: expected numbers, such as face1=-1")
+        if not smallest <= abs(numbers[channel]) <= LARGEST:
+            sizes = f"of sizes from {smallest:g} to {LARGEST:g}, such as face1=-1"
+            raise InputError(f"{name} = {argument!r}: expected numbers {sizes}")
     return numbers
 
 

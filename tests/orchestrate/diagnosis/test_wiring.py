@@ -163,7 +163,7 @@ def test_what_a_note_says_mends_the_record(tmp_path):
     assert read.attrs["time_base"] == "rounded to 0.001 s, taken as 1024 Hz"
     assert read.attrs["converted"] == "face 1: velocity, differentiated by its spectrum"
     inner = slice(2000, -2000)
-    error = read.acceleration1.values[inner] - channels[FACE][inner]
+    error = read.acceleration1.values[inner] - channels[FACE][: read.sizes["time"]][inner]
     assert np.abs(error).max() < 0.25 * np.abs(channels[FACE]).max()
 
 

@@ -646,7 +646,10 @@ def test_a_sensitivity_of_all_columns_asks_for_the_units_that_are_missing(tmp_pa
         ({"sensitivity": "tip=1 V/g"}, "sensitivity: no channel 'tip'; expected base, box"),
         ({"unit": "base=g", "sensitivity": "base=1 V/g"}, "expected volts: a sensitivity does not"),
         ({"unit": "base=N"}, "unit = 'N'; expected one such as m/s2, g, mm/s, um, V"),
-        ({"unit": "g", "scale": "base=x"}, "scale = 'base=x': expected numbers, such as face1=-1"),
+        (
+            {"unit": "g", "scale": "base=x"},
+            "scale = 'base=x': expected numbers of sizes from 1e-12 to",
+        ),
     ],
 )
 def test_mistaken_units_and_sensitivities_are_one_line(tmp_path, options, words):
@@ -852,6 +855,37 @@ def test_one_column_alone_asks_for_its_sampling_rate(tmp_path):
     with pytest.raises(InputError, match="no channel; .* or sample_rate= where there are none$"):
         read_record(path)
     assert read_record(path, sample_rate=100.0, unit="g").box_acceleration[1] == G * 0.3
+
+
+@pytest.mark.parametrize("late", [0.0155, -0.0155, 3.9])
+def test_a_delay_cuts_what_a_channel_does_not_have(tmp_path, late):
+    time, acceleration, *_ = swept(4000)
+    path = table_file(tmp_path / "a.csv", "t [s],base [m/s2],tip [m/s2]", time, acceleration, time)
+    whole, data = read_record(path), read_record(path, delay={"face1": late})
+    size = 4000 - (16 if abs(late) < 1.0 else 3900)
+    assert data.sizes["time"] == size and data.attrs["cut"].startswith(f"{4000 - size} samples of")
+    assert data.box_acceleration.equals(whole.box_acceleration.sel(time=data.time))
+    assert np.allclose(data.acceleration1, data.time + late, atol=1e-9)
+    assert read_record(path, delay="base=0.0155,face1=0.001").sizes["time"] == 3984
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"delay": "face1=3.998"}, "delay: face 1 3.998 s; expected delays that leave 4 of 4000 s"),
+        ({"delay": {"base": 2.5, "tip": 0.0}}, "no channel 'tip'"),
+        ({"delay": {"base": 2.5, "face1": -2.5}}, "delay: base 2.5 s, face 1 -2.5 s; expected del"),
+        ({"delay": 1e300}, "delay = 1e+300: expected numbers of sizes from 0 to 1e+12"),
+        ({"scale": 0}, "scale = 0: expected numbers of sizes from 1e-12 to 1e+12, such as face1="),
+        ({"scale": "face1=nan"}, "scale = 'face1=nan': expected numbers of sizes from 1e-12"),
+    ],
+)
+def test_delays_beyond_the_record_and_scales_of_nothing_are_one_line(tmp_path, options, words):
+    time, acceleration, *_ = swept(4000)
+    path = table_file(tmp_path / "a.csv", "t [s],base [m/s2],tip [m/s2]", time, acceleration, time)
+    with pytest.raises(InputError) as error:
+        read_record(path, **options)
+    assert words in str(error.value) and "\n" not in str(error.value)
 
 
 def test_a_mat_file_with_spectra_beside_named_channels_is_read(tmp_path):
