@@ -317,7 +317,7 @@ class Results:
                     error[row, column] = deviation if self.is_described[row] else np.nan
         over = ("hypothesis", "parameter")
         factor, doubt = np.where(stated[:, None, None], self.participation, np.nan).swapaxes(0, 1)
-        doubt = np.where(self.is_described[:, None], doubt, np.nan)
+        doubt = np.where(self.is_described[:, None] | (doubt == 0.0), doubt, np.nan)  # 0: given
         place, words = ("hypothesis", "channel"), "participation factor of the sensor"
         return {
             "participation": variable(place, factor, "1", words),

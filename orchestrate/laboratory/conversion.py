@@ -67,7 +67,12 @@ def by_channel(
     if argument is None:
         return {}
     if isinstance(argument, str) and "=" in argument:
-        argument = dict(part.split("=", 1) for part in re.split(r",(?=[^,=]+=)", argument))
+        parts = [part.partition("=") for part in re.split(r",(?=[^,=]+=)", argument)]
+        if bare := [word for word, sign, _ in parts if not sign]:
+            raise InputError(
+                f"{name} = {argument!r}: {bare[0]!r} of which channel? expected base=..."
+            )
+        argument = {word: value for word, _, value in parts}
     if not isinstance(argument, Mapping):
         return dict.fromkeys(channels, argument)
     values = {}

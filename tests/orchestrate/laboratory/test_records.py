@@ -645,6 +645,7 @@ def test_a_sensitivity_of_all_columns_asks_for_the_units_that_are_missing(tmp_pa
         ({"sensitivity": "100 g/V"}, "sensitivity '100 g/V'; expected one such as 100 mV/g"),
         ({"sensitivity": "tip=1 V/g"}, "sensitivity: no channel 'tip'; expected base, box"),
         ({"unit": "base=g", "sensitivity": "base=1 V/g"}, "expected volts: a sensitivity does not"),
+        ({"unit": "g,time=us"}, "'g' of which channel? expected base="),
         ({"unit": "base=N"}, "unit = 'N'; expected one such as m/s2, g, mm/s, um, V"),
         (
             {"unit": "g", "scale": "base=x"},
