@@ -185,13 +185,11 @@ def converted_channels(
     time = None if clock is None else times_in_s(table, table.columns[clock], units.get("time", ""))
     if not places:
         text = f"no channel; expected one of {', '.join(CHANNELS)}"
-        alone = (
-            " beside the times, or sample_rate= where there are none" if time is not None else ""
-        )
-        raise InputError(f"{table.path}: {text}{alone}")
+        text += "" if time is None else " beside the times, or sample_rate= where there are none"
+        raise InputError(f"{table.path}: {text}")
     stated = by_channel("sensitivity", sensitivity, list(places))
     used = {name: table.columns[place] for name, place in places.items()}
-    of_all = isinstance(sensitivity, str) and "=" not in sensitivity and units
+    of_all = isinstance(sensitivity, str) and "=" not in sensitivity and {*units} - {"time"}
     check_units(table, used, units, {} if of_all else stated)  # not all are in volts where some are
     channels = {}
     for name, column in used.items():

@@ -636,6 +636,7 @@ def test_a_sensitivity_of_all_columns_asks_for_the_units_that_are_missing(tmp_pa
     with pytest.raises(InputError, match='column "tip" .face 1.: no unit.* unit="base=V,face1=...'):
         read_record(path, unit="base=V", sensitivity="100 mV/g")
     read_record(path, unit="base=V,face1=V", sensitivity="100 mV/g")
+    read_record(path, unit="time=ms", sensitivity="100 mV/g")
 
 
 @pytest.mark.parametrize(
