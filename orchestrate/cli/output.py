@@ -33,7 +33,7 @@ OWN_NAME = re.compile(rf"[a-z-]+_(.+)_[0-9a-f]{{{DIGITS}}}")  # of a result's fi
 # -- options --------------------------------------------------------------------------------------
 
 READING = """
---unit UNIT  g, mm/s ..., or by channel: base=V,face1=mm/s (default: what the file says)
+--unit UNIT  g, mm/s ..., or by channel: base=V,face1=mm/s,time=us (default: what the file says)
 --sensitivity VALUE  of voltages: "100 mV/g", or by channel "base=100 mV/g,face1=50 mV/(mm/s)"
 --sample-rate HZ  where the file has no times
 --scale FACTOR  by channel, such as face1=-1; of WAV files m/s2 at the full scale

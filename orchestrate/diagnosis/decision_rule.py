@@ -214,11 +214,6 @@ class Findings:
         """Whether a delaminated verdict's model is so much better that its numbers are stated."""
         return self.ratio >= self.settings.ratio
 
-    @property
-    def odds(self) -> float:
-        """Odds that the ratio of misfits decides, from its share of block-bootstrap samples."""
-        return (self.share * RESAMPLED + 0.5) / ((1.0 - self.share) * RESAMPLED + 0.5)
-
     def reason(self) -> str:
         """Return sentences that say by which numbers the verdict was decided, or stopped."""
         sentences = [

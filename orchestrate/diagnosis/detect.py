@@ -30,7 +30,7 @@ from .settings import Changes, checked_settings
 from .wiring import WiringSettings, wiring_notes
 
 STATED = {  # numbers of the rule: their names there, units and long names
-    "odds": ("odds", "1", "odds that the ratio decides, in records put together of blocks"),
+    "share": ("share", "1", "share of records put together of blocks in which the ratio decides"),
     "ratio": ("ratio", "1", "misfit of sound over that of delaminated"),
     "faces_apart": ("apart", "1", "difference of two sensors over its threshold"),
     "bursts": ("bursts", "1", "power of bursts once a period over its threshold"),
@@ -85,8 +85,8 @@ def detect(
     -------
     xarray.Dataset
         ``verdict``: ``"delaminated"``, ``"no opening seen"``, ``"not described"`` or
-        ``"undecided"``; ``odds`` that the ratio of misfits decides for a delamination, by records
-        put together of blocks of this one; ``ratio`` (misfit of the best sound
+        ``"undecided"``; ``share`` of the records put together of blocks of this one in which the
+        ratio of misfits decides for a delamination; ``ratio`` (misfit of the best sound
         hypothesis over that of the delaminated one), ``faces_apart`` (difference of two sensors
         over the threshold from which it counts; 0 with one), ``bursts`` (power at high frequencies
         once a period, over the threshold from which impacts count as heard; NaN below some 11

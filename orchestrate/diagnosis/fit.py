@@ -80,12 +80,14 @@ def fit(
     -------
     xarray.Dataset
         Over ``parameter``: ``value`` and ``standard_error``, with ``unit``; NaN where the record
-        does not hold it: both halves' frequencies where no opening is seen. Over ``parameter`` and
+        does not hold it: both halves' frequencies where no opening is seen; errors and correlations
+        also where the misfit is above ``delaminated`` of the settings. Over ``parameter`` and
         ``other_parameter``: ``correlation``. ``misfit``, 1 where the model misses 3 % of order 1 or
         the noise, and ``evaluations``; ``minima`` over ``minimum``: misfits of those that differ;
         ``misfit_at`` over ``window``; ``participation`` and ``participation_error`` over
         ``channel``. Over ``channel``, ``order`` and ``window``: the amplitudes
-        ``measured``, ``fitted`` and their ``floor`` in m/s2.
+        ``measured``, ``fitted`` and their ``floor`` in m/s2. The attribute ``reason`` says why
+        numbers or errors are stated or not.
 
     Raises
     ------
@@ -230,8 +232,9 @@ class FitJob(SearchJob):
         made = named.drop_vars("asked").assign(
             correlation=results.correlation(position, list(named.parameter.values))
         )
+        reason = "; ".join(filter(None, (results.reason(), results.why_no_errors(position))))
         return made.assign_attrs(
-            analysis="fit", title=f"Fit: {name}", hypothesis=name, reason=results.reason()
+            analysis="fit", title=f"Fit: {name}", hypothesis=name, reason=reason
         )
 
 
@@ -277,6 +280,19 @@ class Results:
             return f"{size}, {even.excess:.2g} times the size from which it counts as seen"
         return f"no opening is seen ({size}): f1 and f2 cannot be identified from this record"
 
+    @property
+    def is_described(self) -> NDArray[np.bool_]:
+        """Whether each hypothesis describes the record, so that its errors are known."""
+        return self.misfit <= self.job.data.settings.delaminated
+
+    def why_no_errors(self, position: int) -> str:
+        """Return why a hypothesis has no standard errors, empty where it has them."""
+        if self.is_described[position]:
+            return ""
+        misfit, limit = self.misfit[position], self.job.data.settings.delaminated
+        text = f"the misfit {misfit:.3g} is above {limit:g}, the record is not described"
+        return f"no standard errors: {text}"
+
     def reported_values(self, position: int) -> tuple[dict[str, float], Floats]:
         """Return the reported parameters of a hypothesis by name, and their covariance."""
         hypothesis, evidence = self.job.hypotheses[position], self.job.evidence
@@ -297,9 +313,11 @@ class Results:
                 column = list(REPORTED).index(name)
                 asked[row, column] = 1.0
                 if stated[row] and (self.is_opening_seen() or name not in FREE):
-                    value[row, column], error[row, column] = number, deviation
+                    value[row, column] = number
+                    error[row, column] = deviation if self.is_described[row] else np.nan
         over = ("hypothesis", "parameter")
         factor, doubt = np.where(stated[:, None, None], self.participation, np.nan).swapaxes(0, 1)
+        doubt = np.where(self.is_described[:, None] | (doubt == 0.0), doubt, np.nan)  # 0: given
         place, words = ("hypothesis", "channel"), "participation factor of the sensor"
         return {
             "participation": variable(place, factor, "1", words),
@@ -315,6 +333,8 @@ class Results:
         size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
         order = [list(reported).index(name) for name in names]
         known = (covariance / np.outer(size, size))[np.ix_(order, order)]
+        if not self.is_described[position]:
+            known = np.full_like(known, np.nan)
         return variable(("parameter", "other_parameter"), known, "1", "correlation of errors")
 
     def comparison(self) -> tuple[dict[str, Variable], dict[str, Variable]]:

@@ -248,7 +248,8 @@ def moving_average(values: Floats, width: int = 5) -> Floats:
 def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
     """Find the windows in which the base moves as a sine, and all channels' amplitudes in them."""
     phase = measured_phase(channels)
-    every, high = overlapping_windows(channels, phase), NYQUIST * channels.sample_rate
+    every = overlapping_windows(channels, phase)
+    high = NYQUIST * channels.sample_rate / OFF_ORDERS[0]  # above, no floor is resolved
     usable = [w for w in every if w.frequency * channels.duration > 1.0 and w.frequency < high]
     if len(usable) < MIN_WINDOWS:
         text = f"{EXPECTED}, of {MIN_WINDOWS * MIN_PERIODS / 2:g} periods or more"

@@ -42,6 +42,7 @@ class WiringSettings:
     away: float = 5.0  # Hz between that line and orders 1/2, 1, 2 and 3
     coherence: float = 0.8  # of that line from one window to the next
     jump: float = 0.35  # rad of the base's phase, without whole turns
+    moves: float = 0.5  # of the base's median amplitude: where it is less, no jump is looked for
     usual: float = 10.0  # times the usual change, by noise, that a jump is
     samples: float = 10.0  # in a period of the resonance
     clipped: float = SETTINGS.clipped  # share of a channel's samples at its extremes,
@@ -63,15 +64,15 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
     """Return what is doubtful about the channels of a swept or stepped sine.
 
     - Up to `low` of its resonance a sensor reads ``s exp(-i w t) (1 + G r^2/(1 - r^2))`` times the
-      base's order 1, with the ratio r of the frequencies, in `fewest` windows within `misfit`:
-      s < 0 is polarity, |s| within `gravity` of 9.8 or its inverse a unit, |s| beyond `scale` a
-      scale, |t| above `delay`, `clear` of the misfit, a delay.
+      base's order 1, with the ratio r of the frequencies, in `fewest` windows within `misfit`, by
+      the base's level: s < 0 is polarity, |s| within `gravity` of 9.8 or its inverse a unit, |s|
+      beyond `scale` a scale, |t| above `delay`, `clear` of the misfit, a delay.
     - Base and face are swapped where the base's peak, over its larger end, is `swapped` times the
       face's; one is a velocity (n = 1) or displacement (2) where the formula describes that one
       times ``(i w)^n`` within `misfit`, `derived` times better; a sensor is dead that is above the
       `floor` in half of the windows at most, or below `dead` times the base and without a `peak`.
-    - Samples are lost where the base's phase, continued from both sides, jumps by `jump`, whole
-      turns aside, and `usual` times as far as it usually does.
+    - Samples are lost where the base `moves` and its phase, continued from both sides, jumps by
+      `jump`, whole turns aside, and, times the level, `usual` times as far as it usually does.
     - A line of the `mains` is hum if it is `hum` times those `beside` it and keeps its phase
       (`coherence`), while the orders are `away`.
     - A channel is clipped by a `clipped_share` above `clipped` (of `plateau`); few are less than
@@ -143,7 +144,8 @@ def sensor_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> It
         return
     hertz = orders.windows.frequency
     made = {order: response * (1j * TURN * hertz) ** order for order in range(-2, 3)}
-    tried = {order: LowResponse.fitted(hertz, one, settings) for order, one in made.items()}
+    level = orders.level
+    tried = {order: LowResponse.fitted(hertz, one, level, settings) for order, one in made.items()}
     fits = {order: fit for order, fit in tried.items() if fit is not None}
     if (straight := fits.get(0)) is None:
         return
@@ -187,22 +189,24 @@ class LowResponse:
 
     @classmethod
     def fitted(
-        cls, frequency: Floats, response: Complexes, settings: WiringSettings
+        cls, frequency: Floats, response: Complexes, level: Floats, settings: WiringSettings
     ) -> LowResponse | None:
-        """Fit a response in the windows below its peak; None where there are too few."""
+        """Fit a response below its peak, weighted by the base's level; None in few windows."""
         from scipy.optimize import least_squares
 
         peak = frequency[int(np.argmax(np.abs(response)))]
         low = frequency < settings.low * peak
         if low.sum() < settings.fewest:
             return None
-        hertz, measured = frequency[low], response[low]
+        hertz, measured, weights = frequency[low], response[low], level[low]
+        weights = weights / np.sqrt(np.mean(weights**2))
 
         def residuals(numbers: Floats) -> Floats:
             factor, late, mode, ratio = numbers
             square = (hertz / (ratio * peak)) ** 2
             model = factor * np.exp(-1e-3j * TURN * hertz * late)
             rest = model * (1.0 + mode * square / (1.0 - square)) / measured - 1.0
+            rest = weights * rest
             return np.concatenate([rest.real, rest.imag])
 
         first = float(np.median(measured.real)) or 1.0
@@ -258,11 +262,14 @@ def lost_sample_notes(orders: RecordOrders, settings: WiringSettings) -> Iterato
     for part in windows.parts:
         inside[part] = True
     inside[: 2 * count] = inside[-2 * count :] = False
-    jump = np.where(inside, jump, 0.0)
-    where = int(np.argmax(jump))
-    least = max(settings.jump, settings.usual * float(np.median(jump[inside])))
+    # as an acceleration: what noise does to the phase grows where the base moves little
+    level = np.interp(channels.time, windows.time, orders.level)
+    inside &= level > settings.moves * float(np.median(orders.level))
+    moved = np.where(inside, jump * level, 0.0)
+    where = int(np.argmax(moved))
+    is_usual = moved[where] <= settings.usual * float(np.quantile(moved, 1.0 - 0.5 * inside.mean()))
     turned = abs(jump[where] - TURN * round(jump[where] / TURN))
-    if jump[where] > least and turned > settings.jump:
+    if not is_usual and turned > settings.jump:
         text = f"the base's phase jumps by {turned:.2g} rad at {channels.time[where]:.4g} s"
         yield Note("lost samples", f"{text}: are samples lost? cut the record there")
 

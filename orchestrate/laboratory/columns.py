@@ -30,7 +30,7 @@ from .conversion import (
 )
 from .pieces import Floats
 from .record import CHANNELS, FORCE, SHORT_NAMES
-from .record_checks import ascends, first_hole
+from .record_checks import ascends, first_hole, implausible_times
 
 MOST_NAMES = 12  # of columns in a message
 FREQUENCIES = {  # in Hz
@@ -45,8 +45,8 @@ RATIOS = dict.fromkeys(("1", "-", "g/g", "m/m", "mm/mm", "m/s2/m/s2", "(m/s2)/(m
 TIMES = {  # in s
     **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
     **dict.fromkeys(("ms", "msec"), 1e-3),
-    **dict.fromkeys(("us", "\u00b5s", "\u03bcs"), 1e-6),
-    "min": 60.0,
+    **dict.fromkeys(("us", "usec", "\u00b5s", "\u03bcs"), 1e-6),
+    **{"ns": 1e-9, "min": 60.0, "h": 3600.0},
 }
 # What files call a quantity, as patterns of names in small letters and digits alone
 SENSOR = (
@@ -151,7 +151,8 @@ def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
         usual = ("ms", "rad/s", "deg")
         names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
         text = f"unit = {unit!r}" if unit else "no unit"
-        raise InputError(f"{label}: {text}; expected one such as {names}: mend it in the file")
+        mend = 'give it by unit="time=..."' if known is TIMES else "mend it in the file"
+        raise InputError(f"{label}: {text}; expected one such as {names}: {mend}")
     return known[plain_unit(unit)]
 
 
@@ -170,27 +171,25 @@ def converted_channels(
     sensitivity: ByChannel = None,
 ) -> tuple[Floats | None, dict[str, Channel], dict[str, str]]:
     """Convert a file's columns to SI: return times in s or None, channels, how they were read."""
+    refuse_spectra(table, columns)
     known = channels_by_name(table) if columns is None else {}
     places = known or channel_places(table, columns)
     check_counters(table, places)
     if known:
         warn_of_unread(table, places)
+    warn_of_left_out(table)
     by_order = ", by their order: no name is known" if columns is None and not known else ""
-    time, read_as = None, {"columns": taken_text(table, places) + by_order}
-    if "time" in places:
-        column = table.columns[places.pop("time")]
-        label = column_label(table, column)
-        if not column.text:
-            time = scaled_values(table, column, si_factor(label, column.unit or "s", TIMES))
-        elif table.sample_rate is None:
-            text = f"{describe_text(column.text)}; expected numbers in s, or sample_rate="
-            raise InputError(f"{label}, row {table.first_row}: {text}")
+    read_as = {"columns": taken_text(table, places) + by_order}
+    clock = places.pop("time", None)
+    units = by_channel("unit", unit, list(places), ("time",))
+    time = None if clock is None else times_in_s(table, table.columns[clock], units.get("time", ""))
     if not places:
-        raise InputError(f"{table.path}: no channel; expected one of {', '.join(CHANNELS)}")
-    units = by_channel("unit", unit, list(places))
+        text = f"no channel; expected one of {', '.join(CHANNELS)}"
+        text += "" if time is None else " beside the times, or sample_rate= where there are none"
+        raise InputError(f"{table.path}: {text}")
     stated = by_channel("sensitivity", sensitivity, list(places))
     used = {name: table.columns[place] for name, place in places.items()}
-    of_all = isinstance(sensitivity, str) and "=" not in sensitivity and units
+    of_all = isinstance(sensitivity, str) and "=" not in sensitivity and {*units} - {"time"}
     check_units(table, used, units, {} if of_all else stated)  # not all are in volts where some are
     channels = {}
     for name, column in used.items():
@@ -206,6 +205,20 @@ def converted_channels(
     return time, channels, read_as | unit_attributes(used, unit, units)
 
 
+def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:
+    """Return times in s, by the unit given or the file's; None of texts that a rate stands for."""
+    label = column_label(table, column)
+    if column.text and table.sample_rate is None:
+        text = f"{describe_text(column.text)}; expected numbers in s, or sample_rate="
+        raise InputError(f"{label}, row {table.first_row}: {text}")
+    if column.text:
+        return None
+    time = scaled_values(table, column, si_factor(label, unit or column.unit or "s", TIMES))
+    if not (unit or column.unit) and (doubt := implausible_times(time)):
+        warnings.warn(f"{label}: {doubt}", UserWarning, stacklevel=4)
+    return time
+
+
 def check_units(
     table: Columns, used: Mapping[str, Column], units: Mapping[str, str], stated: Mapping[str, str]
 ) -> None:
@@ -213,8 +226,9 @@ def check_units(
     known = {n: units.get(n, one.unit) or stated.get(n, one.sensitivity) for n, one in used.items()}
     if unknown := [name for name, text in known.items() if not text]:
         labels = ", ".join(f'column "{used[n].name}" ({SHORT_NAMES[n]})' for n in unknown)
-        words = {name: SHORT_NAMES[name].replace(" ", "") for name in (*units, *unknown)}
-        option = ",".join(f"{words[n]}={units.get(n) or '...'}" for n in used if n in words)
+        words = {n: SHORT_NAMES.get(n, n).replace(" ", "") for n in (*units, *unknown)}
+        order = (n for n in ("time", *used) if n in words)
+        option = ",".join(f"{words[n]}={units.get(n) or '...'}" for n in order)
         usual = "N, kN, V" if unknown == [FORCE] else "m/s2, g, mm/s, um, V"
         text = f"{labels}: no unit; expected one such as {usual}: give it by unit="
         raise InputError(f'{table.path}, {text}"{option}"')
@@ -227,10 +241,15 @@ def unit_attributes(
     own = ", ".join(dict.fromkeys(one.unit for one in channels.values() if one.unit))
     used = ", ".join(dict.fromkeys(units.get(name, one.unit) for name, one in channels.items()))
     differs = any(
-        channels[name].unit and plain_unit(channels[name].unit) != plain_unit(one)
-        for name, one in units.items()
+        one.unit and plain_unit(one.unit) != plain_unit(units.get(name, one.unit))
+        for name, one in channels.items()
     )
-    return {"unit": used, "unit_in_file": own} if differs else {"unit": used}
+    words = {
+        "unit": used,
+        "unit_in_file": own if differs else "",
+        "time_unit": units.get("time", ""),
+    }
+    return {name: text for name, text in words.items() if text or name == "unit"}
 
 
 def taken_text(table: Columns, places: Mapping[str, int]) -> str:
@@ -312,12 +331,35 @@ def check_counters(table: Columns, places: Mapping[str, int]) -> None:
             raise InputError(f"{label}, row {row + table.first_row}: {text}; {expected}")
 
 
+def refuse_spectra(
+    table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
+) -> None:
+    """Raise of a file with spectra unless its times and channels are named, by users or usually."""
+    if not (spectra := table.attributes.get("spectra")):
+        return
+    usual = places_by_name(table, NAMES if columns is None else {"time": NAMES["time"]})
+    by_user = columns is not None and ("time" in columns or not isinstance(columns, Mapping))
+    if columns is None:
+        named = "time" in usual and len(usual) > 1
+    else:
+        named = by_user or bool(usual) or table.sample_rate is not None
+    if not named:
+        text = "expected accelerations over time: columns= names them where the file has some"
+        raise InputError(f"{table.path}: {spectra}; {text}")
+
+
 def warn_of_unread(table: Columns, places: Mapping[str, int]) -> None:
     """Warn of columns by no usual name that may be channels, by their unit or without one."""
     unread = [f'"{table.columns[i].name}"' for i in unread_columns(table, places)]
     if unread:
         text = f"not read: {', '.join(unread)}; columns= says which column is which"
         warnings.warn(f"{table.path}: {text}", UserWarning, stacklevel=4)
+
+
+def warn_of_left_out(table: Columns) -> None:
+    """Warn of lines after the numbers that are none."""
+    if text := table.attributes.get("left_out"):
+        warnings.warn(f"{table.path}, {text}", UserWarning, stacklevel=4)
 
 
 def unread_columns(table: Columns, places: Mapping[str, int]) -> list[int]:

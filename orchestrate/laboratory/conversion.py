@@ -14,6 +14,7 @@ from ..errors import InputError
 from .pieces import Floats
 
 INCH = 0.0254
+SMALLEST, LARGEST = 1e-12, 1e12  # sizes of a channel's scale
 ACCELERATIONS = {  # in m/s2
     **dict.fromkeys(("m/s2", "m/s/s", "ms-2", "m/sec2", "ms2"), 1.0),
     **dict.fromkeys(("g", "gn", "g0", "gs", "gpk", "gpeak"), GRAVITY),
@@ -45,7 +46,7 @@ CALLED = {  # what options call the channels
     **dict.fromkeys(("base", "box", "box_acceleration"), "box_acceleration"),
     **dict.fromkeys(("face", "face1", "acceleration1"), "acceleration1"),
     **dict.fromkeys(("face2", "acceleration2"), "acceleration2"),
-    "force": "force",
+    **{"force": "force", "time": "time"},
 }
 ByChannel = str | float | Mapping[str, Any] | None  # as an argument: of all, or by channel
 
@@ -56,34 +57,47 @@ def plain_unit(text: str) -> str:
     return plain.translate(str.maketrans("", "", "^*_. \u00b7[]()"))
 
 
-def by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[str, Any]:
-    """Return an argument by channel: of all, a mapping, or a text ``base=V,face=mm/s``."""
+def by_channel(
+    name: str, argument: ByChannel, channels: Sequence[str], also: Sequence[str] = ()
+) -> dict[str, Any]:
+    """Return an argument by channel: of all, a mapping, or a text ``base=V,face=mm/s``.
+
+    Those in ``also`` have it only where they are named.
+    """
     if argument is None:
         return {}
     if isinstance(argument, str) and "=" in argument:
-        argument = dict(part.split("=", 1) for part in re.split(r",(?=[^,=]+=)", argument))
+        parts = [part.partition("=") for part in re.split(r",(?=[^,=]+=)", argument)]
+        if bare := [word for word, sign, _ in parts if not sign]:
+            raise InputError(
+                f"{name} = {argument!r}: {bare[0]!r} of which channel? expected base=..."
+            )
+        argument = {word: value for word, _, value in parts}
     if not isinstance(argument, Mapping):
         return dict.fromkeys(channels, argument)
     values = {}
     for key, value in argument.items():
         plain = CALLED.get(str(key).strip().lower().replace(" ", ""), "")
-        if plain not in channels:
-            text = f"expected {', '.join(word for word, one in CALLED.items() if one in channels)}"
+        if plain not in (known := (*channels, *also)):
+            text = f"expected {', '.join(word for word, one in CALLED.items() if one in known)}"
             raise InputError(f"{name}: no channel {key!r}; {text}")
         values[plain] = value.strip() if isinstance(value, str) else value
     return values
 
 
-def number_by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[str, float]:
-    """Return numbers by channel; raise for one that is not finite."""
+def number_by_channel(
+    name: str, argument: ByChannel, channels: Sequence[str], smallest: float = 0.0
+) -> dict[str, float]:
+    """Return numbers by channel; raise unless their sizes are from ``smallest`` to ``LARGEST``."""
     numbers = {}
     for channel, value in by_channel(name, argument, channels).items():
         try:
             numbers[channel] = float(value)
         except (TypeError, ValueError):
             numbers[channel] = math.nan
-        if not math.isfinite(numbers[channel]):
-            raise InputError(f"{name} = {argument!r}: expected numbers, such as face1=-1")
+        if not smallest <= abs(numbers[channel]) <= LARGEST:
+            sizes = f"of sizes from {smallest:g} to {LARGEST:g}, such as face1=-1"
+            raise InputError(f"{name} = {argument!r}: expected numbers {sizes}")
     return numbers
 
 

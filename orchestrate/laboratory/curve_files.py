@@ -23,6 +23,7 @@ from .columns import (
     places_by_name,
     si_factor,
     taken_text,
+    warn_of_left_out,
     warn_of_unread,
 )
 from .conversion import plain_unit
@@ -101,6 +102,7 @@ def read_curve(
         raise InputError(f"{path}: expected columns of text (.csv, .txt, .tsv, .asc, .dat)")
     check_file(path)
     table = read_csv(path, gaps=True)
+    warn_of_left_out(table)
     places = curve_places(table, columns)
     if columns is None:
         warn_of_unread(table, places)

@@ -50,6 +50,14 @@ class LevelControl(InputControl):
     fastest, tolerance : float
         Factors, > 1.
 
+    Notes
+    -----
+    The control follows in some ``averaging + compression`` periods. Where the beam's resonance
+    changes the table's load faster, the level is off: with the defaults, and a sweep that spends
+    80, 40, 16 periods in the half-power width of a bonded beam (0.02, 0.042, 0.1 Hz/s at 12.5 Hz
+    and 0.5 % damping, a table of 5 kg under a beam of 3 kg), it is 0.91 to 1.15, 0.84 to 1.28, 0.73
+    to 1.52 of the one wanted; delaminated 0.93 to 1.10, 0.87 to 1.21, 0.76 to 1.43.
+
     Examples
     --------
     >>> import orchestrate

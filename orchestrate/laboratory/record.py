@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -124,12 +125,15 @@ def checked_record(
     even, rate, time_base = checked_times(times, rate, reading.first_row, reading.resample)
     if "resampled" in time_base:
         raw = {name: interpolated(times, one, even) for name, one in raw.items()}
-    values = {name: reading.acceleration(name, one, rate) for name, one in raw.items()}
+    kept = reading.covered(len(even), rate)
+    values = {name: reading.acceleration(name, one, rate)[kept] for name, one in raw.items()}
+    raw, even = {name: one[kept] for name, one in raw.items()}, even[kept]
     if attributes.get("source") != "simulated":
         for name, what, advice in doubtful_channels(even, values, raw):
             text = f"{what}{'' if what.endswith('?') else ';'} {advice}"
             warnings.warn(f"{channel_label(name)}: {text}", UserWarning, stacklevel=4)
-    words = {"sensors": "", **attributes, "sample_rate": rate, **reading.words(time_base)}
+    words = {"sensors": "", **attributes, "sample_rate": rate}
+    words |= reading.words(time_base, len(times) - len(even))
     return xr.Dataset(
         {
             name: variable("time", one, unit_of_channel(name), CHANNELS[name])
@@ -156,7 +160,18 @@ class Reading:
         made = differentiated(values, rate, self.derivatives.get(name, 0), lateness)
         return made if name not in self.scale else self.scale[name] * made
 
-    def words(self, time_base: str) -> dict[str, str]:
+    def covered(self, count: int, rate: float) -> slice:
+        """Return the samples of which all channels, earlier by their delays, have data."""
+        samples = {name: delay * rate for name, delay in self.delay.items()}
+        first = math.ceil(max((-one for one in samples.values()), default=0.0) - 1e-6)
+        last = count - max(0, math.ceil(max(samples.values(), default=0.0) - 1e-6))
+        if last - (first := max(0, first)) < FEWEST:
+            delays = ", ".join(f"{SHORT_NAMES[n]} {one:g} s" for n, one in self.delay.items())
+            text = f"expected delays that leave {FEWEST} of {count} samples, at {rate:.6g} Hz"
+            raise InputError(f"delay: {delays}; {text}")
+        return slice(first, last)
+
+    def words(self, time_base: str, cut: int = 0) -> dict[str, str]:
         """Return what was done as attributes of the record, without what was not."""
         converted = [
             f"{SHORT_NAMES[name]}: {MOTIONS[count]}, differentiated by its spectrum"
@@ -164,6 +179,7 @@ class Reading:
             if count
         ]
         words = {"time_base": time_base, "converted": ", ".join(converted)}
+        words["cut"] = f"{cut} samples of which a delayed channel has no data" if cut else ""
         return {name: text for name, text in words.items() if text}
 
 

@@ -11,6 +11,7 @@ from .pieces import Floats
 
 PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
 CLIPPED = 1e-4  # share of samples at repeated extremes from which a channel is saturated
+SLOWEST, LONGEST = 1.0, 3600.0  # Hz, s: a rate below, a duration above have another unit of time
 PLATEAU = 3  # samples in a row at an extreme that no sine has
 
 
@@ -52,6 +53,16 @@ def implausible_unit(values: Floats) -> str:
     if abs(mean - 1.0) < 0.03 and spread < 0.5 * mean:
         return f"a mean of {mean:.3g} m/s2, as gravity has in g: are these numbers in g?"
     return ""
+
+
+def implausible_times(times: Floats) -> str:
+    """Return a question on the unit of times that no unit is stated of; empty if they may be s."""
+    steps, duration = np.diff(times), float(np.ptp(times)) if len(times) else 0.0
+    step = float(np.median(steps)) if len(steps) else 0.0
+    if step * SLOWEST <= 1.0 and duration <= LONGEST:
+        return ""
+    text = f"no unit, taken as s: {step:.6g} s a sample, {duration:.6g} s in all"
+    return f'{text}; if they are not in s, give their unit, such as unit="time=ms" or "time=us"'
 
 
 def constant_part(values: Floats, other: Floats) -> slice | None:

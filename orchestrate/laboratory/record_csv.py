@@ -57,6 +57,7 @@ def read_csv(path: Path, gaps: bool = False) -> Columns:
     if not text.strip():
         raise InputError(f"{path}: empty; expected columns of numbers")
     dialect = dialect_of(path, lines)
+    text, left_out = without_footing(text, dialect)
     columns = len(dialect.fields(lines[dialect.first]))
     if gaps:
         columns = max(columns, *(len(dialect.fields(line)) for line in lines[: dialect.first]), 1)
@@ -69,7 +70,8 @@ def read_csv(path: Path, gaps: bool = False) -> Columns:
         Column(*heading, column, first[i].strip() if i in dialect.texts else "", sensors[i])
         for i, (heading, column) in enumerate(zip(names, values.T, strict=True))
     ]
-    return Columns(str(path), made, first_row=dialect.first + 1)
+    words = {"left_out": left_out} if left_out else {}
+    return Columns(str(path), made, first_row=dialect.first + 1, attributes=words)
 
 
 def decode_text(path: Path, data: bytes) -> str:
@@ -151,6 +153,20 @@ def column_sensitivities(lines: list[str], dialect: Dialect, count: int) -> list
     fitting = [row for row in rows if len(row) <= count and any(map(SENSITIVITY.fullmatch, row))]
     row = [*(fitting or [[]])[0], *[""] * count][:count]
     return [field if SENSITIVITY.fullmatch(field) else "" for field in row]
+
+
+def without_footing(text: str, dialect: Dialect) -> tuple[str, str]:
+    """Cut last lines that begin with a word in place of a number; return what is left out."""
+    body, number, footing = text.rstrip(), NUMBERS[dialect.decimal], ""
+    for _ in range(0 if 0 in dialect.texts else MOST_HEADING):
+        above, _, line = body.rpartition("\n")
+        field = (dialect.fields(line) or [""])[0].strip()
+        if number.fullmatch(field) or not TEXT.fullmatch(field):
+            break
+        body, footing, row = above.rstrip(), line.strip(), above.count("\n") + 2
+    if not footing:
+        return text, ""
+    return body, f"row {row}: {footing[:80]!r} after the numbers is left out"
 
 
 def fill_gaps(text: str, dialect: Dialect, columns: int) -> str:

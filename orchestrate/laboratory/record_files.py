@@ -16,7 +16,7 @@ from ..files import check_path_encoding, reason, write_whole
 from ..lazy import xr
 from .analysis.channels import CHANNELS as ACCELERATIONS
 from .columns import Column, Columns, converted_channels
-from .conversion import ByChannel, number_by_channel
+from .conversion import SMALLEST, ByChannel, number_by_channel
 from .record import CHANNELS, Reading, checked_record, unit_of_channel
 from .record_csv import read_csv, write_csv
 from .record_labview import read_lvm, read_tdms, unreadable
@@ -59,7 +59,8 @@ def read_record(
     unit : str or mapping of str to str, optional
         Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face1=mm/s"``; ``base``,
         ``face1`` and ``face2`` stand for the names above): of an acceleration, velocity,
-        displacement or voltage. By default what stands in the file, which must be there.
+        displacement or voltage. By default what stands in the file, which must be there. Of
+        ``time`` (``"time=us"``) too; without any, s.
     sensitivity : str or mapping of str to str, optional
         Of voltages, such as ``"100 mV/g"`` or ``"base=100 mV/g,face1=50 mV/(mm/s)"``.
     sample_rate : float, optional
@@ -68,7 +69,8 @@ def read_record(
         Factor, such as ``{"face1": -1}`` where a sensor is the wrong way up. Of a WAV file, which
         must have it: m/s2 at the full scale.
     delay : float or mapping of str to float, optional
-        s by which a channel is late.
+        s by which a channel is late. The record is cut to the samples that all channels have then
+        (attribute ``cut``).
     resample : bool
         Whether uneven times become equal, by the cubic spline through the samples.
 
@@ -120,7 +122,7 @@ def read_record(
         table.first_row,
         resample,
         {name: one.derivatives for name, one in channels.items()},
-        number_by_channel("scale", scale, list(channels)),
+        number_by_channel("scale", scale, list(channels), SMALLEST),
         number_by_channel("delay", delay, list(channels)),
     )
     values = {name: one.values for name, one in channels.items()}

@@ -82,7 +82,7 @@ def read_mat(path: Path) -> Columns:
         if one.dtype.kind == "U" and one.size
     }
     numbers = {name: one for name, one in arrays.items() if one.dtype.kind in "iuf"}
-    refuse_spectra(path, arrays, texts)
+    spectra = spectra_text(arrays, texts)
     rate, columns = None, []
     for name, one in numbers.items():
         last = name.lower().rpartition(".")[2]
@@ -93,15 +93,21 @@ def read_mat(path: Path) -> Columns:
             columns.append((name, one.ravel()))
         elif one.ndim == 2 and one.shape[0] > one.shape[1]:
             columns += [(f"{name}[{i}]", column) for i, column in enumerate(one.T)]
-    longest = max((len(values) for _, values in columns), default=0)
+    times = [len(values) for name, values in columns if is_time(name)]
+    longest = max(times or [len(values) for _, values in columns], default=0)
     made = [
         mat_column(name, np.asarray(values, float), texts)
         for name, values in columns
         if len(values) == longest
     ]
     if not made:
-        raise InputError(f"{path}: no vectors of numbers; expected some")
-    return Columns(str(path), made, rate)
+        raise InputError(f"{path}: {spectra or 'no vectors of numbers'}; expected some over time")
+    return Columns(str(path), made, rate, attributes={"spectra": spectra} if spectra else {})
+
+
+def is_time(name: str) -> bool:
+    """Return whether an array of a MAT file, or its last field, is called as times are."""
+    return name.lower().rpartition(".")[2] in ("time", "t")
 
 
 def mat_column(name: str, values: Floats, texts: dict[str, str]) -> Column:
@@ -119,22 +125,21 @@ def mat_column(name: str, values: Floats, texts: dict[str, str]) -> Column:
         return ""
 
     short = name.rpartition(".")[2]
-    is_time = short.lower() in ("time", "t")
-    label = "" if is_time or "." not in name else nearest("name", "channelname")
-    unit = "" if is_time else nearest("units", "unit", "unitlabel", "label")
+    label = "" if is_time(name) or "." not in name else nearest("name", "channelname")
+    unit = "" if is_time(name) else nearest("units", "unit", "unitlabel", "label")
     return Column(label or short, unit, values, sensitivity=nearest("sensitivity"))
 
 
-def refuse_spectra(path: Path, arrays: dict[str, NDArray[Any]], texts: dict[str, str]) -> None:
-    """Raise where the arrays are spectra: complex numbers, or a function over the frequency."""
+def spectra_text(arrays: dict[str, NDArray[Any]], texts: dict[str, str]) -> str:
+    """Return which arrays are spectra: complex numbers, or a function over the frequency."""
     complexes = [name for name, one in arrays.items() if one.dtype.kind == "c" and one.size > 1]
     over = [name for name in arrays if name.lower().rpartition(".")[2] in FREQUENCIES]
     psd = [text for text in texts.values() if re.search(r"/\s*hz", text, re.I)]
-    if complexes or over or psd:
-        kind = f"a spectral density in {psd[0]}" if psd else "a frequency response or a spectrum"
-        what = (complexes or over or [""])[0]
-        text = f"{kind} ({what})" if what else kind
-        raise InputError(f"{path}: {text}; expected accelerations over time")
+    if not (complexes or over or psd):
+        return ""
+    kind = f"a spectral density in {psd[0]}" if psd else "a frequency response or a spectrum"
+    what = (complexes or over or [""])[0]
+    return f"{kind} ({what})" if what else kind
 
 
 def write_mat(path: Path, columns: list[Column], sample_rate: float) -> None:

@@ -72,10 +72,9 @@ class ShakeJob(Question):
         rate, duration = self.sample_rate, self.pieces.duration
         last = math.floor(duration * rate * (1.0 + 1e-14))
         stop = last if end == math.inf else min(last, math.ceil(end * rate) + 1)
-        times: NDArray[np.float64] = (
-            np.arange(max(0, math.floor(first * rate) - 1), stop + 1) / rate
-        )
-        return times[(times >= first) & (times < end) & (times <= duration)]
+        samples = np.arange(max(0, math.floor(first * rate) - 1), stop + 1)
+        times: NDArray[np.float64] = np.minimum(samples / rate, duration)  # but for rounding
+        return times[(times >= first) & (times < end)]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Compute the motion over some pieces, and the FMU's state to go on from."""

@@ -170,22 +170,15 @@ def decision_section(answer: xr.Dataset) -> Section:
     """Return a section on what decided the verdict and what would change it."""
     reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
     points = [f"What decided: {make_sentence(reason)}"] if reason else []
-    odds = scalar(answer, "odds")
-    if math.isfinite(odds) and odds > 0.0:
+    share = scalar(answer, "share")
+    if math.isfinite(share):
         points.append(
-            "The odds of the delaminated against the best sound structure are "
-            f"{format_odds(odds)}. They were counted in records put together of blocks of this "
-            "one, by how often the ratio of misfits is large enough to decide."
+            f"The ratio of misfits decides in {100.0 * share:.0f} % of the records put together of "
+            "blocks of this one: how even the record is, no probability."
         )
     if settle:
         points.append(f"What would change or settle it: {make_sentence(settle)}")
     return Section("Why", points=points, place="front")
-
-
-def format_odds(odds: float) -> str:
-    """Format odds as a ratio, "24 to 1"."""
-    larger = f"{float(f'{max(odds, 1.0 / odds):.2g}'):g}"
-    return f"{larger} to 1" if odds >= 1.0 else f"1 to {larger}"
 
 
 def make_sentence(words: str) -> str:

@@ -14,7 +14,6 @@ import { ETAS, fragmentOf, viewOf } from "./link.js";
 import { openingOf } from "./opening.js";
 import { overlayOf } from "./overlay.js";
 import { load } from "./payload.js";
-import { acceptRecords } from "./record_part.js";
 import { Player } from "./player.js";
 import { Regions } from "./regions.js";
 import { USUAL } from "./response.js";
@@ -48,7 +47,6 @@ export class App {
     this.structure = table.structure;
     this.level = this.usual.level;
     this.eta = NaN;
-    this.words = { record: at("record-status").textContent };
     this.carried = false; // whether the frequency comes from the beam before, in other units
     this.waiting = false; // for the start of the chosen response
     const size = Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
@@ -117,7 +115,6 @@ export class App {
     for (const id in clicks) at(id).addEventListener("click", clicks[id]);
     at("direction").addEventListener("change", () => this.open(regions.diagram.low, regions.diagram.high));
     at("branches").addEventListener("change", () => regions.view.refresh());
-    acceptRecords(at, this.pool, (measured) => this.lay(measured));
     addEventListener("hashchange", () => this.restore(location.hash));
     addEventListener("keydown", (event) => this.pressed(event));
     document.querySelectorAll("button[data-save]").forEach((button) =>
@@ -151,9 +148,7 @@ export class App {
 
   /** All as it was when the page was opened; what was seen is still behind Back. */
   reset() {
-    for (const id of ["branches", "record"]) toDefault(input(id));
-    at("record-status").textContent = this.words.record;
-    this.inspector.measured = null;
+    toDefault(input("branches"));
     this.player.reset();
     this.drive.reset();
     this.basin.forget();
@@ -324,14 +319,6 @@ export class App {
   showOthers() {
     at("basin-figure").scrollIntoView({ block: "center" });
     this.computeBasin();
-  }
-
-  /** A measured record over the model's spectrum, whose axis then is in Hz. @param {Measured} measured */
-  lay(measured) {
-    this.inspector.measured = measured;
-    if (!inHertz(this.level)) this.change(...this.shaking.converted(true));
-    this.inspector.drawSpectrum();
-    at("spectrum").scrollIntoView({ block: "center" });
   }
 
   /** @param {string} text @param {string} what */

@@ -44,8 +44,6 @@ export class Inspector {
     this.spectra = null;
     /** @type {Exponent | undefined} */
     this.exponent = undefined;
-    /** @type {Measured | null} */
-    this.measured = null;
     /** @type {Motion | null} */
     this.bonded = null;
     /** @type {Float64Array} */
@@ -203,7 +201,7 @@ export class Inspector {
 
   drawSpectrum() {
     if (!this.spectra || !this.choice) return;
-    const chart = spectrumChart(this.spectra, this.choice.point, this.choice.level, this.measured);
+    const chart = spectrumChart(this.spectra, this.choice.point, this.choice.level);
     const words = chart.series.map(({ label }) => label).join(", ");
     this.pictures.show("spectrum", chart, `Amplitude spectrum of the acceleration of half 1: ${words}`);
   }

@@ -2,9 +2,7 @@
 
 import { axisAround, drawChart } from "./chart.js";
 import { atRest, gapBetween, gapOffset } from "./clearance.js";
-import { inHertz } from "./excitation.js";
 import { Picture } from "./picture.js";
-import { peaksUpTo } from "./record.js";
 import { scaleAt, wordsOf } from "./units.js";
 
 /** @typedef {"history" | "phase" | "section" | "spectrum"} Name */
@@ -118,8 +116,8 @@ export function sectionChart(states, point, level) {
   return { ...axes, series: [{ x, y, colour: "ink", dots, alpha: 0.8 }] };
 }
 
-/** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @param {Measured | null} measured @returns {Chart} */
-export function spectrumChart({ delaminated, bonded }, point, level, measured) {
+/** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @returns {Chart} */
+export function spectrumChart({ delaminated, bonded }, point, level) {
   const { line, acceleration } = scaleAt(point, level);
   const words = wordsOf(level);
   const ends = [delaminated, bonded].map(({ amplitude }) => amplitude.reduce((most, value) => Math.max(most, value), 0));
@@ -128,19 +126,12 @@ export function spectrumChart({ delaminated, bonded }, point, level, measured) {
   /** @param {Float64Array} amplitude */
   const kept = (amplitude) => amplitude.map((value) => Math.max(value / acceleration, low / 10));
   const x = delaminated.order.map((order) => order * line);
-  /** @type {Series[]} */
-  const series = [
-    { x, y: kept(delaminated.amplitude), colour: "one", label: "delaminated", width: 1 },
-    { x, y: kept(bonded.amplitude), colour: "two", label: "undamaged" },
-  ];
-  if (measured && inHertz(level)) {
-    const hertz = point.frequency / (2 * Math.PI * line); // one on the axis
-    const peaks = peaksUpTo(measured, x[x.length - 1] * hertz, 2000);
-    series.push({ x: peaks.x.map((value) => value / hertz), y: kept(peaks.y), colour: "ink", label: "measured", width: 1 });
-  }
   return {
     x: { low: 0, high: x[x.length - 1], label: words.line },
     y: { low, high: high * 2, log: true, label: words.acceleration },
-    series,
+    series: [
+      { x, y: kept(delaminated.amplitude), colour: "one", label: "delaminated", width: 1 },
+      { x, y: kept(bonded.amplitude), colour: "two", label: "undamaged" },
+    ],
   };
 }

@@ -50,7 +50,7 @@ export function windowed(values) {
 }
 
 /** Fast Fourier transform in place; the length is a power of two. @param {Float64Array} real @param {Float64Array} imaginary */
-export function transform(real, imaginary) {
+function transform(real, imaginary) {
   const count = real.length;
   for (let i = 1, j = 0; i < count; i++) {
     let bit = count >> 1;

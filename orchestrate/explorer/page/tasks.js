@@ -4,7 +4,6 @@ import { destination, startAt } from "./basin.js";
 import { Coupled } from "./coupled.js";
 import { exponentOf } from "./lyapunov.js";
 import { record } from "./motion.js";
-import { readRecord } from "./record.js";
 import { respond } from "./response.js";
 import { spectrumOf } from "./spectrum.js";
 import { periodOf, pointOf } from "./structure.js";
@@ -126,12 +125,5 @@ function* basin(instance, { point, plane, cells }) {
   }
 }
 
-/** A measured record. @param {Oscillator} _ @param {{file: File}} asked */
-function* measured(_, { file }) {
-  // a worker may wait for a file; TypeScript's library for pages does not have it
-  const reader = new /** @type {any} */ (globalThis).FileReaderSync();
-  yield readRecord(reader.readAsText(file));
-}
-
 /** @type {Record<string, (instance: Oscillator, asked: any, shaker: Instance) => Generator<unknown>>} */
-export const TASKS = { replay, chain, motion, section, spectra, sound, drive, basin, record: measured };
+export const TASKS = { replay, chain, motion, section, spectra, sound, drive, basin };

@@ -17,7 +17,6 @@ type Inspector = import("./inspector.js").Inspector;
 type Instance = import("./kernel.js").Instance;
 type Lane = import("./diagram.js").Lane;
 type Level = import("./excitation.js").Level;
-type Measured = import("./record.js").Measured;
 type Motion = import("./motion.js").Motion;
 type Order = import("./worker_pool.js").Order;
 type Oscillator = import("./kernel.js").Oscillator;

@@ -47,7 +47,7 @@ def shock_spectrum(
     The recursion is exact for a base acceleration that is straight between samples (ramp-invariant,
     ISO 18431-4; Smallwood, Shock and Vibration Bulletin 51, 1981). Where there are fewer than 40
     samples in the oscillator's period it runs at intermediate points of the same straight lines.
-    After the record the base's acceleration goes to zero within a sample.
+    Before and after the record the base's acceleration goes from and to zero within a sample.
 
     Examples
     --------
@@ -105,14 +105,12 @@ def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats,
     rate = channels.sample_rate
     # a peak between samples is at most 0.3 % higher
     parts = max(1, math.ceil(40 * frequency / rate))
-    base = straight_between(channels.values, parts)
+    # at rest a sample before the record and a sample after it, straight as elsewhere
+    base = straight_between(np.pad(channels.values, ((0, 0), (1, 1))), parts)
+    end = base.shape[1] - 1
     # one period of the free vibration after the record has its largest value
-    after = math.ceil(parts * rate / frequency) + parts
-    padded = np.concatenate([base, np.zeros((len(base), after))], axis=1)
-    for part in range(1, parts):  # down to zero within a sample, straight as elsewhere
-        padded[:, base.shape[1] - 1 + part] = base[:, -1] * (1.0 - part / parts)
+    padded = np.pad(base, ((0, 0), (0, math.ceil(parts * rate / frequency))))
     response = np.abs(lfilter(*ramp_invariant(frequency, damping, parts * rate), padded, axis=1))
-    end = base.shape[1] - 1 + parts  # a sample after the last one, when the base is at rest
     return response[:, : end + 1].max(axis=1), response[:, end:].max(axis=1)
 
 

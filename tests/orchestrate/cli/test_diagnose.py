@@ -115,7 +115,7 @@ def test_what_is_stored_has_the_numbers_of_the_verdict(run):
         assert float(best.value.sel(parameter=name)) == pytest.approx(true, rel=0.02)
         assert 1e-4 < float(best.standard_error.sel(parameter=name)) / true < 0.05
     assert float(best.value.sel(parameter="e")) == pytest.approx(0.5, abs=0.08)
-    assert float(found["parted"].ratio) > 3.0 and float(found["parted"].odds) > 100.0
+    assert float(found["parted"].ratio) > 3.0 and float(found["parted"].share) > 0.99
     sound = [name for name in found["whole"].hypothesis.values if name.startswith("bonded")]
     misfits = found["whole"].misfit.sel(hypothesis=sound)  # each contains the linear spring
     linear = float(misfits.sel(hypothesis="bonded"))

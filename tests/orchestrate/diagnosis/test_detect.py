@@ -28,7 +28,7 @@ LIMIT = {"jobs": 1, "progress": False}
 def test_a_delamination_is_found_with_its_numbers_wherever_the_sensor_is(factor):
     answer = orchestrate.detect(seen_at(factor, noise=0.01), guess(), **LIMIT)
     assert str(answer.verdict.values) == "delaminated", answer.attrs["reason"]
-    assert answer.ratio > 3.0 and answer.odds > 100.0
+    assert answer.ratio > 3.0 and answer.share > 0.99
     best = answer.sel(hypothesis="delaminated")
     assert best.participation.item() == pytest.approx(factor, rel=0.05)
     for name in ("f1", "f2"):
@@ -102,6 +102,21 @@ def test_more_parameters_than_the_numbers_of_one_tone_are_not_fitted():
     answer = orchestrate.fit(tone, guess(), hypothesis="bonded", **LIMIT)
     assert np.isfinite(answer.value).all()
     assert answer.participation.values.tolist() == [1.0]  # one frequency does not tell it
+
+
+def test_errors_end_where_a_structure_does_not_describe_the_record():
+    """Standard errors were stated at any misfit: f2 29.71 +- 1.14 Hz for 32.81 at 6.02."""
+    described, limited = (
+        orchestrate.fit(record(), guess(), hypothesis="bonded", settings=changes, **LIMIT)
+        for changes in ({"delaminated": 100.0}, None)
+    )
+    assert limited.value.equals(described.value) and 3.0 < float(limited.misfit) < 100.0
+    assert np.isfinite(described.standard_error).all() and np.isfinite(described.correlation).all()
+    for name in ("standard_error", "correlation", "participation_error"):
+        assert limited[name].isnull().all()
+    assert "errors" not in described.attrs["reason"]
+    expected = f"no standard errors: the misfit {float(limited.misfit):.3g} is above 3"
+    assert expected in limited.attrs["reason"]
 
 
 def test_a_history_without_its_impacts_spikes_is_refused():

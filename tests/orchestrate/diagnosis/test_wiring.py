@@ -12,7 +12,7 @@ from orchestrate import InputError, detect, read_record, record, signs
 from orchestrate.diagnosis.orders import sensor_channels
 from orchestrate.diagnosis.sweeps import split_sweeps
 from orchestrate.diagnosis.undamaged import SoundStructure
-from orchestrate.diagnosis.wiring import wiring_notes
+from orchestrate.diagnosis.wiring import WiringSettings, wiring_notes
 from orchestrate.laboratory.analysis.channels import Channels
 from orchestrate.laboratory.conversion import differentiated
 from orchestrate.model import Structure
@@ -114,6 +114,42 @@ def test_noise_and_a_whole_turn_are_no_lost_samples():
     assert "lost samples" not in [note.kind for note in notes(less)]
 
 
+def rising(seed=0, noise=0.02, leak=0.0, lost=0):
+    """A table of constant displacement, 0.02 m/s2 at 5 Hz, 2 to 40 Hz in 30 s; a beam of 25 Hz."""
+    rate, rng = 300.0, np.random.default_rng(seed)
+    time = np.arange(9000) / rate
+    hertz = 2.0 + 38.0 * time / 30.0
+    sine = np.sin(2.0 * np.pi * np.cumsum(hertz) / rate)
+    base = 0.02 * (hertz / 5.0) ** 2 * sine
+    made = Channels(time, rate, (BASE,), base[None], "rising")
+    face = base + 1.3 * (SoundStructure(25.0, 0.01).acceleration(made) - base)
+    kept = np.delete(np.arange(9000), slice(7000, 7000 + lost))
+    pairs = ((BASE, base), (FACE, face + leak * sine))
+    return {name: (one + rng.normal(0.0, noise, 9000))[kept] for name, one in pairs}
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_notes_weigh_what_the_base_moves():
+    """Where it moves little, noise turns its phase and a leak of the drive outweighs a face."""
+    assert [notes(rising(seed), 300.0) for seed in range(8)] == [[]] * 8
+    assert [note.kind for note in notes(rising(lost=3), 300.0)] == ["lost samples"]
+    leaking = rising(noise=0.002, leak=0.1)
+    assert notes(leaking, 300.0) == []  # it moved as a displacement
+    (note,) = notes({**leaking, FACE: -leaking[FACE]}, 300.0)
+    assert note.kind == "polarity"
+    nowhere = WiringSettings(moves=1e9)
+    made = sensor_channels(record(sample_rate=300.0, **rising(lost=3)))
+    assert wiring_notes(made, nowhere) == []
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_windows_without_a_floor_are_left_out():
+    """Above a third of the sampling rate no frequency beside the orders is resolved."""
+    few = {name: values[::6] for name, values in sweep().items()}
+    assert [note.kind for note in notes(few, RATE / 6)] == ["sampling"]
+
+
 def test_few_samples_are_named_and_a_short_sweep_above_the_resonance_says_nothing():
     few = {name: values[::4] for name, values in sweep().items()}
     assert [note.kind for note in notes(few, RATE / 4)] == ["sampling"]
@@ -163,7 +199,7 @@ def test_what_a_note_says_mends_the_record(tmp_path):
     assert read.attrs["time_base"] == "rounded to 0.001 s, taken as 1024 Hz"
     assert read.attrs["converted"] == "face 1: velocity, differentiated by its spectrum"
     inner = slice(2000, -2000)
-    error = read.acceleration1.values[inner] - channels[FACE][inner]
+    error = read.acceleration1.values[inner] - channels[FACE][: read.sizes["time"]][inner]
     assert np.abs(error).max() < 0.25 * np.abs(channels[FACE]).max()
 
 

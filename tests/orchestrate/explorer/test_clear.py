@@ -14,7 +14,7 @@ SEEN = """
 const values = [...document.querySelectorAll("input, select")].map(({ id, type, value, checked }) =>
   [id, type === "checkbox" ? checked : value]);
 const texts = ["sentence", "numbers", "status", "tour", "command", "motion-command",
-  "record-status", "section-count", "basins", "drive-status"].map((id) =>
+  "section-count", "basins", "drive-status"].map((id) =>
   [id, document.getElementById(id).textContent, document.getElementById(id).hidden]);
 const { diagram } = explorer.regions;
 const open = [...document.querySelectorAll("#tour p")].map((text) => text.hidden);

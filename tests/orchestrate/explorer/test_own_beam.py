@@ -1,4 +1,4 @@
-"""A beam of one's own on the page: its numbers, what is wrong with them, records, commands."""
+"""A beam of one's own on the page: its numbers, what is wrong with them, commands."""
 
 import json
 import os
@@ -15,12 +15,6 @@ import orchestrate
 from .conftest import READY, typed
 
 DIAGRAM = "explorer.regions.diagram"
-FILE = """
-const [name, text] = arguments;
-const given = new DataTransfer();
-given.items.add(new File([text], name));
-window.dispatchEvent(new DragEvent("drop", { dataTransfer: given, cancelable: true }));
-"""
 
 
 def pasted(command, folder):
@@ -140,38 +134,3 @@ def test_what_is_wrong_with_a_number_stands_beside_its_field_and_nothing_changes
     typed(browser, "e-number", "0.6")
     assert browser.run("return explorer.structure.e") == 0.6
     assert browser.text("e-number-wrong") == ""
-
-
-def record(frequency=30.0, level=2.0, rate=1000.0, count=3000):
-    """Times and a sine in g, with its third harmonic a tenth of it."""
-    time = np.arange(count) / rate
-    phase = 2.0 * np.pi * frequency * time
-    return time, level * np.sin(phase) + 0.1 * level * np.sin(3.0 * phase)
-
-
-@pytest.mark.slow
-def test_a_measured_record_is_laid_over_the_models_spectrum(browser):
-    browser.chosen()
-    time, values = record()
-    rows = "\n".join(
-        f"{1e3 * t:.3f};{a:.9f}".replace(".", ",") for t, a in zip(time, values, strict=True)
-    )
-    browser.run(FILE, "rig.csv", f"rig 7, 2024\nt [ms];Acc 1 [g]\n{rows}\n")
-    browser.until("return explorer.inspector.measured")
-    assert browser.text("record-status") == "rig.csv: Acc 1 in g; 3000 values, 1000 a second"
-    measured = "explorer.inspector.measured"
-    lines, amplitudes = (
-        browser.numbers(f"{measured}.{name}") for name in ("frequency", "amplitude")
-    )
-    for line, expected in ((30.0, 2.0), (90.0, 0.2)):
-        near = np.abs(lines - line) < 1.0
-        assert amplitudes[near].max() / 9.80665 == pytest.approx(expected, rel=0.02)
-        assert lines[near][amplitudes[near].argmax()] == pytest.approx(line, abs=0.25)
-    assert browser.run("return explorer.level.unit") == "g"  # so that the axis is in Hz
-    browser.until("return explorer.inspector.spectra")
-    browser.until(
-        "return document.getElementById('spectrum').getAttribute('aria-label').includes('measured')"
-    )
-
-
-LINES = "".join(f"{i},{i % 5}\n" for i in range(20))

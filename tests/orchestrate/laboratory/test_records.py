@@ -636,6 +636,7 @@ def test_a_sensitivity_of_all_columns_asks_for_the_units_that_are_missing(tmp_pa
     with pytest.raises(InputError, match='column "tip" .face 1.: no unit.* unit="base=V,face1=...'):
         read_record(path, unit="base=V", sensitivity="100 mV/g")
     read_record(path, unit="base=V,face1=V", sensitivity="100 mV/g")
+    read_record(path, unit="time=ms", sensitivity="100 mV/g")
 
 
 @pytest.mark.parametrize(
@@ -645,8 +646,12 @@ def test_a_sensitivity_of_all_columns_asks_for_the_units_that_are_missing(tmp_pa
         ({"sensitivity": "100 g/V"}, "sensitivity '100 g/V'; expected one such as 100 mV/g"),
         ({"sensitivity": "tip=1 V/g"}, "sensitivity: no channel 'tip'; expected base, box"),
         ({"unit": "base=g", "sensitivity": "base=1 V/g"}, "expected volts: a sensitivity does not"),
+        ({"unit": "g,time=us"}, "'g' of which channel? expected base="),
         ({"unit": "base=N"}, "unit = 'N'; expected one such as m/s2, g, mm/s, um, V"),
-        ({"unit": "g", "scale": "base=x"}, "scale = 'base=x': expected numbers, such as face1=-1"),
+        (
+            {"unit": "g", "scale": "base=x"},
+            "scale = 'base=x': expected numbers of sizes from 1e-12 to",
+        ),
     ],
 )
 def test_mistaken_units_and_sensitivities_are_one_line(tmp_path, options, words):
@@ -783,3 +788,124 @@ def test_nested_structures_of_matlab(tmp_path):
         InputError, match=r"a frequency response or a spectrum \(run.H1\); expected"
     ):
         read_record(path)
+
+
+def timed(tmp_path, heading, step, count=9):
+    rows = "".join(f"{step * i:.12g},{i % 3},{i % 4}\n" for i in range(count))
+    path = tmp_path / "times.csv"
+    path.write_text(f"{heading},base [g],face [g]\n{rows}")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("step", "count", "unit", "rate"), [(2500, 9, "us", 400.0), (0.5, 8000, "ms", 2000.0)]
+)
+def test_times_without_a_unit_that_are_hardly_seconds_are_doubted(
+    tmp_path, recwarn, step, count, unit, rate
+):
+    path = timed(tmp_path, "t", step, count)
+    with pytest.warns(UserWarning, match=rf'column "t": no unit, taken as s: {step} s a sample'):
+        assert read_record(path).attrs["sample_rate"] == 1.0 / step
+    recwarn.clear()
+    data = read_record(path, unit=f"time={unit}")
+    assert data.attrs["sample_rate"] == rate and data.attrs["time_unit"] == unit
+    assert data.attrs["unit"] == "g" and "unit_in_file" not in data.attrs
+    assert read_record(path, unit={"time": unit, "base": "m/s2"}).attrs["unit"] == "m/s2, g"
+    assert read_record(path, unit={"time": unit}).equals(data)
+    assert not recwarn
+
+
+@pytest.mark.parametrize(
+    ("heading", "step", "rate"), [("t [s]", 4.0, 0.25), ("t [h]", 1, 1 / 3600)]
+)
+def test_slow_and_long_records_with_a_unit_of_time_are_not_doubted(
+    tmp_path, recwarn, heading, step, rate
+):
+    data = read_record(timed(tmp_path, heading, step, 2000))
+    assert data.attrs["sample_rate"] == pytest.approx(rate) and not recwarn
+
+
+def test_a_unit_of_time_is_kept_in_advice_and_a_wrong_one_is_one_line(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("t,base,tip [g]\n" + "".join(f"{i},{i % 3},{i % 4}\n" for i in range(9)))
+    with pytest.raises(InputError, match=r'give it by unit="time=us,base=\.\.\."$'):
+        read_record(path, unit="time=us")
+    with pytest.raises(InputError, match="unit = 'g'; expected one such as s, ms: .*time=...\"$"):
+        read_record(path, unit="time=g")
+    with pytest.raises(InputError, match="scale: no channel 'time'; expected base"):
+        read_record(path, unit="g", scale="time=2")
+
+
+@pytest.mark.parametrize("separator", [",", " ", ";"])
+def test_a_last_line_of_words_is_left_out_with_a_warning(tmp_path, separator):
+    path = tmp_path / "a.csv"
+    rows = lines().replace(",", separator)
+    path.write_text(rows)
+    whole = read_record(path, unit="m/s2", columns=[0, 1, 2])
+    path.write_text(f"{rows}\nRate 1344, overflows 0\nend\n")
+    with pytest.warns(UserWarning, match="row 43: 'Rate 1344, overflows 0' after the numbers is"):
+        data = read_record(path, unit="m/s2", columns=[0, 1, 2])
+    assert data.equals(whole) and "Rate 1344" in data.attrs["left_out"]
+    path.write_text(rows + separator.join(["0.04", "x", "1"]))
+    with pytest.raises(InputError, match="row 42: .*expected"):
+        read_record(path, unit="m/s2", columns=[0, 1, 2])
+
+
+def test_one_column_alone_asks_for_its_sampling_rate(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("0.1\n0.3\n-0.2\n0.1\n0.2\n")
+    with pytest.raises(InputError, match="no channel; .* or sample_rate= where there are none$"):
+        read_record(path)
+    assert read_record(path, sample_rate=100.0, unit="g").box_acceleration[1] == G * 0.3
+
+
+@pytest.mark.parametrize("late", [0.0155, -0.0155, 3.9])
+def test_a_delay_cuts_what_a_channel_does_not_have(tmp_path, late):
+    time, acceleration, *_ = swept(4000)
+    path = table_file(tmp_path / "a.csv", "t [s],base [m/s2],tip [m/s2]", time, acceleration, time)
+    whole, data = read_record(path), read_record(path, delay={"face1": late})
+    size = 4000 - (16 if abs(late) < 1.0 else 3900)
+    assert data.sizes["time"] == size and data.attrs["cut"].startswith(f"{4000 - size} samples of")
+    assert data.box_acceleration.equals(whole.box_acceleration.sel(time=data.time))
+    assert np.allclose(data.acceleration1, data.time + late, atol=1e-9)
+    assert read_record(path, delay="base=0.0155,face1=0.001").sizes["time"] == 3984
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"delay": "face1=3.998"}, "delay: face 1 3.998 s; expected delays that leave 4 of 4000 s"),
+        ({"delay": {"base": 2.5, "tip": 0.0}}, "no channel 'tip'"),
+        ({"delay": {"base": 2.5, "face1": -2.5}}, "delay: base 2.5 s, face 1 -2.5 s; expected del"),
+        ({"delay": 1e300}, "delay = 1e+300: expected numbers of sizes from 0 to 1e+12"),
+        ({"scale": 0}, "scale = 0: expected numbers of sizes from 1e-12 to 1e+12, such as face1="),
+        ({"scale": "face1=nan"}, "scale = 'face1=nan': expected numbers of sizes from 1e-12"),
+    ],
+)
+def test_delays_beyond_the_record_and_scales_of_nothing_are_one_line(tmp_path, options, words):
+    time, acceleration, *_ = swept(4000)
+    path = table_file(tmp_path / "a.csv", "t [s],base [m/s2],tip [m/s2]", time, acceleration, time)
+    with pytest.raises(InputError) as error:
+        read_record(path, **options)
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_mat_file_with_spectra_beside_named_channels_is_read(tmp_path):
+    time, acceleration, velocity, _ = swept(300)
+    path = tmp_path / "a.mat"
+    spectrum = {"X": np.fft.rfft(acceleration, 1024), "f": np.arange(513.0)}
+    scipy.io.savemat(path, {"time": time, "base": acceleration, "tip": velocity, **spectrum})
+    data = read_record(path, unit="m/s2")
+    assert (data.box_acceleration.values == acceleration).all()
+    assert data.attrs["spectra"] == "a frequency response or a spectrum (X)"
+    scipy.io.savemat(path, {"clock": time, "one": acceleration, "two": velocity, "X": 1j * time})
+    with pytest.raises(InputError, match=r"spectrum \(X\); expected acc.*: columns= names them"):
+        read_record(path, unit="m/s2")
+    with pytest.raises(InputError, match=r"spectrum \(X\); expected acc"):
+        read_record(path, unit="m/s2", columns={"box_acceleration": "one"})
+    for options in (
+        {"columns": {"time": "clock", "box_acceleration": "one"}},
+        {"columns": {"box_acceleration": "one"}, "sample_rate": 1000.0},
+    ):
+        read = read_record(path, unit="m/s2", **options)
+        assert (read.box_acceleration.values == acceleration).all()

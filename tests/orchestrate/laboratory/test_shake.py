@@ -220,3 +220,12 @@ def test_parts_of_the_record_are_the_whole_record(rate):
     np.testing.assert_array_equal(np.concatenate(parts), job.times())
     assert np.all(np.diff(job.times()) > 0.0) and job.times()[-1] <= job.pieces.duration
     assert job.times()[-1] + 1.0 / rate > job.pieces.duration
+
+
+def test_the_last_sample_is_not_lost_by_rounding():
+    """14 periods of 50 samples: 700/rate is above the duration by a digit in one of nine sweeps."""
+    for first in np.random.default_rng(0).uniform(5.0, 80.0, 100).tolist():
+        sweep = SweptSine(first=first, last=1.1 * first, duration=14 / first, acceleration=1.0)
+        asked = {"structure": BEAM, "excitation": sweep, "start": (0.0,) * 4}
+        times = ShakeJob(name="", **asked, sample_rate=50.0 * first, accuracy=1e-6).times()
+        assert len(times) == 701 and 0.0 <= sweep.duration - times[-1] < 1e-14

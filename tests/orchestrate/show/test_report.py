@@ -15,7 +15,7 @@ import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.show.answers import title_of
 from orchestrate.show.page import Page, Section, Table, Verdict, format_number, format_with_error
-from orchestrate.show.verdict import format_odds, make_verdict, measured_record, verdict_sections
+from orchestrate.show.verdict import make_verdict, measured_record, verdict_sections
 
 EVIL = "<script>alert(\"1\")</script> & 'others'"
 RATE = 1000.0
@@ -128,8 +128,6 @@ def test_numbers_have_the_digits_of_their_errors():
     assert format_with_error(42.0, np.nan, "Hz") == "42 Hz"
     assert format_with_error(-3.4e-7, 4.4e-7, "m") == "-0.34 ± 0.44 µm"
     assert (format_number(np.inf, "Hz"), format_number(2e-6, "m")) == ("–", "2 µm")
-    odds = [format_odds(value) for value in (23.7, 2001.0, 0.0005)]
-    assert odds == ["24 to 1", "2000 to 1", "1 to 2000"]
 
 
 def test_nothing_is_no_report(tmp_path):
@@ -145,7 +143,7 @@ def verdict():
     return xr.Dataset(
         {
             "verdict": ((), "delaminated"),
-            "odds": ((), 300.0),
+            "share": ((), 1.0),
             "misfit": ("hypothesis", [2.0, 0.5]),
             "value": (("hypothesis", "parameter"), [[0.3, np.nan], [np.nan, 42.0]]),
             "standard_error": (("hypothesis", "parameter"), [[0.1, np.nan], [np.nan, 0.5]]),
@@ -191,8 +189,8 @@ def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is(verdict):
     assert make_verdict(verdict).sentence.endswith("frequencies fitted: f1 = 42.00 ± 0.50 Hz.")
     doubted = make_verdict(verdict.assign_attrs(wiring="face 1: polarity?")).sentence
     assert doubted.startswith("The wiring is doubtful: face 1: polarity?.")
-    odds = [words for words in sections["Why"].points if words.startswith("The odds")]
-    assert "300 to 1" in odds[0] and "blocks" in odds[0]
+    (share,) = [words for words in sections["Why"].points if "blocks" in words]
+    assert "decides in 100 % of the records" in share and " to 1" not in share
     without = verdict.assign_attrs(m1=float("nan"))
     sections = {section.heading: section for section in verdict_sections(without)}
     assert not any("kg" in words for words in sections["What was assumed"].points)

@@ -17,18 +17,21 @@ from .records import ANALYSES, DAMPED, SWEEP, analyses, make, swept_record
 
 
 def integrated(time, base, frequency, damping):
-    """Largest responses during and after a base acceleration that is straight between samples."""
+    """Largest responses during and after a base acceleration that is straight between samples.
+
+    It is zero a sample before and a sample after.
+    """
+    time, base = np.pad(time, 1, "reflect", reflect_type="odd"), np.pad(base, 1)
     w = 2.0 * math.pi * frequency
 
     def acceleration(y):
         return -2.0 * damping * w * y[1] - w**2 * y[0]
 
     def rates(t, y):
-        return [y[1], acceleration(y) - np.interp(t, time, base, right=0.0)]
+        return [y[1], acceleration(y) - np.interp(t, time, base)]
 
     state, peaks = [0.0, 0.0], []
-    step = time[1] - time[0]
-    end = time[-1] + step
+    step, end = time[1] - time[0], time[-1]
     for first, last in ((time[0], end), (end, end + 1.5 / frequency)):
         grid = np.linspace(first, last, 4000)
         longest = min(step, 0.05 / frequency)
@@ -41,15 +44,16 @@ def integrated(time, base, frequency, damping):
 
 
 @pytest.mark.parametrize("damping", ordinary([0.05, 0.0, 0.5]))
-@pytest.mark.parametrize("frequency", [8.0, 40.0, 110.0, 300.0])
+@pytest.mark.parametrize("frequency", [8.0, 40.0, 110.0, 300.0, 900.0])
 def test_peaks_are_those_of_an_integration(frequency, damping):
-    """A pulse that begins and ends at zero, and one that is cut off beside it."""
+    """A pulse that begins and ends at zero, one that is cut off beside it, and one that is held."""
     rate, time = 2000.0, np.arange(61) / 2000.0
     pulse = 100.0 * np.sin(np.pi * np.minimum(time / 0.011, 1.0))
     cut = np.where(time < 0.02, pulse, 0.0) + 30.0 * np.sin(2 * np.pi * 70.0 * time) * (time > 0.01)
     cut[-1] = 0.0
-    answer = shock_spectrum(make(rate, pulse, cut), frequencies=[frequency], damping=damping)
-    for channel, base in (("box_acceleration", pulse), ("acceleration1", cut)):
+    held = np.full(61, 5.0)  # from the first sample to the last: no step
+    answer = shock_spectrum(make(rate, pulse, cut, held), frequencies=[frequency], damping=damping)
+    for channel, base in zip(answer.channel.values, (pulse, cut, held), strict=True):
         primary, residual = integrated(time, base, frequency, damping)
         shown = answer.sel(channel=channel).isel(frequency=0)
         assert np.isclose(float(shown.primary), primary, rtol=4e-3)
