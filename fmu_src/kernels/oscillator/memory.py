@@ -63,6 +63,7 @@ EVALUATIONS = slot()
 EVALUATION_LIMIT = slot()
 CLEARANCE = slot()
 E_SLOPE = slot()
+STICKING_ENERGY = slot()
 TIME = slot()  # communication point reached, s (the independent variable)
 
 # -- constants derived from the parameters ---------------------------------------------------------
@@ -72,6 +73,7 @@ SHARE = slot()  # 1/(1 + mu), the part of mass 1 in both
 FORCE_V = slot()  # 2 (D1 - D2), and
 FORCE_X = slot()  # omega1^2 - omega2^2: the coefficients of (18)
 FASTEST = slot()  # largest omega_i
+STICKING_TIME = slot()  # gamma (1 - e)/FASTEST: a flight after which the masses do not stick
 GAP_OFFSET = slot()  # the gap between unloaded springs, m: the clearance; 0 where bonded
 REST_1 = slot()  # where both masses rest while they are held together, from unloaded springs, m
 REST_2 = slot()
