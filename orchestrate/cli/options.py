@@ -54,8 +54,7 @@ def parameter_help(name: str, width: int = 94, indent: int = 24) -> str:
 QUANTITIES = f"""quantities:
   m1 m2, k1 k2, d1 d2   masses kg, stiffnesses N/m, dampers N s/m
   e                     coefficient of restitution: speed after an impact over that before
-  gamma                 end of chattering: the masses stick where the next flight would last
-                        less than gamma/omega
+{parameter_help("gamma")}
 {"".join(parameter_help(name) + chr(10) for name in ADDED)}\
   omega = sqrt(k1/m1)   unit of frequency, rad/s
   mu = m2/m1, kappa = k2/k1

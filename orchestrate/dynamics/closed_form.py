@@ -32,11 +32,11 @@ def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
 class ClosedForm:
     """Coefficients of the closed-form motion between impacts, non-dimensional."""
 
-    # frequency ratio, mass ratio (2), restitution (15), end of chattering (17)
+    # frequency ratio, mass ratio (2), restitution (15)
     eta: float
     mu: float
     e: float
-    gamma: float
+    sticking_time: float  # gamma (1 - e) over the faster half's frequency: end of chattering (17)
     e_slope: float  # decrease of the restitution with the closing speed
     # D_i (8) and omega_i^2 (7)
     damping: Floats
@@ -82,7 +82,7 @@ class ClosedForm:
             eta=eta,
             mu=m2 / m1,
             e=structure.e,
-            gamma=structure.gamma,
+            sticking_time=structure.gamma * (1.0 - structure.e) / max(1.0, stiffness[1] ** 0.5),
             e_slope=structure.e_slope * omega * excitation.length(structure),
             damping=damping,
             stiffness=stiffness,

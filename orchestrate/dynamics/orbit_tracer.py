@@ -76,7 +76,7 @@ class OrbitPoint:
         orbit, form = self.orbit, self.orbit.form
         nodes = orbit.nodes
         force = form.force(nodes[:, POSITION], nodes[:, VELOCITY])
-        margins = 2.0 * form.parting(nodes[:, CLOSING]) + form.gamma * force
+        margins = 2.0 * form.parting(nodes[:, CLOSING]) + form.sticking_time * force
         return np.where(force < 0.0, margins, np.inf)
 
     @property

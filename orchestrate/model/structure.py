@@ -147,7 +147,8 @@ class Structure(Described):
     e : float
         Coefficient of restitution, 0 to 1.
     gamma : float
-        End of chattering, as a time in units of 1/omega, see (17).
+        End of chattering, see (17): pressed together, the masses stick where all flights that are
+        left would last less than gamma over the faster half's sqrt(k/m); never at e = 1.
     clearance : float
         Gap between the faces where both springs are unloaded, m. Below zero the masses are pressed
         together: at rest with the force ``preload``, at the displacements ``at_rest``. A bonded

@@ -25,7 +25,8 @@ SYMBOLS = {
     "x_rel": "gap $x_2 - x_1$ in m",
     "v_rel": r"gap velocity $\dot{x}_2 - \dot{x}_1$ in m/s",
 }
-USUAL_VALUES = {"mu": 1.0, "kappa": 1.2, "gamma": 1e-4, "omega": 1.0}  # what a title leaves out
+# what a title leaves out
+USUAL_VALUES = {"mu": 1.0, "kappa": 1.2, "gamma": STRUCTURE["gamma"].default, "omega": 1.0}
 RATIOS = ("D", "D1", "D2", "mu", "kappa", "omega")
 HALF_PARAMETERS = {"m1", "m2", "k1", "k2", "d1", "d2", "mu", "kappa", "omega", "D", "D1", "D2"}
 HALF_PARAMETERS |= {"f1", "f2", "zeta1", "zeta2"}

@@ -21,7 +21,7 @@ from .parameter_sets import ParameterSet, draw_parameter_set
 STATE = (
     *("x1", "x2", "v1", "v2", "x_rel", "v_rel", "xi1", "xi2", "xi_rel", "box_force"),
     *("contact_force", "in_contact", "phase", "impact_count", "impact_time", "impact_velocity"),
-    *("impact_energy", "contact_count"),
+    *("impact_energy", "contact_count", "sticking_energy"),
 )
 STEP = ("box_impulse", "box_impulse_moment", "x_rel_max", "evaluations")  # of the last step alone
 OUTPUTS = (*STATE, *STEP)

@@ -28,13 +28,13 @@ class Motion:
             **values,
         }
         self.acceleration = acceleration or (lambda _: 0.0)  # of the box, beside the harmonic one
-        self.omega = np.sqrt(p["k1"] / p["m1"])
+        self.own = max(np.sqrt(p["k1"] / p["m1"]), np.sqrt(p["k2"] / p["m2"]))
         self.total = p["m1"] + p["m2"]
         preload = max(0.0, -p["clearance"]) * p["k1"] * p["k2"] / (p["k1"] + p["k2"])
         x1, x2 = p["x1_start"] - preload / p["k1"], p["x2_start"] + preload / p["k2"]
         self.state = np.array([x1, p["v1_start"], x2, p["v2_start"]])
         self.size = np.abs(self.state).max() + p["box_amplitude"] + abs(p["clearance"])
-        fastest = max(p["box_frequency"], self.omega, np.sqrt(p["k2"] / p["m2"]))
+        fastest = max(p["box_frequency"], self.own)
         self.time, self.impacts, self.longest = 0.0, [], 0.2 / fastest
         self.releases, self.sticks = 0, []
         self.step = self.longest
@@ -120,7 +120,8 @@ class Motion:
         parting = p["e"] * closing / (1.0 + p.get("e_slope", 0.0) * closing)
         self.impacts.append(self.time)
         self.sticks.append(False)
-        if pull < 0.0 and 2.0 * parting * self.omega < p["gamma"] * -pull:
+        left = p["gamma"] / self.own  # s: all flights that are left
+        if pull < 0.0 and 2.0 * parting < left * (1.0 - p["e"]) * -pull:
             self.mode, parting, self.sticks[-1] = CONTACT, 0.0, True
         else:
             self.hop = 2.0 * parting / -pull if pull < 0.0 else 4.0 * self.longest

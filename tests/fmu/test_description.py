@@ -26,7 +26,7 @@ box_snap m/s4 0 | box_crackle m/s5 0
         OUTPUTS: """
 x1 m | x2 m | v1 m/s | v2 m/s | x_rel m | v_rel m/s | xi1 1 | xi2 1 | xi_rel 1 | box_force N |
 box_impulse N.s | box_impulse_moment N.s2 | contact_force N | phase rad | impact_time s |
-impact_velocity m/s | impact_energy J | x_rel_max m
+impact_velocity m/s | impact_energy J | x_rel_max m | sticking_energy J
 """,
     },
     "MotorShaker": {

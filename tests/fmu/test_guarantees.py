@@ -108,7 +108,7 @@ def test_amplitudes_scale_to_the_last_bit(fmu, clearance, e_slope):
     lengths |= {"v1_start": 0.1, "v2_start": -0.3, "box_amplitude": 0.7}
     powers = dict.fromkeys(("xi1", "xi2", "xi_rel", "phase", "in_contact", "evaluations"), 0)
     powers |= dict.fromkeys(("impact_count", "impact_time", "contact_count"), 0)
-    powers["impact_energy"] = 2
+    powers |= {"impact_energy": 2, "sticking_energy": 2}
     reference = {}
     for n in (0, -40, 7, 60):
         scale = 2.0**n

@@ -34,7 +34,7 @@ def kernels():
 
 def of_an_orbit_branch(limits):
     """Chattering whose impacts come and go, up to where permanent contact is lost."""
-    structure = Structure.nondimensional(D=0.02, e=0.4)
+    structure = Structure.nondimensional(D=0.02, e=0.4, gamma=1.8257e-4)
     found = branch(structure, eta=sum(limits) / 2.0, limits=limits, progress=False)
     kinds = found.bifurcation_kind.values.tolist()
     decided = [found.sizes["point"], found.first_end, found.last_end, kinds]

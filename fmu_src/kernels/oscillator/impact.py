@@ -37,8 +37,10 @@ def chattering_ends(m, separation, force):
     """Return whether chattering ends here in permanent contact, (17) without a velocity scale.
 
     The masses are pressed together by ``force`` (18) < 0 and would part with the velocity
-    ``separation``: the next flight, a parabola of duration ``2 separation/|force|``, would last
-    less than gamma. Both sides scale with the amplitude.
+    ``separation``. The next flight is a parabola of duration ``2 separation/|force|``, each later
+    one shorter by e at least: all that are left last less than gamma over the faster half's
+    frequency. Both sides scale with the amplitude, and neither knows which half is number 1. With
+    e = 1 chattering has no end.
 
     Parameters
     ----------
@@ -48,18 +50,21 @@ def chattering_ends(m, separation, force):
     force : float
         f of (18) at the common velocity: the gap's acceleration.
     """
-    return force < 0.0 and 2.0 * separation < m[at.GAMMA] * -force
+    return force < 0.0 and 2.0 * separation < m[at.STICKING_TIME] * -force
 
 
-def count_impact(m, time, closing, lost):
+def count_impact(m, time, closing, e, sticks):
     """Count an impact and add its loss to the energy balance.
 
-    ``closing`` is the velocity before it (m per unit of tau), ``lost`` the part of its square that
-    is lost.
+    ``closing`` is the velocity before it (m per unit of tau), ``e`` its coefficient of restitution.
+    Where the masses stick, the energy of the flights left out is lost too.
     """
     m[at.IMPACT_COUNT] += 1.0
     m[at.IMPACT_TIME] = time
     velocity = closing * m[at.OMEGA]
     m[at.IMPACT_VELOCITY] = velocity
     reduced_mass = m[at.M2] * m[at.SHARE]
-    m[at.IMPACT_ENERGY] += 0.5 * reduced_mass * velocity * velocity * lost
+    energy = 0.5 * reduced_mass * velocity * velocity
+    m[at.IMPACT_ENERGY] += energy * (1.0 if sticks else (1.0 - e) * (1.0 + e))
+    if sticks:  # rarely
+        m[at.STICKING_ENERGY] += energy * e * e

@@ -244,11 +244,9 @@ def collide(m, x, v1, v2):
     common = common_velocity(m, v1, v2)
     time = m[at.START_TIME] + (m[at.ORIGIN] + m[at.ORIGIN_LOW]) / m[at.OMEGA]
     e = restitution_coefficient(m, closing)
-    if chattering_ends(m, e * closing, gap_acceleration(m, x, common)):
-        count_impact(m, time, closing, 1.0)
-        return common, common
-    count_impact(m, time, closing, (1.0 - e) * (1.0 + e))
-    return velocities_after_impact(m, v1, v2, e)
+    sticks = chattering_ends(m, e * closing, gap_acceleration(m, x, common))
+    count_impact(m, time, closing, e, sticks)
+    return (common, common) if sticks else velocities_after_impact(m, v1, v2, e)
 
 
 def begin_touching_flight(m, x, v1, v2):

@@ -40,6 +40,7 @@ def derive(m):
     set_oscillator(m, at.OSCILLATOR_3, damping_3, (1.0 + kappa) / (1.0 + mu))
     m[at.SPACING] = 0.0  # the nodes are to be set anew
     m[at.FASTEST] = max(1.0, math.sqrt(omega_2_squared))  # omega_3 lies between
+    m[at.STICKING_TIME] = m[at.GAMMA] * (1.0 - m[at.E]) / m[at.FASTEST]
     clearance = m[at.CLEARANCE] if m[at.BONDED] == 0.0 else 0.0
     m[at.GAP_OFFSET] = clearance
     m[at.REST_1] = clearance * (kappa / (1.0 + kappa))

@@ -37,7 +37,7 @@ from .roots import value_on_decided_side, walk
 
 TOUCHING = 4.440892098500626e-16  # 2**-51, relative: a gap at the start that is rounding alone
 WORK_BASE = 100000.0  # evaluations of the event function a step may take whatever its length,
-WORK_RATE = 256.0  # and in a time gamma, the shortest flight that is told from sticking,
+WORK_RATE = 256.0  # and in gamma radians of the fastest oscillation,
 WORK_MOST = 1e7  # and at the very most: a second or two, compiled; EVALUATION_LIMIT may allow less
 
 
@@ -63,6 +63,7 @@ def initialize(m, time):
     clear_peaks(m)
     m[at.BOX_IMPULSE] = 0.0
     m[at.BOX_IMPULSE_MOMENT] = 0.0
+    m[at.STICKING_ENERGY] = 0.0
     x1, x2, gap = starting_point(m)
     if gap < 0.0:
         m[at.REPORT] = m[at.X1_START] - m[at.GAP_OFFSET]

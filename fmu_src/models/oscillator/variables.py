@@ -117,9 +117,9 @@ SCALARS = (
     parameter(
         "gamma",
         "1",
-        1e-4,
-        "End of chattering: pressed together, the masses stick where the next flight would "
-        "last less than gamma/omega",
+        3.6515e-4,
+        "End of chattering: pressed together, the masses stick where all flights that are left "
+        "would last less than gamma over the higher of sqrt(k1/m1) and sqrt(k2/m2); never at e = 1",
         minimum=1e-9,
         maximum=1.0,
     ),
@@ -332,8 +332,17 @@ VARIABLES = numbered(
             **COUNT,
         ),
         evaluation_limit("event function"),
-        *ADDED,
+        *ADDED[:2],
+        output(
+            "sticking_energy",
+            "J",
+            "Part of impact_energy: energy of the flights left out where chattering ended",
+            IMPACT,
+            minimum=0.0,
+            **DISCRETE,
+        ),
         *PEAKS,
+        *ADDED[2:],  # value references follow the order of publication
     ),
     memory,
 )

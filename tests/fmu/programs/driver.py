@@ -22,7 +22,7 @@ OF_A_STEP = ("box_impulse", "box_impulse_moment", "x_rel_max", "evaluations")
 STATE = (
     *("x1", "x2", "v1", "v2", "x_rel", "v_rel", "xi1", "xi2", "xi_rel", "box_force"),
     *("contact_force", "in_contact", "phase", "impact_count", "impact_time", "impact_velocity"),
-    *("impact_energy", "contact_count"),
+    *("impact_energy", "contact_count", "sticking_energy"),
 )
 COMMON = (*STATE, *OF_A_STEP[:3])
 messages = []  # of the call under way

@@ -24,6 +24,7 @@ PROMISED = {  # given out before: saved states and other people's scripts rely o
     **{"m1": 0, "e": 6, "box_amplitude": 15, "x1": 21, "x_rel_max": 40, "sample_count": 42},
     **{"x1_sample[1]": 43, "x2_sample[1]": 243, "v1_sample[1]": 443, "v2_sample[200]": 842},
     **{"evaluations": 843, "evaluation_limit": 844, "clearance": 845, "e_slope": 846},
+    "sticking_energy": 847,
 }
 
 

@@ -21,7 +21,7 @@ DEFAULTS = {
     "d1": 0.01,
     "d2": 0.01,
     "e": 0.7,
-    "gamma": 1e-4,
+    "gamma": 3.6515e-4,
     "box_amplitude": 1.0,
     "box_frequency": 0.4,
     "x_rel_max_on": 1.0,

@@ -1,8 +1,8 @@
 """Whole trajectories without the kernel: event by event in high precision, and by an ODE solver
 with event location.
 
-Flights begin and end as in the corrected (12)-(20), in SI units; ``gamma`` counts in units of
-1/omega of mass 1.
+Flights begin and end as in the corrected (12)-(20), in SI units; the masses stick where the
+flights that are left last less than ``gamma`` over the faster half's frequency.
 """
 
 import mpmath as mp
@@ -31,7 +31,8 @@ def event_by_event(values, state, stop):
 
     Events are (time, kind): "impact", "stick", "release".
     """
-    omega = mp.sqrt(mp.mpf(values["k1"]) / values["m1"])
+    fastest = mp.sqrt(max(mp.mpf(values[f"k{i}"]) / values[f"m{i}"] for i in "12"))
+    left = mp.mpf(values["gamma"]) * (1 - mp.mpf(values["e"])) / fastest
     time, mode, events, blind = mp.mpf(0), FLIGHT, [], 0.0
     while True:
         phase = mp.mpf(values.get("phase_start", 0.0)) + values["box_frequency"] * time
@@ -57,7 +58,7 @@ def event_by_event(values, state, stop):
         pull = opening(
             values, x, w1 + (w2 - w1) * mp.mpf(values["m2"]) / (mp.mpf(values["m1"]) + values["m2"])
         )
-        if pull < 0 and 2 * (w2 - w1) * omega < values["gamma"] * -pull:
+        if pull < 0 and 2 * (w2 - w1) < left * -pull:
             w1 = w2 = collide({**values, "e": 0}, v1, v2)[0]
             mode = CONTACT
         events.append((time, "stick" if mode == CONTACT else "impact"))

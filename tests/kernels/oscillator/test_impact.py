@@ -41,7 +41,7 @@ def test_momentum_restitution_and_energy(mu, e, v1, v2):
     speed = abs(v1) + abs(v2)
     assert w1 + mu * w2 == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
     assert w2 - w1 == pytest.approx(e * (v1 - v2), abs=4e-15 * speed)
-    count_impact(m, 0.0, v1 - v2, (1.0 - e) * (1.0 + e))
+    count_impact(m, 0.0, v1 - v2, e, False)
     lost = kinetic(m, v1, v2) - kinetic(m, w1, w2)
     assert m[at.IMPACT_ENERGY] == pytest.approx(lost, abs=1e-13 * kinetic(m, speed, speed))
 
@@ -84,7 +84,8 @@ def test_without_a_slope_the_coefficient_is_e_to_the_last_bit(e, closing):
 def test_sticking_keeps_momentum_and_loses_the_closing_energy(mu, v1, v2):
     m = structure(mu, 0.7)
     common = common_velocity(m, v1, v2)
-    count_impact(m, 0.0, v1 - v2, 1.0)
+    count_impact(m, 0.0, v1 - v2, 0.7, True)
+    assert m[at.STICKING_ENERGY] == pytest.approx(0.49 * m[at.IMPACT_ENERGY], rel=1e-14)
     speed = abs(v1) + abs(v2)
     assert (1.0 + mu) * common == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
     lost = kinetic(m, v1, v2) - kinetic(m, common, common)
@@ -92,13 +93,18 @@ def test_sticking_keeps_momentum_and_loses_the_closing_energy(mu, v1, v2):
 
 
 def test_masses_that_are_pulled_apart_do_not_stick():
-    m = unstarted(gamma=1.0)
+    m = started(gamma=1.0, e=0.5, k2=4.0)  # the flights left last 2 v/(1 - e), the limit is 1/2
     assert not chattering_ends(m, 0.0, 0.0)
     assert not chattering_ends(m, 1e-12, 1.0)
     assert not chattering_ends(m, 0.0, 1.0)
     assert chattering_ends(m, 0.0, -1e-12)
-    assert not chattering_ends(m, 0.51, -1.0)  # the next flight lasts 1.02
-    assert chattering_ends(m, 0.49, -1.0)
+    assert not chattering_ends(m, 0.126, -1.0)
+    assert chattering_ends(m, 0.124, -1.0)
+
+
+def test_at_e_1_nothing_sticks():
+    assert not chattering_ends(started(gamma=1.0, e=1.0), 1e-300, -1e300)
+    assert chattering_ends(started(gamma=1.0, e=0.0), 0.0, -1e-300)
 
 
 def test_an_impact_at_the_start_counts():

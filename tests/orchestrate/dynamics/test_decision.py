@@ -23,8 +23,14 @@ from .settling import settling_run
 
 PAPER = Structure.nondimensional()
 USUAL = settling_run()
-CONTACT = Structure.nondimensional(mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291)
-HEAVY = Structure.nondimensional(mu=3.0755, kappa=0.54559, D1=0.01281, D2=0.01196, e=0.30528)
+# chattering ends where the next flight lasts less than 1e-4
+CONTACT = Structure.nondimensional(
+    mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291, gamma=1e-4 / (1.0 - 0.4291)
+)
+HEAVY = Structure.nondimensional(
+    **{"mu": 3.0755, "kappa": 0.54559, "D1": 0.01281, "D2": 0.01196},
+    **{"e": 0.30528, "gamma": 1e-4 / (1.0 - 0.30528)},
+)
 
 pytestmark = pytest.mark.usefixtures("exported")
 

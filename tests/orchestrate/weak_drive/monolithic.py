@@ -78,7 +78,8 @@ class Monolith:
         after[0] = after[2] = (o.m1 * x1 + o.m2 * x2) / both
         after[1] = after[3] = common
         pressed = self.parting(after)
-        sticks = pressed < 0.0 and 2.0 * rebound < o.gamma * np.sqrt(o.m1 / o.k1) * -pressed
+        left = o.gamma / np.sqrt(max(o.k1 / o.m1, o.k2 / o.m2))
+        sticks = pressed < 0.0 and 2.0 * rebound < left * (1.0 - o.e) * -pressed
         if not sticks:
             after[1] = common - rebound * o.m2 / both
             after[3] = common + rebound * o.m1 / both
