@@ -146,12 +146,14 @@ class Child:
         if "pairs" in value:
             return {name: self.unpack(one, room) for name, one in value["pairs"]}
         if "texts" in value:
-            return np.array(value["texts"], object).reshape(value["shape"])
+            texts = value["texts"]
+            take(room, 4 * len(texts) * max(map(len, texts), default=0))
+            return np.array(texts, str).reshape(value["shape"])
         kind = np.dtype(value.get("array") or value["scalar"])
-        size = prod(value["shape"]) * kind.itemsize
-        room[0] -= size
-        if kind.kind not in "biufcSU" or size < 0 or room[0] < 0:
+        if kind.kind not in "biufcSU":
             raise ValueError
+        size = prod(value["shape"]) * kind.itemsize
+        take(room, size)
         array = np.ndarray(value["shape"], kind, self.exactly(size))
         return array if "array" in value else array[()]
 
@@ -174,6 +176,13 @@ class Child:
             with suppress(OSError):
                 stream and stream.close()  # type: ignore[func-returns-value]
         self.process.wait()
+
+
+def take(room: list[int], size: int) -> None:
+    """Take bytes of the room that is left; raise if there is less."""
+    room[0] -= size
+    if size < 0 or room[0] < 0:
+        raise ValueError
 
 
 IDLE: dict[int, Child] = {}  # by the process that started it: a fork must not ask its parent's

@@ -27,7 +27,7 @@ def read_dataset(path: Path) -> xr.Dataset:
         name: (tuple(one["dims"]), one["values"], one["attributes"])
         for name, one in content["variables"].items()
     }
-    return xr.decode_cf(xr.Dataset(variables, attrs=content["attributes"]))
+    return xr.decode_cf(xr.Dataset(variables, attrs=content["attributes"])).load()
 
 
 def check_size(path: Path, size: int) -> None:
