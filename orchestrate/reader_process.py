@@ -26,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import InputError, printable
+from .errors import InputError, first_line, printable
 
 log = logging.getLogger(__name__)
 SECONDS, BYTES_A_SECOND = 10.0, 1e6  # processor time: some, and more for a large file
@@ -70,7 +70,11 @@ def read_in_process(
     child = IDLE.pop(os.getpid(), None) if keep else None
     answer = child and child.ask(request)
     if not answer:  # a process that has read other files may suffer from these
-        child = Child(whole.parent)
+        try:
+            child = Child(whole.parent)
+        except OSError as error:
+            text = f"the process that reads files cannot be started ({first_line(error)})"
+            raise InputError(f"{path}: {text}; expected room for a process") from None
         answer = child.ask(request)
     assert child is not None
     if not keep or not answer or IDLE.setdefault(os.getpid(), child) is not child:

@@ -1,6 +1,7 @@
 """Write files of measurements of every format: good ones, and hostile ones by a seed."""
 
 import random
+import re
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +13,7 @@ from scipy.io import wavfile
 
 import orchestrate
 from orchestrate.running.store import write_netcdf
-from tests.faults import FILE_DAMAGE
+from tests.faults import FILE_DAMAGE, flip_a_bit
 
 COUNT, RATE = 400, 1000.0
 TIME = np.arange(COUNT) / RATE
@@ -57,6 +58,7 @@ TOKENS = (  # put into texts
         "Delta_X\t0\t0\n",
     ),
 )
+NUMBERS = ("0", "-0", "1e300", "-1e308", "5e-324", "1e16", "0.1234567", "nan", "3", "-7.5")
 WORDS = (0, 1, 2, 7, 8, 14, 15, 255, 65_535, 2**31 - 1, 2**31, 2**32 - 1, 2**32 - 8)
 LVM = """LabVIEW Measurement\t
 Writer_Version\t2
@@ -112,9 +114,12 @@ def write_nested_mat(path: Path) -> None:
 
 
 def write_hdf5(path: Path) -> None:
-    """HDF5 with the name of a MAT file, as MATLAB writes version 7.3."""
-    orchestrate.write_record(record(), path.with_suffix(".nc"))
-    path.with_suffix(".nc").rename(path)
+    """HDF5 behind the heading of a MAT file of version 7.3."""
+    other = path.with_suffix(".nc")
+    orchestrate.write_record(record(), other)
+    heading = b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM"
+    path.write_bytes(heading.ljust(512, b"\0") + other.read_bytes())
+    other.unlink()
 
 
 def write_stored(path: Path) -> None:
@@ -161,6 +166,21 @@ def insert_tokens(path: Path, draw: random.Random) -> None:
         token = draw.choice(TOKENS).encode(draw.choice(("utf-8", "utf-16-le")))
         data[begin : begin + draw.choice((0, 1, len(token)))] = token
     path.write_bytes(data)
+
+
+def change_numbers(path: Path, draw: random.Random) -> None:
+    """Some numbers of a text become extreme ones, or a column's scale changes."""
+    lines = path.read_text(errors="replace").split("\n")
+    for _ in range(draw.choice((1, 2, 300))):
+        row = draw.randrange(len(lines))
+        places = [m.span() for m in re.finditer(r"-?\d+(\.\d+)?(e[+-]?\d+)?", lines[row])]
+        if places:
+            begin, end = draw.choice(places)
+            number = draw.choice(
+                (*NUMBERS, lines[row][begin:end] + draw.choice(("e9", "e-9", "5")))
+            )
+            lines[row] = lines[row][:begin] + number + lines[row][end:]
+    path.write_text("\n".join(lines))
 
 
 def change_words(path: Path, draw: random.Random) -> None:
@@ -222,8 +242,8 @@ def write_hostile(kind: str, folder: Path, draw: random.Random) -> tuple[Path, s
     ending, write = FORMATS[kind]
     path = folder / f"a{ending}"
     write(path)
-    own = insert_tokens if kind in TEXTS else change_words
-    harms = [own, own, *HARMS[:4], *FILE_DAMAGE.values(), *[inflate] * (draw.random() < 0.2)]
+    own = [insert_tokens, change_numbers] if kind in TEXTS else [change_words, flip_a_bit]
+    harms = [*own, *own, *HARMS[:4], *FILE_DAMAGE.values(), *[inflate] * (draw.random() < 0.2)]
     done = [draw.choice(harms) for _ in range(draw.choice((1, 1, 1, 2)))]
     for harm in done:
         if path.stat().st_size:

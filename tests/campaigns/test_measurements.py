@@ -58,7 +58,7 @@ def attack(path: Path, kind: str, arguments: dict[str, Any]) -> tuple[str, str]:
             if kind not in ("stored", "curve"):
                 finite = all(np.isfinite(one.values).all() for one in data.data_vars.values())
                 problem = "" if finite else "a record with numbers that are none"
-    others = [str(one.message) for one in warned if not issubclass(one.category, ResourceWarning)]
+    others = [str(one.message) for one in warned]
     problem = problem or next(filter(None, map(check_line, others)), "")
     seconds = time.monotonic() - begun
     return fate, problem or (f"took {seconds:.0f} s" if seconds > SLOW else "")
