@@ -5,7 +5,7 @@
 - Processor time and memory are limited by the size of the file, a deadline ends what hangs.
 - What comes back are plain numbers and texts, not more than the memory that was allowed.
 - All else (a crash, an exception of any library, too much of anything) is one line.
-- A process that read a file well may read the next one, unless its reader is compiled.
+- A process that did not end reads the next file, unless a compiled reader was at work.
 """
 
 from __future__ import annotations
@@ -68,24 +68,29 @@ def read_in_process(
         **{"arguments": arguments, "seconds": seconds, "memory": allowed_memory(size)},
     }
     child = IDLE.pop(os.getpid(), None) if keep else None
-    answer = child and child.ask(request)
-    if not answer:  # a process that has read other files may suffer from these
-        try:
-            child = Child(whole.parent)
-        except OSError as error:
-            text = f"the process that reads files cannot be started ({first_line(error)})"
-            raise InputError(f"{path}: {text}; expected room for a process") from None
+    answer = child.ask(request) if child else {}
+    if child is None or not (answer or child.timed_out()):  # it may suffer from files before
+        child = start_child(path, whole.parent)
         answer = child.ask(request)
-    assert child is not None
     if not keep or not answer or IDLE.setdefault(os.getpid(), child) is not child:
         child.close()
-    answer = answer or {"failed": child.reason(seconds)}
+    late = f"not read within {seconds:.3g} s"
+    answer = answer or {"failed": late if child.timed_out() else "its reader broke down"}
     for note in answer.get("notes", ()):
         log.info("%s", printable(note.replace(str(whole), str(path))))
     if "value" in answer:
         return answer["value"]
     text = answer.get("refused") or f"{path}: {printable(answer['failed'], 200)}; {expected}"
     raise InputError(printable(text.replace(str(whole), str(path))))
+
+
+def start_child(path: Path, folder: Path) -> Child:
+    """Start a process that is to read a file in a folder."""
+    try:
+        return Child(folder)
+    except OSError as error:
+        text = f"the process that reads files cannot be started ({first_line(error)})"
+        raise InputError(f"{path}: {text}; expected room for a process") from None
 
 
 class Child:
@@ -166,12 +171,10 @@ class Child:
         self.is_late = True
         self.process.kill()
 
-    def reason(self, seconds: float) -> str:
-        """Return why the process ended without an answer."""
-        worn_out = -getattr(signal, "SIGXCPU", 0)  # by the limit on the processor time
-        if self.is_late or (worn_out and self.process.returncode == worn_out):
-            return f"not read within {seconds:.3g} s"
-        return "its reader broke down"
+    def timed_out(self) -> bool:
+        """Return whether the deadline or the limit on the processor time ended the process."""
+        worn_out = -getattr(signal, "SIGXCPU", 0)
+        return self.is_late or bool(worn_out and self.process.returncode == worn_out)
 
     def close(self) -> None:
         """End the process."""
