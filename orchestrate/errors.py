@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import unicodedata
+
 
 class VibroimpactError(Exception):
     """Base class of all exceptions that this package raises on purpose."""
@@ -29,3 +31,21 @@ class WorkerError(VibroimpactError, RuntimeError):
 
 class Terminated(KeyboardInterrupt):
     """``KeyboardInterrupt`` for SIGTERM, to tell it from Ctrl-C."""
+
+
+def printable(text: str, max_length: int = 1000) -> str:
+    r"""Return a text as one line with control characters escaped; cut a long one in its middle."""
+    if not text.isprintable():
+        text = "".join(letter if letter.isprintable() else escaped(letter) for letter in text)
+    half = max_length // 2
+    return text if len(text) <= max_length else f"{text[:half]} ... {text[-half:]}"
+
+
+def escaped(letter: str) -> str:
+    """Return a blank for a kind of blank, and another letter as Python writes it."""
+    return " " if unicodedata.category(letter) == "Zs" else repr(letter)[1:-1]
+
+
+def first_line(error: BaseException) -> str:
+    """Return the first line of an exception's text, or its type's name without any text."""
+    return (str(error).splitlines() or [type(error).__name__])[0]

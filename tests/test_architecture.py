@@ -22,7 +22,7 @@ FILES = sorted(
     if path.suffix in (".py", ".pyi")
 )
 GROUND = {"constants", "errors", "files", "flags", "lazy", "temporary", "units", "version"}
-GROUND |= {"model"}
+GROUND |= {"model", "reader_child", "reader_process"}
 BELOW_ANSWERS = GROUND | {"fmu", "running"}
 FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know beside itself
     "constants": set(),
@@ -31,6 +31,8 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "lazy": set(),
     "version": set(),
     "files": {"errors"},
+    "reader_child": {"errors"},
+    "reader_process": {"errors"},
     "temporary": {"files"},
     "units": {"constants", "errors"},
     "model": GROUND - {"model"},
@@ -61,7 +63,7 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
     | {"kernels.electrodynamic_shaker"},
     "export": {"runtime", "kernels.repetition"},
 }
-DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/sources.py"}
+DYNAMIC = {"orchestrate/__init__.py", "orchestrate/reader_child.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them
     "fmpy": "orchestrate/fmu/",
     "matplotlib": ("orchestrate/show/", "tools/pictures/"),

@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError, StaleError, Terminated, VibroimpactError
+from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable
 from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest
 from ..version import __version__
 from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
@@ -196,10 +196,3 @@ def print_warnings_in_one_line() -> Iterator[None]:
 def print_error(line: str) -> None:
     """Print a line on standard error, with control characters escaped."""
     print(printable(line), file=sys.stderr)
-
-
-def printable(text: str, max_length: int = 1000) -> str:
-    r"""Return a text as one line with control characters escaped; cut a long one in its middle."""
-    plain = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
-    half = max_length // 2
-    return plain if len(plain) <= max_length else f"{plain[:half]} ... {plain[-half:]}"

@@ -149,12 +149,12 @@ def read_overlay(
 
 def read_earlier_result(option: str, path: Path) -> xr.Dataset:
     """Read the NetCDF result of an earlier command; raise naming the option if it is none."""
-    from ..running.store import load
+    from ..running.store import load_foreign
 
     if not path.is_file():
         raise InputError(f"{option} {path}: no such file; expected a result of an earlier command")
     try:
-        data = load(path)
+        data = load_foreign(path)
     except StoreError as error:
         expected = "" if "expected" in str(error) else "; expected a NetCDF file"
         raise InputError(f"{option} {error}{expected}") from None

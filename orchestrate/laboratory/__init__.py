@@ -23,9 +23,9 @@ module                    idea
 :mod:`.time_base`         rounded and uneven times made equal
 :mod:`.record_csv`        columns of numbers as text
 :mod:`.record_uff`        universal files
-:mod:`.record_mat`        MATLAB's files, read in a process of its own
+:mod:`.record_mat`        MATLAB's files
 :mod:`.record_labview`    LabVIEW's files
-:mod:`.record_files`      records read and written, of any kind of file
+:mod:`.record_files`      records read and written; what may come from anybody is read elsewhere
 :mod:`.resonance_curve`   a measured resonance curve: amplitudes of faces over the frequency
 :mod:`.curve_files`       resonance curves read from files
 :mod:`.analysis`          what an analyser shows of a record

@@ -33,6 +33,7 @@ from .record import CHANNELS, FORCE, SHORT_NAMES
 from .record_checks import ascends, first_hole, implausible_times
 
 MOST_NAMES = 12  # of columns in a message
+LONG_HEADING = 300  # letters of a heading that are read: patterns take the square of them in time
 FREQUENCIES = {  # in Hz
     **{"hz": 1.0, "1/s": 1.0, "khz": 1e3, "rad/s": 1.0 / TURN},
     **dict.fromkeys(("rpm", "1/min"), 1.0 / 60.0),
@@ -126,7 +127,7 @@ class Columns:
 
 def split_heading(heading: str) -> tuple[str, str]:
     """Split a column's heading; return its name and its unit, an empty string without one."""
-    plain = heading.strip().strip('"').strip()
+    plain = heading.strip().strip('"').strip()[:LONG_HEADING]
     parts = HEADING.fullmatch(plain)
     if parts is None and (quotient := QUOTIENT.fullmatch(plain)) and is_unit(quotient["unit"]):
         parts = quotient

@@ -28,8 +28,7 @@ from .columns import (
 )
 from .conversion import plain_unit
 from .pieces import Floats
-from .record_csv import read_csv
-from .record_files import check_file, file_kind
+from .record_files import check_file, file_kind, read_columns
 from .resonance_curve import CurveColumns, acceleration_factor, made_curve
 from .signals import LEVEL, checked
 
@@ -101,7 +100,7 @@ def read_curve(
     if file_kind(path) != "csv":
         raise InputError(f"{path}: expected columns of text (.csv, .txt, .tsv, .asc, .dat)")
     check_file(path)
-    table = read_csv(path, gaps=True)
+    table = read_columns(path, "csv", True)  # fields may be empty
     warn_of_left_out(table)
     places = curve_places(table, columns)
     if columns is None:

@@ -24,8 +24,8 @@ from .conversion import SENSITIVITY
 
 MOST_HEADING = 200  # lines
 SEPARATORS = (";", "\t", ",", " ")
-POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.I)
-COMMA = re.compile(r"[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.I)
+POINT = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.I)
+COMMA = re.compile(r"[+-]?(\d+(,\d*)?|,\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.I)
 NUMBERS = {".": POINT, ",": COMMA}
 TEXT = re.compile("|".join((r".*[^\W\d_].*", TEXTS["a clock time"], TEXTS["a date"])))
 BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}

@@ -5,25 +5,29 @@ from __future__ import annotations
 import os
 import stat
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import InputError, printable
 from ..files import check_path_encoding, reason, write_whole
 from ..lazy import xr
+from ..reader_process import read_in_process
+from ..running.netcdf import check_size, stored_size
 from .analysis.channels import CHANNELS as ACCELERATIONS
 from .columns import Column, Columns, converted_channels
 from .conversion import SMALLEST, ByChannel, number_by_channel
 from .record import CHANNELS, Reading, checked_record, unit_of_channel
 from .record_csv import read_csv, write_csv
-from .record_labview import read_lvm, read_tdms, unreadable
+from .record_labview import read_lvm, read_tdms
 from .record_mat import read_mat, write_mat
 from .record_uff import read_uff, write_uff
 
 MOST_BYTES = 1 << 30  # a file is read into the memory as a whole
+MOST_LETTERS = 200  # of a name or a unit
 ENDINGS = {
     **dict.fromkeys((".csv", ".txt", ".tsv", ".asc", ".dat"), "csv"),
     **dict.fromkeys((".uff", ".unv", ".uf", ".58"), "uff"),
@@ -92,9 +96,8 @@ def read_record(
     A velocity or a displacement is differentiated by its spectrum, up to half the sampling rate;
     the attribute ``converted`` says so. Times rounded to ten steps or less are recognised and
     become equal; ``time_base`` says what was done, and the jitter of resampled ones.
-    MAT files are read in a process of its own, which a damaged file may end. NetCDF files are read
-    by a library in C (HDF5) that a forged file may end together with the process: read those that
-    you trust.
+    A file is read in a process of its own, with limits of time and memory: one that is damaged, or
+    made to do harm, is refused in a line.
 
     Examples
     --------
@@ -109,7 +112,7 @@ def read_record(
     check_file(path)
     if scale is None and kind == "wav":
         raise InputError(f"{path}: scale = None; expected for a WAV file: m/s2 at its full scale")
-    table = READERS[kind](path)
+    table = read_columns(path, kind)
     if sample_rate is not None:
         table = replace(table, sample_rate=sample_rate)
     time, channels, read_as = converted_channels(table, columns, unit, sensitivity)
@@ -204,41 +207,40 @@ def check_file(path: Path) -> None:
 
 def read_netcdf(path: Path) -> Columns:
     """Read the variables over ``time`` of a NetCDF file, with their units."""
-    import xarray as xr
+    import netCDF4
 
-    try:
-        data = xr.load_dataset(path, engine="netcdf4", decode_times=False)
-    except Exception as error:  # of the HDF5 library too
-        raise unreadable(path, error, "NetCDF") from None
-    if "time" not in data.variables or data.time.dims != ("time",):
-        raise InputError(f"{path}: no variable time over itself; expected a record")
-    if "a1_abs" in data:  # a result of shake
-        if data.sizes.get("impact"):
-            text = "expected what sensors read of it: orchestrate.measure, then write_record"
-            raise InputError(f"{path}: simulated accelerations leave out the impacts; {text}")
-        shaken = {stored: name for name, stored in ACCELERATIONS.items() if stored in data}
-        data = data[list(shaken)].rename(shaken)
-    columns = [
-        Column(str(name), str(one.attrs.get("units", "")), one.values.astype(float))
-        for name, one in data.variables.items()
-        if one.dims == ("time",) and one.dtype.kind in "iuf"
-    ]
-    rate = data.attrs.get("sample_rate")
-    attributes = dict(data.attrs) if {"sensors", "source"} <= set(data.attrs) else {}
+    with netCDF4.Dataset(path) as file:
+        check_size(path, stored_size(file))
+        over_time = {n: one for n, one in file.variables.items() if one.dimensions == ("time",)}
+        if "time" not in over_time:
+            raise InputError(f"{path}: no variable time over itself; expected a record")
+        names = dict(zip(over_time, over_time, strict=True))
+        if "a1_abs" in file.variables:  # a result of shake
+            if "impact" in file.dimensions and file.dimensions["impact"].size:
+                text = "expected what sensors read of it: orchestrate.measure, then write_record"
+                raise InputError(f"{path}: simulated accelerations leave out the impacts; {text}")
+            names = {"time": "time", **{stored: name for name, stored in ACCELERATIONS.items()}}
+        columns = [
+            Column(
+                name, str(getattr(one, "units", "")), np.ma.filled(one[...].astype(float), np.nan)
+            )
+            for stored, name in names.items()
+            if (one := over_time.get(stored)) is not None and one.dtype.kind in "iuf"
+        ]
+        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
+    rate = attributes.get("sample_rate")
     rate = None if rate is None else float(rate)
-    return Columns(str(path), columns, rate, attributes=attributes)
+    is_own = {"sensors", "source"} <= set(attributes)
+    return Columns(str(path), columns, rate, attributes=attributes if is_own else {})
 
 
 def read_wav(path: Path) -> Columns:
     """Read the channels of a WAV file; whole numbers become parts of the full scale."""
     from scipy.io import wavfile
 
-    try:
-        with warnings.catch_warnings():
-            warnings.filterwarnings("error", message="Reached EOF prematurely")
-            rate, data = wavfile.read(path)
-    except Exception as error:
-        raise unreadable(path, error, "WAV") from None
+    with warnings.catch_warnings():
+        warnings.filterwarnings("error", message="Reached EOF prematurely")
+        rate, data = wavfile.read(path)
     values = np.asarray(data, float)
     if not values.size:
         raise InputError(f"{path}: no samples; expected some")
@@ -251,7 +253,31 @@ def read_wav(path: Path) -> Columns:
     return Columns(str(path), made, float(rate))
 
 
-READERS = {
+READERS: dict[str, Callable[..., Columns]] = {
     **{"csv": read_csv, "uff": read_uff, "mat": read_mat, "netcdf": read_netcdf},
     **{"wav": read_wav, "lvm": read_lvm, "tdms": read_tdms},
 }
+EXPECTED = {"csv": "expected columns of numbers"} | {
+    kind: f"expected a {name} file that is whole"
+    for kind, name in {
+        **{"uff": "universal", "mat": "MAT", "netcdf": "NetCDF", "wav": "WAV"},
+        **{"lvm": ".lvm", "tdms": ".tdms"},
+    }.items()
+}
+COMPILED = (
+    "mat",
+    "netcdf",
+)  # readers that a damaged file may harm so that they misread the next one
+
+
+def read_columns(path: Path, kind: str, *arguments: object) -> Columns:
+    """Read the columns of a file in a process of its own; names and other texts are printable."""
+    reader, keep = READERS[kind], kind not in COMPILED
+    content = read_in_process(reader, path, *arguments, expected=EXPECTED[kind], keep=keep)
+    columns = [Column(**{n: plain(one) for n, one in each.items()}) for each in content["columns"]]
+    return Columns(**content | {"path": str(path), "columns": columns})
+
+
+def plain(value: Any) -> Any:
+    """Return a text as a short line without control characters, anything else as it is."""
+    return printable(value, MOST_LETTERS) if isinstance(value, str) else value

@@ -26,19 +26,20 @@ def read_lvm(path: Path) -> Columns:
     except ImportError:
         raise missing_reader("lvm_read", "LabVIEW's .lvm files") from None
     text = decode_text(path, path.read_bytes())
-    try:
-        data = lvm_read.read_str(text)  # its read() takes a pickle that lies beside the file
-        segment = data[0]
-        names = list(map(str, segment["Channel names"]))
-        rows = np.atleast_2d(np.asarray(segment["data"], float))
-        units = list(map(str, segment.get("Y_Unit_Label", [])))
-        steps, starts = segment.get("Delta_X", []), segment.get("X0", [])
-    except Exception as error:  # the package raises nothing narrower
-        raise unreadable(path, error, ".lvm") from None
+    data = lvm_read.read_str(text)  # its read() takes a pickle that lies beside the file
+    segment = data[0]
+    names = list(map(str, segment["Channel names"]))
+    rows = np.atleast_2d(np.asarray(segment["data"], float))
+    units = list(map(str, segment.get("Y_Unit_Label", [])))
+    steps, starts = segment.get("Delta_X", []), segment.get("X0", [])
     if data["Segments"] > 1:
         text = f"{data['Segments']} segments; expected one: cut the file"
         raise InputError(f"{path}: {text}")
     has_time = data.get("X_Columns", "One") != "No"
+    named = sum(name != "Comment" for name in names[has_time:])
+    channels = int(segment.get("Channels", 0))
+    if named < channels:
+        raise InputError(f"{path}: names of {named} channels; expected {channels}, as stated above")
     units = ["s"] * has_time + units
     filled = np.isfinite(rows).any(axis=0) & (np.array(names[: rows.shape[1]]) != "Comment")
     columns = [
@@ -58,14 +59,9 @@ def read_tdms(path: Path) -> Columns:
         import nptdms
     except ImportError:
         raise missing_reader("npTDMS", "LabVIEW's .tdms files") from None
-    try:
-        file = nptdms.TdmsFile.read(path)
-        channels = [
-            (one, dict(one.properties)) for group in file.groups() for one in group.channels()
-        ]
-        columns = list(tdms_columns(channels))
-    except Exception as error:  # damaged files raise whatever their bytes make
-        raise unreadable(path, error, ".tdms") from None
+    file = nptdms.TdmsFile.read(path)
+    channels = [(one, dict(one.properties)) for group in file.groups() for one in group.channels()]
+    columns = list(tdms_columns(channels))
     steps = {float(properties.get("wf_increment", 0.0)) for _, properties in channels}
     if len({len(column.values) for column in columns}) > 1:
         text = "channels of different lengths; expected one length: export those of one rate"
@@ -85,9 +81,3 @@ def tdms_columns(channels: list[tuple[Any, dict[str, Any]]]) -> Iterator[Column]
             sensitivity = str(properties.get("sensitivity", properties.get("Sensitivity", "")))
             values = np.asarray(channel[:], float)
             yield Column(channel.name, unit, values, sensitivity=sensitivity)
-
-
-def unreadable(path: Path, error: Exception, kind: str) -> InputError:
-    """Return the error of a file that its reader refuses, in one line."""
-    text = (str(error).splitlines() or [type(error).__name__])[0][:120]
-    return InputError(f"{path}: {text}; expected a {kind} file that is whole")

@@ -1,16 +1,13 @@
-"""MATLAB's files up to version 7.2, by SciPy, which reads them in a process of its own.
+"""MATLAB's files up to version 7.2, by SciPy.
 
-SciPy's reader is compiled and trusts the sizes that a file states: a byte that has changed may end
-the process that reads it.
+Its reader is compiled and trusts the sizes that a file states: a byte that has changed may end the
+process that reads it.
 """
 
 from __future__ import annotations
 
-import io
-import json
 import re
-import subprocess
-import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -24,53 +21,39 @@ from .pieces import Floats
 RATES = ("sample_rate", "samplerate", "fs", "samplefrequency")  # what a MAT file calls it
 STEPS = ("increment", "delta_x", "dt", "xdelta")  # and the step of its times
 FREQUENCIES = ("frequency", "freq", "f", "freqs", "frequencies")  # in place of times
-READER = """
-import io, json, sys
-sys.path[:] = json.loads(sys.argv[2])
-import numpy as np
-from scipy.io import loadmat
-try:
-    found = loadmat(sys.argv[1])
-except NotImplementedError:
-    answer = b"a MAT file of version 7.3; expected an earlier one: save with '-v7'"
-except BaseException as error:  # what damaged files raise is not said
-    text = (str(error).splitlines() or [type(error).__name__])[0][:120]
-    answer = f"{text}; expected a MAT file that is whole".encode()
-else:
-    kept = {}
-    def keep(name, one, depth=0):
-        one = np.asarray(one)
-        if one.dtype.names and one.size <= 64 and depth < 9:
-            for i, part in enumerate(one.ravel()):
-                number = f"[{i}]" if one.size > 1 else ""
-                for field in one.dtype.names:
-                    keep(f"{name}{number}.{field}", part[field], depth + 1)
-        elif one.dtype.kind == "O" and one.size <= 64 and depth < 9:
-            for i, part in enumerate(one.ravel()):
-                keep(f"{name}[{i}]" if one.size > 1 else name, part, depth + 1)
-        elif one.dtype.kind in "iufcU":
-            kept["of " + name] = one
-    for name, one in found.items():
-        if not name.startswith("__"):
-            keep(name, one)
-    stream = io.BytesIO()
-    np.savez(stream, **kept)
-    answer = stream.getvalue()
-sys.stdout.buffer.write(answer)
-"""  # what it answers begins with PK where it is an archive of arrays
-CRASHED = "its reader broke down; expected a MAT file that is whole"
+PARTS, DEPTH = 64, 9  # of structures and cells that are looked into
 
 
 def load_arrays(path: Path) -> dict[str, NDArray[Any]]:
-    """Load the arrays of numbers and texts of a MAT file by name, in a process of its own."""
-    command = [sys.executable, "-c", READER, str(path.absolute()), json.dumps(sys.path)]
-    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True)
-    if done.returncode or not done.stdout:
-        raise InputError(f"{path}: {CRASHED}")
-    if not done.stdout.startswith(b"PK"):
-        raise InputError(f"{path}: {done.stdout.decode(errors='replace')}")
-    with np.load(io.BytesIO(done.stdout), allow_pickle=False) as arrays:
-        return {name.removeprefix("of "): arrays[name] for name in arrays.files}
+    """Load the arrays of numbers and texts of a MAT file by name, those of structures too."""
+    from scipy.io import loadmat
+
+    try:
+        content = loadmat(path)
+    except NotImplementedError:
+        text = "a MAT file of version 7.3; expected an earlier one: save with '-v7'"
+        raise InputError(f"{path}: {text}") from None
+    return {
+        name: array
+        for top, value in content.items()
+        if not top.startswith("__")
+        for name, array in arrays_inside(top, value)
+    }
+
+
+def arrays_inside(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, NDArray[Any]]]:
+    """Yield names and arrays of numbers and texts of a variable, a structure or a cell."""
+    array = np.asarray(value)
+    if array.dtype.kind in "iufcU":
+        yield name, array
+    if array.size > PARTS or depth >= DEPTH:
+        return
+    for i, part in enumerate(array.ravel() if array.dtype.names or array.dtype == "O" else ()):
+        own = f"{name}[{i}]" if array.size > 1 else name
+        for field in array.dtype.names or ():
+            yield from arrays_inside(f"{own}.{field}", part[field], depth + 1)
+        if array.dtype == "O":
+            yield from arrays_inside(own, part, depth + 1)
 
 
 def read_mat(path: Path) -> Columns:

@@ -10,6 +10,7 @@ module              idea
 :mod:`.journal`     chunks on disk while a job is under way
 :mod:`.blocks`      arrays larger than memory, block by block
 :mod:`.checksum`    checksum of a result, however it is stored
+:mod:`.netcdf`      NetCDF files that may come from anybody
 :mod:`.formats`     export of a result: CSV, MATLAB, Excel
 :mod:`.provenance`  attributes that say where a dataset comes from
 :mod:`.executors`   this process, its threads, or processes of this machine

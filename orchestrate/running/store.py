@@ -7,7 +7,7 @@ import logging
 import os
 import re
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError, StaleError, StoreError
+from ..errors import InputError, StaleError, StoreError, first_line, printable
 from ..files import check_path_encoding, open_folder, write_whole
 from ..lazy import xr
 from .blocks import BLOCK, blocks, chunk_shape
@@ -23,12 +23,12 @@ from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
 from .journal import ANEW, Journal, Lock, discard, journal_path
+from .netcdf import MAX_LOADED, check_size, read_dataset
 from .options import RunOptions
 
 log = logging.getLogger(__name__)
 MIN_COMPRESSED = 10_000  # values from which a variable is worth compressing
 LAST_SECOND = 253_402_300_799  # of the year 9999
-MAX_LOADED = 2**28  # bytes of a file that is read whole; larger ones are opened lazily
 JOINED = 100  # chunks joined at a time: many small arrays leave holes in memory
 ZLIB_LEVEL = 1  # not higher: the last digits of numbers do not shrink, however long it tries
 
@@ -250,28 +250,44 @@ def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
     return Store() if path is None else Disk(path, identity, options)
 
 
-def load(path: Path) -> xr.Dataset:
-    """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum)."""
+def load(path: Path, read: Callable[[Path], xr.Dataset] | None = None) -> xr.Dataset:
+    """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum).
+
+    A result of this project's is read in this process; :func:`load_foreign` takes any file.
+    """
     check_path_encoding(path)
     try:
-        is_large = path.stat().st_size > MAX_LOADED
-        with small_chunk_cache():
-            if is_large:  # what is read, for the checksum or by a user, does not stay in memory
-                data = xr.open_dataset(path, engine="netcdf4", cache=False)
-            else:
-                data = xr.load_dataset(path, engine="netcdf4")
+        data = (read or open_result)(path)
         stored_checksum = data.attrs.pop(ATTRIBUTE, None)
         fits = stored_checksum is None or stored_checksum == checksum(data)
     except Exception as error:
         if path.is_file() and not is_netcdf(path):
             raise StoreError(f"{path}: not readable; expected a NetCDF file") from error
-        raise StoreError(f"{path}: damaged ({first_line(error)}); {ANEW}") from error
+        line = printable(first_line(error)).removeprefix(f"{path}: ")
+        raise StoreError(f"{path}: damaged ({line}); {ANEW}") from error
     if not fits:
         raise StoreError(
             f"{path}: its contents do not fit its checksum: damaged, or changed by hand; {ANEW}, "
             f"or delete its attribute {ATTRIBUTE} to take it as it is"
         )
     return data
+
+
+def load_foreign(path: Path) -> xr.Dataset:
+    """Return the dataset of a NetCDF file that may come from anybody, as :func:`load` does."""
+    return load(path, read_dataset)
+
+
+def open_result(path: Path) -> xr.Dataset:
+    """Return the dataset of a NetCDF file, read in this process."""
+    with small_chunk_cache():
+        # what is read of a large one, for the checksum or by a user, does not stay in memory
+        data = xr.open_dataset(path, engine="netcdf4", cache=False)
+    check_size(path, data.nbytes)
+    if data.nbytes > MAX_LOADED:
+        return data
+    with data:
+        return data.load()
 
 
 @contextmanager
@@ -304,11 +320,6 @@ def is_netcdf(path: Path) -> bool:
     """Return whether a file begins with the signature of NetCDF 3 or 4."""
     with path.open("rb") as file:
         return file.read(4).startswith((b"\x89HDF", b"CDF"))
-
-
-def first_line(error: BaseException) -> str:
-    """Return the first line of an exception's text, or its type's name without any text."""
-    return (str(error).splitlines() or [type(error).__name__])[0]
 
 
 def read_identity(path: Path) -> Identity:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -11,9 +12,11 @@ import scipy.io
 import xarray as xr
 from scipy.io import wavfile
 
-from orchestrate import InputError, Sampled, read_record, record, write_record
-from orchestrate.laboratory import record_files, record_mat
+from orchestrate import InputError, Sampled, read_record, reader_process, record, write_record
+from orchestrate.laboratory import record_files
 from orchestrate.laboratory.record_checks import clipped_share
+from orchestrate.laboratory.record_labview import read_lvm
+from orchestrate.laboratory.record_uff import read_uff
 
 from ...sparing import ordinary
 
@@ -224,7 +227,7 @@ def test_without_pyuff_a_line_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyuff", None)
     (tmp_path / "a.uff").write_text("    -1\n    58\n    -1\n")
     with pytest.raises(InputError, match=r"pip install 'vibroimpact\[laboratory\]'"):
-        read_record(tmp_path / "a.uff")
+        read_uff(tmp_path / "a.uff")
 
 
 TEXTS = {
@@ -496,13 +499,6 @@ def test_a_mat_file_that_ends_its_reader_is_one_line(tmp_path, seed):
     assert "\n" not in str(error.value)
 
 
-def test_a_reader_that_aborts_is_one_line(tmp_path, monkeypatch):
-    path = write_record(drawn(), tmp_path / "a.mat")
-    monkeypatch.setattr(record_mat, "READER", "import os; os.abort()")
-    with pytest.raises(InputError, match=r"a\.mat: its reader broke down; expected a MAT file"):
-        read_record(path)
-
-
 def test_matlabs_matrices_and_rates(tmp_path):
     path, data = tmp_path / "a.mat", drawn()
     matrix = np.stack([data[name].values for name in CHANNELS], axis=1)
@@ -757,7 +753,7 @@ def test_labviews_text_is_read_and_no_pickle_beside_it(tmp_path, monkeypatch):
     assert np.allclose(data.acceleration1, G * np.array([-0.1, 2.0, 3.5, 4.0, 1.0]))
     monkeypatch.setitem(sys.modules, "lvm_read", None)
     with pytest.raises(InputError, match=r"expected the package lvm_read: pip install 'vibroimp"):
-        read_record(path)
+        read_lvm(path)
 
 
 def test_nested_structures_of_matlab(tmp_path):
@@ -909,3 +905,65 @@ def test_a_mat_file_with_spectra_beside_named_channels_is_read(tmp_path):
     ):
         read = read_record(path, unit="m/s2", **options)
         assert (read.box_acceleration.values == acceleration).all()
+
+
+def deflated_netcdf(path, count):
+    """A NetCDF file of a compressed vector that was never written."""
+    import netCDF4
+
+    with netCDF4.Dataset(path, "w") as file:
+        file.createDimension("time", count)
+        for name in ("time", "box_acceleration"):
+            file.createVariable(name, "f8", ("time",), zlib=True, chunksizes=(1 << 20,))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of Linux")
+@pytest.mark.parametrize("ending", ["mat", "nc"])
+def test_a_small_file_that_unpacks_to_much_is_one_line(tmp_path, monkeypatch, ending):
+    path, count = tmp_path / f"a.{ending}", 20 << 20
+    if ending == "mat":
+        scipy.io.savemat(path, {"base": np.zeros(count)}, do_compression=True)
+    else:
+        deflated_netcdf(path, count)
+    monkeypatch.setattr(reader_process, "MEMORY", 128 << 20)
+    assert path.stat().st_size < 200_000
+    with pytest.raises(InputError, match="unpacks to 335544320 bytes|llocate|memory") as error:
+        read_record(path, unit="m/s2")
+    assert str(error.value).isprintable() and len(str(error.value)) < 300
+
+
+HOSTILE = {
+    "a.csv": (b't,base [g]\n0,1\n1,"' + b"x" * 140_000 + b'"\n', "field larger than field limit"),
+    "digits.csv": (
+        b"t," + b"7" * 100_000 + b" mV/(\n0,1\n1,2\n2,9\n3,4\n",
+        r"sensitivity .7+ \.\.\. 7+ mV/\(",
+    ),
+    "blanks.csv": (b"t,a" + b" _" * 50_000 + b"b\n0,1\n1,2\n2,9\n3,4\n", "no unit"),
+    "escapes.csv": (b"t,base\x1b[2J\r\n0,1\n1,2\n2,9\n3,4\n", r'"base\\x1b\[2J"'),
+    "tab.lvm": (LVM.replace("Tisch\tSp", "TischSp").encode(), "names of 1 channels; expected 2"),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_files_that_once_ended_in_a_traceback_or_took_minutes(tmp_path, name):
+    path, (data, words) = tmp_path / name, HOSTILE[name]
+    path.write_bytes(data)
+    begun = time.monotonic()
+    with pytest.raises(InputError, match=words) as error:
+        read_record(path)
+    assert str(error.value).isprintable() and len(str(error.value)) < 1100
+    assert time.monotonic() - begun < 8.0
+
+
+def test_a_damaged_unit_of_a_stream_is_one_line_and_no_log(tmp_path, capfd, caplog):
+    from nptdms import ChannelObject, TdmsWriter
+
+    path, common = tmp_path / "a.tdms", {"wf_increment": 1e-3, "unit_string": "WWWW"}
+    with TdmsWriter(path) as file:
+        file.write_segment([ChannelObject("run", "Table", np.arange(9.0), common)])
+    for damaged in (b"W\xff\x1bW", b"W\n\0W"):
+        path.write_bytes(path.read_bytes().replace(b"WWWW", damaged))
+        with pytest.raises(InputError) as error:
+            read_record(path)
+        assert str(error.value).isprintable() and len(str(error.value)) < 300
+    assert capfd.readouterr() == ("", "") and not caplog.records

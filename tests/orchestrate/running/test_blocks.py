@@ -10,7 +10,7 @@ import xarray as xr
 from orchestrate.errors import StoreError
 from orchestrate.model import Structure
 from orchestrate.response.sweep import sweep
-from orchestrate.running import blocks, store
+from orchestrate.running import blocks, netcdf, store
 
 PAPER = Structure.nondimensional()
 SHORT = {"transient": 5, "samples": 20, "progress": False, "jobs": 1}
@@ -32,6 +32,7 @@ def small(monkeypatch):
     monkeypatch.setattr(blocks, "CHUNK", 100)
     monkeypatch.setattr(store, "MIN_COMPRESSED", 100)
     monkeypatch.setattr(store, "MAX_LOADED", 1000)
+    monkeypatch.setattr(netcdf, "MAX_LOADED", 1000)
     monkeypatch.setattr(store.StoredRows, "rows", counted)
     return counts
 
@@ -64,7 +65,8 @@ def test_blocks_make_up_an_array_in_its_order(tmp_path, small, shape):
     assert np.array_equal(np.concatenate(parts), values.ravel())
     assert all(len(part) <= 400 for part in parts)
     data = xr.Dataset({"x": ([f"d{i}" for i in range(len(shape))], values)})
-    assert store.load(store.write_netcdf(data, tmp_path / "a.nc")).equals(data)
+    path = store.write_netcdf(data, tmp_path / "a.nc")
+    assert store.load(path).equals(data) and store.load_foreign(path).equals(data)
 
 
 IMPORTING = """

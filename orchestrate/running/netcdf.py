@@ -1,0 +1,79 @@
+"""NetCDF files that may come from anybody: what they contain is read in a process of its own."""
+
+from __future__ import annotations
+
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+from ..lazy import xr
+from ..reader_process import allowed_memory, read_in_process
+from .blocks import blocks
+
+MAX_LOADED = 2**28  # bytes of numbers that are read whole; more are read when they are used
+TEXT = 64  # bytes of a text, roughly
+EXPECTED = "expected a NetCDF file that is whole"
+
+
+def read_dataset(path: Path) -> xr.Dataset:
+    """Return the dataset of a file, a large one lazily, after all of it was read elsewhere once."""
+    content = read_in_process(netcdf_content, path, MAX_LOADED, expected=EXPECTED, keep=False)
+    if content["is_large"]:
+        return xr.open_dataset(path, engine="netcdf4", cache=False)
+    variables = {
+        name: (tuple(one["dims"]), one["values"], one["attributes"])
+        for name, one in content["variables"].items()
+    }
+    return xr.decode_cf(xr.Dataset(variables, attrs=content["attributes"])).load()
+
+
+def check_size(path: Path, size: int) -> None:
+    """Raise if a file unpacks to more bytes than one of its size may."""
+    most = allowed_memory(path.stat().st_size)
+    if size > most:
+        raise InputError(f"{path}: unpacks to {size} bytes; expected at most {most}")
+
+
+def stored_size(file: Any) -> int:
+    """Return how many bytes the numbers of an open file take."""
+    return sum(
+        prod(one.shape) * (one.dtype.itemsize if isinstance(one.dtype, np.dtype) else TEXT)
+        for one in file.variables.values()
+    )
+
+
+def netcdf_content(path: Path, most: int) -> dict[str, Any]:
+    """Return variables and attributes as they are stored; of a large file no numbers."""
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_maskandscale(False)
+        file.set_auto_chartostring(False)
+        size = stored_size(file)
+        check_size(path, size)
+        is_large = size > most
+        return {
+            "is_large": is_large,
+            "attributes": {name: file.getncattr(name) for name in file.ncattrs()},
+            "variables": {
+                name: variable_content(one, is_large) for name, one in file.variables.items()
+            },
+        }
+
+
+def variable_content(variable: Any, is_large: bool) -> dict[str, Any]:
+    """Return dimensions, attributes and numbers of a variable; large ones are read and dropped."""
+    values = None
+    if is_large:
+        for block in blocks(variable.shape):
+            variable[block or ...]
+    else:
+        values = np.asarray(variable[...])
+    return {
+        "dims": variable.dimensions,
+        "values": values,
+        "attributes": {name: variable.getncattr(name) for name in variable.ncattrs()},
+    }
