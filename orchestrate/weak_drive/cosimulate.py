@@ -58,6 +58,8 @@ IN_TIME_TOO = {
 }
 BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
 MAX_STEPS = 10_000_000
+IN_STEPS = ("nodes", "cubics", "work")  # arrays with a row for each step
+AT_THE_DURATION = "at the duration"  # attribute `ended` of a run that the drive did not end
 NOTHING = np.empty((0, 0))
 DIVERGED = 1e12  # m: springs that a force on the box would stretch so far are none
 NOTICED = 0.01  # of the largest displacement: a larger coupling error gives a warning
@@ -94,10 +96,10 @@ class Coupling:
             raise
         self.check_forces(record["time"], record["box_force"])
         nodes = record["time"].copy()
-        nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 : steps.stop + 1]
+        nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 :][: len(record.ends)]
         after = record.after
         table = {"nodes": nodes[1:], "cubics": np.transpose(after.acceleration())}
-        table |= {"work": given_work(record)}
+        table |= {"work": given_work(record), "ended": np.array([self.master.ended])}
         if self.inputs.control:
             table["control"] = np.array([self.inputs.state])
         table = {f"{name} {self.parts}": values for name, values in table.items()}
@@ -124,6 +126,8 @@ class Coupling:
         first = self.inputs.at(np.array([0.5, 1.0]) * self.h).reshape(1, -1)
         first = first[:, : self.master.width]
         pieces = joined([self.master.run(first, part * short) for part in BEGINNING])
+        if self.master.ended:
+            raise FmuError(self.master.ended)
         begun = replace(pieces, ends=pieces.ends[-1:], recorded=pieces.recorded[-1:])
         return joined([begun, self.inputs.run(self.master, steps[1:], self.h)])
 
@@ -202,7 +206,11 @@ class CosimulateJob(Question):
         if self.estimate:
             known = previous["moved"][-1] if previous is not None else self.moved_by_force()
             table["moved"] = np.array([known])
+        warned: dict[str, None] = {}
         for parts in self.finenesses():
+            if previous is not None and previous[f"ended {parts}"][-1]:
+                table |= nothing_more(previous, parts)
+                continue
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(self.drive, "drive") as drive:
                 coupling = Coupling(self, oscillator, drive, parts)
                 if previous is not None:
@@ -211,6 +219,8 @@ class CosimulateJob(Question):
                 if drive.description.saves_states:
                     table |= coupling.get_state()
                 coupling.master.close()
+                warned |= drive.warnings
+        table["warned"] = np.array(["\n".join(warned)])
         return table
 
     def begin_drive(self, drive: Instance, inputs: Inputs) -> Connection:
@@ -248,7 +258,10 @@ class CosimulateJob(Question):
 
     def motion(self, oscillator: Path, steps: Table) -> Table:
         """Return the motion under the accelerations of all steps, over time, and its impacts."""
-        times = self.times()
+        times, ended = self.reached(steps)
+        for parts in self.finenesses() if ended else ():
+            done = steps[f"nodes {parts}"] <= times[-1]
+            steps |= {name: steps[name][done] for name in (f"{one} {parts}" for one in IN_STEPS)}
         motions = []
         with Player(oscillator) as player:
             for parts in self.finenesses():
@@ -270,13 +283,25 @@ class CosimulateJob(Question):
                 end = one.aborted(tuple(steps["control 1"][-1].tolist()))
                 columns["control_aborted"] = np.array([end])
         columns["moved"] = steps.get("moved", np.array([np.nan]))[:1]
+        columns["ended"] = np.array([ended])
         return {**columns, **impact_columns(impacts, self.structure)}
+
+    def reached(self, steps: Table) -> tuple[Floats, str]:
+        """Return the communication points that all runs reached, and by what they ended earlier."""
+        ends = {i: np.max(steps[f"nodes {i}"], initial=0.0) for i in self.finenesses()}
+        last, times = min(ends.values()), self.times()
+        texts = [text for i in ends if ends[i] == last for text in steps[f"ended {i}"].tolist()]
+        ended = next(filter(None, texts), "")
+        if last < times[1]:
+            raise FmuError(f"{ended}, in its first step; expected at least one of them")
+        return times[times <= last], ended
 
     def dataset(self, table: Table) -> xr.Dataset:
         names = {**IN_TIME, **IN_TIME_TOO}
         description = describe(self.drive)
         theirs = {}
-        for name, values in zip(self.record, table.get("recorded", NOTHING).T, strict=True):
+        recorded = table.get("recorded", NOTHING)[: len(table["time"])]
+        for name, values in zip(self.record, recorded.T, strict=True):
             about = description.variable(name)
             text = about.description or f"{name} of the drive"
             theirs[name] = variable("time", values, about.unit or "1", text)
@@ -302,6 +327,8 @@ class CosimulateJob(Question):
                 "recorded": ",".join(self.record),
                 "inputs_at_start": ", ".join(self.inputs_at_start(description)),
                 "moved_by_1_N": float(table["moved"][0]),
+                "ended": str(table["ended"][-1]) or AT_THE_DURATION,
+                "drive_warnings": "\n".join(dict.fromkeys(filter(None, table["warned"].tolist()))),
                 "resumable": "yes"
                 if description.saves_states
                 else "no: the drive cannot save its state",
@@ -362,7 +389,9 @@ def cosimulate(
         ``v_rel``, ``contact_force``, ``in_contact``, ``box_force``, ``impact_energy``,
         ``box_acceleration``, what is recorded of the drive by its names, ``box_work`` where a
         velocity is connected, ``coupling_error``, the larger error of ``x1`` and ``x2`` in m, and
-        of a control the time ``control_aborted``.
+        of a control the time ``control_aborted``. Attributes: ``ended``, when and why the drive
+        ended the simulation before the duration, with what was reached until then, and
+        ``drive_warnings``, what it warned of; both are given as warnings too.
         Over ``impact``: ``impact_time``, ``impact_velocity``, ``impulse`` and ``sticks``.
 
     Raises
@@ -371,7 +400,7 @@ def cosimulate(
         Where a connection cannot be made, a name is not the drive's, or a number is out of its
         range.
     FmuError
-        Where an FMU refuses a step.
+        Where an FMU refuses or discards a step, or returns early from it.
 
     Notes
     -----
@@ -422,10 +451,27 @@ def cosimulate(
     )
     check_inputs(job.inputs, links)
     found = answer(job, running, finder(running), foreign)
+    warn_of_drive(found)
     if estimate:
         warn_of_sign(found, links)
         warn_of_error(found, [name for name in MOTION if name not in links])
     return found
+
+
+def warn_of_drive(run: xr.Dataset) -> None:
+    """Warn with what the drive warned of, each text once, and where it ended the simulation."""
+    attributes = getattr(run, "attrs", {})
+    for text in attributes.get("drive_warnings", "").splitlines():
+        warnings.warn(text, stacklevel=3)
+    if (ended := attributes.get("ended", AT_THE_DURATION)) != AT_THE_DURATION:
+        warnings.warn(f"{ended}; the result ends there", stacklevel=3)
+
+
+def nothing_more(previous: Table, parts: int) -> Table:
+    """Return the table of a run that a drive ended in a chunk before: no rows, the same end."""
+    names = {name for name in previous if name.endswith(f" {parts}")} | ({"recorded"} & {*previous})
+    table = {name: previous[name][:0] for name in names if name != "recorded" or parts == 1}
+    return {**table, f"ended {parts}": previous[f"ended {parts}"]}
 
 
 def warn_of_sign(run: xr.Dataset, links: Mapping[str, Link]) -> None:
