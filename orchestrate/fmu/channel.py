@@ -5,7 +5,8 @@ variables. Both FMI versions. What the answers to a step mean:
 
 - OK: the run goes on; after a warning, too, whose message :attr:`Instance.warnings` keeps.
 - The FMU ends the simulation (FMI 3.0: ``terminateSimulation``; 2.0: a discarded step, of which
-  ``fmi2Terminated`` is true): no step follows; the last one counts if it reached its end.
+  ``fmi2Terminated`` is true), and logs no error: no step follows; the last one counts if it reached
+  its end.
 - A discarded step, an early return, which is never allowed here, an error: ``FmuError``, with what
   the FMU logged, or how far the step came.
 """
@@ -18,7 +19,7 @@ from math import isfinite
 from typing import Any, NamedTuple
 
 from ..errors import FmuError
-from .instance import DISCARD, Instance, function_addresses
+from .instance import DISCARD, ERROR, Instance, function_addresses
 
 FUNCTIONS3 = ("SetFloat64", "GetFloat64", "GetInt32", "DoStep", "GetFMUState", "SetFMUState")
 FUNCTIONS2 = (
@@ -176,6 +177,8 @@ class Channel:
         """Take the status of a step and its answer by the rule of this module."""
         answer, name = self.answer, self.instance.description.name
         texts = [self.instance.logged()]
+        if answer.terminate and self.instance.logged(ERROR):  # pythonfmu's answer to an exception
+            raise self.instance.failure("")
         if answer.terminate:
             texts = [f"the FMU {name} ended the simulation at t = {answer.last:.6g} s", *texts]
             self.ended = ": ".join(filter(None, texts))

@@ -21,7 +21,7 @@ from .library import loaded
 REAL_TYPES = ("Real", "Float64")
 INTEGER_TYPES = ("Integer", "Int32")
 STATUSES = ("OK", "warning", "discard", "error", "fatal", "pending")  # of FMI, by number
-WARNING, DISCARD = STATUSES.index("warning"), STATUSES.index("discard")
+WARNING, DISCARD, ERROR = (STATUSES.index(word) for word in ("warning", "discard", "error"))
 Prepared = Callable[[], None]
 
 
