@@ -33,6 +33,7 @@ class Description:
     units: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     factors: Mapping[str, float] = field(default_factory=dict)  # of units: in SI, what one of it is
     has_fixed_step: bool = False  # whether all communication steps have to be of one length
+    internal_step: float = 0.0  # s, of which communication steps are multiples; 0: not stated
     has_states: bool = False  # whether it can go back to a state, and give one as bytes
     saves_states: bool = False
     runs_here: bool = True  # whether it has a binary for this machine
@@ -117,6 +118,7 @@ def read_description(path: Path) -> Description:
             has_fixed_step=bool(
                 co_simulation and not co_simulation.canHandleVariableCommunicationStepSize
             ),
+            internal_step=float(getattr(co_simulation, "fixedInternalStepSize", None) or 0.0),
             has_states=bool(co_simulation and co_simulation.canGetAndSetFMUstate),
             saves_states=bool(co_simulation and co_simulation.canSerializeFMUstate),
             runs_here=not here.isdisjoint(names),

@@ -81,7 +81,8 @@ class Coupling:
         self.h = job.step / parts
         self.master = create_master(oscillator, drive, Scheme(self.h), connection)
         knows = "box_acceleration" in connection.links
-        self.divides_first = not knows and not drive.description.has_fixed_step
+        fixed = drive.description.has_fixed_step or drive.description.internal_step
+        self.divides_first = not knows and not fixed
 
     def advance(self, items: Sequence[int]) -> Table:
         """Do the steps of some items; return nodes, cubics, work, and what is recorded."""
@@ -436,6 +437,7 @@ def cosimulate(
     links = checked_links(connect or {}, description)
     for name, value in (("duration", duration), ("step", step)):
         check(name, value, "s", low=0.0, exclusive=True)
+    check_internal_step(duration, step, description, estimate)
     count = checked_step_count(duration, step, description)
     job = CosimulateJob.from_call(
         locals(),
@@ -450,7 +452,7 @@ def cosimulate(
         start=checked_state("start", start, checked_structure(structure)),
     )
     check_inputs(job.inputs, links)
-    found = answer(job, running, finder(running), foreign)
+    found = answer(job, running, finder(running), job.drive_sha256 if foreign else "")
     warn_of_drive(found)
     if estimate:
         warn_of_sign(found, links)
@@ -509,6 +511,23 @@ def checked_step_count(duration: float, step: float, drive: Description) -> int:
             "length alone; expected a duration that is a whole number of steps"
         )
     return checked_integer("duration/step", count, 1, MAX_STEPS)
+
+
+def check_internal_step(duration: float, step: float, drive: Description, estimate: bool) -> None:
+    """Raise ``InputError`` unless all steps are multiples of the drive's internal one."""
+    internal, parts = drive.internal_step, 2 if estimate else 1
+    if not internal:
+        return
+    taken = duration / max(1, math.ceil(duration / step - 1e-9)) / parts
+    if round(taken / internal) < 1 or not math.isclose(
+        taken, round(taken / internal) * internal, rel_tol=1e-9
+    ):
+        why = ", half of which is for the error's estimate" if estimate else ""
+        raise InputError(
+            f"step = {step} s: the FMU {drive.name} calculates in steps of {internal:g} s "
+            f"(fixedInternalStepSize); expected a multiple of {parts * internal:g} s{why}, and a "
+            "duration that is a whole number of steps"
+        )
 
 
 def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Values:

@@ -2,6 +2,7 @@
 
 import re
 import warnings
+import zipfile
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from orchestrate.errors import FmuError
 from orchestrate.running.runner import answer
 from orchestrate.weak_drive import compiled, cosimulate
 
+from .drives import table
 from .drives.linear import draw, together
 
 STRUCTURE = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
@@ -122,3 +124,19 @@ def test_a_warning_is_shown_once_and_the_run_goes_on(tmp_path, form, does, words
 def test_in_a_process_of_its_own_a_warning_arrives(tmp_path):
     with pytest.warns(UserWarning, match="the FMU Linear warns: coil is warm"):
         assert len(run(tmp_path, "WARNS").time) == 21
+
+
+def test_python_modules_of_one_name_in_two_drives_do_not_meet(tmp_path):
+    """As of two versions of pythonfmu: the second run has its own, with a force factor of 0."""
+    from pythonfmu import FmuBuilder
+
+    first = FmuBuilder.build_FMU(table.__file__, dest=tmp_path)
+    second = tmp_path / "second.fmu"
+    with zipfile.ZipFile(first) as old, zipfile.ZipFile(second, "w") as new:
+        for name in old.namelist():
+            new.writestr(name, old.read(name).replace(b'"bl": 12.0', b'"bl": 0.0'))
+    connect = {"box_acceleration": "table_acc", "box_force": "specimen_force"}
+    own = {**RUN, "start": None, "connect": connect, "inputs": {"volts": 20.0}}
+    moved = [orchestrate.cosimulate(STRUCTURE, one, **own).x1 for one in (first, second, first)]
+    assert abs(moved[1]).max() < 1e-9 * abs(moved[0]).max()
+    assert moved[2].values.tobytes() == moved[0].values.tobytes()
