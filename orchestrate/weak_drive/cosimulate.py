@@ -39,7 +39,15 @@ from ..running.job import Chunk, Table, brief, plain
 from ..running.options import Running
 from ..running.runner import answer
 from .compiled import create_master
-from .connection import MOTION, OURS, Connection, Link, checked_links, checked_variable
+from .connection import (
+    MOTION,
+    OURS,
+    Connection,
+    Link,
+    checked_links,
+    checked_units,
+    checked_variable,
+)
 from .controllers import InputControl
 from .energy_balance import given_work
 from .inputs import Input, Inputs, check_inputs
@@ -155,6 +163,7 @@ class CosimulateJob(Question):
     drive: str  # path of its FMU
     drive_sha256: str
     connect: tuple[tuple[str, str], ...]
+    units: tuple[tuple[str, str], ...] = ()
     start_values: Values = ()
     inputs: tuple[tuple[str, Input], ...] = ()
     duration: float = positive()
@@ -169,7 +178,8 @@ class CosimulateJob(Question):
     item: ClassVar[str] = "step"
 
     def call_text(self) -> str:
-        values = {"connect": dict(self.connect), "parameters": dict(self.start_values)}
+        values: dict[str, Any] = {"connect": dict(self.connect), "units": dict(self.units)}
+        values |= {"parameters": dict(self.start_values)}
         values |= {name: getattr(self, name) for name in ("duration", "step", "record", "start")}
         texts = (f"{name}={value!r}" for name, value in values.items() if value)
         structure = f"Structure{brief(plain(self.structure))}"
@@ -228,7 +238,7 @@ class CosimulateJob(Question):
         """Initialise the drive with its inputs at the start; return how it is connected."""
         (values,) = inputs.at(np.zeros(1)).tolist()
         drive.initialize(**dict(self.start_values), **dict(zip(inputs.names, values, strict=True)))
-        links = checked_links(dict(self.connect), drive.description)
+        links = checked_links(dict(self.connect), drive.description, dict(self.units))
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
 
     def moved_by_force(self) -> float:
@@ -247,7 +257,7 @@ class CosimulateJob(Question):
 
     def inputs_at_start(self, drive: Description) -> Iterator[str]:
         """Yield ``name = start unit`` of each of the drive's inputs that nothing is given for."""
-        links = checked_links(dict(self.connect), drive).values()
+        links = checked_links(dict(self.connect), drive, dict(self.units)).values()
         given = {*(link.theirs for link in links), *Inputs(self.inputs, drive).names}
         for name, one in drive.variables.items():
             if one.causality == "input" and name not in given:
@@ -342,6 +352,7 @@ def cosimulate(
     drive: str | PathLike[str] | Drive | Shaker,
     *,
     connect: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
     parameters: Mapping[str, float | bool] | None = None,
     inputs: Mapping[str, float | Input | tuple[ArrayLike, ArrayLike]] | None = None,
     duration: float,
@@ -367,6 +378,10 @@ def cosimulate(
         minus before it, as ``"-force"``, counts with the other sign; other units of the same kind
         are converted. A drive that takes derivatives of the force has them as ``box_force_1`` to
         ``box_force_3``. By default the names of the package's own drives.
+    units : mapping of str to str, optional
+        Units of connected variables, by the drive's names, in place of those that it states: m/s2,
+        mm, kN and others. Units that it defines by no base units are taken by their names; none
+        means SI.
     parameters : mapping of str to float, optional
         Start values of the drive, by its names.
     inputs : mapping, optional
@@ -434,7 +449,8 @@ def cosimulate(
         connect, drive = connect or OURS, finder(running)(model).path
     path = Path(drive).resolve()
     description = describe_runnable(path)
-    links = checked_links(connect or {}, description)
+    units = checked_units(units, description)
+    links = checked_links(connect or {}, description, units)
     for name, value in (("duration", duration), ("step", step)):
         check(name, value, "s", low=0.0, exclusive=True)
     check_internal_step(duration, step, description, estimate)
@@ -445,6 +461,7 @@ def cosimulate(
         drive=str(path),
         drive_sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
         connect=tuple((connect or {}).items()),
+        units=tuple(units.items()),
         start_values=checked_parameters(parameters or {}, description),
         inputs=checked_inputs(inputs or {}, description, duration),
         step=float(duration) / count,

@@ -140,3 +140,15 @@ def test_python_modules_of_one_name_in_two_drives_do_not_meet(tmp_path):
     moved = [orchestrate.cosimulate(STRUCTURE, one, **own).x1 for one in (first, second, first)]
     assert abs(moved[1]).max() < 1e-9 * abs(moved[0]).max()
     assert moved[2].values.tobytes() == moved[0].values.tobytes()
+
+
+def test_units_by_name_are_converted_and_can_be_stated(tmp_path):
+    """An acceleration in mm/s2 by the name alone, or without any and stated: the motion in SI."""
+    expected = run(tmp_path)
+    thousand = replace(DRIVE, c=1e3 * DRIVE.c, d=1e3 * DRIVE.d)
+    path = thousand.write(tmp_path, "thousand")
+    named = replace(thousand, unit="mm/s2").write(tmp_path, "named")
+    own = {"parameters": thousand.parameters, "connect": DRIVE.connect, **RUN}
+    for drive, more in ((named, {}), (path, {"units": {DRIVE.names[2]: "mm/s2"}})):
+        found = orchestrate.cosimulate(STRUCTURE, drive, **own, **more)
+        assert found.x1.values == pytest.approx(expected.x1.values, abs=1e-12)

@@ -29,6 +29,7 @@ class LinearDrive:
     has_states: bool = False
     fmi: int = 3
     does: str = "NOTHING"  # what its source lists
+    unit: str = ""  # of its acceleration by FMI 3.0, a name without a base unit
 
     @property
     def parameters(self):
@@ -54,16 +55,15 @@ class LinearDrive:
         force, command, *outputs = self.names
         rows += [(force, 30, "input", "continuous", 'start="0"')]
         rows += [(command, 31, "input", "continuous", 'start="0"')]
-        rows += [(one, 40 + i, "output", "continuous", "") for i, one in enumerate(outputs)]
+        units = (f'unit="{self.unit}"' * bool(self.unit), "", "")
+        rows += [(one, 40 + i, "output", "continuous", units[i]) for i, one in enumerate(outputs)]
         text = (self.description3 if self.fmi == 3 else self.description2)(rows)
         path = Path(folder) / f"{name}.fmu"
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("modelDescription.xml", f'<?xml version="1.0"?>{text}')
             library = compiled(Path(folder), self.fmi, self.does, self.has_states)
-            binary = "linear" + sharedLibraryExtension
-            archive.write(
-                library, f"binaries/{platform_tuple if self.fmi == 3 else platform}/{binary}"
-            )
+            system = platform_tuple if self.fmi == 3 else platform
+            archive.write(library, f"binaries/{system}/linear{sharedLibraryExtension}")
         return path
 
     def description3(self, rows):
@@ -76,11 +76,12 @@ class LinearDrive:
         outputs = "".join(
             f'<Output valueReference="{i}"/>' for _, i, c, *_ in rows if c == "output"
         )
+        units = f'<UnitDefinitions><Unit name="{self.unit}"/></UnitDefinitions>' * bool(self.unit)
         return (
             '<fmiModelDescription fmiVersion="3.0" modelName="Linear" '
             'instantiationToken="1"><CoSimulation modelIdentifier="linear" '
             f'canHandleVariableCommunicationStepSize="true" canGetAndSetFMUState="{flag}" '
-            f'canSerializeFMUState="{flag}"/><ModelVariables>{variables}</ModelVariables>'
+            f'canSerializeFMUState="{flag}"/>{units}<ModelVariables>{variables}</ModelVariables>'
             f"<ModelStructure>{outputs}</ModelStructure></fmiModelDescription>"
         )
 
