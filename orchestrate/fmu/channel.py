@@ -187,9 +187,8 @@ class Channel:
             done = f" (it came to {answer.last:.6g} s)" if answer.last > answer.time else ""
             early = f"returned early from {span}{done}, which was not allowed"
             why = f"discarded {span}{done}" if status == DISCARD else early
-            cause = (
-                texts[-1] or "it logged no cause; try a shorter step, and the limits of its inputs"
-            )
+            unsaid = "it logged no cause; try a shorter step, and the limits of its inputs"
+            cause = texts[-1] or (unsaid if status == DISCARD else "expected its end")
             raise FmuError(f"the FMU {name} {why}: {cause}")
         if self.ended and not answer.is_whole:
             raise SimulationEnded(self.ended)
