@@ -78,6 +78,7 @@ def ask_cosimulate(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     return structure, question | {
         "drive": str(arguments.drive),
         "connect": read_pairs("--connect", split_at_commas(arguments.connect), PAIR),
+        "units": read_pairs("--unit", split_at_commas(arguments.unit), "NAME=UNIT"),
         "parameters": read_values("--parameter", arguments.parameter),
         "inputs": read_values("--input", arguments.input),
         "record": split_at_commas(arguments.record),
@@ -157,6 +158,7 @@ COSIMULATE = Command(
             --list  show its variables, propose connections, and end
             --connect OURS=THEIRS +  box_acceleration (or box_velocity, box_position) and box_force,
                 by names of the drive; a minus before a name turns its sign
+            --unit NAME=UNIT +  units of connected variables that it does not state, or not rightly
             --parameter NAME=VALUE +  its start values
             --input NAME=VALUE +  its other inputs: a number, or a CSV file with time in s and value
             --record NAME +  variables of the drive that are stored

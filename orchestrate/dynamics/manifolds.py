@@ -84,6 +84,17 @@ class Saddle:
         return self.multiplier if self.multiplier > 0.0 else self.multiplier**2
 
     @property
+    def room(self) -> float:
+        """Gap at phase 0, over the orbit's size."""
+        return float(self.state[1] - self.state[0]) / self.size
+
+    @property
+    def opening(self) -> float:
+        """By how much a start changes the gap at most, over its distance from the saddle."""
+        # starts lie between the distance and its image, where the first piece ends
+        return float(self.direction[1] - self.direction[0]) * self.growth_factor
+
+    @property
     def periods_per_return(self) -> int:
         """Excitation periods until a point is on the same side: doubled if the multiplier < 0."""
         return self.periods if self.multiplier > 0.0 else 2 * self.periods
@@ -145,13 +156,14 @@ class ManifoldJob(SingleOrbitQuestion):
             expected = "expected an orbit of this structure"
             raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
         saddle = Saddle.from_orbit(family.orbit(root.unknowns))
-        gap = float(saddle.state[1] - saddle.state[0])
-        needed = 2.0 * self.distance * saddle.size  # a smaller gap leaves no room for a start
-        moves = abs(saddle.direction[1] - saddle.direction[0]) > self.distance
-        if moves and gap < needed:
+        room, opening = saddle.room, abs(saddle.opening)
+        if self.distance * opening > max(room, 0.0):  # starts would be beyond a closed gap
+            limit = f"expected a distance below {room / opening:.2g}"
+            if room <= 0.0:
+                limit = "expected an orbit whose gap is open at phase 0"
             raise InputError(
-                f"distance = {self.distance:g}: the gap at phase 0 is {gap / saddle.size:.2g} of "
-                f"the orbit's size; expected a distance below {0.5 * gap / saddle.size:.2g}"
+                f"distance = {self.distance:g}: the gap at phase 0 is {room:.2g} of the orbit's "
+                f"size, and a start takes up to {self.distance * opening:.2g} of it; {limit}"
             )
         return saddle
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from ..errors import InputError
 from .archive import MAX_BYTES, check_identifier, checked_names
+from .unit_names import Unit, unit_by_name
 
 SI_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
@@ -29,10 +30,10 @@ class Description:
     variables: Mapping[str, Any]  # by name
     needs_tool: bool = False  # whether it needs a tool of its own, such as a Python
     identifier: str = ""  # name of its binary for co-simulation; empty where it has none
-    # exponents of SI units, by name of the unit; those that are not 0
-    units: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
-    factors: Mapping[str, float] = field(default_factory=dict)  # of units: in SI, what one of it is
+    # by name, those that are defined by base units, or are told by their names
+    units: Mapping[str, Unit] = field(default_factory=dict)
     has_fixed_step: bool = False  # whether all communication steps have to be of one length
+    internal_step: float = 0.0  # s, of which communication steps are multiples; 0: not stated
     has_states: bool = False  # whether it can go back to a state, and give one as bytes
     saves_states: bool = False
     runs_here: bool = True  # whether it has a binary for this machine
@@ -84,6 +85,16 @@ def exponents(base: Any) -> dict[str, int]:
     return {name: exponent for name, exponent in powers.items() if exponent}
 
 
+def units_of(xml: Any) -> dict[str, Unit]:
+    """Return the units of FMPy's description: those without a base unit, by their names."""
+    named = ((name, unit_by_name(name)) for name in {v.unit for v in xml.modelVariables} if name)
+    defined = ((u.name, u.baseUnit) for u in xml.unitDefinitions if u.baseUnit)
+    return {
+        **{name: unit for name, unit in named if unit is not None},
+        **{name: Unit(exponents(base), float(base.factor)) for name, base in defined},
+    }
+
+
 _known: dict[str, Description] = {}  # by digest: validation takes long
 
 
@@ -112,11 +123,11 @@ def read_description(path: Path) -> Description:
             variables={v.name: v for v in xml.modelVariables},
             needs_tool=bool(co_simulation and co_simulation.needsExecutionTool),
             identifier=co_simulation.modelIdentifier if co_simulation else "",
-            units={unit.name: exponents(unit.baseUnit) for unit in xml.unitDefinitions},
-            factors={u.name: float(u.baseUnit.factor) for u in xml.unitDefinitions if u.baseUnit},
+            units=units_of(xml),
             has_fixed_step=bool(
                 co_simulation and not co_simulation.canHandleVariableCommunicationStepSize
             ),
+            internal_step=float(getattr(co_simulation, "fixedInternalStepSize", None) or 0.0),
             has_states=bool(co_simulation and co_simulation.canGetAndSetFMUstate),
             saves_states=bool(co_simulation and co_simulation.canSerializeFMUstate),
             runs_here=not here.isdisjoint(names),

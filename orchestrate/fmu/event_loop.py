@@ -192,7 +192,7 @@ class CompiledEventLoop(EventLoop):
         if status == IMPACT_NOT_FINITE:
             values = self._buffer[progress.impact, 1:-1]
             return self.instance.not_finite_error(EVENT_OUTPUTS, values)
-        return self.channel.failure(self._calls.failed.decode(), status)
+        return self.instance.refusal(self._calls.failed.decode(), status)
 
 
 def references(instance: SteppingInstance, names: Sequence[str]) -> Any:

@@ -20,6 +20,8 @@ from .library import loaded
 
 REAL_TYPES = ("Real", "Float64")
 INTEGER_TYPES = ("Integer", "Int32")
+STATUSES = ("OK", "warning", "discard", "error", "fatal", "pending")  # of FMI, by number
+WARNING, DISCARD, ERROR = (STATUSES.index(word) for word in ("warning", "discard", "error"))
 Prepared = Callable[[], None]
 
 
@@ -43,8 +45,8 @@ class Instance:
 
     Notes
     -----
-    Every status but OK raises :class:`FmuError` with what the FMU logged, a discarded step too:
-    importers' own loops may take that for the end of the simulation.
+    Every status but OK and a warning raises :class:`FmuError` with what the FMU logged, a discarded
+    step too: importers' own loops may take that for the end of the simulation.
 
     Examples
     --------
@@ -60,7 +62,8 @@ class Instance:
 
     def __init__(self, path: str | PathLike[str], name: str = "instance") -> None:
         self.description = describe(path)
-        self._messages: list[str] = []
+        self._messages: list[tuple[int, str]] = []  # of the last call: status and text
+        self.warnings: dict[str, None] = {}  # texts of all calls that answered a warning, in order
         self._readers: dict[tuple[str, ...], tuple[Transfer, NDArray[np.float64]]] = {}
         self._transfers: dict[tuple[str, ...], list[Transfer]] = {}
         self.cache: dict[object, Any] = {}  # what callers prepare once for this instance
@@ -144,14 +147,33 @@ class Instance:
             free(self._fmu.component)
 
     def _log(self, *arguments: Any) -> None:
-        """Append the FMU's log message; it is the last argument in both FMI versions."""
-        self._messages.append(arguments[-1].decode(errors="replace"))
+        """Append the FMU's log message; both FMI versions end in status, category and message."""
+        status, _, message = arguments[-3:]
+        self._messages.append((int(status), message.decode(errors="replace")))
+
+    def logged(self, least: int = 0) -> str:
+        """Return what the FMU logged in the last call with at least this status, each text once."""
+        quoted = r"(?s).*FmuError\(([\"'])(.*)\1\)\s*$"  # how pythonfmu hands an exception on
+        texts = (re.sub(quoted, r"\2", text) for status, text in self._messages if status >= least)
+        return "; ".join(dict.fromkeys(texts))
 
     def failure(self, error: object) -> FmuError:
         """Return an ``FmuError`` with the FMU's log messages, or ``error``'s text without any."""
-        quoted = r"(?s).*FmuError\(([\"'])(.*)\1\)\s*$"  # how pythonfmu hands an exception on
-        texts = [re.sub(quoted, r"\2", message) for message in self._messages]
-        return FmuError("; ".join(texts) or str(error))
+        return FmuError(self.logged() or str(error))
+
+    def refusal(self, function: str, status: int) -> FmuError:
+        """Return the ``FmuError`` for a status that ends a run: what was logged, or the status."""
+        in_words = STATUSES[status] if 0 <= status < len(STATUSES) else f"status {status}"
+        name = self.description.name
+        return self.failure(f"{function} of the FMU {name} failed ({in_words}) without a message")
+
+    def check(self, function: str, status: int) -> None:
+        """Raise ``FmuError`` unless a call of the FMU answered OK, or a warning, which is kept."""
+        if status == WARNING:
+            text = self.logged(WARNING) or self.logged() or f"{function}, without a message"
+            self.warnings[" ".join(f"the FMU {self.description.name} warns: {text}".split())] = None
+        elif status:
+            raise self.refusal(function, status)
 
     def call(self, function: str, *args: Any, **kwargs: Any) -> Any:
         """Call a method of FMPy's FMU object; return its result or raise the FMU's message."""
@@ -172,9 +194,8 @@ class Instance:
 
         def run() -> None:
             messages.clear()
-            status = call()
-            if status:
-                raise self.failure(f"{function} failed with status {status}")
+            if status := call():
+                self.check(function, status)
 
         return run
 

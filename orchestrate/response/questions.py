@@ -125,8 +125,8 @@ class Series:
         coordinates = {
             name: parameter_variable(name, self.name, values) for name, values in along.items()
         }
-        text = "excitation period T = 2 pi/eta in units of tau (22)"
-        coordinates["period"] = variable(self.name, 2.0 * np.pi / self.etas, "1", text)
+        text = "excitation period 2 pi/frequency"
+        coordinates["period"] = variable(self.name, 2.0 * np.pi / self.frequencies, "s", text)
         return coordinates
 
     @cached_property

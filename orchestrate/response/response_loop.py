@@ -297,7 +297,7 @@ class CompiledResponseLoop(ResponseLoop):
         """Return the error of the call at which the C loop stopped."""
         status, function = self.calls.status, (self.calls.failed or b"").decode()
         if status != NOT_FINITE:
-            return self.instance.failure(f"{function} failed with status {status}")
+            return self.instance.refusal(function, status)
         if np.isfinite(series).all():
             return self.instance.not_finite_error(("x_rel_max", *PEAKS), np.array([np.nan]))
         names = [name for name in SAMPLE_SERIES for _ in range(self.capacity)]

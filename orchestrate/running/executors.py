@@ -136,13 +136,19 @@ def threads(count: int) -> Iterator[Workers]:
 
 
 @contextmanager
-def processes(count: int) -> Iterator[Workers]:
-    """Provide loky's processes, which stay for the next question; on an error they are killed."""
+def processes(count: int, foreign: str = "") -> Iterator[Workers]:
+    """Provide loky's processes, which stay for the next question; on an error they are killed.
+
+    New ones for other ``foreign`` FMUs: what these load, as Python modules, may differ by version.
+    """
     import loky
 
     with sigint_blocked():
         pool = loky.get_reusable_executor(
-            count, timeout=IDLE_TIMEOUT, initializer=initialize_worker, initargs=(os.getpid(),)
+            count,
+            timeout=IDLE_TIMEOUT,
+            initializer=initialize_worker,
+            initargs=(os.getpid(), foreign),
         )
         pool.submit(int)  # starts them
     try:
@@ -179,7 +185,7 @@ def sigint_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def initialize_worker(parent: int) -> None:
+def initialize_worker(parent: int, _: str) -> None:
     """Set up a worker process: no Ctrl-C, no report of a crash, an end when its parent ends."""
     os.environ.setdefault("PYTHONFAULTHANDLER", "0")  # or loky's report of a crash has many lines
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -37,9 +37,9 @@ POLL_SECONDS = 0.5  # between two looks at the clock while chunks are computed
 
 
 def answer(
-    job: Job, running: Mapping[str, object], find: FmuFinder, foreign: bool = False
+    job: Job, running: Mapping[str, object], find: FmuFinder, foreign: str = ""
 ) -> xr.Dataset:
-    """Compute one job, or read its stored result; ``foreign``: it has an FMU of somebody else."""
+    """Compute one job, or read its stored result; ``foreign``: digest of somebody else's FMU."""
     return Runner([job], RunOptions.from_keywords(running), find, foreign).run()[job.name]
 
 
@@ -56,12 +56,13 @@ class Runner:
     """Compute several jobs with common workers."""
 
     def __init__(
-        self, jobs: Sequence[Job], options: RunOptions, find: FmuFinder, foreign: bool = False
+        self, jobs: Sequence[Job], options: RunOptions, find: FmuFinder, foreign: str = ""
     ) -> None:
         self.jobs, self.options = jobs, options
-        self.foreign = foreign or options.fmu is not None
         self.in_threads = all(job.in_threads for job in jobs)
         self.fmus: dict[str, Fmu] = {model: find(model) for job in jobs for model in job.models}
+        others = (str(fmu.path.resolve()) for fmu in self.fmus.values() if options.fmu is not None)
+        self.foreign = ",".join(filter(None, [foreign, *others]))  # FMUs of somebody else
         self.states: dict[str, Progress] = {}
         self.futures: dict[Future[tuple[bytes, Table]], tuple[Progress, Task]] = {}
         self.start_time = time.perf_counter()
@@ -118,8 +119,8 @@ class Runner:
 
             return cluster(self.options.cluster, count)
         if self.foreign:
-            return processes(min(count, max(1, self.busy_workers())))
-        return (threads if self.in_threads else processes)(count)
+            return processes(min(count, max(1, self.busy_workers())), self.foreign)
+        return threads(count) if self.in_threads else processes(count)
 
     def done(self) -> int:
         """Return how far the progress bar is, over all jobs together."""

@@ -23,8 +23,11 @@ enum {  /* places in a row; after the motion of the box the drive's other output
     TIME, H, LEVEL, THEN, IMPACTS = THEN + 4,
     MOTION, FORCE = MOTION + 4, IMPULSE, MOMENT,
     POSITION = MOTION + 10, VELOCITY, ACCELERATION, WORK, ENERGY,
-    NOT_FINITE = -1, LARGEST = 16  /* a status of our own; inputs of the drive, at most */
+    LARGEST = 16,  /* inputs of the drive, at most */
+    WARNING = 1, DISCARD = 2, NOT_FINITE = -1, NOT_WHOLE = -2,  /* statuses, of FMI and our own */
+    LAST_TIME = 2, TERMINATED = 3  /* kinds of fmi2GetRealStatus and fmi2GetBooleanStatus */
 };
+static const double WHOLE = 1e-6;  /* channel.py */
 
 typedef int (*Set3)(void *, const unsigned *references, size_t count, const double *values, size_t value_count);
 typedef int (*Get3)(void *, const unsigned *references, size_t count, double *values, size_t value_count);
@@ -32,7 +35,14 @@ typedef int (*Step3)(void *, double time, double h, bool, bool *, bool *, bool *
 typedef int (*Set2)(void *, const unsigned *references, size_t count, const double *values);
 typedef int (*Get2)(void *, const unsigned *references, size_t count, double *values);
 typedef int (*Step2)(void *, double time, double h, int);
+typedef int (*RealStatus2)(void *, int kind, double *value);
+typedef int (*BooleanStatus2)(void *, int kind, int *value);
 typedef void Function(void);
+
+typedef struct {  /* to the last step: channel.py */
+    double time, h, last;
+    bool event, terminate, early;
+} Answer;
 
 typedef struct {
     void *instance;
@@ -41,11 +51,13 @@ typedef struct {
     Function *step;
     int (*save)(void *, void **state);
     int (*restore)(void *, void *state);
+    Function *real_status, *boolean_status;  /* of FMI 2.0 */
     const unsigned *inputs, *outputs, *impacts;
     size_t input_count, output_count;
     void **kept;  /* its state at the step's beginning */
-    const char *failed;  /* the function that did not answer OK */
-    int status, is_fmi3;
+    Answer *answer;
+    const char *failed;  /* the function that ended the run */
+    int status, is_fmi3, warned;
 } Side;
 
 typedef struct {  /* places of our variables in what is set or read of the drive, what is one in SI */
@@ -66,10 +78,11 @@ typedef struct {
 
 EXPORT const unsigned sizes[] = {sizeof(Pair), MOTION, POSITION};  /* compiled.py has to have the same */
 
-/* -- calls of the FMUs: true where they answer OK -- */
+/* -- calls of the FMUs: true where the run goes on -- */
 
 static bool answered(Side *side, const char *function, int status) {
-    if (!status) return true;
+    if (status == WARNING) side->warned = 1;
+    if (!status || status == WARNING) return true;
     side->failed = function;
     side->status = status;
     return false;
@@ -93,12 +106,23 @@ static bool get(Side *s, double *values) {
     return answered(s, "reading outputs", sum - sum == 0.0 ? 0 : NOT_FINITE);
 }
 
+static int step2(Side *s, Answer *a) {
+    int ended = 0, status = ((Step2)s->step)(s->instance, a->time, a->h, 0);
+    if (status == DISCARD) {
+        ((RealStatus2)s->real_status)(s->instance, LAST_TIME, &a->last);
+        ((BooleanStatus2)s->boolean_status)(s->instance, TERMINATED, &ended);
+        a->terminate = ended;
+    }
+    return a->terminate ? 0 : status;
+}
+
 static bool advance(Side *s, double time, double h) {
-    bool event, terminate, early;
-    double last;
-    int status = s->is_fmi3 ? ((Step3)s->step)(s->instance, time, h, false, &event, &terminate, &early, &last)
-                            : ((Step2)s->step)(s->instance, time, h, 0);
-    return answered(s, "the step", status);
+    Answer *a = s->answer;
+    if (a->terminate) return answered(s, "the step", NOT_WHOLE);
+    a->time = time, a->h = h, a->last = time;
+    int status = s->is_fmi3 ? ((Step3)s->step)(s->instance, time, h, false, &a->event, &a->terminate, &a->early, &a->last) : step2(s, a);
+    bool whole = a->last >= time + (1.0 - WHOLE) * h;
+    return answered(s, "the step", !status && (a->terminate || a->early) && !whole ? NOT_WHOLE : status);
 }
 
 static bool save(Side *s) { return answered(s, "saving the state", s->save(s->instance, s->kept)); }
@@ -267,20 +291,22 @@ static bool record(Pair *p, const double *row, const double *inputs) {
 }
 
 /* Intervals from the state `now` on, which becomes that at the end: a row for each step after the
- * first row, and the row at which each interval ends. False after a failure. The inputs of an
- * interval are followed by those at its end, where something is recorded. */
+ * first row, and the row at which each interval ends. Returns how many there are: all, unless a call
+ * failed or an FMU ended the simulation. The inputs of an interval are followed by those at its end,
+ * where something is recorded. */
 EXPORT int run(Pair *p, double *now, double *rows, int *ends, const double *inputs, int count, double h) {
     size_t own = p->drive.input_count - p->force.count, width = inputs_at(p) + own;
     double *at = rows;
     p->oscillator.status = p->drive.status = 0;
     for (int i = 0; i < count; i++) {
-        if (!interval(p, now, &at, width, inputs, h)) return 0;
+        if (p->oscillator.answer->terminate || p->drive.answer->terminate) return i;
+        if (!interval(p, now, &at, width, inputs, h)) return i;
         inputs += own;
         if (p->recorded_count) {
-            if (!record(p, now, inputs)) return 0;
+            if (!record(p, now, inputs)) return i;
             inputs += own;
         }
         ends[i] = (int)((size_t)(at - rows) / width);
     }
-    return 1;
+    return count;
 }

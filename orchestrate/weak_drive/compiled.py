@@ -11,6 +11,7 @@ import ctypes
 import functools
 from array import array
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, pointer
 from pathlib import Path
 from typing import Any
@@ -18,16 +19,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import FmuError
 from ..fmu.c_library import loaded_function
-from ..fmu.channel import Channel
-from ..fmu.instance import REAL_TYPES, Instance
+from ..fmu.channel import Channel, SimulationEnded, StepAnswer
+from ..fmu.instance import REAL_TYPES, WARNING, Instance
 from .connection import MOTOR, Connection, Link
 from .master import Master, Scheme
 from .record import BOX, Record
 
 SOURCE = Path(__file__).with_suffix(".c")
-NOT_FINITE = -1  # a status that FMI does not have
+NOT_FINITE, NOT_WHOLE = -1, -2  # statuses that FMI does not have
 MOST_INPUTS = 16  # of the drive, with the force and its derivatives
 
 
@@ -36,12 +36,16 @@ class FmuSide(ctypes.Structure):
 
     _fields_ = [
         *((name, c_void_p) for name in ("instance", "set", "get", "count")),
-        *((name, c_void_p) for name in ("step", "save", "restore")),
+        *(
+            (name, c_void_p)
+            for name in ("step", "save", "restore", "real_status", "boolean_status")
+        ),
         *((name, POINTER(c_uint)) for name in ("inputs", "outputs", "impacts")),
         *((name, c_size_t) for name in ("input_count", "output_count")),
         ("kept", POINTER(c_void_p)),
+        ("answer", POINTER(StepAnswer)),
         ("failed", c_char_p),
-        *((name, c_int) for name in ("status", "is_fmi3")),
+        *((name, c_int) for name in ("status", "is_fmi3", "warned")),
     ]
 
 
@@ -124,18 +128,21 @@ class CompiledMaster(Master):
         addresses, pair = (rows.ctypes.data, ends.ctypes.data), self._pair
         run, h = load_step_function(), h or self.scheme.h
         pair.table = recorded.ctypes.data
-        for i, values in enumerate(pieces):
-            first, end = i * size, (i + 1) * size
+        intervals = 0
+        for values in pieces:
             self.oscillator.begin()
             self.drive.channel.begin()
-            into = addresses[0] + at * width * rows.itemsize, addresses[1] + first * ends.itemsize
-            known = now.buffer_info()[0], *into, values.buffer_info()[0]
-            worked, self.row = run(byref(pair), *known, size, h), now.tolist()
-            if not worked:
-                raise self._failure(pair)
-            ends[first:end] += at
-            at = int(ends[end - 1]) if size else 0
-        return Record.of_rows(self.names, rows[: at + 1], ends, recorded)
+            into = addresses[0] + at * width * rows.itemsize
+            known = now.buffer_info()[0], into, addresses[1] + intervals * ends.itemsize
+            done = run(byref(pair), *known, values.buffer_info()[0], size, h)
+            self.row = now.tolist()
+            self._check(pair)
+            ends[intervals : intervals + done] += at
+            intervals += done
+            at = int(ends[intervals - 1]) if intervals else 0
+            if done < size:
+                break
+        return Record.of_rows(self.names, rows[: at + 1], ends[:intervals], recorded[:intervals])
 
     @functools.cached_property
     def _pair(self) -> Pair:
@@ -153,23 +160,28 @@ class CompiledMaster(Master):
         pair.recorded_count = len(names)
         return pair
 
-    def _failure(self, pair: Pair) -> FmuError:
-        """Build the error for the FMU instance whose step failed."""
+    def _check(self, pair: Pair) -> None:
+        """Raise what ended the run, keep warnings; an FMU that ended the simulation is no error."""
         sides = (self.oscillator, pair.oscillator), (self.drive.channel, pair.drive)
         for channel, side in sides:
+            if side.warned:
+                channel.instance.check("the step", WARNING)
+                side.warned = 0
             if side.status == NOT_FINITE:
                 channel.get()  # it raises
-            if side.status:
-                return channel.failure(side.failed.decode(), side.status)
-        raise AssertionError("a step failed, but neither FMU reported an error")
+            if side.status in (0, NOT_WHOLE) or side.failed == b"the step":
+                with suppress(SimulationEnded):
+                    channel.check_step(max(side.status, 0))
+            else:
+                raise channel.instance.refusal(side.failed.decode(), side.status)
 
 
 def fill_fmu_side(channel: Channel) -> FmuSide:
     """Fill the C structure of one FMU instance; keep its channel alive while it is used."""
     pointers = channel.pointers()
     is_fmi3 = channel.instance.is_fmi3
+    kept, answer = pointer(pointers.saved_state), pointer(pointers.answer)
     return FmuSide(
         *(pointers.instance, *pointers.functions, pointers.inputs, pointers.outputs, None),
-        *(len(pointers.inputs), len(pointers.outputs), pointer(pointers.saved_state)),
-        *(None, 0, is_fmi3),
+        *(len(pointers.inputs), len(pointers.outputs), kept, answer, None, 0, is_fmi3, 0),
     )

@@ -16,6 +16,7 @@ from typing import Any
 from ..errors import InputError
 from ..fmu.description import Description
 from ..fmu.instance import INTEGER_TYPES, REAL_TYPES
+from ..fmu.unit_names import unit_by_name
 
 MOTION = ("box_acceleration", "box_velocity", "box_position")  # outputs of a drive
 FORCE = ("box_force", "box_force_1", "box_force_2", "box_force_3")  # inputs: with its derivatives
@@ -55,8 +56,13 @@ MOTOR = Connection(  # the first two outputs are what the step control needs
 )
 
 
-def checked_links(connect: Mapping[str, str], drive: Description) -> dict[str, Link]:
-    """Return the connections by our names; raise ``InputError`` where one cannot be made."""
+def checked_links(
+    connect: Mapping[str, str], drive: Description, units: Mapping[str, str]
+) -> dict[str, Link]:
+    """Return the connections by our names; raise ``InputError`` where one cannot be made.
+
+    ``units`` has those that the drive does not state, by its names.
+    """
     if not isinstance(connect, Mapping) or not all(isinstance(v, str) for v in connect.values()):
         raise InputError(f"connect = {connect!r}: expected names of theirs by names of ours")
     for name in connect:
@@ -74,8 +80,19 @@ def checked_links(connect: Mapping[str, str], drive: Description) -> dict[str, L
         checked_variable(drive, name, causality)
         if name in (link.theirs for link in links.values()):
             raise InputError(f"connect: {name} is connected twice; expected it once")
-        links[ours] = Link(name, sign * factor_to_si(drive, ours, name))
+        links[ours] = Link(name, sign * factor_to_si(drive, ours, name, units))
     return links
+
+
+def checked_units(units: Mapping[str, str] | None, drive: Description) -> dict[str, str]:
+    """Return units by the drive's names; raise ``InputError`` for one that is not known."""
+    if not isinstance(units or {}, Mapping):
+        raise InputError(f"units = {units!r}: expected units by names of the drive")
+    for name, unit in (units or {}).items():
+        checked_variable(drive, name, "")
+        if unit_by_name(str(unit)) is None:
+            raise InputError(f"units: {name} = {unit!r}; expected a unit such as m/s2, mm or kN")
+    return dict(units or {})
 
 
 def checked_variable(drive: Description, name: str, causality: str, any_type: bool = False) -> Any:
@@ -109,17 +126,23 @@ def of_causality(drive: Description, causality: str) -> str:
     return f"one of its {f'{causality}s' if causality else 'variables'}: {listed or 'it has none'}"
 
 
-def factor_to_si(drive: Description, ours: str, theirs: str) -> float:
+def factor_to_si(drive: Description, ours: str, theirs: str, units: Mapping[str, str]) -> float:
     """Return what one of the drive's unit is in SI; raise ``InputError`` for another quantity."""
-    unit = drive.variable(theirs).unit or ""
-    if unit not in drive.units:
+    name = units.get(theirs, drive.variable(theirs).unit or "")
+    unit = unit_by_name(name) if theirs in units else drive.units.get(name)
+    if not name:
         return 1.0
-    if drive.units[unit] != UNITS[ours]:
-        fits = next((f" ({unit}: {one}?)" for one in MOTION if UNITS[one] == drive.units[unit]), "")
+    if unit is None or unit.exponents != UNITS[ours]:
+        fits = [one for one in MOTION if unit is not None and unit.exponents == UNITS[one]]
+        hint = f" ({name}: {fits[0]}?)" if fits else ""
+        if unit is None:
+            hint = (
+                f"; this unit is not known: state it, as units={{{theirs!r}: {IN_WORDS[ours]!r}}}"
+            )
         raise InputError(
-            f"{theirs} of the FMU {drive.name} is in {unit}; {ours} expects {IN_WORDS[ours]}{fits}"
+            f"{theirs} of the FMU {drive.name} is in {name}; {ours} expects {IN_WORDS[ours]}{hint}"
         )
-    return drive.factors.get(unit, 1.0)
+    return unit.factor
 
 
 def near(name: str, known: Iterable[str]) -> str:
@@ -140,7 +163,8 @@ def proposals(drive: Description) -> dict[str, str]:
     for ours, powers in UNITS.items():
         ranks = {}
         for name, variable in drive.variables.items():
-            theirs = drive.units.get(variable.unit or "")
+            unit = drive.units.get(variable.unit or "")
+            theirs = unit.exponents if unit is not None else None
             rank = similarity(ours.partition("_")[2], name)
             fits = theirs == powers or (theirs is None and rank == 1.0)
             fits = fits and variable.type in REAL_TYPES and name not in found.values()

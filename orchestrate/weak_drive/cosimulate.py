@@ -39,7 +39,15 @@ from ..running.job import Chunk, Table, brief, plain
 from ..running.options import Running
 from ..running.runner import answer
 from .compiled import create_master
-from .connection import MOTION, OURS, Connection, Link, checked_links, checked_variable
+from .connection import (
+    MOTION,
+    OURS,
+    Connection,
+    Link,
+    checked_links,
+    checked_units,
+    checked_variable,
+)
 from .controllers import InputControl
 from .energy_balance import given_work
 from .inputs import Input, Inputs, check_inputs
@@ -58,6 +66,8 @@ IN_TIME_TOO = {
 }
 BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
 MAX_STEPS = 10_000_000
+IN_STEPS = ("nodes", "cubics", "work")  # arrays with a row for each step
+AT_THE_DURATION = "at the duration"  # attribute `ended` of a run that the drive did not end
 NOTHING = np.empty((0, 0))
 DIVERGED = 1e12  # m: springs that a force on the box would stretch so far are none
 NOTICED = 0.01  # of the largest displacement: a larger coupling error gives a warning
@@ -79,7 +89,8 @@ class Coupling:
         self.h = job.step / parts
         self.master = create_master(oscillator, drive, Scheme(self.h), connection)
         knows = "box_acceleration" in connection.links
-        self.divides_first = not knows and not drive.description.has_fixed_step
+        fixed = drive.description.has_fixed_step or drive.description.internal_step
+        self.divides_first = not knows and not fixed
 
     def advance(self, items: Sequence[int]) -> Table:
         """Do the steps of some items; return nodes, cubics, work, and what is recorded."""
@@ -94,10 +105,10 @@ class Coupling:
             raise
         self.check_forces(record["time"], record["box_force"])
         nodes = record["time"].copy()
-        nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 : steps.stop + 1]
+        nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 :][: len(record.ends)]
         after = record.after
         table = {"nodes": nodes[1:], "cubics": np.transpose(after.acceleration())}
-        table |= {"work": given_work(record)}
+        table |= {"work": given_work(record), "ended": np.array([self.master.ended])}
         if self.inputs.control:
             table["control"] = np.array([self.inputs.state])
         table = {f"{name} {self.parts}": values for name, values in table.items()}
@@ -124,6 +135,8 @@ class Coupling:
         first = self.inputs.at(np.array([0.5, 1.0]) * self.h).reshape(1, -1)
         first = first[:, : self.master.width]
         pieces = joined([self.master.run(first, part * short) for part in BEGINNING])
+        if self.master.ended:
+            raise FmuError(self.master.ended)
         begun = replace(pieces, ends=pieces.ends[-1:], recorded=pieces.recorded[-1:])
         return joined([begun, self.inputs.run(self.master, steps[1:], self.h)])
 
@@ -150,6 +163,7 @@ class CosimulateJob(Question):
     drive: str  # path of its FMU
     drive_sha256: str
     connect: tuple[tuple[str, str], ...]
+    units: tuple[tuple[str, str], ...] = ()
     start_values: Values = ()
     inputs: tuple[tuple[str, Input], ...] = ()
     duration: float = positive()
@@ -164,7 +178,8 @@ class CosimulateJob(Question):
     item: ClassVar[str] = "step"
 
     def call_text(self) -> str:
-        values = {"connect": dict(self.connect), "parameters": dict(self.start_values)}
+        values: dict[str, Any] = {"connect": dict(self.connect), "units": dict(self.units)}
+        values |= {"parameters": dict(self.start_values)}
         values |= {name: getattr(self, name) for name in ("duration", "step", "record", "start")}
         texts = (f"{name}={value!r}" for name, value in values.items() if value)
         structure = f"Structure{brief(plain(self.structure))}"
@@ -202,7 +217,11 @@ class CosimulateJob(Question):
         if self.estimate:
             known = previous["moved"][-1] if previous is not None else self.moved_by_force()
             table["moved"] = np.array([known])
+        warned: dict[str, None] = {}
         for parts in self.finenesses():
+            if previous is not None and previous[f"ended {parts}"][-1]:
+                table |= nothing_more(previous, parts)
+                continue
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(self.drive, "drive") as drive:
                 coupling = Coupling(self, oscillator, drive, parts)
                 if previous is not None:
@@ -211,13 +230,15 @@ class CosimulateJob(Question):
                 if drive.description.saves_states:
                     table |= coupling.get_state()
                 coupling.master.close()
+                warned |= drive.warnings
+        table["warned"] = np.array(["\n".join(warned)])
         return table
 
     def begin_drive(self, drive: Instance, inputs: Inputs) -> Connection:
         """Initialise the drive with its inputs at the start; return how it is connected."""
         (values,) = inputs.at(np.zeros(1)).tolist()
         drive.initialize(**dict(self.start_values), **dict(zip(inputs.names, values, strict=True)))
-        links = checked_links(dict(self.connect), drive.description)
+        links = checked_links(dict(self.connect), drive.description, dict(self.units))
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
 
     def moved_by_force(self) -> float:
@@ -236,7 +257,7 @@ class CosimulateJob(Question):
 
     def inputs_at_start(self, drive: Description) -> Iterator[str]:
         """Yield ``name = start unit`` of each of the drive's inputs that nothing is given for."""
-        links = checked_links(dict(self.connect), drive).values()
+        links = checked_links(dict(self.connect), drive, dict(self.units)).values()
         given = {*(link.theirs for link in links), *Inputs(self.inputs, drive).names}
         for name, one in drive.variables.items():
             if one.causality == "input" and name not in given:
@@ -248,7 +269,10 @@ class CosimulateJob(Question):
 
     def motion(self, oscillator: Path, steps: Table) -> Table:
         """Return the motion under the accelerations of all steps, over time, and its impacts."""
-        times = self.times()
+        times, ended = self.reached(steps)
+        for parts in self.finenesses() if ended else ():
+            done = steps[f"nodes {parts}"] <= times[-1]
+            steps |= {name: steps[name][done] for name in (f"{one} {parts}" for one in IN_STEPS)}
         motions = []
         with Player(oscillator) as player:
             for parts in self.finenesses():
@@ -270,13 +294,25 @@ class CosimulateJob(Question):
                 end = one.aborted(tuple(steps["control 1"][-1].tolist()))
                 columns["control_aborted"] = np.array([end])
         columns["moved"] = steps.get("moved", np.array([np.nan]))[:1]
+        columns["ended"] = np.array([ended])
         return {**columns, **impact_columns(impacts, self.structure)}
+
+    def reached(self, steps: Table) -> tuple[Floats, str]:
+        """Return the communication points that all runs reached, and by what they ended earlier."""
+        ends = {i: np.max(steps[f"nodes {i}"], initial=0.0) for i in self.finenesses()}
+        last, times = min(ends.values()), self.times()
+        texts = [text for i in ends if ends[i] == last for text in steps[f"ended {i}"].tolist()]
+        ended = next(filter(None, texts), "")
+        if last < times[1]:
+            raise FmuError(f"{ended}, in its first step; expected at least one of them")
+        return times[times <= last], ended
 
     def dataset(self, table: Table) -> xr.Dataset:
         names = {**IN_TIME, **IN_TIME_TOO}
         description = describe(self.drive)
         theirs = {}
-        for name, values in zip(self.record, table.get("recorded", NOTHING).T, strict=True):
+        recorded = table.get("recorded", NOTHING)[: len(table["time"])]
+        for name, values in zip(self.record, recorded.T, strict=True):
             about = description.variable(name)
             text = about.description or f"{name} of the drive"
             theirs[name] = variable("time", values, about.unit or "1", text)
@@ -302,6 +338,8 @@ class CosimulateJob(Question):
                 "recorded": ",".join(self.record),
                 "inputs_at_start": ", ".join(self.inputs_at_start(description)),
                 "moved_by_1_N": float(table["moved"][0]),
+                "ended": str(table["ended"][-1]) or AT_THE_DURATION,
+                "drive_warnings": "\n".join(dict.fromkeys(filter(None, table["warned"].tolist()))),
                 "resumable": "yes"
                 if description.saves_states
                 else "no: the drive cannot save its state",
@@ -314,6 +352,7 @@ def cosimulate(
     drive: str | PathLike[str] | Drive | Shaker,
     *,
     connect: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
     parameters: Mapping[str, float | bool] | None = None,
     inputs: Mapping[str, float | Input | tuple[ArrayLike, ArrayLike]] | None = None,
     duration: float,
@@ -339,6 +378,10 @@ def cosimulate(
         minus before it, as ``"-force"``, counts with the other sign; other units of the same kind
         are converted. A drive that takes derivatives of the force has them as ``box_force_1`` to
         ``box_force_3``. By default the names of the package's own drives.
+    units : mapping of str to str, optional
+        Units of connected variables, by the drive's names, in place of those that it states: m/s2,
+        mm, kN and others. Units that it defines by no base units are taken by their names; none
+        means SI.
     parameters : mapping of str to float, optional
         Start values of the drive, by its names.
     inputs : mapping, optional
@@ -362,7 +405,9 @@ def cosimulate(
         ``v_rel``, ``contact_force``, ``in_contact``, ``box_force``, ``impact_energy``,
         ``box_acceleration``, what is recorded of the drive by its names, ``box_work`` where a
         velocity is connected, ``coupling_error``, the larger error of ``x1`` and ``x2`` in m, and
-        of a control the time ``control_aborted``.
+        of a control the time ``control_aborted``. Attributes: ``ended``, when and why the drive
+        ended the simulation before the duration, with what was reached until then, and
+        ``drive_warnings``, what it warned of; both are given as warnings too.
         Over ``impact``: ``impact_time``, ``impact_velocity``, ``impulse`` and ``sticks``.
 
     Raises
@@ -371,7 +416,7 @@ def cosimulate(
         Where a connection cannot be made, a name is not the drive's, or a number is out of its
         range.
     FmuError
-        Where an FMU refuses a step.
+        Where an FMU refuses or discards a step, or returns early from it.
 
     Notes
     -----
@@ -404,9 +449,11 @@ def cosimulate(
         connect, drive = connect or OURS, finder(running)(model).path
     path = Path(drive).resolve()
     description = describe_runnable(path)
-    links = checked_links(connect or {}, description)
+    units = checked_units(units, description)
+    links = checked_links(connect or {}, description, units)
     for name, value in (("duration", duration), ("step", step)):
         check(name, value, "s", low=0.0, exclusive=True)
+    check_internal_step(duration, step, description, estimate)
     count = checked_step_count(duration, step, description)
     job = CosimulateJob.from_call(
         locals(),
@@ -414,6 +461,7 @@ def cosimulate(
         drive=str(path),
         drive_sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
         connect=tuple((connect or {}).items()),
+        units=tuple(units.items()),
         start_values=checked_parameters(parameters or {}, description),
         inputs=checked_inputs(inputs or {}, description, duration),
         step=float(duration) / count,
@@ -421,11 +469,28 @@ def cosimulate(
         start=checked_state("start", start, checked_structure(structure)),
     )
     check_inputs(job.inputs, links)
-    found = answer(job, running, finder(running), foreign)
+    found = answer(job, running, finder(running), job.drive_sha256 if foreign else "")
+    warn_of_drive(found)
     if estimate:
         warn_of_sign(found, links)
         warn_of_error(found, [name for name in MOTION if name not in links])
     return found
+
+
+def warn_of_drive(run: xr.Dataset) -> None:
+    """Warn with what the drive warned of, each text once, and where it ended the simulation."""
+    attributes = getattr(run, "attrs", {})
+    for text in attributes.get("drive_warnings", "").splitlines():
+        warnings.warn(text, stacklevel=3)
+    if (ended := attributes.get("ended", AT_THE_DURATION)) != AT_THE_DURATION:
+        warnings.warn(f"{ended}; the result ends there", stacklevel=3)
+
+
+def nothing_more(previous: Table, parts: int) -> Table:
+    """Return the table of a run that a drive ended in a chunk before: no rows, the same end."""
+    names = {name for name in previous if name.endswith(f" {parts}")} | ({"recorded"} & {*previous})
+    table = {name: previous[name][:0] for name in names if name != "recorded" or parts == 1}
+    return {**table, f"ended {parts}": previous[f"ended {parts}"]}
 
 
 def warn_of_sign(run: xr.Dataset, links: Mapping[str, Link]) -> None:
@@ -463,6 +528,23 @@ def checked_step_count(duration: float, step: float, drive: Description) -> int:
             "length alone; expected a duration that is a whole number of steps"
         )
     return checked_integer("duration/step", count, 1, MAX_STEPS)
+
+
+def check_internal_step(duration: float, step: float, drive: Description, estimate: bool) -> None:
+    """Raise ``InputError`` unless all steps are multiples of the drive's internal one."""
+    internal, parts = drive.internal_step, 2 if estimate else 1
+    if not internal:
+        return
+    taken = duration / max(1, math.ceil(duration / step - 1e-9)) / parts
+    if round(taken / internal) < 1 or not math.isclose(
+        taken, round(taken / internal) * internal, rel_tol=1e-9
+    ):
+        why = ", half of which is for the error's estimate" if estimate else ""
+        raise InputError(
+            f"step = {step} s: the FMU {drive.name} calculates in steps of {internal:g} s "
+            f"(fixedInternalStepSize); expected a multiple of {parts * internal:g} s{why}, and a "
+            "duration that is a whole number of steps"
+        )
 
 
 def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Values:

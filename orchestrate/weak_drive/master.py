@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
-from ..fmu.channel import Channel
+from ..fmu.channel import Channel, SimulationEnded
 from ..fmu.instance import Instance
 from .connection import FORCE, MOTOR, Connection
 from .polynomials import (
@@ -118,8 +118,9 @@ class Master:
         self.names = (*LEADING, *connection.outputs, *connection.inputs)
         self.inputs = slice(END + len(connection.outputs), len(self.names))
         unknown = [math.nan] * len(connection.inputs)
-        step = [start_time, *[0.0] * (IMPACTS - TIME)]
-        self.row = [*step, *self.oscillator.get(), *self.drive.get(), *unknown]
+        step, motion = [start_time, *[0.0] * (IMPACTS - TIME)], self.oscillator.get()
+        self.drive.put((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())  # its acceleration follows it
+        self.row = [*step, *motion, *self.drive.get(), *unknown]
         self.points: list[float] = []  # times and values, where no acceleration is connected
         self._remember()
 
@@ -150,14 +151,27 @@ class Master:
     def run_controlled(
         self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
     ) -> Record:
-        """Run a number of intervals; its inputs are requested at its start."""
+        """Run a number of intervals; its inputs are requested at its start.
+
+        Fewer, if an FMU ends the simulation (:attr:`ended`): those that it reached the end of.
+        """
         rows, ends, recorded = [list(self.row)], [], []
         own = len(self.connection.inputs)
         for values in inputs:
-            rows += self._interval(list(values[:own]), h or self.scheme.h)
+            try:
+                rows += self._interval(list(values[:own]), h or self.scheme.h)
+            except SimulationEnded:
+                break
             ends.append(len(rows) - 1)
             recorded += [self.recorded(values[own:])] if self.connection.recorded else []
+            if self.ended:
+                break
         return Record.of_rows(self.names, rows, ends, recorded)
+
+    @property
+    def ended(self) -> str:
+        """Return at what time, and why, an FMU ended the simulation; empty if none did."""
+        return self.drive.channel.ended or self.oscillator.ended
 
     @property
     def width(self) -> int:

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from ..errors import FmuError
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR, SHAKER
 from ..model.drive import Drive
@@ -75,8 +76,13 @@ class Run:
     def record(self, steps: Sequence[int]) -> Record:
         """Run some communication steps; return their record."""
         if self.job.control is None:
-            return self.master.run([self.step_voltage(i) for i in steps])
-        return self.master.run_controlled(([self.step_voltage(i)] for i in steps), len(steps))
+            record = self.master.run([self.step_voltage(i) for i in steps])
+        else:
+            voltages = ([self.step_voltage(i)] for i in steps)
+            record = self.master.run_controlled(voltages, len(steps))
+        if self.master.ended:  # our own drives do not
+            raise FmuError(self.master.ended)
+        return record
 
     def revolve(self, steps: Sequence[int]) -> Table:
         """Run some communication steps; return the table of completed revolutions."""

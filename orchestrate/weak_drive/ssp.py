@@ -88,11 +88,10 @@ def add_units(root: ET.Element, components: Components) -> None:
     parent = ET.SubElement(root, qualified_tag("ssd", "Units"))
     each = [(c, c.unit(p)) for c in components.values() for p in (*c.inputs, *c.outputs)]
     used = {unit: one.fmu.units[unit] for one, unit in each if unit}
-    for unit, powers in sorted(used.items()):
-        element = ET.SubElement(parent, qualified_tag("ssc", "Unit"), name=unit)
-        ET.SubElement(
-            element, qualified_tag("ssc", "BaseUnit"), {k: str(v) for k, v in powers.items()}
-        )
+    for name, unit in sorted(used.items()):
+        element = ET.SubElement(parent, qualified_tag("ssc", "Unit"), name=name)
+        powers = {base: str(power) for base, power in unit.exponents.items()}
+        ET.SubElement(element, qualified_tag("ssc", "BaseUnit"), powers)
 
 
 def add_component(elements: ET.Element, name: str, one: Component) -> None:
@@ -313,7 +312,7 @@ def drive_component(
     description, needed = describe(path), ("box_force", "box_acceleration")
     if connect is None and isinstance(drive, Shaker):
         connect = {name: name for name in needed}
-    links = checked_links(connect or {}, description)
+    links = checked_links(connect or {}, description, {})
     if sorted(links) != sorted(needed):
         raise InputError(f"connect: {', '.join(links)}; expected {' and '.join(needed)}")
     for ours, link in links.items():

@@ -86,6 +86,17 @@ def test_a_coil_moves_by_the_equations(form, values):
     assert found == pytest.approx([*state[:2], current, voltage, state[3]], rel=1e-10)
 
 
+def test_a_commanded_current_puts_the_energy_of_its_first_jump_in(form):
+    """Whenever it is set; as it does over the short time that a high voltage limit leaves it."""
+    values = {"current_control": True, "coil_inductance": 0.02}
+    first = open_fmu(path_of(COIL, form)).start(**values, command=2.0)
+    assert first.one("energy") == 0.5 * 0.02 * 2.0**2 == first.one("stored_energy")
+    later = open_fmu(path_of(COIL, form)).start(**values).set(command=2.0)
+    limited = open_fmu(path_of(COIL, form)).start(**values, command=2.0, voltage_limit=1e6)
+    ends = [f.step(0.1).one("energy") for f in (first, later, limited)]
+    assert ends[0] == ends[1] == pytest.approx(ends[2], rel=1e-6)
+
+
 @drives
 def test_acceleration_belongs_to_the_inputs_as_set_now(model, form):
     """In initialisation mode and between steps, after a state was restored too; reading it changes

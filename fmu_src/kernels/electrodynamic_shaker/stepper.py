@@ -37,13 +37,11 @@ def initialize(m, time):
         return at.START_CURRENT
     m[at.BEGIN + at.PLACE] = m[at.POSITION_START]
     m[at.BEGIN + at.SPEED] = m[at.VELOCITY_START]
-    m[at.BEGIN + at.AMPERES] = m[at.CURRENT_START]
-    # without a voltage limit a commanded current is the command's from the start
-    m[at.FOLLOWED] = 1.0 if m[at.OTHER_LIMIT] == 0.0 else 0.0
+    # without a voltage limit a commanded current jumps from zero to the first command
+    jumps = m[at.CURRENT_CONTROL] != 0.0 and m[at.VOLTAGE_LIMIT] == 0.0
+    m[at.BEGIN + at.AMPERES] = 0.0 if jumps else m[at.CURRENT_START]
     keep_inputs(m)
     begin_state(m)
-    if m[at.FOLLOWED] != 0.0:
-        m[at.BEGIN + at.AMPERES] = m[at.STATE + at.AMPERES]
     write_outputs(m)
     return check_finite(m)
 

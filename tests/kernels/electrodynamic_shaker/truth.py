@@ -108,6 +108,8 @@ class Shaker:
         command = self.command(t)
         self.clipped = int(np.sign(command)) if abs(command) > self.limit else 0
         self.hold(t, state)
+        if self.current_control and not np.isfinite(self.other_limit):  # it jumps from zero
+            state[3] += 0.5 * self.p["coil_inductance"] * self.source(t)[0] ** 2
 
     def hold(self, t, state):
         """Decide whether the other quantity is held."""

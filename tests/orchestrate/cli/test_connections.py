@@ -10,6 +10,7 @@ from tests.orchestrate.weak_drive.drives.linear import draw
 
 A, F = "box_acceleration=acc", "box_force=force"
 RUN = ("--duration", "0.1", "--step", "0.01", "--plot", "none")
+NAMED = '<UnitDefinitions><Unit name="{}"/></UnitDefinitions>'  # without a base unit
 NAMES = ("force", "command", "acc", "pos", "vel")
 
 
@@ -26,6 +27,8 @@ def drives(exported, tmp_path_factory):
             '<Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit></UnitDefinitions>'
             "<ModelVariables>",
         ),
+        "named": ("<ModelVariables>", f"{NAMED.format('mm/s2')}<ModelVariables>"),
+        "strange": ("<ModelVariables>", f"{NAMED.format('fathom')}<ModelVariables>"),
         "single": ('<Float64 name="acc"', '<Float32 name="acc"'),
         "whole": (
             '<Float64 name="force" valueReference="30" causality="input" variability="continuous"',
@@ -35,6 +38,7 @@ def drives(exported, tmp_path_factory):
             '<Float64 name="vel" valueReference="42" causality="output" variability="continuous"',
             '<String name="vel" valueReference="42" causality="output" variability="discrete"',
         ),
+        "internal": ('StepSize="true"', 'StepSize="true" fixedInternalStepSize="0.01"'),
         "equal": ('StepSize="true"', 'StepSize="false"'),
         "exchange": ("CoSimulation modelIdentifier", "ModelExchange modelIdentifier"),
         "first": ('fmiVersion="3.0"', 'fmiVersion="1.0"'),
@@ -50,6 +54,9 @@ def drives(exported, tmp_path_factory):
         if name == "units":
             changed = changed.replace('name="acc"', 'name="acc" unit="mm"')
             changed = changed.replace('name="force"', 'name="force" unit="N"')
+        if name in ("named", "strange"):  # by their names alone
+            unit = "mm/s2" if name == "named" else "fathom"
+            changed = changed.replace('name="acc"', f'name="acc" unit="{unit}"')
         if name == "exchange":
             changed = re.sub(r"canHandleVariableCommunicationStepSize=\S+ ", "", changed)
         with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
@@ -80,6 +87,10 @@ BAD = {  # options, and what the line says
     "one variable twice": ("plain", [A, F, "box_force_1=force"], "force is connected twice"),
     "derivative alone": ("plain", [A, "box_force_1=force"], "and box_force"),
     "unit": ("units", [A, F], "acc of the FMU Linear is in mm"),
+    "unit by its name": ("named", ["box_velocity=acc", F], "in mm/s2; box_velocity expects m/s ("),
+    "unit that is not known": ("strange", [A, F], "state it, as units={'acc': 'm/s2'}"),
+    "unit of nothing": ("plain", [A, F, "--unit", "acc=fathom"], "units: acc = 'fathom'; expected"),
+    "unit of another kind": ("plain", [A, F, "--unit", "acc=N"], "acc of the FMU Linear is in N"),
     "single precision": ("single", [A, F], "double precision"),
     "whole number": ("whole", [A, F], "double precision"),
     "a text": ("text", ["box_velocity=vel", F], "double precision"),
@@ -99,6 +110,7 @@ BAD = {  # options, and what the line says
     "duration below zero": ("plain", [A, F, "--duration", "-1"], "duration"),
     "too many steps": ("plain", [A, F, "--step", "1e-12"], "duration/step"),
     "a rest of a step": ("equal", [A, F, "--step", "0.03"], "takes steps of one length alone"),
+    "half an internal step": ("internal", [A, F], "expected a multiple of 0.02 s, half of"),
     "a start through itself": ("plain", [A, F, "--start", "1,0,0,0"], "start"),
     "no co-simulation": ("exchange", [A, F], "co-simulation"),
     "FMI 1.0": ("first", [A, F], "first.fmu"),

@@ -155,7 +155,9 @@ def test_the_same_question_shown_in_other_units_has_the_same_bits(ask, tmp_path)
         done = ask("resonance", *SWEPT, *SHORT, "--format", "csv", *more).success()
         stored |= set(sums(folder).values())
         (curves,) = (line for line in done.out.splitlines() if line.endswith("n_frequency.csv"))
-        columns[units] = set(pd.read_csv(curves).columns)
+        table = pd.read_csv(curves)
+        columns[units] = set(table.columns)
+        assert table["period [s]"].to_numpy() == pytest.approx(1.0 / table["frequency [Hz]"])
         assert ("complete already" in done.out) == (units != "Hz,mm,g")
     assert len(stored) == 1
     assert {"frequency [Hz]", "x1_max [mm]", "a1_max [g]"} <= columns["Hz,mm,g"]

@@ -83,7 +83,10 @@ def test_a_worker_with_other_sources_computes_nothing():
 def test_an_fmu_of_somebody_else_runs_in_a_process(find, monkeypatch, tmp_path):
     running = {"jobs": 1, "fmu": {OSCILLATOR: tmp_path / "model.fmu"}}
     assert answer(Where("where"), {"jobs": 1}, find).square == os.getpid()
-    for other in (answer(Where("a"), running, find), answer(Where("b"), {"jobs": 1}, find, True)):
+    for other in (
+        answer(Where("a"), running, find),
+        answer(Where("b"), {"jobs": 1}, find, "digest"),
+    ):
         assert other.square != os.getpid()
 
 

@@ -1,17 +1,41 @@
-/* A linear drive of somebody else as an FMI 3.0 FMU: x' = A x + B u, acceleration C x + D u, exact
- * for inputs that are held over a step. References: parameters from 0, u from 30, outputs from 40. */
+/* A linear drive of somebody else as an FMU: x' = A x + B u, acceleration C x + D u, exact for inputs
+ * that are held over a step. References: parameters from 0, u from 30, outputs from 40.
+ * FMI 3.0, or 2.0 with -DFMI=2; with -DDOES=WARNS or another, it does that from the time AT on. */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { N = 4, OK = 0, ERROR = 3 };
+#ifndef FMI
+#define FMI 3
+#endif
+#ifndef DOES
+#define DOES NOTHING
+#endif
+#define AT 0.1
+#ifndef STATES_DECLARED
+#define STATES_DECLARED 0
+#endif
+
+enum { N = 4, OK = 0, WARNING = 1, DISCARD = 2, ERROR = 3 };
+enum { NOTHING, WARNS, WARNS_SILENTLY, DISCARDS, DISCARDS_SILENTLY, ENDS, ENDS_AFTER, RETURNS_EARLY, FAILS };
+
+typedef void Log3(void *environment, int status, const char *category, const char *message);
+typedef void Log2(void *environment, const char *name, int status, const char *category, const char *message, ...);
 
 typedef struct {
     double a[N][N], b[N][2], c[N], d[2];  /* the parameters, in this order */
     double u[2], x[N];
+    double last;  /* of the last step, for FMI 2.0 */
+    int ended;
+    void *environment, (*log)(void);
 } Drive;
+
+static void say(Drive *m, int status, const char *message) {
+    if (FMI == 3) ((Log3 *)m->log)(m->environment, status, "all", message);
+    else ((Log2 *)m->log)(m->environment, "drive", status, "all", message);
+}
 
 static double *place(Drive *m, unsigned reference, double *value) {
     if (reference < 30) return &m->a[0][0] + reference;
@@ -24,18 +48,9 @@ static double *place(Drive *m, unsigned reference, double *value) {
     return reference < 43 ? m->x + reference - 41 : NULL;
 }
 
-const char *fmi3GetVersion(void) { return "3.0"; }
-int fmi3SetDebugLogging(void *m, bool on, size_t n, const char *const *names) { return OK; }
-void *fmi3InstantiateCoSimulation(const char *name, const char *token, const char *path, bool visible, bool logging,
-                                  bool events, bool early, const unsigned *needed, size_t n, void *environment,
-                                  void *log, void *update) { return calloc(1, sizeof(Drive)); }
-void fmi3FreeInstance(void *m) { free(m); }
-int fmi3EnterInitializationMode(void *m, bool has_tolerance, double tolerance, double start, bool has_stop, double stop) { return OK; }
-int fmi3ExitInitializationMode(void *m) { return OK; }
-int fmi3Terminate(void *m) { return OK; }
-int fmi3Reset(void *m) { memset(m, 0, sizeof(Drive)); return OK; }
+static int clear(Drive *m) { memset(m, 0, offsetof(Drive, environment)); return OK; }
 
-int fmi3SetFloat64(void *m, const unsigned *references, size_t n, const double *values, size_t count) {
+static int set(void *m, const unsigned *references, size_t n, const double *values) {
     double none;
     for (size_t i = 0; i < n; i++) {
         double *at = references[i] < 32 ? place(m, references[i], &none) : NULL;
@@ -45,7 +60,7 @@ int fmi3SetFloat64(void *m, const unsigned *references, size_t n, const double *
     return OK;
 }
 
-int fmi3GetFloat64(void *m, const unsigned *references, size_t n, double *values, size_t count) {
+static int get(void *m, const unsigned *references, size_t n, double *values) {
     double value;
     for (size_t i = 0; i < n; i++) {
         double *at = place(m, references[i], &value);
@@ -55,8 +70,7 @@ int fmi3GetFloat64(void *m, const unsigned *references, size_t n, double *values
     return OK;
 }
 
-int fmi3DoStep(void *instance, double time, double h, bool later, bool *event, bool *end, bool *early, double *last) {
-    Drive *m = instance;
+static void integrate(Drive *m, double h) {
     double size = 0.0;
     for (int i = 0; i < N; i++) for (int k = 0; k < N; k++) size += fabs(m->a[i][k]);
     int parts = 1 + (int)(size * h);
@@ -72,24 +86,76 @@ int fmi3DoStep(void *instance, double time, double h, bool later, bool *event, b
             for (int i = 0; i < N; i++) m->x[i] += term[i] = next[i] * part / order;
         }
     }
-    *event = *end = *early = false, *last = time + h;
-    return OK;
 }
 
-int fmi3GetFMUState(void *m, void **state) {
-    if (!*state) *state = malloc(sizeof(Drive));
-    memcpy(*state, m, sizeof(Drive));
-    return OK;
+/* A step; what it does otherwise, it does in those that end after AT. */
+static int advance(Drive *m, double time, double h, bool *end, bool *early, double *last) {
+    int does = time + h > AT * (1.0 + 1e-9) ? DOES : NOTHING;
+    *end = *early = false, *last = time;
+    if (does == FAILS) say(m, ERROR, "fuse blown");
+    if (does == FAILS) return ERROR;
+    if (does == DISCARDS) say(m, DISCARD, "coil too hot");
+    if (does == DISCARDS || does == DISCARDS_SILENTLY) return DISCARD;
+    *end = does == ENDS || (DOES == ENDS_AFTER && time + h > AT * (1.0 - 1e-9));
+    if (*end) say(m, OK, "the emergency stop was pressed");
+    if (does == ENDS) return OK;
+    *early = does == RETURNS_EARLY;
+    if (*early) h *= 0.5;
+    integrate(m, h);
+    *last = time + h;
+    if (does == WARNS) say(m, WARNING, "coil is warm");
+    return does == WARNS || does == WARNS_SILENTLY ? WARNING : OK;
 }
-int fmi3SetFMUState(void *m, void *state) { memcpy(m, state, sizeof(Drive)); return OK; }
-int fmi3FreeFMUState(void *m, void **state) { free(*state); *state = NULL; return OK; }
-int fmi3SerializedFMUStateSize(void *m, void *state, size_t *size) { *size = sizeof(Drive); return OK; }
-int fmi3SerializeFMUState(void *m, void *state, unsigned char *bytes, size_t size) { memcpy(bytes, state, size); return OK; }
-int fmi3DeserializeFMUState(void *m, const unsigned char *bytes, size_t size, void **state) {
-    if (!*state) *state = malloc(sizeof(Drive));
-    memcpy(*state, bytes, size);
-    return OK;
+
+#define STATES(prefix, State, Serialized, Serialize, Deserialize) \
+    int prefix##Get##State(void *m, void **state) { \
+        if (!*state) *state = malloc(sizeof(Drive)); \
+        memcpy(*state, m, sizeof(Drive)); \
+        return OK; \
+    } \
+    int prefix##Set##State(void *m, void *state) { memcpy(m, state, offsetof(Drive, environment)); return OK; } \
+    int prefix##Free##State(void *m, void **state) { \
+        if (!STATES_DECLARED) say(m, ERROR, "no states"); \
+        if (!STATES_DECLARED) return ERROR; \
+        free(*state), *state = NULL; \
+        return OK; \
+    } \
+    int prefix##Serialized(void *m, void *state, size_t *size) { *size = sizeof(Drive); return OK; } \
+    int prefix##Serialize(void *m, void *state, unsigned char *bytes, size_t size) { memcpy(bytes, state, size); return OK; } \
+    int prefix##Deserialize(void *m, const unsigned char *bytes, size_t size, void **state) { \
+        if (!*state) *state = malloc(sizeof(Drive)); \
+        memcpy(*state, bytes, size); \
+        return OK; \
+    }
+
+#if FMI == 3
+const char *fmi3GetVersion(void) { return "3.0"; }
+int fmi3SetDebugLogging(void *m, bool on, size_t n, const char *const *names) { return OK; }
+void *fmi3InstantiateCoSimulation(const char *name, const char *token, const char *path, bool visible, bool logging,
+                                  bool events, bool early, const unsigned *needed, size_t n, void *environment,
+                                  void (*log)(void), void *update) {
+    Drive *m = calloc(1, sizeof(Drive));
+    m->environment = environment, m->log = log;
+    return m;
 }
+void fmi3FreeInstance(void *m) { free(m); }
+int fmi3EnterInitializationMode(void *m, bool has_tolerance, double tolerance, double start, bool has_stop, double stop) { return OK; }
+int fmi3ExitInitializationMode(void *m) { return OK; }
+int fmi3Terminate(void *m) { return OK; }
+int fmi3Reset(void *m) { return clear(m); }
+
+int fmi3SetFloat64(void *m, const unsigned *references, size_t n, const double *values, size_t count) {
+    return set(m, references, n, values);
+}
+int fmi3GetFloat64(void *m, const unsigned *references, size_t n, double *values, size_t count) {
+    return get(m, references, n, values);
+}
+int fmi3DoStep(void *m, double time, double h, bool later, bool *event, bool *end, bool *early, double *last) {
+    *event = false;
+    return advance(m, time, h, end, early, last);
+}
+
+STATES(fmi3, FMUState, SerializedFMUStateSize, SerializeFMUState, DeserializeFMUState)
 
 /* Importers look all of these up. */
 #define NONE(name) int fmi3##name(void) { return ERROR; }
@@ -105,3 +171,40 @@ NONE(InstantiateModelExchange) NONE(InstantiateScheduledExecution) NONE(SetBinar
 NONE(SetContinuousStates) NONE(SetFloat32) NONE(SetInt16) NONE(SetInt32) NONE(SetInt64) NONE(SetInt8)
 NONE(SetIntervalDecimal) NONE(SetIntervalFraction) NONE(SetShiftDecimal) NONE(SetShiftFraction) NONE(SetString)
 NONE(SetTime) NONE(SetUInt16) NONE(SetUInt32) NONE(SetUInt64) NONE(SetUInt8) NONE(UpdateDiscreteStates)
+#else
+typedef struct { Log2 *log; void *allocate, *release, *finished, *environment; } Callbacks;
+
+const char *fmi2GetTypesPlatform(void) { return "default"; }
+const char *fmi2GetVersion(void) { return "2.0"; }
+int fmi2SetDebugLogging(void *m, int on, size_t n, const char *const *names) { return OK; }
+void *fmi2Instantiate(const char *name, int type, const char *token, const char *path, const Callbacks *callbacks, int visible, int logging) {
+    Drive *m = calloc(1, sizeof(Drive));
+    m->environment = callbacks->environment, m->log = (void (*)(void))callbacks->log;
+    return m;
+}
+void fmi2FreeInstance(void *m) { free(m); }
+int fmi2SetupExperiment(void *m, int has_tolerance, double tolerance, double start, int has_stop, double stop) { return OK; }
+int fmi2EnterInitializationMode(void *m) { return OK; }
+int fmi2ExitInitializationMode(void *m) { return OK; }
+int fmi2Terminate(void *m) { return OK; }
+int fmi2Reset(void *m) { return clear(m); }
+int fmi2SetReal(void *m, const unsigned *references, size_t n, const double *values) { return set(m, references, n, values); }
+int fmi2GetReal(void *m, const unsigned *references, size_t n, double *values) { return get(m, references, n, values); }
+int fmi2DoStep(void *instance, double time, double h, int later) {
+    Drive *m = instance;
+    bool end, early;
+    int status = advance(m, time, h, &end, &early, &m->last);
+    m->ended = end;
+    return end || early ? DISCARD : status;
+}
+int fmi2GetRealStatus(void *m, int kind, double *value) { *value = ((Drive *)m)->last; return kind == 2 ? OK : ERROR; }
+int fmi2GetBooleanStatus(void *m, int kind, int *value) { *value = ((Drive *)m)->ended; return kind == 3 ? OK : ERROR; }
+STATES(fmi2, FMUstate, SerializedFMUstateSize, SerializeFMUstate, DeSerializeFMUstate)
+
+#define NONE(name) int fmi2##name(void) { return ERROR; }
+NONE(CancelStep) NONE(CompletedIntegratorStep) NONE(EnterContinuousTimeMode) NONE(EnterEventMode) NONE(GetBoolean)
+NONE(GetContinuousStates) NONE(GetDerivatives) NONE(GetDirectionalDerivative) NONE(GetEventIndicators) NONE(GetInteger)
+NONE(GetIntegerStatus) NONE(GetNominalsOfContinuousStates) NONE(GetRealOutputDerivatives) NONE(GetStatus) NONE(GetString)
+NONE(GetStringStatus) NONE(NewDiscreteStates) NONE(SetBoolean) NONE(SetContinuousStates) NONE(SetInteger)
+NONE(SetRealInputDerivatives) NONE(SetString) NONE(SetTime)
+#endif

@@ -1,4 +1,4 @@
-"""Linear drives of somebody else: random ones, their FMUs of FMI 3.0, and the truth about them."""
+"""Linear drives of somebody else: random ones, their FMUs, and the truth about them."""
 
 import functools
 import math
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from fmpy import platform_tuple, sharedLibraryExtension
+from fmpy import platform, platform_tuple, sharedLibraryExtension
 from scipy.integrate import solve_ivp
 
 SOURCE = Path(__file__).with_suffix(".c")
@@ -27,6 +27,9 @@ class LinearDrive:
     names: tuple[str, ...] = ("force", "command", "acceleration", "position", "velocity")
     signs: tuple[int, int] = (1, 1)  # of the force that it takes, and of its acceleration
     has_states: bool = False
+    fmi: int = 3
+    does: str = "NOTHING"  # what its source lists
+    unit: str = ""  # of its acceleration by FMI 3.0, a name without a base unit
 
     @property
     def parameters(self):
@@ -48,38 +51,65 @@ class LinearDrive:
 
     def write(self, folder, name="Linear"):
         """Write the FMU."""
-        flag = str(self.has_states).lower()
         rows = [(f"p{i}", i, "parameter", "fixed", 'start="0"') for i in range(30)]
         force, command, *outputs = self.names
         rows += [(force, 30, "input", "continuous", 'start="0"')]
         rows += [(command, 31, "input", "continuous", 'start="0"')]
-        rows += [(one, 40 + i, "output", "continuous", "") for i, one in enumerate(outputs)]
-        rows += [("time", 99, "independent", "continuous", "")]
-        variables = "".join(
-            f'<Float64 name="{n}" valueReference="{i}" causality="{c}" variability="{v}" {start}/>'
-            for n, i, c, v, start in rows
-        )
-        structure = "".join(f'<Output valueReference="{40 + i}"/>' for i in range(len(outputs)))
-        text = (
-            '<?xml version="1.0"?><fmiModelDescription fmiVersion="3.0" modelName="Linear" '
-            'instantiationToken="1"><CoSimulation modelIdentifier="linear" '
-            f'canHandleVariableCommunicationStepSize="true" canGetAndSetFMUState="{flag}" '
-            f'canSerializeFMUState="{flag}"/><ModelVariables>{variables}</ModelVariables>'
-            f"<ModelStructure>{structure}</ModelStructure></fmiModelDescription>"
-        )
+        units = (f'unit="{self.unit}"' * bool(self.unit), "", "")
+        rows += [(one, 40 + i, "output", "continuous", units[i]) for i, one in enumerate(outputs)]
+        text = (self.description3 if self.fmi == 3 else self.description2)(rows)
         path = Path(folder) / f"{name}.fmu"
         with zipfile.ZipFile(path, "w") as archive:
-            archive.writestr("modelDescription.xml", text)
-            library = compiled(Path(folder))
-            archive.write(library, f"binaries/{platform_tuple}/{library.name}")
+            archive.writestr("modelDescription.xml", f'<?xml version="1.0"?>{text}')
+            library = compiled(Path(folder), self.fmi, self.does, self.has_states)
+            system = platform_tuple if self.fmi == 3 else platform
+            archive.write(library, f"binaries/{system}/linear{sharedLibraryExtension}")
         return path
+
+    def description3(self, rows):
+        """The description of FMI 3.0."""
+        flag = str(self.has_states).lower()
+        variables = "".join(
+            f'<Float64 name="{n}" valueReference="{i}" causality="{c}" variability="{v}" {start}/>'
+            for n, i, c, v, start in [*rows, ("time", 99, "independent", "continuous", "")]
+        )
+        outputs = "".join(
+            f'<Output valueReference="{i}"/>' for _, i, c, *_ in rows if c == "output"
+        )
+        units = f'<UnitDefinitions><Unit name="{self.unit}"/></UnitDefinitions>' * bool(self.unit)
+        return (
+            '<fmiModelDescription fmiVersion="3.0" modelName="Linear" '
+            'instantiationToken="1"><CoSimulation modelIdentifier="linear" '
+            f'canHandleVariableCommunicationStepSize="true" canGetAndSetFMUState="{flag}" '
+            f'canSerializeFMUState="{flag}"/>{units}<ModelVariables>{variables}</ModelVariables>'
+            f"<ModelStructure>{outputs}</ModelStructure></fmiModelDescription>"
+        )
+
+    def description2(self, rows):
+        """The description of FMI 2.0."""
+        flag = str(self.has_states).lower()
+        variables = "".join(
+            f'<ScalarVariable name="{n}" valueReference="{i}" causality="{c}" variability="{v}">'
+            f"<Real {start}/></ScalarVariable>"
+            for n, i, c, v, start in rows
+        )
+        places = [k + 1 for k, row in enumerate(rows) if row[2] == "output"]
+        outputs = "".join(f'<Unknown index="{k}"/>' for k in places)
+        return (
+            '<fmiModelDescription fmiVersion="2.0" modelName="Linear" guid="1">'
+            '<CoSimulation modelIdentifier="linear" canHandleVariableCommunicationStepSize="true" '
+            f'canGetAndSetFMUstate="{flag}" canSerializeFMUstate="{flag}"/>'
+            f"<ModelVariables>{variables}</ModelVariables><ModelStructure><Outputs>{outputs}</Outputs><InitialUnknowns>{outputs}"
+            "</InitialUnknowns></ModelStructure></fmiModelDescription>"
+        )
 
 
 @functools.cache
-def compiled(folder):
-    """The library of all linear drives."""
-    path = folder / f"linear{sharedLibraryExtension}"
-    line = ["cc", "-O2", "-shared", "-fPIC", "-o", path, SOURCE, "-lm"]
+def compiled(folder, fmi, does, has_states):
+    """The library of all linear drives that do this."""
+    path = folder / f"linear{fmi}{does}{has_states:d}{sharedLibraryExtension}"
+    line = ["cc", "-O2", "-shared", "-fPIC", f"-DFMI={fmi}", f"-DDOES={does}"]
+    line += [f"-DSTATES_DECLARED={has_states:d}", "-o", path, SOURCE, "-lm"]
     subprocess.run([*map(str, line)], check=True)
     return path
 
@@ -105,7 +135,7 @@ def draw(seed):
     return LinearDrive(a, b, c, d, tuple(sorted(names)), signs, has_states=seed % 3 == 0)
 
 
-def together(drive, s, command, times):
+def together(drive, s, command, times, start=(0.0,) * 4):
     """Displacements of both masses and the number of impacts, with the drive as one system."""
 
     def rates(time, state):
@@ -120,9 +150,9 @@ def together(drive, s, command, times):
         return state[1] - state[0]
 
     gap.terminal, gap.direction = True, -1
-    time, state, impacts, rows = 0.0, np.zeros(4 + len(drive.c)), 0, {0.0: (0.0, 0.0)}
-    # both masses are pressed together at first: they are let apart where they part, a step later
-    state[1] = 1e-14
+    time, impacts, rows = 0.0, 0, {0.0: start[:2]}
+    # masses that are pressed together at first are let apart where they part, a step later
+    state = np.array([start[0], start[1] or 1e-14, *start[2:], *np.zeros(len(drive.c))])
     while time < times[-1]:
         done = solve_ivp(
             rates,

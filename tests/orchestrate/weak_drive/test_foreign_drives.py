@@ -1,0 +1,154 @@
+"""What a drive may answer to a step by the standard, and what becomes of the run."""
+
+import re
+import warnings
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate.errors import FmuError
+from orchestrate.running.runner import answer
+from orchestrate.weak_drive import compiled, cosimulate
+
+from .drives import table
+from .drives.linear import draw, together
+
+STRUCTURE = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
+START = (0.0, 0.02, 0.0, 0.0)
+RUN = {"start": START, "duration": 0.2, "step": 0.01, "estimate": False, "progress": False}
+AT = 0.1  # when the drives do what they do
+DRIVE = draw(2)  # with direct feedthrough
+ENDED = "the FMU Linear ended the simulation at t = 0.1 s: the emergency stop was pressed"
+pytestmark = pytest.mark.usefixtures("exported")
+
+
+def run(folder, does="NOTHING", fmi=3, has_states=False, **more):
+    """A run with a drive that does something."""
+    drive = replace(DRIVE, fmi=fmi, does=does, has_states=has_states)
+    more = {"connect": drive.connect, "parameters": drive.parameters, **RUN, **more}
+    path = drive.write(folder, f"{does}{fmi}{has_states:d}")
+    return orchestrate.cosimulate(STRUCTURE, path, **more)
+
+
+@pytest.fixture(params=[(2, "compiled"), (3, "compiled"), (2, "Python"), (3, "Python")])
+def form(request, monkeypatch):
+    """FMI 2.0 and 3.0, by compiled steps and by those in Python; in this process."""
+    fmi, steps = request.param
+    monkeypatch.setattr(
+        cosimulate, "answer", lambda job, *known, foreign=0: answer(job, *known[:2])
+    )
+    if steps == "Python":
+        monkeypatch.setattr(cosimulate, "create_master", compiled.Master)
+    return fmi
+
+
+def test_the_first_acceleration_is_that_under_the_force(tmp_path):
+    """Without other inputs: second order, as with them."""
+    times = np.linspace(0.0, 1.0, 51)
+    truth, impacts = together(DRIVE, STRUCTURE, lambda _: 0.0, times, START)
+    errors = []
+    for step in (5e-3, 2.5e-3):
+        found = run(tmp_path, step=step, duration=1.0)
+        every = (found.sizes["time"] - 1) // (len(times) - 1)
+        both = np.column_stack([found.x1.values, found.x2.values])[::every]
+        errors.append(np.abs(both - truth).max())
+    force = STRUCTURE.k2 * START[1]
+    assert float(found.box_acceleration[0]) == pytest.approx(DRIVE.d[0] * force, rel=1e-12)
+    assert found.sizes["impact"] == impacts > 1
+    assert errors[0] / errors[1] > 3.0
+
+
+@pytest.mark.parametrize("does", ["ENDS", "ENDS_AFTER"])
+@pytest.mark.parametrize("estimate", [False, True])
+def test_a_drive_that_ends_the_simulation_leaves_what_was_reached(tmp_path, form, does, estimate):
+    """In steps of 0.01 s: it ends before the step after 0.1 s, or with the one that ends there."""
+    with pytest.warns(UserWarning, match=re.escape(ENDED)):
+        found = run(tmp_path, does, form, estimate=estimate, record=[DRIVE.names[3]])
+    whole = run(tmp_path, fmi=form, estimate=estimate, record=[DRIVE.names[3]])
+    assert found.attrs["ended"] == ENDED and whole.attrs["ended"] == "at the duration"
+    assert found.time.values.tolist() == whole.time.values[:11].tolist()
+    for name in ("x1", "box_acceleration", "coupling_error", DRIVE.names[3]):
+        if name in whole:
+            assert found[name][:-1].values.tobytes() == whole[name][:10].values.tobytes(), name
+    assert found.impact_time.max() <= AT < whole.impact_time.max()
+
+
+def test_the_end_is_kept_over_chunks(tmp_path, form, monkeypatch):
+    ends = []
+    for size in (10_000, 4):
+        monkeypatch.setattr(cosimulate.CosimulateJob, "chunk_size", size)
+        with pytest.warns(UserWarning, match=re.escape(ENDED)):
+            ends.append(run(tmp_path, "ENDS", form, has_states=True, estimate=True))
+    assert ends[1].attrs["resumable"] == "yes" and len(ends[1].time) == 11
+    assert ends[0].x1.values.tobytes() == ends[1].x1.values.tobytes()
+
+
+def test_a_drive_that_ends_in_its_first_step_has_no_result(tmp_path, form):
+    with pytest.raises(FmuError, match=r"ended the simulation at t = 0 s: .*, in its first step"):
+        run(tmp_path, "ENDS", form, step=0.2)
+
+
+REFUSED = {
+    "DISCARDS": "discarded its step from t = 0.1 s to 0.11 s: coil too hot",
+    "DISCARDS_SILENTLY": "discarded its step from t = 0.1 s to 0.11 s: it logged no cause; try a",
+    "RETURNS_EARLY": r"early from its step from t = 0.1 s to 0.11 s \(it came to 0.105 s\), wh",
+    "FAILS": "^fuse blown$",
+}
+
+
+@pytest.mark.parametrize("does", REFUSED)
+def test_what_ends_a_run_is_said_with_its_cause(tmp_path, form, does):
+    words = REFUSED[does]
+    if form == 2 and does == "RETURNS_EARLY":  # which FMI 2.0 does not know
+        words = r"discarded its step from t = 0.1 s to 0.11 s \(it came to 0.105 s\)"
+    with pytest.raises(FmuError, match=words) as raised:
+        run(tmp_path, does, form)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize(("does", "words"), [("WARNS", "coil is warm"), ("WARNS_SILENTLY", "step")])
+def test_a_warning_is_shown_once_and_the_run_goes_on(tmp_path, form, does, words):
+    with warnings.catch_warnings(record=True) as shown:
+        warnings.simplefilter("always")
+        found = run(tmp_path, does, form, estimate=True)
+    texts = [str(one.message) for one in shown if "warns" in str(one.message)]
+    assert len(texts) == 1 and texts[0].startswith("the FMU Linear warns: ") and words in texts[0]
+    assert found.attrs["drive_warnings"] == texts[0]
+    whole = run(tmp_path, fmi=form, estimate=True)
+    assert found.x1.values.tobytes() == whole.x1.values.tobytes()
+
+
+def test_in_a_process_of_its_own_a_warning_arrives(tmp_path):
+    with pytest.warns(UserWarning, match="the FMU Linear warns: coil is warm"):
+        assert len(run(tmp_path, "WARNS").time) == 21
+
+
+def test_python_modules_of_one_name_in_two_drives_do_not_meet(tmp_path):
+    """As of two versions of pythonfmu: the second run has its own, with a force factor of 0."""
+    from pythonfmu import FmuBuilder
+
+    first = FmuBuilder.build_FMU(table.__file__, dest=tmp_path)
+    second = tmp_path / "second.fmu"
+    with zipfile.ZipFile(first) as old, zipfile.ZipFile(second, "w") as new:
+        for name in old.namelist():
+            new.writestr(name, old.read(name).replace(b'"bl": 12.0', b'"bl": 0.0'))
+    connect = {"box_acceleration": "table_acc", "box_force": "specimen_force"}
+    own = {**RUN, "start": None, "connect": connect, "inputs": {"volts": 20.0}}
+    moved = [orchestrate.cosimulate(STRUCTURE, one, **own).x1 for one in (first, second, first)]
+    assert abs(moved[1]).max() < 1e-9 * abs(moved[0]).max()
+    assert moved[2].values.tobytes() == moved[0].values.tobytes()
+
+
+def test_units_by_name_are_converted_and_can_be_stated(tmp_path):
+    """An acceleration in mm/s2 by the name alone, or without any and stated: the motion in SI."""
+    expected = run(tmp_path)
+    thousand = replace(DRIVE, c=1e3 * DRIVE.c, d=1e3 * DRIVE.d)
+    path = thousand.write(tmp_path, "thousand")
+    named = replace(thousand, unit="mm/s2").write(tmp_path, "named")
+    own = {"parameters": thousand.parameters, "connect": DRIVE.connect, **RUN}
+    for drive, more in ((named, {}), (path, {"units": {DRIVE.names[2]: "mm/s2"}})):
+        found = orchestrate.cosimulate(STRUCTURE, drive, **own, **more)
+        assert found.x1.values == pytest.approx(expected.x1.values, abs=1e-12)
