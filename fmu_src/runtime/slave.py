@@ -302,6 +302,9 @@ class Slave:
             text = f"currentCommunicationPoint = {current_time!r} s: expected {reached!r} s"
             return f"{text}, where the last step ended"
         target = current_time + step_size
+        if target == float("inf"):
+            text = f"communicationStepSize = {step_size!r} s: expected a step that ends"
+            return f"{text} at a finite time"
         if target - self._stop_time > rounding:
             text = f"the step to time = {target!r} s: expected none past stopTime"
             return f"{text} = {self._stop_time!r} s"

@@ -14,7 +14,9 @@ from typing import Any, Callable
 
 REAL, INTEGER, BOOLEAN = "Real", "Integer", "Boolean"
 HUGE = 1e100  # squares and energies of what an importer may set stay finite
-TINY, LARGE = 1e-30, 1e30
+# of positive parameters: ratios of frequencies are at most LARGE**2, and a fourth derivative,
+# LARGE**8 * HUGE, is a number; what needs more is checked where a run or a step begins
+TINY, LARGE = 1e-24, 1e24
 Entry = Callable[[Any, float], int]  # memory and time (s) -> code, 0 for success
 
 

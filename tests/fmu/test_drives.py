@@ -125,8 +125,8 @@ def test_acceleration_belongs_to_the_inputs_as_set_now(model, form):
 
 
 MISTAKES = [  # a model, what is done to a new instance, and what the message must name
-    (MOTOR, lambda f: f.start(box_mass=0.0), "box_mass = 0.0 kg; 1e-30 <= box_mass <= 1e+30"),
-    (MOTOR, lambda f: f.start(armature_resistance=-1.0), "armature_resistance = -1.0 Ohm; 1e-30"),
+    (MOTOR, lambda f: f.start(box_mass=0.0), "box_mass = 0.0 kg; 1e-24 <= box_mass <= 1e+24"),
+    (MOTOR, lambda f: f.start(armature_resistance=-1.0), "armature_resistance = -1.0 Ohm; 1e-24"),
     (MOTOR, lambda f: f.start().set(rotor_inertia=1.0), "rotor_inertia = 1.0; fixed parameter"),
     (MOTOR, lambda f: f.start().set(speed=1.0), "speed = 1.0; output"),
     (
@@ -141,7 +141,7 @@ MISTAKES = [  # a model, what is done to a new instance, and what the message mu
     ),
     (MOTOR, lambda f: f.start().step(-1.0), "communicationStepSize = -1.0 s; expected"),
     (MOTOR, lambda f: f.start(voltage=1e30).step(1.0), "range of floating-point numbers"),
-    (COIL, lambda f: f.start(table_mass=0.0), "table_mass = 0.0 kg; 1e-30 <= table_mass <= 1e+30"),
+    (COIL, lambda f: f.start(table_mass=0.0), "table_mass = 0.0 kg; 1e-24 <= table_mass <= 1e+24"),
     (COIL, lambda f: f.start(voltage_limit=-5.0), "voltage_limit = -5.0 V; 0.0 <= voltage_limit"),
     (COIL, lambda f: f.start().set(command=math.nan), "command = nan V; -1e+30 <= command"),
     (

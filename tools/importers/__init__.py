@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from fmu_src.export import forms, native_form, sources
-from fmu_src.export.compiler import kernel_object
+from fmu_src.export.compiler import compile_object, kernel_object
 from fmu_src.export.model_header import model_header
 from fmu_src.export.platforms import this_machine
 from fmu_src.export.source_code import kernel_source
@@ -24,7 +24,7 @@ HERE = Path(__file__).parent
 TYPES = {"Real": "R", "Float64": "R", "Integer": "I", "Int32": "I", "Boolean": "B"}
 FOLDERS = {"fmi2": ("linux64", "win64"), "fmi3": ("x86_64-linux", "x86_64-windows")}
 SANITIZE = (
-    "-fsanitize=address,undefined,float-cast-overflow",
+    "-fsanitize=address,undefined,float-cast-overflow,float-divide-by-zero",
     *("-fno-sanitize-recover=all", "-fno-omit-frame-pointer"),
 )
 WARNINGS = ("-std=gnu11", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
@@ -196,20 +196,26 @@ class Importer:
         return read_rows(done.stdout)
 
 
-def kernel_objects(model: str) -> dict[str, bytes]:
-    """Compile a model's C kernel; return a dict from this machine's platform to its object file."""
+def kernel_objects(model: str, sanitizer: Sequence[str] = ()) -> dict[str, bytes]:
+    """Compile a model's C kernel; return a dict from this machine's platform to its object file.
+
+    With a sanitizer by the machine's own compiler.
+    """
     source = kernel_source(forms.MODELS[model])
-    return {this_machine(): kernel_object(this_machine(), source)}
+    if not sanitizer:
+        return {this_machine(): kernel_object(this_machine(), source)}
+    fixed = ("-c", "-fPIC", "-g", "-O2", "-ffp-contract=off", "-DINLINE=inline")
+    command = (*(c_compiler() or ["cc"]), *fixed, *sanitizer, "kernel.c", "-o", "kernel.o")
+    return {this_machine(): compile_object(command, source, "kernel with a sanitizer")}
 
 
 def importer_with_sanitizer(
     version: str, model: str, exported: Path, folder: Path, sanitizer: Sequence[str]
 ) -> Importer:
-    """Compile importer and shim of a model with a sanitizer in both; return the importer."""
+    """Compile importer, shim and kernel of a model with a sanitizer in all; return the importer."""
     path = exported / version / f"{model}.fmu"
     options = ("-O1", "-g", *sanitizer)
     program = compile_importer(version, path, folder / "importer", options=options)
-    library = rebuild_shim(
-        version, folder / "shim", kernel_objects(model), sanitizer, forms.MODELS[model]
-    )
+    objects = kernel_objects(model, sanitizer)
+    library = rebuild_shim(version, folder / "shim", objects, sanitizer, forms.MODELS[model])
     return Importer(program, library, version)

@@ -2,7 +2,8 @@
 #include "fuzz.h"
 #include "version.h"
 
-enum { INSTANCES = 3 };
+enum { INSTANCES = 3, EVALUATIONS = 250 };
+bool declared = false;
 
 uint8_t take(Bytes *in) { return in->at < in->end ? *in->at++ : 0; }
 
@@ -23,8 +24,32 @@ double any_number(Bytes *in) {
     return kind < 64 ? special[kind % 8] : ((double)take(in) - 64.0) / 16.0;
 }
 
+/* A size between two, uniform in its logarithm; 0 is as small as there is. */
+static double any_size(Bytes *in, double low, double high) {
+    double first = low > 0.0 ? log2(low) : one_in(in, 4) ? -1074.0 : -log2(high), last = log2(high);
+    double size = exp2(first + (last - first) * (take(in) * 256 + take(in)) / 65535.0);
+    return fmin(fmax(size, low), high);
+}
+
+static const Name *variable_of(unsigned reference) {
+    for (size_t i = 0; i < NAME_COUNT; i++) if (NAMES[i].reference == reference) return &NAMES[i];
+    return NULL;
+}
+
+/* Ends of the range, zero, sizes about 1 and any other. */
+double number_for(Bytes *in, unsigned reference) {
+    const Name *name = variable_of(reference);
+    if (!declared || !name || one_in(in, 16)) return any_number(in);
+    double low = fmax(name->minimum, -1e308), high = fmin(name->maximum, 1e308);
+    uint8_t kind = take(in) % 16;
+    if (kind < 3) return (double[]){low, high, fmin(fmax(0.0, low), high)}[kind];
+    double size = kind < 10 ? fmin(fmax(any_size(in, 0x1p-10, 0x1p10), fmax(low, 0.0)), high) : any_size(in, fmax(low, 0.0), high);
+    return low < 0.0 && one_in(in, 2) ? -size : size;
+}
+
 static double any_step(Bytes *in) {
     static const double special[] = {NAN, INFINITY, -1.0, 5e-324, 0.0};
+    if (declared && !one_in(in, 4)) return one_in(in, 2) ? any_size(in, 0x1p-6, 0x1p6) : any_size(in, 0x1p-40, one_in(in, 16) ? 0x1p1023 : 0x1p70);
     uint8_t kind = take(in);
     return kind < 32 ? special[kind % 5] : (kind - 31) / 64.0;
 }
@@ -34,7 +59,33 @@ void told(int status) {
     messages = 0;
 }
 
-void fuzz_reset(void *instance) { told(fmi.Reset(instance)); }
+/* Few evaluations: a step is short in time, whatever its length. */
+static void limit_work(Bytes *in, void *instance) { fmu_set(instance, "evaluation_limit", 1.0 + take(in) % EVALUATIONS); }
+
+void fuzz_reset(Bytes *in, void *instance) {
+    Status status = fmi.Reset(instance);
+    told(status);
+    if (declared && status == FMI_OK) limit_work(in, instance);
+}
+
+static void set_any(Bytes *in, void *instance, const Name *name) {
+    double real = number_for(in, name->reference);
+    Integer whole = (Integer)take(in);
+    Boolean truth = one_in(in, 2);
+    told(name->type == 'R' ? set_reals(instance, &name->reference, 1, &real)
+         : name->type == 'I' ? set_integers(instance, &name->reference, 1, &whole)
+                             : set_booleans(instance, &name->reference, 1, &truth));
+}
+
+void fuzz_start(Bytes *in, Slot *slot) {
+    limit_work(in, slot->instance);
+    uint8_t few = take(in) % 4;
+    for (size_t i = 0; i < NAME_COUNT; i++)
+        if (NAMES[i].settable && strcmp(NAMES[i].name, "evaluation_limit") && !one_in(in, 1 + few)) set_any(in, slot->instance, &NAMES[i]);
+    slot->time = one_in(in, 4) ? any_size(in, 0x1p-10, 0x1p60) : 0.0;
+    told(start_experiment(slot->instance, slot->time, false, 0.0));
+    told(fmi.ExitInitializationMode(slot->instance));
+}
 
 /* The time an instance has reached, where the FMU tells it. */
 static double time_reached(void *instance, double otherwise) {
@@ -85,7 +136,7 @@ static void serialised(Bytes *in, Slot *slot) {
     if (status == FMI_OK && go_back(&read)) {
         slot->time = time_reached(slot->instance, slot->time);
         fuzz_step(in, slot->instance, slot->time, damaged ? 0x1p-20 : 0.25);
-        if (damaged) fuzz_reset(slot->instance); /* what nobody saved may take long to step */
+        if (damaged) fuzz_reset(in, slot->instance); /* what nobody saved may take long to step */
         slot->time = time_reached(slot->instance, slot->time);
     }
     forget(&read);
@@ -111,9 +162,10 @@ static void call(Bytes *in, Slot *slot) {
 void fuzz(const uint8_t *data, size_t size) {
     Bytes in = {data, data + size};
     Slot slots[INSTANCES] = {0};
-    for (int i = 0; i < INSTANCES; i++) fuzz_open(&in, &slots[i]);
-    while (in.at < in.end) call(&in, &slots[take(&in) % INSTANCES]);
-    for (int i = 0; i < INSTANCES; i++) {
+    int count = declared ? 1 : INSTANCES; /* to make one takes longer than its calls */
+    for (int i = 0; i < count; i++) fuzz_open(&in, &slots[i]);
+    while (in.at < in.end) call(&in, &slots[take(&in) % count]);
+    for (int i = 0; i < count; i++) {
         forget(&slots[i]);
         fmu_close(slots[i].instance);
     }

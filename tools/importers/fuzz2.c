@@ -5,7 +5,8 @@
 /* Most inputs begin where there is most to do. */
 void fuzz_open(Bytes *in, Slot *slot) {
     slot->instance = fmu_open("%s%n");
-    if (take(in) % 4) fmu_initialize(slot->instance, 0.0);
+    if (declared) fuzz_start(in, slot);
+    else if (take(in) % 4) fmu_initialize(slot->instance, 0.0);
 }
 
 void fuzz_values(Bytes *in, void *instance) {
@@ -15,7 +16,7 @@ void fuzz_values(Bytes *in, void *instance) {
     size_t count = take(in) % (MOST + 1);
     for (size_t i = 0; i < MOST; i++) {
         refs[i] = any_reference(in);
-        reals[i] = any_number(in);
+        reals[i] = number_for(in, refs[i]);
         whole[i] = (int)take(in) - 8;
         orders[i] = (int)(take(in) % 6) - 1;
     }
@@ -38,7 +39,7 @@ void fuzz_life(Bytes *in, void *instance) {
     case 1: told(fmi.EnterInitializationMode(instance)); break;
     case 2: told(fmi.ExitInitializationMode(instance)); break;
     case 3: told(one_in(in, 4) ? fmi.Terminate(instance) : fmi2OK); break;
-    default: fuzz_reset(instance); break;
+    default: fuzz_reset(in, instance); break;
     }
 }
 

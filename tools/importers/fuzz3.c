@@ -9,7 +9,8 @@ void fuzz_open(Bytes *in, Slot *slot) {
     uint8_t options = take(in);
     bool events = options & 1;
     slot->instance = open_with("%s%n", events, options & 2);
-    if (options & 12) fmu_initialize(slot->instance, 0.0);
+    if (declared) fuzz_start(in, slot);
+    else if (options & 12) fmu_initialize(slot->instance, 0.0);
     if ((options & 12) && events) told(fmi.EnterStepMode(slot->instance));
 }
 
@@ -22,7 +23,7 @@ void fuzz_values(Bytes *in, void *instance) {
     size_t count = take(in) % (MOST + 1), size = one_in(in, 4) ? (size_t)take(in) * 4 : count;
     for (size_t i = 0; i < MOST; i++) {
         refs[i] = any_reference(in);
-        reals[i] = any_number(in);
+        reals[i] = number_for(in, refs[i]);
         whole[i] = (fmi3Int32)take(in) - 8;
         truth[i] = one_in(in, 2);
         orders[i] = (fmi3Int32)(take(in) % 6) - 1;
@@ -47,7 +48,7 @@ void fuzz_life(Bytes *in, void *instance) {
     case 0: told(fmi.EnterInitializationMode(instance, false, 0.0, any_number(in), one_in(in, 2), any_number(in))); break;
     case 1: told(fmi.ExitInitializationMode(instance)); break;
     case 2: told(one_in(in, 4) ? fmi.Terminate(instance) : fmi3OK); break;
-    default: one_in(in, 2) ? fuzz_reset(instance) : told(fmi.EnterConfigurationMode(instance)); break;
+    default: one_in(in, 2) ? fuzz_reset(in, instance) : told(fmi.EnterConfigurationMode(instance)); break;
     }
 }
 

@@ -3,6 +3,7 @@
 
 #ifndef _WIN32
 #include <pthread.h>
+#include <unistd.h>
 #endif
 
 /* The sixth grows as long as something goes on: impacts, the angle of the rotor, or the amplifier's work. */
@@ -120,24 +121,46 @@ static void many(int count, int steps, int thread_steps) {
 #endif
 }
 
-/* Calls drawn at random: `count` sequences of up to 256 bytes. */
-static void random_calls(unsigned seed, int count) {
+enum { SLOWEST = 60 }; /* s of a sequence: longer, and something goes on for ever */
+
+/* Write a sequence to a file, for `replay` where it ends the process. */
+static void keep_sequence(const char *path, const uint8_t *data, size_t size) {
+    FILE *file = fopen(path, "w");
+    for (size_t k = 0; file && k < size; k++) fprintf(file, "%02x", data[k]);
+    if (file) fclose(file);
+}
+
+/* Calls drawn at random: `count` sequences of up to 256 bytes, or `longest`. */
+static void random_calls(unsigned seed, int count, size_t longest, const char *path) {
     uint64_t state = seed * 0x9e3779b97f4a7c15u + 1u;
-    for (int i = 0; i < count; i++) {
-        uint8_t data[256];
-        for (size_t k = 0; k < sizeof data; k++) {
+    for (int i = 0; i < count && !failures; i++) {
+        uint8_t data[1024];
+        for (size_t k = 0; k < longest; k++) {
             state ^= state << 13, state ^= state >> 7, state ^= state << 17; /* Marsaglia's xorshift */
             data[k] = (uint8_t)(state >> 32);
         }
-        fuzz(data, 32 + data[0] % 224u);
+        size_t size = 32 + (longest > 256 ? data[0] + 256u * data[1] : data[0]) % (longest - 32);
+        if (path) keep_sequence(path, data, size);
+        fuzz(data, size);
+    }
+}
+
+/* The same over the declared ranges; no sequence may take long. */
+static void declared_calls(unsigned seed, int count, const char *path) {
+    declared = true;
+    for (int i = 0; i < count && !failures; i++) {
+#ifndef _WIN32
+        alarm(SLOWEST);
+#endif
+        random_calls(seed + (unsigned)i * 2654435761u, 1, 1024, path);
     }
 }
 
 /* Inputs of the standard input, one a line in hexadecimal digits. */
 static void replay(void) {
-    char line[2048];
+    char line[2050];
     int played = 0;
-    while (scanf("%2047s", line) == 1) {
+    while (scanf("%2049s", line) == 1) {
         uint8_t data[1024];
         size_t size = strlen(line) / 2;
         for (size_t i = 0; i < size; i++) data[i] = (uint8_t)strtoul((char[]){line[2 * i], line[2 * i + 1], 0}, NULL, 16);
@@ -153,9 +176,13 @@ int main(int count, char **arguments) {
 #define NUMBER(i) (count > (i) ? atoi(arguments[i]) : 0)
     fmu_load(arguments[1]);
     if (strcmp(mode, "simulate") == 0 && count > 3) simulate(arguments[3], count - 4, arguments + 4);
-    else if (strcmp(mode, "random") == 0 && count > 4) random_calls((unsigned)NUMBER(3), NUMBER(4));
+    else if (strcmp(mode, "random") == 0 && count > 4) random_calls((unsigned)NUMBER(3), NUMBER(4), 256, NULL);
+    else if (strcmp(mode, "declared") == 0 && count > 5) declared_calls((unsigned)NUMBER(3), NUMBER(4), arguments[5]);
     else if (strcmp(mode, "many") == 0 && count > 5) many(NUMBER(3), NUMBER(4), NUMBER(5));
-    else if (strcmp(mode, "replay") == 0) replay();
+    else if (strcmp(mode, "replay") == 0) {
+        declared = count > 3;
+        replay();
+    }
     else return 2;
     fmu_unload();
     printf("CHECKS %d FAILURES %d\n", checks, failures);

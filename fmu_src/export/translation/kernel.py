@@ -86,9 +86,11 @@ static inline double smaller(double one, double other)
 /* The largest whole number that is not larger. */
 static inline double floored(double value)
 {
-    double shift = 6755399441055744.0, whole = 0.0; /* 1.5 * 2^52: what is added to it is rounded */
+    double shift = 6755399441055744.0, whole = value; /* 1.5 * 2^52: a sum with it is rounded */
     if (RARELY(!(-2251799813685248.0 < value && value < 2251799813685248.0))) {
-        whole = (double)(long long)value;
+        if (fabs(value) < 4503599627370496.0) { /* 2^52: from there on every number is whole */
+            whole = (double)(long long)value;
+        }
     } else {
         whole = (value + shift) - shift;
     }

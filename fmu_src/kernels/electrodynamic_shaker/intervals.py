@@ -12,6 +12,7 @@ import math
 from . import memory as at
 
 LONGEST = 1024.0  # s
+SHORTEST = 2.0**-192  # s: whatever the parameters, unless the inductance is next to nothing
 
 
 def set_spacings(m):

@@ -5,11 +5,12 @@ bring one to zero, it has no root; else the certified steps of :mod:`..numerics.
 through the interval.
 """
 
-from ..numerics.first_root import EPS, next_step
+from ..numerics.first_root import EPS, NO_NUMBER, next_step
 from . import memory as at
 from .amplifier import write_guard
 
 NONE = 2.0  # behind the interval
+MOST_STEPS = 10000  # through an interval
 LEAST = 1e-40  # of the bound, relative to the terms: its inverse stays far from the largest number
 
 
@@ -64,7 +65,7 @@ def watch_limit(m, series, terms, limit, side, order, kind):
 def note_root(m, order, kind):
     """Make the root of GUARD the interval's event where it is earlier."""
     root = first_root(m, order)
-    if root < m[at.EVENT]:
+    if root < m[at.EVENT] or root != root:
         m[at.EVENT] = root
         m[at.EVENT_KIND] = kind
 
@@ -92,19 +93,23 @@ def first_root(m, order):
 
 
 def walk(m, first, size):
-    """Return the first root of GUARD, divided by the power of its ``first`` term, or NONE."""
+    """Return the first root of GUARD, divided by the power of its ``first`` term, or NONE; no
+    number where that cannot be decided.
+    """
     bound = LEAST * size
     for k in range(first + 5, at.TERMS):
         j = k - first
         bound += abs(m[at.GUARD + k]) * (j * (j - 1) * (j - 2) * (j - 3) * (j - 4))
     part = 0.0
-    while part < 1.0:
+    for _ in range(MOST_STEPS):
         h0, h1, h2, h3, h4 = derivatives(m, first, part)
         step, found = next_step(h0, h1, h2, h3, h4, bound, 1.0, 1.0 - part, EPS)
         part += step
         if found:
             return part
-    return NONE
+        if part >= 1.0:
+            return NONE
+    return NO_NUMBER
 
 
 def derivatives(m, first, part):

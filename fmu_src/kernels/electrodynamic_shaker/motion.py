@@ -104,11 +104,13 @@ def run_to(m, time):
     Returns
     -------
     int
-        OK, TRAVEL with the time in REPORT, or UNFINISHED.
+        OK, TRAVEL with the time in REPORT, UNFINISHED, or NOT_FINITE.
     """
     while True:
         local = local_time(m, time)
         begun = m[at.INTERVAL] * m[at.SPACING]
+        if m[at.EVENT] != m[at.EVENT]:  # rarely
+            return at.NOT_FINITE
         event = begun + m[at.EVENT] * m[at.SPACING]
         if m[at.EVENT_KIND] != at.NO_EVENT and event <= local:
             if m[at.EVENT_KIND] == at.TRAVEL_EVENT:

@@ -40,8 +40,10 @@ def write_outputs(m):
 
 
 def check_finite(m):
-    """Return OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
-    total = 0.0
+    """Return OK, or NOT_FINITE where an output, or the next event, has left the range of
+    floating-point numbers.
+    """
+    total = m[at.EVENT]
     for i in range(at.BOX_POSITION, at.TIME):
         total += m[i]
     return at.OK if total - total == 0.0 else at.NOT_FINITE

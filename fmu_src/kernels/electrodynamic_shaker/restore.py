@@ -47,7 +47,9 @@ def restore(m, time):
         code = check_times(m, time)
     if code != at.OK:
         return code
-    derive(m)
+    code = derive(m)
+    if code != at.OK:
+        return code
     if m[at.INTERVAL] == 0.0:
         begin_state(m)
     else:

@@ -5,7 +5,7 @@ An instance is one flat memory.
 
 from . import memory as at
 from .inputs import keep_inputs
-from .intervals import set_spacings
+from .intervals import SHORTEST, set_spacings
 from .motion import begin_state, local_time, renew_inputs, run_to
 from .outputs import check_finite, write_outputs
 
@@ -29,7 +29,9 @@ def initialize(m, time):
     m[at.ORIGIN] = time
     m[at.COMMAND_TIME] = time
     m[at.FORCE_TIME] = time
-    derive(m)
+    code = derive(m)
+    if code != at.OK:
+        return code
     if m[at.TRAVEL_LIMIT] > 0.0 and abs(m[at.POSITION_START]) > m[at.TRAVEL_LIMIT]:
         return at.START_TRAVEL
     limited = m[at.CURRENT_CONTROL] == 0.0 and m[at.CURRENT_LIMIT] > 0.0
@@ -47,14 +49,22 @@ def initialize(m, time):
 
 
 def derive(m):
-    """Compute what follows from the parameters alone."""
+    """Compute what follows from the parameters alone.
+
+    Returns
+    -------
+    int
+        OK, or INDUCTANCE where a time constant is too short.
+    """
     set_spacings(m)
+    m[at.REPORT] = SHORTEST
     if m[at.CURRENT_CONTROL] != 0.0:
         m[at.COMMAND_LIMIT] = m[at.CURRENT_LIMIT]
         m[at.OTHER_LIMIT] = m[at.VOLTAGE_LIMIT]
     else:
         m[at.COMMAND_LIMIT] = m[at.VOLTAGE_LIMIT]
         m[at.OTHER_LIMIT] = m[at.CURRENT_LIMIT]
+    return at.OK if m[at.VOLTAGE_SPACING] >= SHORTEST else at.INDUCTANCE
 
 
 def advance(m, time):

@@ -9,6 +9,7 @@ sampled, so no root can be skipped, and it converges with fifth order at a simpl
 import math
 
 INFINITE = float("inf")
+NO_NUMBER = INFINITE - INFINITE
 EPS = 1.1102230246251565e-16  # 2**-53
 LEAST_BOUND = 1e-290  # smaller ones have no finite inverse
 TRIALS = 3

@@ -6,6 +6,7 @@ each derivative: written so, one root finder serves both, and every derivative i
 form for all later times. A clearance adds a constant to the signal, none to its derivatives.
 """
 
+from ..numerics.first_root import INFINITE
 from . import memory as at
 from .nodes import higher_derivatives, max_nodes, oscillator_a, phasors_at, put_phasors, start_nodes
 from .parameters import are_nearly_equal
@@ -155,7 +156,8 @@ def set_remainder(m):
     else:
         x, v = force_phasor(m, x, v)
         bound += sixth_bound(m, at.OSCILLATOR_3, x, v) + driven
-    m[at.REMAINDER] = bound * m[at.HERMITE + 2]
+    remainder = bound * m[at.HERMITE + 2]
+    m[at.REMAINDER] = remainder if remainder < INFINITE else INFINITE
 
 
 def sixth_bound(m, b, x, v):

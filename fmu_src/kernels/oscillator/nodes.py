@@ -21,7 +21,8 @@ NEAR = 0.00390625  # of a radian of the fastest change: six terms of a Taylor se
 BLOCK = 32.0  # nodes from one renewal to the next
 # nodes after which a state is written anew: its angles and their rounding stay small
 LONGEST = 1024.0
-FASTEST_TAKEN = 1e100
+FASTEST_RATE = 1e36  # products of eight rates, as in the root finder, neither overflow nor vanish
+FURTHEST = 4503599627370496.0  # 2**52 nodes, or turns: up to there each has its own number
 
 
 def set_grid(m):
@@ -35,7 +36,7 @@ def set_grid(m):
     damping = max(m[at.OSCILLATOR_1 + at.DAMPING], m[at.OSCILLATOR_2 + at.DAMPING])
     m[at.RATE] = max(eta, m[at.FASTEST] + 2.0 * damping)  # 2 D/rate + (omega/rate)^2 <= 1
     m[at.RATE_INVERSE] = 1.0 / m[at.RATE]
-    h = node_spacing(min(max(m[at.FASTEST], eta), FASTEST_TAKEN))
+    h = node_spacing(max(m[at.FASTEST], eta))
     sine, cosine = sincos_turns(m[at.ETA_TURNS] * h if eta != 0.0 else 0.0)
     m[at.NODE_COSINE] = cosine
     m[at.NODE_SINE] = sine
@@ -94,6 +95,20 @@ def oscillator_a(m):
 def max_nodes(m):
     """Return the number of nodes after which the present state is written anew."""
     return LONGEST if m[at.SECULAR] == 0.0 else LONGEST_DRIVEN
+
+
+def is_too_fast(m):
+    """Return whether the fastest change, by a frequency or a damper, is too fast for derivatives to
+    be numbers.
+    """
+    return not m[at.RATE] <= FASTEST_RATE
+
+
+def is_countable(m, tau):
+    """Return whether nodes and turns of the excitation can be counted up to an age of the present
+    state: every look-up of a node ends.
+    """
+    return tau < FURTHEST * m[at.SPACING] and m[at.ETA_TURNS] * tau < FURTHEST
 
 
 def start_nodes(m):

@@ -7,6 +7,8 @@ had; what cannot be made anew is checked. Whatever the numbers were, what is lef
 that runs.
 """
 
+import math
+
 from ..numerics.elementary import sincos_turns
 from ..numerics.first_root import INFINITE
 from . import memory as at
@@ -14,7 +16,7 @@ from .contact import first_nonzero_derivative
 from .event_function import evaluate, event_rounding, is_constant, set_node_values
 from .excitation import begin_cubic, begin_segment
 from .motion import begin_common, begin_flight, set_phase
-from .nodes import BLOCK, LONGEST, seek_interval
+from .nodes import BLOCK, FURTHEST, LONGEST, is_too_fast, seek_interval
 from .parameters import derive
 from .secular import clear_secular
 from .series import set_series, short_flight_duration
@@ -22,8 +24,7 @@ from .series import set_series, short_flight_duration
 SLACK = 1e-9  # relative: sums of many roundings are far smaller, another state is not
 CLOSE = 1e-14  # relative: sums of a few roundings
 ROOT = 1e-6  # what an event function may be at its root, relative to its terms
-MOST_INPUT = 1e100
-MOST_WHOLE = 9007199254740992.0  # 2**53
+MOST_INPUT, MOST_FREQUENCY = 1e100, 1e24  # as declared
 
 
 def refuse_slot(m, slot, complaint):
@@ -43,7 +44,7 @@ def restore(m, time):
     Returns
     -------
     int
-        OK, or FORGED with what is wrong in WORK, TARGET and REPORT.
+        OK, FORGED with what is wrong in WORK, TARGET and REPORT, or TOO_FAST.
     """
     m[at.START_TIME] = time
     clear_scratch(m)
@@ -103,7 +104,7 @@ def restore_segment(m):
     """
     for i in range(6):
         value = m[at.SEGMENT_INPUTS + i]
-        if abs(value) > MOST_INPUT or (i == 1 and (value < 0.0 or value > 1e30)):
+        if abs(value) > MOST_INPUT or (i == 1 and (value < 0.0 or value > MOST_FREQUENCY)):
             return refuse_slot(m, at.SEGMENT_INPUTS + i, at.NO_INPUT)
     age = m[at.CUBIC_AGE]
     if age < 0.0 or age > (1.0 + SLACK) * m[at.ORIGIN]:
@@ -113,7 +114,7 @@ def restore_segment(m):
     begin_segment(m)
     swap_inputs(m, inputs)
     m[at.CUBIC_AGE] = age
-    return at.OK
+    return at.TOO_FAST if is_too_fast(m) else at.OK
 
 
 def segment_inputs(m):
@@ -133,7 +134,7 @@ def swap_inputs(m, values):
 def is_whole(m, slot, highest):
     """Return whether a slot has a whole number from 0 to ``highest``."""
     value = m[slot]
-    return 0.0 <= value <= highest and value == int(value)
+    return 0.0 <= value <= highest and value == math.floor(value)
 
 
 def check_whole_numbers(m):
@@ -148,9 +149,7 @@ def check_whole_numbers(m):
         return refuse_slot(m, at.SERIES, at.NO_SERIES)
     if not is_whole(m, at.ROTATIONS, BLOCK):
         return refuse_slot(m, at.ROTATIONS, at.NO_COUNT)
-    most = (
-        MOST_WHOLE if m[at.CLEAR] == INFINITE else LONGEST - 1.0
-    )  # never written anew, or so late
+    most = FURTHEST if m[at.CLEAR] == INFINITE else LONGEST - 1.0  # never written anew, or so late
     if not is_whole(m, at.NODE, most):
         return refuse_slot(m, at.NODE, at.NO_COUNT)
     if m[at.AT_END_NODE] != 0.0 and m[at.AT_END_NODE] != m[at.NODE] + 1.0:
@@ -187,7 +186,7 @@ def check_times(m):
         return refuse_slot(m, at.TIME, at.NO_TIME)
     if abs(m[at.ORIGIN_LOW]) > SLACK * origin:
         return refuse_slot(m, at.ORIGIN_LOW, at.NO_TIME)
-    if not -slack <= age < MOST_WHOLE * m[at.SPACING]:
+    if not -slack <= age < FURTHEST * m[at.SPACING]:
         return refuse_slot(m, at.ORIGIN, at.NO_TIME)
     if m[at.STEP] < 0.0:
         return refuse_slot(m, at.STEP, at.NO_TIME)

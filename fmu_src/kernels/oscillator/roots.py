@@ -6,7 +6,7 @@ where the importer's communication points lie: it goes on where it was left.
 
 import math
 
-from ..numerics.first_root import EPS, INFINITE, next_step
+from ..numerics.first_root import EPS, INFINITE, NO_NUMBER, next_step
 from . import memory as at
 from .event_function import evaluate, event_rounding, event_values, set_remainder
 from .hermite import (
@@ -121,10 +121,16 @@ def clear_from_node(m):
 
 
 def step_inside_interval(m):
-    """Take one certified step inside the present interval, or find the root."""
+    """Take one certified step inside the present interval, or find the root.
+
+    Without a bound nothing is certain: CLEAR then is no number, and the step fails.
+    """
     tau = m[at.CLEAR]
     reach = m[at.RIGHT_AGE] - tau
     h0, h1, h2, h3, h4, bound = evaluate(m, tau)
+    if not bound < INFINITE:  # rarely
+        m[at.CLEAR] = NO_NUMBER
+        return
     if h0 <= 0.0:  # rarely
         h0 = value_on_decided_side(m, tau, h0, h1)
     step, found = next_step(h0, h1, h2, h3, h4, bound, tau, reach, root_accuracy(m, tau))

@@ -22,6 +22,7 @@ from .motion import (
     set_phase,
     state_at,
 )
+from .nodes import is_countable, is_too_fast
 from .outputs import (
     SHORT,
     finite_check_sum,
@@ -76,6 +77,8 @@ def initialize(m, time):
     m[at.CUBIC_SET] = 1.0
     begin_segment(m)
     m[at.CUBIC_SET] = 0.0
+    if is_too_fast(m):
+        return at.TOO_FAST
     m[at.WORK_LIMIT] = WORK_BASE
     m[at.MODE] = at.GLUED if m[at.BONDED] != 0.0 else at.CONTACT
     begin_state(m, x1, m[at.V1_START] / m[at.OMEGA], x2, m[at.V2_START] / m[at.OMEGA], gap, 0)
@@ -147,6 +150,11 @@ def advance(m, time):
         now = 0.0
         m[at.PHASE_COSINE] = m[at.COSINE]
         m[at.PHASE_SINE] = m[at.SINE]
+        if is_too_fast(m):
+            return at.TOO_FAST
+    if not is_countable(m, local_time(m, time)):  # rarely
+        m[at.REPORT] = before
+        return at.BEYOND
     left, mode, impacts = (
         last_written_point(m, m[at.CUBIC_AGE] + now),
         m[at.MODE],
@@ -159,6 +167,8 @@ def advance(m, time):
     if m[at.WORK] >= m[at.WORK_LIMIT]:  # rarely
         m[at.REPORT] = m[at.START_TIME] + m[at.ORIGIN] / m[at.OMEGA]
         return at.LIMITED if m[at.WORK_LIMIT] < allowed else at.UNFINISHED
+    if m[at.CLEAR] != m[at.CLEAR]:  # rarely
+        return at.NOT_FINITE
     if m[at.STOPPED] != 0.0:  # rarely
         time = min(time, m[at.IMPACT_TIME])
     same = m[at.MODE] == mode and m[at.IMPACT_COUNT] == impacts
@@ -177,6 +187,8 @@ def coast(m, time):
     tau = local_time(m, time)
     plain = m[at.SAMPLE_COUNT] == 0.0 and m[at.PEAKS_ON] == 0.0
     if not lasts_beyond(m, tau) or not plain or inputs_changed(m):
+        return at.UNFINISHED
+    if not is_countable(m, tau):  # rarely
         return at.UNFINISHED
     now = local_time(m, m[at.TIME])
     highest = 0.0
@@ -283,7 +295,8 @@ def run_samples(m, start, time, now):
 
     Returns the present state's age there.
 
-    Where the step stops at an impact, the samples that are left show the state there.
+    Where the step stops at an impact, the samples that are left show the state there; where its
+    work is used up, none is kept.
     """
     count = int(m[at.SAMPLE_COUNT])
     for i in range(count):
@@ -291,6 +304,8 @@ def run_samples(m, start, time, now):
             now = run_states(
                 m, start + (time - start) * ((i + 1.0) / count) if i + 1 < count else time, now
             )
+        if m[at.WORK] >= m[at.WORK_LIMIT]:  # rarely
+            return now
         keep_sample(m, i, now)
     return now if count > 0 else run_states(m, time, now)
 

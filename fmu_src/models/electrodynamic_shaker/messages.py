@@ -33,6 +33,9 @@ MESSAGES = with_slots(
         "travel_limit = {TRAVEL_LIMIT} m",
         at.START_CURRENT: "current_start = {CURRENT_START} A: expected a current within "
         "current_limit = {CURRENT_LIMIT} A",
+        at.INDUCTANCE: "coil_inductance = {COIL_INDUCTANCE} H with coil_resistance = "
+        "{COIL_RESISTANCE} Ohm and force_factor = {FORCE_FACTOR} N/A: expected 0 H, or time "
+        "constants above {REPORT} s",
         at.FORGED: "a saved state that this FMU never had: {TARGET} in slot {WORK:0}, expected "
         f"{{REPORT:{'|'.join(EXPECTED.values())}}}",
     },

@@ -30,6 +30,13 @@ MESSAGES = with_slots(
         "{EVALUATION_LIMIT}, and {WORK:0} evaluations reached only {REPORT} s, in "
         "{MODE:flight|permanent contact|bonded motion} after {IMPACT_COUNT} impacts; "
         "expected a shorter step, or a larger limit",
+        at.BEYOND: "the step to time = {TARGET} s is too long: from {REPORT} s the number of "
+        "oscillations leaves the range of floating-point numbers that count by one, with "
+        "k1 = {K1} N/m, m1 = {M1} kg, k2 = {K2} N/m, m2 = {M2} kg and "
+        "box_frequency = {BOX_FREQUENCY} rad/s; expected at most some 1e15 radians",
+        at.TOO_FAST: "box_frequency = {BOX_FREQUENCY} rad/s, d1 = {D1} N.s/m, d2 = {D2} N.s/m, "
+        "k2 = {K2} N/m and m2 = {M2} kg: expected frequencies and d/m of at most 1e36 sqrt(k1/m1), "
+        "with k1 = {K1} N/m and m1 = {M1} kg",
         at.NOT_FINITE: "the motion leaves the range of floating-point numbers in the step to "
         "time = {TARGET} s: box_amplitude = {BOX_AMPLITUDE} m, "
         "box_frequency = {BOX_FREQUENCY} rad/s, box_acceleration = {BOX_ACCELERATION} m/s2; "

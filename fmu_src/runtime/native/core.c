@@ -242,6 +242,10 @@ static Status refuse_step(Instance *instance, const char *call, double current, 
         append(text, " s: expected ");
         append_number(text, reached);
         append(text, " s, where the last step ended");
+    } else if (isinf(current + size)) {
+        append(text, "communicationStepSize = ");
+        append_number(text, size);
+        append(text, " s: expected a step that ends at a finite time");
     } else {
         append(text, "the step to time = ");
         append_number(text, current + size);
@@ -287,7 +291,7 @@ Status step(Instance *instance, const char *call, double current, double size) {
     if (!in_phase(instance, call, STEPPING)) return FAILED;
     double *memory = instance->state.memory, reached = memory[TIME_SLOT], target = current + size;
     double rounding = 1e-9 * (fabs(reached) + size);  /* of the importer's own sum of steps: no step past the end */
-    if (!(size >= 0 && size < INFINITY && fabs(current - reached) <= rounding) || target - instance->stop_time > rounding)
+    if (!(size >= 0 && target < INFINITY && fabs(current - reached) <= rounding) || target - instance->stop_time > rounding)
         return refuse_step(instance, call, current, size);
     if (target < reached) target = reached;  /* the importer's clock may be a rounding behind */
     bool short_step = size > 0 && current + size == current && !instance->warned;

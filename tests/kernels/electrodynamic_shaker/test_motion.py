@@ -4,11 +4,11 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from fmu_src.kernels.electrodynamic_shaker import limits, rates, stepper
 from fmu_src.kernels.electrodynamic_shaker import memory as at
-from fmu_src.kernels.electrodynamic_shaker import rates, stepper
 
 from ...sparing import ordinary
-from .kernel import INPUTS, advanced, draw, outputs, set_inputs, started
+from .kernel import INPUTS, advanced, draw, memory_of, outputs, set_inputs, started
 from .truth import Shaker, polynomial
 
 KINDS = range(16)  # voltage or current control, with and without inductance, no limit to both
@@ -65,6 +65,18 @@ def exponential(values, stop):
         starts = ("position_start", "velocity_start", "current_start", *INPUTS)
         state = mp.matrix([mp.mpf(values[name]) for name in starts])
         return [float(x) for x in (mp.expm(matrix * mp.mpf(stop), method="taylor") * state)[:3]]
+
+
+def test_an_event_that_cannot_be_decided_is_an_error(monkeypatch):
+    """Each search for a root has an end, whatever entry point it is called from."""
+    values = {"command": 0.9, "command_1": 10.0, "command_2": -500.0, "voltage_limit": 1.0}
+    m = advanced(started(**values), 1e-9)
+    monkeypatch.setattr(limits, "MOST_STEPS", 0)
+    assert stepper.initialize(memory_of(**values), 0.0) == at.NOT_FINITE
+    assert stepper.advance(list(m), 0.1) == at.NOT_FINITE
+    set_inputs(m, command=0.91)
+    assert stepper.refresh(m, 0.0) == at.NOT_FINITE
+    assert stepper.advance(m, 2e-9) == at.NOT_FINITE
 
 
 @pytest.mark.parametrize("seed", [1, 17])

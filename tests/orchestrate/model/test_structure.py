@@ -119,14 +119,14 @@ def test_bonded_is_true_or_false(value):
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: Structure.nondimensional(mu=0.0), ["mu = 0.0: expected 1e-30 <= mu"]),
+        (lambda: Structure.nondimensional(mu=0.0), ["mu = 0.0: expected 1e-24 <= mu"]),
         (lambda: Structure.nondimensional(D=-1.0), ["D = -1.0: expected 0 <= D "]),
         (lambda: Structure.nondimensional(D2="a"), ["D2 = 'a': expected a number"]),
         (
-            lambda: Structure.nondimensional(mu=1e20, D=1e11),
-            ["mu = 1e+20", "D = 1", "d2 = 2e+31 N.s/m: expected 0 <= d2 <= 1e+30"],
+            lambda: Structure.nondimensional(mu=1e15, D=1e11),
+            ["mu = 1000000000000000.0", "D = 1", "d2 = 2e+26 N.s/m: expected 0 <= d2 <= 1e+24"],
         ),
-        (lambda: Structure().replace(omega=1e20), ["omega = 1e+20", "k1 = 1e+40"]),
+        (lambda: Structure().replace(omega=1e15), ["omega = 1000000000000000.0", "k1 = 1e+30"]),
         (lambda: Structure().replace(kapa=2.0), ["kapa: no parameter", "did you mean kappa?"]),
         (lambda: Structure().replace(mu=1.0, m2=2.0), ["mu and m2: expected one of them"]),
         (lambda: Structure().replace(D=1.0, D1=2.0), ["D and D1: expected one of them"]),
@@ -182,8 +182,8 @@ def test_layers_together_are_the_beam_that_was_measured(mass, f, zeta, h1, h2):
     [
         ({"f1": 1.0, "k1": 2.0}, "f1 and k1: expected one of them"),
         ({"zeta2": 0.1, "D": 0.1}, "zeta2 and D: expected one of them"),
-        ({"f2": 0.0}, "f2 = 0.0 Hz: expected 1e-30 <= f2"),
-        ({"f1": 1e29}, "f1 = 1e+29: they make k1 = "),
+        ({"f2": 0.0}, "f2 = 0.0 Hz: expected 1e-24 <= f2"),
+        ({"f1": 1e14}, "f1 = 100000000000000.0: they make k1 = "),
     ],
 )
 def test_mistakes_in_halves(changes, words):
