@@ -232,7 +232,10 @@ class Files:
         result = store or arguments.output / f"{name}.nc"
         check_output(result.parent)
         if fresh is None:
-            fresh = arguments.force or not result.exists()
+            from ..running.journal import journal_path  # brings SQLite, which --help does without
+
+            resumed = journal_path(result, anew=True).exists()
+            fresh = arguments.force or resumed or not result.exists()
         units = str(read_units(arguments)).replace(", ", "-").replace("/", "_")
         text = getattr(arguments, "size", None)
         size = SIZE("--size", text) if text else None

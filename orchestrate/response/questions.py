@@ -391,6 +391,7 @@ class OneMotionQuestion(Question, ABC):
     """Base of questions about one motion, under one excitation."""
 
     excitation: Excitation
+    item_columns: ClassVar[tuple[str, ...]] = ()  # times, crossings
 
     def items(self) -> Sequence[Point]:
         return [Point(self.structure, self.excitation)]

@@ -157,7 +157,7 @@ class Journal:
         try:
             return self._db.execute(statement, values).fetchall()
         except (sqlite3.Error, OverflowError) as error:
-            advice = "what was computed before is kept, the same call goes on from there"
+            advice = "what was computed before is kept, the same call goes on (without force)"
             if any(word in str(error) for word in ("malformed", "not a database", "decode")):
                 advice = ANEW
             raise StoreError(f"{self.path}: {error}; {advice}") from error

@@ -36,7 +36,8 @@ class Running(TypedDict, total=False):
         where it was interrupted, and reads the file when it is finished. Without it all is kept in
         memory.
     force : bool
-        Compute anew what is stored already.
+        Compute all anew, whatever is stored. An older result stays until the new one is complete;
+        after an interruption, the same call without ``force`` goes on with the new one.
     keep_stale : bool
         Take a stored result even where the code or the FMU has changed since.
     fmu : path or mapping, optional

@@ -48,6 +48,7 @@ class CoupleJob(CoupledRun):
     chunk_size: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
     gathers: ClassVar[bool] = True  # the hysteresis loop is a chunk of its own
+    item_columns: ClassVar[tuple[str, ...]] = ()  # revolutions, and a state
     item: ClassVar[str] = "step"
 
     def count(self) -> int:

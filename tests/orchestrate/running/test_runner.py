@@ -138,14 +138,35 @@ def test_a_result_stays_until_the_one_computed_anew_is_whole(find, tmp_path, mon
     before, inode = path.read_bytes(), path.stat().st_ino
     interrupted(monkeypatch, JOB, {"store": path, "force": True}, find, 7)
     assert path.read_bytes() == before
-    assert np.array_equal(answer(JOB, {"store": path}, find).square, SQUARES)
     items = computed(monkeypatch)
-    answer(JOB, {"store": path, "force": True}, find)
+    answer(JOB, {"store": path}, find)
     assert items == [6, 7, 8, 9], "the chunks from before the Ctrl-C were not taken"
     assert path.stat().st_ino != inode
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
-    answer(JOB, {"store": path, "force": True}, find)
-    assert items[4:] == list(range(10))
+
+
+@pytest.mark.parametrize("stored", [False, True])
+@pytest.mark.parametrize("damage", [b"", b"noise" * 1000])
+def test_force_never_reads_a_journal(find, tmp_path, monkeypatch, stored, damage):
+    path = tmp_path / "squares.nc"
+    if stored:
+        answer(JOB, {"store": path}, find)
+    interrupted(monkeypatch, JOB, {"store": path, "force": stored}, find, 7)
+    if damage:
+        journal_path(path, anew=stored).write_bytes(damage)
+    items = computed(monkeypatch)
+    assert np.array_equal(answer(JOB, {"store": path, "force": True}, find).square, SQUARES)
+    assert items == list(range(10))
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
+
+
+def test_a_damaged_journal_of_a_run_with_force_leaves_the_older_result(find, tmp_path, monkeypatch):
+    path = tmp_path / "squares.nc"
+    answer(JOB, {"store": path}, find)
+    interrupted(monkeypatch, JOB, {"store": path, "force": True}, find, 7)
+    journal_path(path, anew=True).write_bytes(b"noise" * 1000)
+    items = computed(monkeypatch)
+    assert np.array_equal(answer(JOB, {"store": path}, find).square, SQUARES) and not items
 
 
 @pytest.mark.parametrize("kind", ["NetCDF with an identity", "text", "empty"])
