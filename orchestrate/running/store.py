@@ -22,7 +22,7 @@ from .blocks import BLOCK, blocks, chunk_shape
 from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
-from .journal import ANEW, Journal, Lock, discard, journal_path
+from .journal import ANEW, Journal, discard, journal_path, lock_result
 from .options import RunOptions
 
 log = logging.getLogger(__name__)
@@ -121,7 +121,7 @@ class Disk(Store):
             raise InputError(
                 f"{path}: a folder; expected a place for a file: remove it, or choose another"
             )
-        self._lock = Lock(path)
+        self._lock = lock_result(path)
         self._journal: Journal | None = None
         try:
             anew = journal_path(path, anew=True)

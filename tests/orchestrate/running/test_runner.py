@@ -9,7 +9,7 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError
 from orchestrate.running import bar
-from orchestrate.running.journal import Lock, journal_path
+from orchestrate.running.journal import journal_path, lock_result
 from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
 
@@ -186,7 +186,7 @@ def test_a_file_of_others_is_never_replaced(find, tmp_path, kind):
 
 def test_one_process_at_a_time(find, tmp_path):
     path = tmp_path / "squares.nc"
-    lock = Lock(path)
+    lock = lock_result(path)
     with pytest.raises(InputError, match="another process is computing it"):
         answer(JOB, {"store": path}, find)
     lock.release()
