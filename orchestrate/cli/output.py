@@ -303,9 +303,9 @@ def importing_matplotlib(needed: bool) -> Iterator[None]:
     """Import the drawing code in a thread while the ``with`` block computes."""
 
     def prepare() -> None:
-        from ..show.files import warm_up_matplotlib
-
         with suppress(Exception):  # it comes again where the picture is drawn
+            from ..show.files import warm_up_matplotlib
+
             warm_up_matplotlib()
 
     timer = threading.Timer(1.0, prepare)  # a shorter computation is not disturbed
