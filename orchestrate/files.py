@@ -108,13 +108,16 @@ def is_private(path: Path) -> bool:
     """Return whether nobody can write a path who could not as well change this program."""
     if sys.platform == "win32":  # where its permissions are not known
         return True
-    there = path.stat()
-    return there.st_uid in trusted_owners() and not there.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    users, groups, there = *trusted_owners(), path.stat()
+    shared = there.st_gid not in groups and there.st_mode & stat.S_IWGRP
+    return there.st_uid in users and not shared and not there.st_mode & stat.S_IWOTH
 
 
-def trusted_owners() -> set[int]:
-    """Return the users who can change this program: the present one, root, the sources' owner."""
-    return {os.getuid(), 0, Path(__file__).stat().st_uid}
+def trusted_owners() -> tuple[set[int], set[int]]:
+    """Return the users and the groups that can change this program, by its files or as root."""
+    program = Path(__file__).stat()
+    groups = {program.st_gid} if program.st_mode & stat.S_IWGRP else set[int]()
+    return {os.getuid(), 0, program.st_uid}, groups
 
 
 def make_private(path: Path) -> None:

@@ -19,14 +19,10 @@ from fmu_src.export.platforms import PLATFORMS, chosen, this_machine, usual
 
 from ..errors import StoreError
 from ..files import is_private, made_once, make_private, open_folder, write_whole
-from .exported import SHIPPED, default_folder, warn_once
+from .exported import NOT_PRIVATE, SHIPPED, default_folder, warn_once
 
 log = logging.getLogger(__name__)
 FORM = "libraries"
-NOT_PRIVATE = (
-    "others can write this file or its folders, or they are somebody else's: it is not loaded, "
-    "Python does the same, slower; expected a build_folder of your own"
-)
 SOURCES = tuple(sorted(Path(__file__).resolve().parents[1].glob("*/*.c")))
 
 
@@ -48,7 +44,7 @@ def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | N
                 compile_library(source, platform, folders[0])
             if is_trusted(path):
                 return path
-            warn_once(f"{path}: {NOT_PRIVATE}")
+            warn_once(f"{path}: {NOT_PRIVATE}, Python does the same, slower")
             return None
     except (CannotExport, StoreError) as reason:
         log.info("%s is not compiled, Python does the same: %s", source.name, reason)

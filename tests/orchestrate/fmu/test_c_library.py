@@ -23,6 +23,7 @@ def cache(tmp_path, monkeypatch):
     made = []
     monkeypatch.setattr(sources, "export", lambda *what: made.append(what) or COMPILED)
     exported.warn_once.cache_clear()
+    monkeypatch.setattr("orchestrate.files.trusted_owners", lambda: ({os.getuid()}, set()))
     umask = os.umask(0o002)  # as of systems with a group for each user
     yield tmp_path / "cache", made
     os.umask(umask)
@@ -53,6 +54,7 @@ def test_what_is_not_as_it_was_compiled_is_compiled_anew(cache, damage):
 @pytest.mark.parametrize("part", ["library", "digest", "folder", "its folder"])
 @pytest.mark.parametrize("mode", [0o002, 0o020])
 def test_what_others_could_have_written_is_compiled_anew(cache, part, mode):
+    """Their group too, unless it can write these sources."""
     folder, made = cache
     path = library(SOURCE, folder)
     planted = b"planted " + COMPILED
@@ -72,7 +74,9 @@ def test_what_is_somebody_else_s_is_loaded_only_from_the_package(
 ):
     folder, _ = cache
     path = library(SOURCE, folder)
-    monkeypatch.setattr("orchestrate.files.trusted_owners", lambda: {path.stat().st_uid + 1})
+    monkeypatch.setattr(
+        "orchestrate.files.trusted_owners", lambda: ({path.stat().st_uid + 1}, set())
+    )
     if shipped:
         monkeypatch.setattr(c_library, "SHIPPED", folder)
         assert library(SOURCE, folder) == path
