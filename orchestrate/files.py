@@ -25,10 +25,7 @@ class HeldLock:
 
     def __init__(self, path: Path) -> None:
         """Take the lock; raise ``BlockingIOError`` where another has it, else ``OSError``."""
-        from filelock import (
-            FileLock,
-            Timeout,
-        )  # brings asyncio: describing a structure is to be quick
+        from filelock import FileLock, Timeout  # slow to import
 
         self.path, self._lock = path, FileLock(path)
         try:
@@ -42,11 +39,11 @@ class HeldLock:
         """Remove the file and release the lock, in the order that the system permits."""
         if not self._lock.is_locked:
             return
-        try:  # as long as it is held: whoever waits for this file's lock does not take it for one
+        try:
+            # before it is released: whoever has opened this file then finds that it is no lock
             self.path.unlink(missing_ok=True)
-        except (
-            OSError
-        ):  # Windows removes no open file; so nobody has it whom its removal could hurt
+        except OSError:
+            # Windows removes no open file: so none that another process has locked meanwhile
             self._lock.release()
             with suppress(OSError):
                 self.path.unlink(missing_ok=True)
@@ -68,9 +65,7 @@ class HeldFolder:
                 self._lock = HeldLock(self.path / GUARD)
             except (BlockingIOError, FileNotFoundError):  # taken for one that is no longer needed
                 continue
-            except (
-                OSError
-            ) as error:  # a disk without locks: then nobody removes it but this process
+            except OSError as error:  # a disk without locks: nobody removes it but this process
                 log.info("%s: made without a lock (%s)", self.path, error)
             return
 

@@ -8,7 +8,7 @@ import os
 import re
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -166,11 +166,10 @@ class Disk(Store):
         if self.options.keep_stale or not path.exists():
             return False
         try:
-            journal = Journal(path, self.identity, now())
+            with closing(Journal(path, self.identity, now())) as journal:
+                return not (journal.is_empty() or difference(journal.identity, self.identity))
         except StoreError:
             return False
-        journal.close()
-        return not difference(journal.identity, self.identity)
 
     def check(self, stored: Identity, path: Path) -> None:
         """Raise if a stored identity is another calculation's, or stale and not to be kept."""

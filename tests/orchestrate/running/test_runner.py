@@ -9,7 +9,7 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError
 from orchestrate.running import bar
-from orchestrate.running.journal import journal_path, lock_result
+from orchestrate.running.journal import Journal, journal_path, lock_result
 from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
 
@@ -160,11 +160,20 @@ def test_force_never_reads_a_journal(find, tmp_path, monkeypatch, stored, damage
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
 
 
-def test_a_damaged_journal_of_a_run_with_force_leaves_the_older_result(find, tmp_path, monkeypatch):
+@pytest.mark.parametrize("damage", ["noise", "no chunk"])
+def test_a_run_with_force_that_cannot_be_resumed_leaves_the_older_result(
+    find, tmp_path, monkeypatch, damage
+):
     path = tmp_path / "squares.nc"
     answer(JOB, {"store": path}, find)
     interrupted(monkeypatch, JOB, {"store": path, "force": True}, find, 7)
-    journal_path(path, anew=True).write_bytes(b"noise" * 1000)
+    if damage == "noise":
+        journal_path(path, anew=True).write_bytes(b"noise" * 1000)
+    else:
+        journal = Journal(journal_path(path, anew=True), {}, "")
+        for index in journal.indices():
+            journal.drop(index, "")
+        journal.close()
     items = computed(monkeypatch)
     assert np.array_equal(answer(JOB, {"store": path}, find).square, SQUARES) and not items
 
