@@ -65,7 +65,7 @@ def checked_path(name: str, value: Any) -> Path:
 def unmasked(name: str, value: Any) -> Any:
     """Return an argument; raise ``InputError`` if it is an array with masked entries."""
     if np.ma.is_masked(value):
-        number, count = np.ma.count_masked(value), np.size(value)
+        number, count = int(np.ma.getmaskarray(value).sum()), np.size(value)
         raise InputError(
             f"{name}: {number} of {count} entries are masked; expected all to be numbers "
             "(compressed() leaves masked ones out)"
