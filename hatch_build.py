@@ -40,7 +40,7 @@ class CustomBuildHook(BuildHookInterface):
             return
         root = Path(self.root)
         sys.path.insert(0, str(root))
-        from fmu_src.export import c_library, forms, webassembly
+        from fmu_src.export import c_library, forms, platforms, webassembly
 
         for form in forms.FORMS:
             for name in forms.MODELS:
@@ -57,10 +57,12 @@ class CustomBuildHook(BuildHookInterface):
             else:
                 self.app.display_warning(f"{path}: none of these sources, left out")
         for source in sorted(root.glob("orchestrate/*/*.c")):
-            token = c_library.guid(source).encode()
-            for path in sorted((root / "build" / "libraries").glob(f"*/{source.stem}.*")):
-                if token in path.read_bytes():
-                    place = f"{PLACE}/libraries/{path.parent.name}/{path.name}"
-                    build_data["force_include"][str(path)] = place
-                else:
+            token = c_library.guid(source)
+            for platform in platforms.PLATFORMS:
+                path = root / "build" / "libraries" / c_library.file_name(source, platform)
+                if c_library.is_current(path, token):
+                    for file in (path, c_library.digest_file(path)):
+                        place = f"{PLACE}/libraries/{platform}/{file.name}"
+                        build_data["force_include"][str(file)] = place
+                elif path.exists():
                     self.app.display_warning(f"{path}: none of these sources, left out")

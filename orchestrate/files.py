@@ -2,35 +2,140 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 import os
 import shutil
 import stat
 import sys
+import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .errors import InputError, StoreError
 
 log = logging.getLogger(__name__)
-PROBE = ".writable"
+GUARD = ".lock"  # file in a temporary folder that its process has locked
+TEMPORARY = ".tmp"  # end of the names of folders in which files are written
+
+
+class HeldLock:
+    """Lock on a file: held until it is released or its process ends, however that ends."""
+
+    def __init__(self, path: Path) -> None:
+        """Take the lock; raise ``BlockingIOError`` where another has it, else ``OSError``."""
+        from filelock import FileLock, Timeout  # slow to import
+
+        self.path, self._lock = path, FileLock(path)
+        try:
+            self._lock.acquire(timeout=0.0)
+        except Timeout:
+            raise BlockingIOError(errno.EAGAIN, "another process holds it", str(path)) from None
+        except NotImplementedError as error:  # of a disk without locks
+            raise OSError(errno.ENOLCK, str(error), str(path)) from None
+
+    def release(self) -> None:
+        """Remove the file and release the lock, in the order that the system permits."""
+        if not self._lock.is_locked:
+            return
+        try:
+            # before it is released: whoever has opened this file then finds that it is no lock
+            self.path.unlink(missing_ok=True)
+        except OSError:
+            # Windows removes no open file: so none that another process has locked meanwhile
+            self._lock.release()
+            with suppress(OSError):
+                self.path.unlink(missing_ok=True)
+        finally:
+            self._lock.release()
+
+
+class HeldFolder:
+    """Temporary folder of a process, which holds a lock in it as long as it uses the folder.
+
+    So it is known from any process, container or host whether what is in it is still needed.
+    """
+
+    def __init__(self, parent: Path, prefix: str, suffix: str = "") -> None:
+        self._lock: HeldLock | None = None
+        while True:
+            self.path = Path(tempfile.mkdtemp(suffix, prefix, parent))
+            try:
+                self._lock = HeldLock(self.path / GUARD)
+            except (BlockingIOError, FileNotFoundError):  # taken for one that is no longer needed
+                continue
+            except OSError as error:  # a disk without locks: nobody removes it but this process
+                log.info("%s: made without a lock (%s)", self.path, error)
+            return
+
+    def remove(self) -> None:
+        """Delete the folder with all that is in it."""
+        remove_held(self.path, self._lock)
+
+
+def remove_held(folder: Path, lock: HeldLock | None) -> None:
+    """Delete a temporary folder whose lock this process holds, and release the lock."""
+    shutil.rmtree(folder, ignore_errors=True)
+    if lock is not None:
+        lock.release()
+    shutil.rmtree(folder, ignore_errors=True)  # Windows had left the lock's file, which was open
+
+
+def remove_unheld(parent: Path, pattern: str) -> None:
+    """Delete this user's temporary folders of a pattern whose locks nobody holds."""
+    for folder in parent.glob(pattern):
+        with suppress(OSError):
+            if is_own_folder(folder) and (folder / GUARD).is_file():
+                remove_held(folder, HeldLock(folder / GUARD))
+
+
+def is_own_folder(folder: Path) -> bool:
+    """Return whether a path is a real folder (no link) that belongs to the current user."""
+    return (
+        folder.is_dir()
+        and not folder.is_symlink()
+        and (sys.platform == "win32" or folder.lstat().st_uid == os.getuid())
+    )
+
+
+def is_private(path: Path) -> bool:
+    """Return whether nobody can write a path who could not as well change this program."""
+    if sys.platform == "win32":  # where its permissions are not known
+        return True
+    users, groups, there = *trusted_owners(), path.stat()
+    shared = there.st_gid not in groups and there.st_mode & stat.S_IWGRP
+    return there.st_uid in users and not shared and not there.st_mode & stat.S_IWOTH
+
+
+def trusted_owners() -> tuple[set[int], set[int]]:
+    """Return the users and the groups that can change this program, by its files or as root."""
+    program = Path(__file__).stat()
+    groups = {program.st_gid} if program.st_mode & stat.S_IWGRP else set[int]()
+    return {os.getuid(), 0, program.st_uid}, groups
+
+
+def make_private(path: Path) -> None:
+    """Take the permission to write a path from others, where it is this user's."""
+    with suppress(OSError):
+        path.chmod(stat.S_IMODE(path.stat().st_mode) & ~(stat.S_IWGRP | stat.S_IWOTH))
 
 
 def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -> Path:
-    """Write a file atomically: ``write`` fills a temporary file, which is then renamed."""
+    """Write a file atomically: ``write`` fills one in a temporary folder beside, which is moved."""
     path = Path(path)
-    remove_dead_temporaries(path)
-    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     try:
-        write(temporary)
-        temporary.replace(path)
+        remove_unheld(path.parent, f"{escape_glob(path.name)}.*{TEMPORARY}")
+        folder = HeldFolder(path.parent, f"{path.name}.", TEMPORARY)
+        try:
+            write(folder.path / path.name)
+            (folder.path / path.name).replace(path)
+        finally:
+            folder.remove()
     except (OSError, RuntimeError) as error:  # the NetCDF library says RuntimeError at a full disk
         raise StoreError(
             f"{path}: cannot be written ({format_write_error(error, path.parent)})"
         ) from error
-    finally:
-        temporary.unlink(missing_ok=True)
     return path
 
 
@@ -89,41 +194,17 @@ def format_write_error(error: BaseException, folder: Path) -> str:
         return str(text)
 
 
-def remove_dead_temporaries(path: Path) -> None:
-    """Delete a path's temporary files of ``write_whole`` whose processes no longer run."""
-    for left in path.parent.glob(f"{escape_glob(path.name)}.*.tmp"):
-        number = left.name.removesuffix(".tmp").rpartition(".")[2]
-        if number.isdigit() and not is_process_alive(int(number)):
-            left.unlink(missing_ok=True)
-
-
 def escape_glob(name: str) -> str:
     """Return a file name with the characters ``[]*?`` escaped for use in ``glob``."""
     return "".join(f"[{letter}]" if letter in "[]*?" else letter for letter in name)
 
 
-def is_process_alive(pid: int) -> bool:
-    """Return whether a process id runs on this machine; True where that cannot be asked."""
-    if sys.platform == "win32":  # there the question would end it
-        return True
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:  # somebody else's
-        return True
-    return True
-
-
 def open_folder(folder: str | os.PathLike[str]) -> Path:
     """Create a folder if it is missing and return it; raise unless it is writable."""
     folder = Path(folder)
-    probe = folder / f"{PROBE}.{os.getpid()}.tmp"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        remove_dead_temporaries(folder / PROBE)
-        probe.write_bytes(b"")
-        probe.unlink(missing_ok=True)  # another thread may have been quicker
+        tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
         raise StoreError(
             f"{folder}: {error.strerror or error}; expected a folder that can be written"

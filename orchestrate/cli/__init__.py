@@ -170,10 +170,9 @@ def report_interruption(ended: KeyboardInterrupt) -> int:
 def describe_progress_kept() -> str:
     """Return what an interrupted command tells: what of it is stored, and how to resume."""
     store = sys.modules.get(STORE)  # not imported only to say that nothing is in it
-    if store and store.STARTED:
-        return "what was stored is kept; repeat the command to resume"
-    if store and store.FINISHED:
-        return "the result is stored; repeat the command (without --force) to resume"
+    if store and (store.STARTED or store.FINISHED):
+        kept = "what was stored is kept" if store.STARTED else "the result is stored"
+        return f"{kept}; repeat the command (without --force) to resume"
     return "nothing was stored; repeat the command to start again"
 
 

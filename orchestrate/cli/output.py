@@ -232,7 +232,10 @@ class Files:
         result = store or arguments.output / f"{name}.nc"
         check_output(result.parent)
         if fresh is None:
-            fresh = arguments.force or not result.exists()
+            from ..running.journal import journal_path  # brings SQLite, which --help does without
+
+            resumed = journal_path(result, anew=True).exists()
+            fresh = arguments.force or resumed or not result.exists()
         units = str(read_units(arguments)).replace(", ", "-").replace("/", "_")
         text = getattr(arguments, "size", None)
         size = SIZE("--size", text) if text else None
@@ -300,9 +303,9 @@ def importing_matplotlib(needed: bool) -> Iterator[None]:
     """Import the drawing code in a thread while the ``with`` block computes."""
 
     def prepare() -> None:
-        from ..show.files import warm_up_matplotlib
-
         with suppress(Exception):  # it comes again where the picture is drawn
+            from ..show.files import warm_up_matplotlib
+
             warm_up_matplotlib()
 
     timer = threading.Timer(1.0, prepare)  # a shorter computation is not disturbed

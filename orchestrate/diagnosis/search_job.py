@@ -124,6 +124,7 @@ class SearchJob(Job):
     sound: tuple[int, ...] = tuple(range(len(SOUND)))  # which of `SOUND`
     delaminated: bool = True  # whether that is searched too
     gathers: ClassVar[bool] = True
+    item_columns: ClassVar[tuple[str, ...]] = ()  # solutions
     last_weight: ClassVar[int] = 40  # refining takes about twice as long as all searches
     item: ClassVar[str] = "step"
 

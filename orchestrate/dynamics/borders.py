@@ -63,6 +63,7 @@ class BorderJob(Question):
     longest: float = checked(checked_number)
     most: int = whole(1)
     asked: ClassVar[str] = "border"
+    item_columns: ClassVar[tuple[str, ...]] = ()  # points of the curve
 
     def call_text(self) -> str:
         keywords = {"over": self.setting.over, "limits": self.setting.limits}

@@ -65,6 +65,7 @@ class BranchJob(Question):
     longest: float = checked(checked_number)  # longest step
     most: int = whole(1)  # most points in one direction
     asked: ClassVar[str] = "branch"
+    item_columns: ClassVar[tuple[str, ...]] = ()  # orbits and bifurcations
 
     def call_text(self) -> str:
         (over,), (limits,) = self.setting.over, self.setting.limits

@@ -137,6 +137,7 @@ class ManifoldJob(SingleOrbitQuestion):
     distance: float = positive()
     most: int = whole(2)
     asked: ClassVar[str] = "manifold"
+    item_columns: ClassVar[tuple[str, ...]] = ()  # points of the curves
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -1,4 +1,8 @@
-"""The package's own C sources as shared libraries: compiled where missing or out of date."""
+"""The package's own C sources as shared libraries: compiled where missing or out of date.
+
+One is loaded from the cache only where nobody else could have put it there, and its bytes are those
+that were compiled, by the digest beside it.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +18,8 @@ from fmu_src.export.errors import CannotExport
 from fmu_src.export.platforms import PLATFORMS, chosen, this_machine, usual
 
 from ..errors import StoreError
-from ..files import made_once, open_folder, write_whole
-from .exported import SHIPPED, default_folder
+from ..files import is_private, made_once, make_private, open_folder, write_whole
+from .exported import NOT_PRIVATE, SHIPPED, default_folder, warn_once
 
 log = logging.getLogger(__name__)
 FORM = "libraries"
@@ -28,16 +32,20 @@ def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | N
     if platform not in PLATFORMS:
         return None
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
-    token = sources.guid(source).encode()
+    token = sources.guid(source)
     paths = [candidate / FORM / sources.file_name(source, platform) for candidate in folders]
     for path in paths:
-        if has_token(path, token):
+        if is_trusted(path) and sources.is_current(path, token):
             return path
+    path = paths[0]
     try:
-        with made_once(paths[0]):
-            if has_token(paths[0], token):
-                return paths[0]
-            return compile_library(source, platform, folders[0])
+        with made_once(path):
+            if not (is_trusted(path) and sources.is_current(path, token)):
+                compile_library(source, platform, folders[0])
+            if is_trusted(path):
+                return path
+            warn_once(f"{path}: {NOT_PRIVATE}, Python does the same, slower")
+            return None
     except (CannotExport, StoreError) as reason:
         log.info("%s is not compiled, Python does the same: %s", source.name, reason)
         return None
@@ -61,9 +69,16 @@ def loaded_library(source: Path) -> Any:
         return None
 
 
-def has_token(path: Path, token: bytes) -> bool:
-    """Return whether a library file exists and contains the token (digest) of its C source."""
-    return path.is_file() and token in path.read_bytes()
+def is_trusted(path: Path) -> bool:
+    """Return whether a library came with the package, or nobody else can have written it."""
+    if path.is_relative_to(SHIPPED):
+        return True
+    return all(part.exists() and is_private(part) for part in trusted_parts(path))
+
+
+def trusted_parts(path: Path) -> tuple[Path, ...]:
+    """Return what decides on what is loaded: a library, its digest, and their own folders."""
+    return path, sources.digest_file(path), path.parent, path.parent.parent
 
 
 def build_libraries(
@@ -87,4 +102,8 @@ def compile_library(source: Path, platform: str, folder: Path) -> Path:
     library = sources.export(source, platform)
     open_folder(path.parent)
     write_whole(path, lambda target: target.write_bytes(library))
+    digest = sources.digest(library).encode()
+    write_whole(sources.digest_file(path), lambda target: target.write_bytes(digest))
+    for part in trusted_parts(path):
+        make_private(part)
     return path

@@ -14,7 +14,7 @@ from fmu_src.export import forms as sources
 from fmu_src.export.errors import CannotExport
 
 from ..errors import InputError, StoreError
-from ..files import made_once, open_folder
+from ..files import is_private, made_once, make_private, open_folder
 from ..version import __version__
 from .description import Description, describe, describe_runnable
 
@@ -26,6 +26,10 @@ sources_of = sources.sources_of
 MODELS: tuple[str, ...] = tuple(sources.MODELS)
 WITHOUT_COMPILER = sources.PYTHON_FORM
 SHIPPED = Path(__file__).parent / "fmus"
+NOT_PRIVATE = (
+    "others can write it or its folder, or it is somebody else's: expected a folder that only you "
+    "can write, or another build_folder; it is not loaded"
+)
 CLONE = Path(__file__).resolve().parents[2]
 
 
@@ -75,7 +79,11 @@ def export(
     announce(folder, level)
     log.info("exporting %s", folder / form / f"{name}.fmu")
     try:
-        return sources.export(name, form, folder, platforms or None)
+        path = sources.export(name, form, folder, platforms or None)
+        if folder == default_folder():
+            make_private(path)
+            make_private(path.parent)
+        return path
     except OSError as error:
         reason = error.strerror or error
         raise StoreError(f"{folder}: {reason}; expected a folder that can be written") from None
@@ -116,9 +124,15 @@ def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:
     """Return whether a folder has a model's FMU whose GUID is that of the present sources."""
     path = Path(folder) / form / f"{name}.fmu"
     try:
-        return path.is_file() and describe(path, name).guid == guid(form, name)
+        current = path.is_file() and describe(path, name).guid == guid(form, name)
     except InputError:  # damaged: to be made anew
         return False
+    if not current or Path(folder) != default_folder():
+        return current  # another folder was named, and so trusted
+    if is_private(path) and is_private(path.parent):
+        return True
+    warn_once(f"{path}: {NOT_PRIVATE}")
+    return False
 
 
 def default_folder() -> Path:

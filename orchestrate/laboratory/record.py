@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..lazy import xr
+from ..model.arguments import unmasked
 from ..response.labels import variable
 from .conversion import MOTIONS, differentiated
 from .pieces import Floats
@@ -185,6 +186,7 @@ class Reading:
 
 def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
     """Return a list as an array of floats; raise with the row where one is not finite."""
+    unmasked(name, given)
     try:
         values = np.array(given, dtype=float)
     except (TypeError, ValueError):

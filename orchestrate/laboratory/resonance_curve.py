@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..lazy import xr
+from ..model.arguments import unmasked
 from ..response.labels import variable
 from .columns import RATIOS
 from .conversion import ACCELERATIONS, LENGTHS, SPEEDS, plain_unit
@@ -215,6 +216,7 @@ def curve_coordinates(faces: list[str], frequency: Floats) -> dict[str, Any]:
 
 def plain_numbers(name: str, given: Any, kind: type = float) -> NDArray[Any]:
     """Return an argument as an array; raise unless it has numbers alone."""
+    unmasked(name, given)
     try:
         return np.array(given, dtype=kind)
     except (TypeError, ValueError):

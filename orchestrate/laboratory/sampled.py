@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..lazy import xr
+from ..model.arguments import unmasked
 from .pieces import Pieces
 from .signals import HERTZ, MOST_PIECES, ExcitationSignal, checked
 
@@ -34,6 +35,7 @@ class Sampled(ExcitationSignal):
 
     def __post_init__(self) -> None:
         put = object.__setattr__
+        unmasked("acceleration", self.acceleration)
         try:
             values = np.asarray(self.acceleration, dtype=float)
         except (TypeError, ValueError):

@@ -50,6 +50,7 @@ class ShakeJob(Question):
     asked: ClassVar[str] = "shake"
     chunk_size: ClassVar[int] = 20_000
     sequential: ClassVar[bool] = True
+    item_columns: ClassVar[tuple[str, ...]] = ()  # samples, impacts, and a state
     item: ClassVar[str] = "piece"
 
     @property

@@ -7,9 +7,11 @@ given, see :meth:`orchestrate.running.job.Job.check_fields`.
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Iterable
 from dataclasses import field
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,7 @@ from numpy.typing import ArrayLike
 from ..errors import InputError
 
 MAX_COUNT = 1_000_000  # periods, samples, values: more is a typing error
+MAX_NAME = 255  # bytes of a file's name, the limit of most systems
 CHECK = "check"  # key of a field's check in its metadata
 Numbers = float | tuple[float, ...]
 
@@ -38,12 +41,45 @@ def checked_word(name: str, value: Any, known: Iterable[str]) -> str:
     return str(value)
 
 
+def checked_flag(name: str, value: Any) -> bool:
+    """Return whether a flag is set; raise ``InputError`` unless it is True or False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise InputError(f"{name} = {value!r}: expected True or False")
+    return bool(value)
+
+
+def checked_path(name: str, value: Any) -> Path:
+    """Return ``value`` as a path; raise ``InputError`` where no file can have it as its name."""
+    text = os.fspath(value) if isinstance(value, (str, os.PathLike)) else value
+    if not isinstance(text, str):
+        raise InputError(f"{name} = {value!r}: expected a path, as a text or a pathlib.Path")
+    if "\0" in text:
+        raise InputError(f"{name} = {value!r}: expected a path without NUL characters")
+    for part in Path(text).parts:
+        if len(os.fsencode(part)) > MAX_NAME:
+            length = f"{name}: the name {part[:12]}... has {len(os.fsencode(part))} bytes"
+            raise InputError(f"{length}; expected at most {MAX_NAME}")
+    return Path(text)
+
+
+def unmasked(name: str, value: Any) -> Any:
+    """Return an argument; raise ``InputError`` if it is an array with masked entries."""
+    if np.ma.is_masked(value):
+        number, count = int(np.ma.getmaskarray(value).sum()), np.size(value)
+        raise InputError(
+            f"{name}: {number} of {count} entries are masked; expected all to be numbers "
+            "(compressed() leaves masked ones out)"
+        )
+    return value
+
+
 def checked_numbers(
     name: str, value: ArrayLike | None, check: Callable[[Any], float] = float, above: str = ""
 ) -> Numbers | None:
     """Return an argument as float or tuple of finite floats, ``> 0`` if so; None if not given."""
     if value is None:
         return None
+    unmasked(name, value)
     try:
         array = np.asarray(value)
         if array.dtype.kind not in "iuf":

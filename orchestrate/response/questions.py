@@ -20,7 +20,7 @@ from ..errors import InputError
 from ..fmu import REST, finder, gap_between
 from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
-from ..model.arguments import Numbers, checked, checked_numbers
+from ..model.arguments import Numbers, checked, checked_numbers, unmasked
 from ..model.ranges import COMPLETE, EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from ..running.job import Job, brief
 from ..running.runner import answer
@@ -289,8 +289,9 @@ def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> 
     expected = "expected x1, x2 in m, v1, v2 in m/s with x2 >= x1"
     if structure.gap_offset:
         expected += f" - clearance, clearance = {structure.clearance!r} m"
+    given = unmasked(name, REST if value is None else value)
     try:
-        rows = np.atleast_2d(np.asarray(REST if value is None else value, dtype=float))
+        rows = np.atleast_2d(np.asarray(given, dtype=float))
     except (TypeError, ValueError):
         text = "a dataset" if hasattr(value, "data_vars") else repr(value)
         raise InputError(f"{name} = {text}: {expected}") from None
@@ -391,6 +392,7 @@ class OneMotionQuestion(Question, ABC):
     """Base of questions about one motion, under one excitation."""
 
     excitation: Excitation
+    item_columns: ClassVar[tuple[str, ...]] = ()  # times, crossings
 
     def items(self) -> Sequence[Point]:
         return [Point(self.structure, self.excitation)]

@@ -134,8 +134,18 @@ def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
             for name, frame in frames.items():
                 frame.to_excel(book, sheet_name=name[:MAX_SHEET_NAME], index=False, inf_rep="inf")
             metadata_table(data).to_excel(book, sheet_name="about", index=False)
+            for sheet in book.sheets.values():
+                write_texts_as_texts(sheet)
 
     return [write_whole(path, sheets)]
+
+
+def write_texts_as_texts(sheet: Any) -> None:
+    """Keep texts from being formulas or errors, for which openpyxl takes ``=1+1`` and ``#REF!``."""
+    for row in sheet.iter_rows():
+        for cell in row:
+            if isinstance(cell.value, str):
+                cell.data_type = "s"
 
 
 def metadata_table(data: xr.Dataset) -> pd.DataFrame:

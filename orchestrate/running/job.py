@@ -19,7 +19,7 @@ from ..lazy import xr
 from ..model.arguments import CHECK
 
 Fmus = Mapping[str, Path]  # FMU files by model
-Table = dict[str, np.ndarray]  # arrays by name, one entry an item along the first axis
+Table = dict[str, np.ndarray]  # arrays by name, their rows along the first axis
 MAX_LISTED = 4  # a longer list of numbers is summarized by its ends, count and digest
 
 
@@ -47,6 +47,9 @@ class Job(ABC):
     warmup_items: ClassVar[int] = 0  # after which a sequential job has forgotten its beginning
     in_threads: ClassVar[bool] = False  # whether its work is in the FMU, past Python
     bulk: ClassVar[tuple[str, ...]] = ()  # columns that a store on disk gives as `StoredRows`
+    # columns of a chunk's table that have a row an item, None for all; the others have as many rows
+    # as there happen to be (revolutions, impacts), or one: the state at the chunk's end
+    item_columns: ClassVar[tuple[str, ...] | None] = None
     item: ClassVar[str] = "item"  # what the progress bar counts
 
     def check_fields(self) -> None:
@@ -74,7 +77,13 @@ class Job(ABC):
 
     @abstractmethod
     def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
-        """Compute a chunk's items by the FMUs, in a worker; return arrays, one row per item."""
+        """Compute a chunk's items by the FMUs, in a worker; return arrays, see `item_columns`."""
+
+    def has_rows_of(self, table: Table, count: int) -> bool:
+        """Return whether a chunk's table has the rows that so many items have by `item_columns`."""
+        names = set(table if self.item_columns is None else self.item_columns).intersection(table)
+        lengths = {len(table[name]) for name in names if table[name].ndim}
+        return bool(table) and lengths <= {count}
 
     def progress_note(self, first: int) -> str:
         """Return a text shown beside the progress bar while a chunk runs; usually empty."""

@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError, StoreError
+from ..files import HeldLock
 from .identity import Identity
 from .job import Table
 
@@ -157,7 +158,7 @@ class Journal:
         try:
             return self._db.execute(statement, values).fetchall()
         except (sqlite3.Error, OverflowError) as error:
-            advice = "what was computed before is kept, the same call goes on from there"
+            advice = "what was computed before is kept, the same call goes on (without force)"
             if any(word in str(error) for word in ("malformed", "not a database", "decode")):
                 advice = ANEW
             raise StoreError(f"{self.path}: {error}; {advice}") from error
@@ -173,29 +174,17 @@ class Journal:
         discard(self.path)
 
 
-class Lock:
-    """File lock by SQLite on a result that is being computed; it ends with the process."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path.with_name(f"{path.name}.lock")
-        try:
-            self.path.open("ab").close()  # says why not, where it cannot be opened
-            self._db = sqlite3.connect(self.path, timeout=0.0, isolation_level=None)
-            self._db.execute("BEGIN EXCLUSIVE")
-        except (sqlite3.Error, OSError) as error:
-            if hasattr(self, "_db"):
-                self._db.close()
-            if isinstance(error, sqlite3.Error) and "locked" in str(error):
-                raise InputError(
-                    f"{path}: another process is computing it; wait for it, or choose another place"
-                ) from None
-            reason = getattr(error, "strerror", None) or error  # the operating system's
-            raise StoreError(
-                f"{self.path}: cannot be made ({reason}); expected a writable "
-                "place where no folder or other file of this name is: remove that"
-            ) from error
-
-    def release(self) -> None:
-        """Release the lock on a result: delete its file and close the database."""
-        self.path.unlink(missing_ok=True)
-        self._db.close()
+def lock_result(path: Path) -> HeldLock:
+    """Lock a result that is to be computed; raise where another process computes it."""
+    place = path.with_name(f"{path.name}.lock")
+    try:
+        return HeldLock(place)
+    except BlockingIOError:
+        raise InputError(
+            f"{path}: another process is computing it; wait for it, or choose another place"
+        ) from None
+    except OSError as error:
+        raise StoreError(
+            f"{place}: cannot be made ({error.strerror or error}); expected a writable "
+            "place where no folder or other file of this name is: remove that"
+        ) from error

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
 from ..errors import InputError
-from ..model.arguments import checked_integer
+from ..model.arguments import checked_flag, checked_integer, checked_path
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -30,13 +30,15 @@ class Running(TypedDict, total=False):
         What computes instead: the workers of a Dask scheduler, by its address, such as
         ``"tcp://host:8786"``, or by a client of it; or any executor of ``jobs`` workers.
     progress : bool
-        Whether what takes longer than a second shows a progress bar; true by default.
+        Whether what takes longer than a second shows a progress bar; true by default. A function
+        to be called is not taken: messages of :mod:`logging` and the bar are what there is.
     store : path, optional
         NetCDF file of the result. What is computed goes there step by step: the same call goes on
         where it was interrupted, and reads the file when it is finished. Without it all is kept in
         memory.
     force : bool
-        Compute anew what is stored already.
+        Compute all anew, whatever is stored. An older result stays until the new one is complete;
+        after an interruption, the same call without ``force`` goes on with the new one.
     keep_stale : bool
         Take a stored result even where the code or the FMU has changed since.
     fmu : path or mapping, optional
@@ -69,6 +71,10 @@ class RunOptions:
     build_folder: str | os.PathLike[str] | None = None
 
     def __post_init__(self) -> None:
+        for name in ("progress", "force", "keep_stale"):
+            object.__setattr__(self, name, checked_flag(name, getattr(self, name)))
+        for name, value in self.paths():
+            checked_path(name, value)
         if self.jobs is not None:
             object.__setattr__(self, "jobs", checked_integer("jobs", self.jobs, 1, MAX_JOBS))
         is_dask_client = hasattr(self.cluster, "get_executor")
@@ -89,6 +95,13 @@ class RunOptions:
                     f"one of {', '.join(known)}"
                 )
         return cls(**running)  # type: ignore[arg-type]
+
+    def paths(self) -> Iterator[tuple[str, object]]:
+        """Yield the paths that are given, with the names of their keywords."""
+        fmus = self.fmu.values() if isinstance(self.fmu, Mapping) else (self.fmu,)
+        every = [("store", self.store), *(("fmu", fmu) for fmu in fmus)]
+        every.append(("build_folder", self.build_folder))
+        yield from ((name, value) for name, value in every if value is not None)
 
     @property
     def processes(self) -> int:

@@ -92,10 +92,8 @@ class Progress:
             table = self.store.get(index) if index >= 0 else self.stored_guess(number)[1]
         except Exception:
             return "not readable"
-        lengths = {len(values) for values in table.values() if values.ndim}
-        if lengths != {self.size(number)}:
-            return f"not of {self.size(number)} items"
-        return ""
+        fits = self.job.has_rows_of(table, self.size(number))
+        return "" if fits else f"not of {self.size(number)} items"
 
     @property
     def complete(self) -> bool:
@@ -152,8 +150,8 @@ class Progress:
         """Return whether a chunk can start now from its true state, and nobody computes it yet."""
         if not self.is_untouched(chunk.index) or chunk.after is None:
             return self.is_untouched(chunk.index)
-        if self.job.gathers:
-            return len(self.chunks) - len(self.left) == chunk.index
+        if self.job.gathers and chunk.index == len(self.chunks) - 1:
+            return len(self.left) == 1
         return chunk.after not in self.left
 
     def continuing_tasks(self) -> Iterator[Task]:
@@ -214,6 +212,7 @@ class Progress:
     def add_result(self, task: Task, start: bytes, table: Table) -> None:
         """Store a worker's chunk or keep it as a guess; finish the job after the last."""
         index = task.chunk.index
+        assert self.job.has_rows_of(table, self.size(index)), f"{self.job.name}: item_columns"
         self.under_way.discard(index)
         if task.guess:
             self.wasted += self.size(index) if index in self.guesses else 0

@@ -8,7 +8,7 @@ import os
 import re
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ from .blocks import BLOCK, blocks, chunk_shape
 from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
-from .journal import ANEW, Journal, Lock, discard, journal_path
+from .journal import ANEW, Journal, discard, journal_path, lock_result
 from .netcdf import MAX_LOADED, check_size, read_dataset
 from .options import RunOptions
 
@@ -121,12 +121,15 @@ class Disk(Store):
             raise InputError(
                 f"{path}: a folder; expected a place for a file: remove it, or choose another"
             )
-        self._lock = Lock(path)
+        self._lock = lock_result(path)
         self._journal: Journal | None = None
         try:
+            anew = journal_path(path, anew=True)
             if path.exists() and options.force:
                 read_identity(path)  # of another's file there is nothing to replace
-                self._open(journal_path(path, anew=True))
+                self._open(anew)
+            elif path.exists() and self._is_resumable(anew):
+                self._open(anew)
             elif path.exists():
                 identity = read_identity(path)
                 self._result = load(path)  # first of all, or damage is taken for another question
@@ -140,28 +143,33 @@ class Disk(Store):
             raise
 
     def _open(self, path: Path) -> None:
-        """Open the journal at a path, and note if it has chunks of an earlier run."""
+        """Open the journal at a path, with ``force`` an empty one; note if it has chunks."""
+        if self.options.force and not path.is_dir():
+            discard(path)
         self._journal = self.open_journal(path)
         self.begun = self._journal.begun
         if not self._journal.is_empty():
             STARTED.add(path)
 
     def open_journal(self, path: Path) -> Journal:
-        """Return this job's open journal; made anew if missing or (``force``) unusable."""
-        journal: Journal | None = None
+        """Return this job's open journal, made if it is missing."""
+        journal = Journal(path, self.identity, now())
         try:
-            journal = Journal(path, self.identity, now())
             self.check(journal.identity, path)
-            if self.options.force:
-                journal.indices()  # a journal whose rows cannot even be listed goes
-        except (InputError, StoreError):
-            if journal is not None:
-                journal.close()
-            if not self.options.force or path.is_dir():
-                raise
-            discard(path)
-            return Journal(path, self.identity, now())
+        except InputError:
+            journal.close()
+            raise
         return journal
+
+    def _is_resumable(self, path: Path) -> bool:
+        """Return whether a run with ``force`` has left a journal of the present code and FMUs."""
+        if self.options.keep_stale or not path.exists():
+            return False
+        try:
+            with closing(Journal(path, self.identity, now())) as journal:
+                return not (journal.is_empty() or difference(journal.identity, self.identity))
+        except StoreError:
+            return False
 
     def check(self, stored: Identity, path: Path) -> None:
         """Raise if a stored identity is another calculation's, or stale and not to be kept."""
@@ -228,7 +236,8 @@ class Disk(Store):
         FINISHED.add(self.path)
         STARTED.discard(self.journal.path)
         self.journal.remove()
-        discard(journal_path(self.path))  # of a run that was killed as it finished
+        for anew in (False, True):  # of runs that were killed as they finished
+            discard(journal_path(self.path, anew))
         self._journal = None
         del dataset  # there may be no room for it beside what is read
         self._result = load(self.path)

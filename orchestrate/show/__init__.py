@@ -16,3 +16,16 @@ A picture's function takes datasets and returns a :class:`matplotlib.figure.Figu
 :func:`.files.save` writes it. Only this folder sees matplotlib, whose settings and backend are the
 same after a drawing as before.
 """
+
+import os
+
+from ..errors import InputError
+
+if "MPLBACKEND" in os.environ:
+    try:
+        import matplotlib  # noqa: F401
+    except ValueError as error:
+        raise InputError(
+            f"MPLBACKEND = {os.environ['MPLBACKEND']!r} in the environment: matplotlib has no such "
+            "backend; expected one that it has, such as agg, or the variable not to be set"
+        ) from error

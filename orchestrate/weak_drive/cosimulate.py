@@ -175,6 +175,7 @@ class CosimulateJob(Question):
     chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
     gathers: ClassVar[bool] = True
+    item_columns: ClassVar[tuple[str, ...]] = ()  # nodes, and a state
     item: ClassVar[str] = "step"
 
     def call_text(self) -> str:

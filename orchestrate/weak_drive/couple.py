@@ -17,6 +17,7 @@ from ..errors import InputError
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR, SHAKER
 from ..lazy import Unpack, xr
+from ..model.arguments import unmasked
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
@@ -48,6 +49,7 @@ class CoupleJob(CoupledRun):
     chunk_size: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
     gathers: ClassVar[bool] = True  # the hysteresis loop is a chunk of its own
+    item_columns: ClassVar[tuple[str, ...]] = ()  # revolutions, and a state
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
@@ -249,6 +251,7 @@ def schedule_from_arguments(
     """Build the voltage schedule from the arguments of :func:`couple`."""
     if isinstance(voltage, Schedule):
         return voltage
+    unmasked("voltage", voltage)
     try:
         ends = [float(value) for value in np.ravel(voltage)]
     except (TypeError, ValueError):

@@ -63,6 +63,7 @@ class PassageJob(Job):
     chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
     gathers: ClassVar[bool] = True
+    item_columns: ClassVar[tuple[str, ...]] = tuple(KEPT + name for name in SAMPLES)
     item: ClassVar[str] = "step"
 
     def items(self) -> Sequence[int]:

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..files import read_text, reason
+from ..model.arguments import unmasked
 
 
 def check(
@@ -169,7 +170,8 @@ class Course(Schedule):
 
     def __post_init__(self) -> None:
         for name in ("times", "voltages"):
-            object.__setattr__(self, name, tuple(float(value) for value in getattr(self, name)))
+            values = unmasked(name, getattr(self, name))
+            object.__setattr__(self, name, tuple(float(value) for value in values))
         if len(self.times) != len(self.voltages) or len(self.times) < 2:
             count = f"{len(self.times)} times and {len(self.voltages)} voltages"
             raise InputError(f"{count}: expected as many of both, two or more")

@@ -1,25 +1,159 @@
-"""Files appear whole, also where two processes write the same one at once."""
+"""Files appear whole; what is under way is known by its lock, wherever its process runs."""
 
 import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
 
-from orchestrate import files
+import pytest
+
+from orchestrate.files import HeldFolder, HeldLock, remove_unheld, write_whole
+
+ROOT = Path(__file__).resolve().parents[2]
+WRITE = """
+import os, sys
 from orchestrate.files import write_whole
 
+def write(place):
+    place.write_text("half of it")
+    print(place, flush=True)
+    sys.stdin.readline()
+    place.write_text("whole")
 
-def test_two_processes_write_one_file_at_once(tmp_path, monkeypatch):
+write_whole(sys.argv[1], write)
+"""
+OTHER_CONTAINER = ["unshare", "--user", "--map-root-user", "--pid", "--fork", "--mount-proc"]
+
+
+def in_other_containers() -> bool:
+    """Whether processes with numbers of their own can be started here."""
+    try:
+        return subprocess.run([*OTHER_CONTAINER, "true"], capture_output=True).returncode == 0
+    except OSError:
+        return False
+
+
+@pytest.fixture
+def writer(tmp_path):
+    """Starts a process that writes ``out.txt``, up to the middle of it."""
+    started = []
+
+    def start(container: list[str]) -> tuple[subprocess.Popen[str], Path]:
+        command = [*container, sys.executable, "-c", WRITE, str(tmp_path / "out.txt")]
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+        started.append(subprocess.Popen(command, cwd=ROOT, start_new_session=True, **pipes))
+        return started[-1], Path(started[-1].stdout.readline().strip())
+
+    yield start
+    for one in started:
+        one.kill()
+        one.communicate()
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_one_file_is_written_twice_at_once(tmp_path):
     """As two commands draw the same picture: neither takes the other's half-written file."""
     path = tmp_path / "couple.png"
-    others = []
 
     def write(temporary):
         temporary.write_text("mine, ")
-        with monkeypatch.context() as other:
-            other.setattr(files.os, "getpid", os.getppid)
-            write_whole(path, lambda place: others.append(place) or place.write_text("other"))
-        assert others != [temporary] and path.read_text() == "other"
+        write_whole(path, lambda place: place.write_text("other"))
+        assert path.read_text() == "other"
         with temporary.open("a") as file:
             file.write("whole")
 
     write_whole(path, write)
     assert path.read_text() == "mine, whole"
-    assert [left.name for left in tmp_path.iterdir()] == ["couple.png"]
+    assert names(tmp_path) == ["couple.png"]
+
+
+@pytest.mark.parametrize("container", [[], OTHER_CONTAINER], ids=["here", "another container"])
+def test_what_a_process_writes_stays_until_it_is_killed(writer, tmp_path, container):
+    """Whoever cleans up: in another container its number means nothing."""
+    if container and not in_other_containers():
+        pytest.skip("no containers can be made here")
+    process, half = writer([])
+    assert writer(container)[0].communicate("\n")[0] == ""
+    assert half.read_text() == "half of it" and (tmp_path / "out.txt").read_text() == "whole"
+    process.kill()
+    process.communicate()
+    assert half.exists()
+    writer(container)[0].communicate("\n")
+    assert names(tmp_path) == ["out.txt"]
+
+
+def test_a_killed_container_holds_nothing(writer, tmp_path):
+    if not in_other_containers():
+        pytest.skip("no containers can be made here")
+    process, half = writer(OTHER_CONTAINER)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()  # until all in it have ended
+    assert half.exists()
+    write_whole(tmp_path / "out.txt", lambda place: place.write_text("whole"))
+    assert names(tmp_path) == ["out.txt"]
+
+
+def test_folders_of_others_stay(tmp_path):
+    """Those without our lock file, and those behind links."""
+    (tmp_path / "out.txt.mine.tmp").mkdir()
+    elsewhere = HeldFolder(tmp_path, "elsewhere")
+    elsewhere._lock.release()
+    (elsewhere.path / ".lock").touch()
+    (tmp_path / "out.txt.link.tmp").symlink_to(elsewhere.path)
+    before = names(tmp_path)
+    remove_unheld(tmp_path, "out.txt.*.tmp")
+    assert names(tmp_path) == before and (elsewhere.path / ".lock").exists()
+
+
+def test_a_lock_whose_file_was_removed_is_not_the_one_of_the_next(tmp_path):
+    first = HeldLock(tmp_path / "lock")
+    with pytest.raises(BlockingIOError):
+        HeldLock(tmp_path / "lock")
+    first.release()
+    assert names(tmp_path) == []
+    second = HeldLock(tmp_path / "lock")
+    first.release()  # again: it has nothing to release
+    with pytest.raises(BlockingIOError):
+        HeldLock(tmp_path / "lock")
+    second.release()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+def test_a_fork_that_ends_releases_nothing(tmp_path):
+    script = (
+        "import os, sys; from pathlib import Path; from orchestrate.files import HeldLock\n"
+        "held = HeldLock(Path(sys.argv[1]))\n"
+        "if os.fork() == 0: sys.exit()\n"
+        "os.wait()\n"
+        "try: HeldLock(Path(sys.argv[1]))\n"
+        "except BlockingIOError: print('held')"
+    )
+    command = [sys.executable, "-W", "ignore", "-c", script, str(tmp_path / "lock")]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.stdout == "held\n"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc")
+def test_where_open_files_cannot_be_removed(tmp_path, monkeypatch):
+    """As on Windows: they are closed first."""
+    unlink, refused = os.unlink, []
+
+    def unlink_closed(path, *, dir_fd=None):
+        folder = Path() if dir_fd is None else Path(f"/proc/self/fd/{dir_fd}").readlink()
+        mine = [one for one in Path("/proc/self/fd").iterdir() if one.is_symlink()]
+        if folder / path in [one.readlink() for one in mine]:
+            refused.append(path)
+            raise PermissionError(13, "[WinError 32] in use by this process")
+        unlink(path, dir_fd=dir_fd)
+
+    monkeypatch.setattr(os, "unlink", unlink_closed)
+    lock, folder = HeldLock(tmp_path / "lock"), HeldFolder(tmp_path, "folder")
+    lock.release()
+    folder.remove()
+    assert names(tmp_path) == [] and len(refused) >= 2
+    write_whole(tmp_path / "out.txt", lambda place: place.write_text("whole"))
+    assert names(tmp_path) == ["out.txt"]

@@ -15,7 +15,8 @@ from orchestrate.cli import main
 from .commands import all_end, below, end, kill, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups and /proc")
-INTERRUPTED = "interrupted: what was stored is kept; repeat the command to resume"
+RESUME = "repeat the command (without --force) to resume"
+INTERRUPTED = f"interrupted: what was stored is kept; {RESUME}"
 BEGINS_ANEW = "interrupted: nothing was stored; repeat the command to start again"
 RUNS = {  # long enough to be ended by force, chaotic, so that a wrong start is seen
     "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "700", "--plot", "none"),
@@ -133,7 +134,7 @@ def interrupt(*_, **__):
         ("orchestrate.running.store.Disk.finish", INTERRUPTED),
         (
             "orchestrate.cli.output.Files.write",
-            "interrupted: the result is stored; repeat the command (without --force) to resume",
+            f"interrupted: the result is stored; {RESUME}",
         ),
     ],
 )

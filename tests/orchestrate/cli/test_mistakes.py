@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 import os
 import shlex
+import subprocess
 import sys
 
 import netCDF4
 import pytest
+
+from .commands import ROOT
 
 QUICK = ("--transient", "5", "--samples", "8")
 MISTAKES = {  # options of each command, then what its line says
@@ -327,6 +330,18 @@ def test_a_path_that_is_not_utf_8_is_refused_before_anything_is_computed(ask, tm
     copy.write_bytes((tmp_path / "a.nc").read_bytes())
     ask("explore", copy, "--no-open", output=tmp_path / "page.html").complaint("not UTF-8")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.nc", "a.png", copy.name]
+
+
+def test_a_backend_of_the_environment_that_is_none_is_refused(exported, tmp_path):
+    """The result is stored, only its picture is not drawn."""
+    asked = ("sweep", "--eta", "1", *QUICK, "--output", str(tmp_path))
+    command = [sys.executable, "-m", "orchestrate", *asked]
+    environment = {**os.environ, "MPLBACKEND": "nonsense"}
+    done = subprocess.run(command, env=environment, cwd=ROOT, capture_output=True, text=True)
+    (line,) = [line for line in done.stderr.splitlines() if "MPLBACKEND" in line]
+    assert line.startswith("error: MPLBACKEND = 'nonsense' in the environment") and "agg" in line
+    assert done.returncode == 2 and "Traceback" not in done.stderr
+    assert [path.suffix for path in tmp_path.iterdir()] == [".nc"]
 
 
 @pytest.mark.parametrize("value", ["abc", "1.5", "-1", "9" * 30, "\u0661"])

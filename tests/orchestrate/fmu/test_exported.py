@@ -123,6 +123,24 @@ def test_what_is_damaged_or_out_of_date_is_made_anew(maker, places, real, damage
     assert (OSCILLATOR, "fmi3", places[0]) in maker.asked
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="other permissions there")
+@pytest.mark.parametrize("of_folder", [False, True])
+def test_what_others_could_have_planted_in_the_cache_is_made_anew(
+    maker, places, real, caplog, of_folder
+):
+    exported.warn_once.cache_clear()
+    path = put(real["fmi3"], places[0])
+    part = path.parent if of_folder else path
+    part.chmod(part.stat().st_mode | 0o002)
+    for _ in range(2):
+        assert find(OSCILLATOR).path == path
+    assert maker.asked == [(OSCILLATOR, "fmi3", places[0])]
+    assert caplog.text.count("others can write it or its folder") == 1
+    part.chmod(part.stat().st_mode | 0o002)
+    assert find(OSCILLATOR, folder=places[0].parent / "cache" / ".." / "cache").path.samefile(path)
+    assert len(maker.asked) == 1, "a folder that is named is trusted"
+
+
 def test_without_a_compiler_the_python_form_serves(maker, places, caplog):
     exported.warn_once.cache_clear()
     maker.without.update({"fmi2", "fmi3"})

@@ -1,12 +1,18 @@
 """Checks and words that every package shares."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
+import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
-from orchestrate.model.arguments import MAX_COUNT, checked_integer
+from orchestrate.model.arguments import MAX_COUNT, checked_integer, checked_numbers
+from orchestrate.model.structure import Structure
 from orchestrate.running.options import RunOptions
+
+QUICK = Structure.from_file("quick"), orchestrate.Drive.from_file("quick")
 
 
 @pytest.mark.parametrize("value", [2, np.int64(2), np.uint8(2)])
@@ -22,6 +28,64 @@ def test_what_is_no_integer_of_the_range_is_refused(value):
         InputError, match=f"count = .*: expected a whole number from 1 to {MAX_COUNT}"
     ):
         checked_integer("count", value, 1)
+
+
+@pytest.mark.parametrize(
+    ("running", "text"),
+    [
+        *(
+            ({name: value}, rf"{name} = .*: expected True or False")
+            for name in ("progress", "force", "keep_stale")
+            for value in (print, "no", 1, None)
+        ),
+        *(
+            ({name: value}, rf"{name} = {value!r}: expected a path, as a text or a pathlib\.Path")
+            for name in ("store", "build_folder", "fmu")
+            for value in (7, 0.5)
+        ),
+        ({"store": b"a.nc"}, "store = b'a.nc': expected a path"),
+        ({"fmu": {"TwoMassImpactOscillator": 7}}, "fmu = 7: expected a path"),
+        ({"store": "a\0.nc"}, r"store = 'a\\x00\.nc': expected a path without NUL characters"),
+        ({"store": f"folder/{'a' * 300}.nc"}, "store: the name aaaaaaaaaaaa... has 303 bytes"),
+        (
+            {"store": "é" * 130},
+            "store: the name éééééééééééé... has 260 bytes; expected at most 255",
+        ),
+    ],
+)
+def test_wrong_keywords_on_how_to_compute_are_one_line(running, text):
+    with pytest.raises(InputError, match=text) as caught:
+        orchestrate.simulate(Structure(), eta=1.1, **running)
+    assert "\n" not in str(caught.value)
+
+
+CURVE = partial(orchestrate.resonance_curve, frequency=[1, 2, 3, 4], amplitude1=[1, 2, 3, 4])
+MASKED = np.ma.array([0.9, 1.0, 1.1, 1.2], mask=[0, 1, 0, 0])
+
+
+@pytest.mark.parametrize(
+    ("name", "ask"),
+    [
+        ("eta", lambda: orchestrate.sweep(Structure(), eta=MASKED)),
+        ("frequency", lambda: orchestrate.sweep(Structure(), frequency=MASKED, amplitude=1.0)),
+        ("e", lambda: orchestrate.map(Structure(), eta=[0.9, 1.0], e=MASKED)),
+        ("start", lambda: orchestrate.simulate(Structure(), eta=1.0, start=MASKED)),
+        ("acceleration", lambda: orchestrate.Sampled(acceleration=MASKED, sample_rate=9.0)),
+        ("acceleration1", lambda: orchestrate.record(sample_rate=9.0, acceleration1=MASKED)),
+        ("level", lambda: CURVE(level=MASKED)),
+        ("voltages", lambda: orchestrate.Course(times=[0, 1, 2, 3], voltages=MASKED)),
+        ("voltage", lambda: orchestrate.couple(*QUICK, voltage=MASKED[:2])),
+    ],
+)
+def test_masked_entries_are_refused(name, ask):
+    """Their data are what was there before they were masked."""
+    text = rf"{name}: 1 of \d entries are masked; expected all to be numbers"
+    with pytest.raises(InputError, match=text):
+        ask()
+
+
+def test_a_mask_that_hides_nothing_is_no_matter():
+    assert checked_numbers("eta", np.ma.array([0.9, 1.0], mask=[0, 0])) == (0.9, 1.0)
 
 
 def test_words_of_one_flag_and_of_many():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zipfile
+
 import numpy as np
 import openpyxl
 import pandas as pd
@@ -64,6 +66,22 @@ def test_xlsx(data, tmp_path):
     assert rows[0] == ("time [s]", "x [m]", "kind") and rows[2] == (1, 1.0 / 3.0, "moves")
     assert ("x", "m", "length") in list(book["about"].values)
     assert ("e", None, "0.7") in list(book["about"].values)
+
+
+TEXTS = ['=HYPERLINK("http://example.org","x").csv', "#REF!", "+1", "-2", "@SUM(1)"]
+
+
+def test_texts_are_no_formulas_of_a_sheet(tmp_path):
+    """The name of a record, whoever gave it, runs nothing."""
+    names = [text.replace("/", ":") for text in TEXTS]
+    data = xr.Dataset({"word": ("name", TEXTS)}, {"name": names}, {"source": TEXTS[0]})
+    data["=1+1"] = "name", np.arange(5.0)
+    formats.write(data, tmp_path / "a.xlsx")
+    with zipfile.ZipFile(tmp_path / "a.xlsx") as archive:
+        assert not any(b"<f>" in archive.read(name) for name in archive.namelist())
+    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
+    assert [row[1] for row in book["name"].values] == ["word", *TEXTS]
+    assert ("source", None, TEXTS[0]) in list(book["about"].values)
 
 
 def test_mat(data, tmp_path):

@@ -9,7 +9,7 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError
 from orchestrate.running import bar
-from orchestrate.running.journal import Lock, journal_path
+from orchestrate.running.journal import Journal, journal_path, lock_result
 from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
 
@@ -138,14 +138,44 @@ def test_a_result_stays_until_the_one_computed_anew_is_whole(find, tmp_path, mon
     before, inode = path.read_bytes(), path.stat().st_ino
     interrupted(monkeypatch, JOB, {"store": path, "force": True}, find, 7)
     assert path.read_bytes() == before
-    assert np.array_equal(answer(JOB, {"store": path}, find).square, SQUARES)
     items = computed(monkeypatch)
-    answer(JOB, {"store": path, "force": True}, find)
+    answer(JOB, {"store": path}, find)
     assert items == [6, 7, 8, 9], "the chunks from before the Ctrl-C were not taken"
     assert path.stat().st_ino != inode
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
-    answer(JOB, {"store": path, "force": True}, find)
-    assert items[4:] == list(range(10))
+
+
+@pytest.mark.parametrize("stored", [False, True])
+@pytest.mark.parametrize("damage", [b"", b"noise" * 1000])
+def test_force_never_reads_a_journal(find, tmp_path, monkeypatch, stored, damage):
+    path = tmp_path / "squares.nc"
+    if stored:
+        answer(JOB, {"store": path}, find)
+    interrupted(monkeypatch, JOB, {"store": path, "force": stored}, find, 7)
+    if damage:
+        journal_path(path, anew=stored).write_bytes(damage)
+    items = computed(monkeypatch)
+    assert np.array_equal(answer(JOB, {"store": path, "force": True}, find).square, SQUARES)
+    assert items == list(range(10))
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
+
+
+@pytest.mark.parametrize("damage", ["noise", "no chunk"])
+def test_a_run_with_force_that_cannot_be_resumed_leaves_the_older_result(
+    find, tmp_path, monkeypatch, damage
+):
+    path = tmp_path / "squares.nc"
+    answer(JOB, {"store": path}, find)
+    interrupted(monkeypatch, JOB, {"store": path, "force": True}, find, 7)
+    if damage == "noise":
+        journal_path(path, anew=True).write_bytes(b"noise" * 1000)
+    else:
+        journal = Journal(journal_path(path, anew=True), {}, "")
+        for index in journal.indices():
+            journal.drop(index, "")
+        journal.close()
+    items = computed(monkeypatch)
+    assert np.array_equal(answer(JOB, {"store": path}, find).square, SQUARES) and not items
 
 
 @pytest.mark.parametrize("kind", ["NetCDF with an identity", "text", "empty"])
@@ -165,7 +195,7 @@ def test_a_file_of_others_is_never_replaced(find, tmp_path, kind):
 
 def test_one_process_at_a_time(find, tmp_path):
     path = tmp_path / "squares.nc"
-    lock = Lock(path)
+    lock = lock_result(path)
     with pytest.raises(InputError, match="another process is computing it"):
         answer(JOB, {"store": path}, find)
     lock.release()
