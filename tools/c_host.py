@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from tools import importers
+from tests import importers
 
 SOURCE = Path(__file__).with_suffix(".c")
 APART = {"x1_start": -1.0, "x2_start": 1e4, "box_amplitude": 1.0, "box_frequency": 0.4}

@@ -16,7 +16,7 @@ from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
 from orchestrate.fmu import EventInstance, Instance, begin
 from orchestrate.model import Excitation, Structure
-from tools.draws import draw_structure
+from tests.draws import draw_structure
 
 from .findings import expect_none
 

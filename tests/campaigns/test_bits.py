@@ -57,7 +57,7 @@ def end_by_fmu(drawn: ParameterSet, grid: Sequence[float], form: str = "fmi3") -
 def web_module() -> Any:
     """Return the kernel's WebAssembly module under wasmtime."""
     from orchestrate.fmu.webassembly import web_kernel
-    from tools.web_instance import WebInstance
+    from tests.web_instance import WebInstance
 
     return WebInstance(web_kernel(OSCILLATOR))
 

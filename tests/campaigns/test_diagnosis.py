@@ -12,9 +12,9 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.errors import VibroimpactError
-from tools.benches.recipe import Case, Setup, Truth
-from tools.benches.verdicts import DELAMINATED, FAILED, NO_OPENING, REFUSED, verdict_problem
-from tools.draws import draw_beam
+from tests.benches.recipe import Case, Setup, Truth
+from tests.benches.verdicts import DELAMINATED, FAILED, NO_OPENING, REFUSED, verdict_problem
+from tests.draws import draw_beam
 
 from .findings import expect_none
 

@@ -18,7 +18,7 @@ from mpmath import mp
 
 from orchestrate.fmu import describe
 from orchestrate.fmu.unpacked import unpacked
-from tools import exact_motion, importers
+from tests import exact_motion, importers
 
 from .findings import expect_none
 

@@ -11,7 +11,7 @@ from fmu_src.export import forms
 from fmu_src.export.sources import load_model
 from fmu_src.runtime.table import BOOLEAN, INTEGER, explain
 from orchestrate.fmu import MODELS, find
-from tools import importers
+from tests import importers
 
 from .findings import expect_none
 

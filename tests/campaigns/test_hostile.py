@@ -15,9 +15,9 @@ import pytest
 
 import orchestrate
 from orchestrate.running.store import load
+from tests.chromium import start_chromium
 from tests.faults import Surroundings
 from tests.orchestrate.cli.commands import ROOT, Done
-from tools.chromium import start_chromium
 
 from . import archives, documents
 from .findings import expect_none

@@ -26,7 +26,7 @@ from orchestrate.errors import VibroimpactError
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import schedule_from_arguments
 from orchestrate.weak_drive.schedule import Course, Ramp
-from tools.draws import RATES, System, draw_with_folds, ramp_ends, scale_to_slope
+from tests.draws import RATES, System, draw_with_folds, ramp_ends, scale_to_slope
 
 from .findings import expect_none
 

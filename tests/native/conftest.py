@@ -8,7 +8,7 @@ import pytest
 
 from fmu_src.export import compiler
 from fmu_src.export.forms import FORMS
-from tools import importers
+from tests import importers
 
 from ..exports import guid_inside, refresh
 from ..fmu.programs.driver import free_all

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tools import importers
+from tests import importers
 
 from ..fmu.programs.driver import COMMON, harmonic
 from .object_files import Elf, Pe, needs_objdump

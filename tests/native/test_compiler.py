@@ -7,7 +7,7 @@ import pytest
 from fmu_src.export import compiler
 from fmu_src.export.compiler import kernel_object
 from fmu_src.export.errors import CannotExport
-from tools import importers
+from tests import importers
 
 from .object_files import Pe, needs_objdump, objdump
 

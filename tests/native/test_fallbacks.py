@@ -7,7 +7,7 @@ from fmpy.validation import validate_fmu
 
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS, export
-from tools import importers
+from tests import importers
 
 from ..fmu.programs.driver import COMMON, harmonic
 from .test_bit_identity import run

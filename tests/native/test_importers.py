@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from fmu_src.export import forms
-from tools import importers
+from tests import importers
 
 from ..fmu.programs.driver import COMMON, harmonic, open_fmu
 from ..sparing import ordinary

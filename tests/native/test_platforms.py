@@ -14,7 +14,7 @@ from fmu_src.export import compiler, forms
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.platforms import ALL, chosen, this_machine, usual
 from fmu_src.export.source_code import kernel_source
-from tools import importers
+from tests import importers
 
 from ..fmu.programs.driver import COMMON, harmonic
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tools.real_time import footprint, sources, targets
+from tests.real_time import footprint, sources, targets
 
 from ..sparing import ordinary
 

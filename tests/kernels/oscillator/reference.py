@@ -7,7 +7,7 @@ flights that are left last less than ``gamma`` over the faster half's frequency.
 
 import mpmath as mp
 
-from tools import exact_motion as truth
+from tests import exact_motion as truth
 
 FLIGHT, CONTACT = "flight", "contact"
 

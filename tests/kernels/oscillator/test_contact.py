@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.contact import gap_acceleration
 from fmu_src.kernels.oscillator.motion import state_at
-from tools import exact_motion as truth
+from tests import exact_motion as truth
 
 from .kernel import DEFAULTS, advanced, examples, pieces, rounded, started, structures
 from .reference import opening

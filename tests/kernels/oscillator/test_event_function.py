@@ -13,7 +13,7 @@ from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.contact import first_nonzero_derivative
 from fmu_src.kernels.oscillator.motion import begin_common
 from fmu_src.kernels.oscillator.nodes import LONGEST
-from tools import exact_motion as truth
+from tests import exact_motion as truth
 
 from .kernel import DEFAULTS, examples, rest_together, sizes, started, structures, unloaded
 

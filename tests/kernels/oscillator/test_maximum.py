@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from tools import exact_motion as truth
+from tests import exact_motion as truth
 
 from .kernel import DEFAULTS, advanced, examples, sizes, started, structures, unloaded
 

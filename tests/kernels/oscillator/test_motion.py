@@ -10,7 +10,7 @@ import pytest
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import stepper
-from tools import exact_motion as truth
+from tests import exact_motion as truth
 
 from . import reference
 from .kernel import DEFAULTS, advanced, pieces, started

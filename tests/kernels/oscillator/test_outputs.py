@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.motion import state_at
-from tools import exact_motion as truth
+from tests import exact_motion as truth
 
 from .kernel import (
     CHAOTIC,

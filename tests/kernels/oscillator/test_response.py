@@ -15,7 +15,7 @@ from fmu_src.kernels.oscillator.excitation import cubic_at, set_cubic_response, 
 from fmu_src.kernels.oscillator.nodes import free_part_after
 from fmu_src.kernels.oscillator.parameters import set_oscillator
 from fmu_src.kernels.oscillator.response import displacement, fundamental_solutions, set_free
-from tools import exact_motion as truth
+from tests import exact_motion as truth
 
 from .kernel import examples, sizes
 

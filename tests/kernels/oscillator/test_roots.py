@@ -18,7 +18,7 @@ from fmu_src.kernels.numerics.first_root import (
 )
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.roots import walk
-from tools import exact_motion as truth
+from tests import exact_motion as truth
 
 from .kernel import DEFAULTS, examples, rest_together, sizes, started, structures, unloaded
 

@@ -11,7 +11,7 @@ from fmu_src.kernels.oscillator import series
 from fmu_src.kernels.oscillator.event_function import evaluate
 from fmu_src.kernels.oscillator.motion import state_at
 from fmu_src.kernels.oscillator.parameters import SAME
-from tools import exact_motion as truth
+from tests import exact_motion as truth
 
 from .kernel import DEFAULTS, examples, flight, sizes, structures, unloaded
 

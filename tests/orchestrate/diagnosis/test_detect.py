@@ -12,10 +12,10 @@ from orchestrate.diagnosis.fit import checked_data
 from orchestrate.diagnosis.fitting import Search, Solution, without_neighbours
 from orchestrate.diagnosis.hypotheses import FREE, STARTING_SPLITS
 from orchestrate.diagnosis.search_job import is_worth_a_search
-from tools.benches.bench import Bench
-from tools.benches.excitation import Swept
-from tools.benches.lumped import Faces, Halves
-from tools.benches.sensors import Sensor
+from tests.benches.bench import Bench
+from tests.benches.excitation import Swept
+from tests.benches.lumped import Faces, Halves
+from tests.benches.sensors import Sensor
 
 from ...sparing import ordinary
 from .records import BEAM, RATE, SWEEP, guess, record, seen_at

@@ -6,10 +6,10 @@ import pytest
 import orchestrate
 from orchestrate.diagnosis.even_orders import even_orders, smallest_openings
 from orchestrate.diagnosis.evidence import Evidence
-from tools.benches.bench import Bench
-from tools.benches.excitation import Swept
-from tools.benches.lumped import Faces, Halves
-from tools.benches.sensors import Sensor
+from tests.benches.bench import Bench
+from tests.benches.excitation import Swept
+from tests.benches.lumped import Faces, Halves
+from tests.benches.sensors import Sensor
 
 from ...sparing import ordinary
 

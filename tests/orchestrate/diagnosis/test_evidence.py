@@ -16,9 +16,9 @@ from orchestrate.diagnosis.hypotheses import (
     TwoModes,
 )
 from orchestrate.fmu import OSCILLATOR, Player, find
-from tools.benches.bench import Bench
-from tools.benches.excitation import Swept
-from tools.benches.lumped import Faces, Halves
+from tests.benches.bench import Bench
+from tests.benches.excitation import Swept
+from tests.benches.lumped import Faces, Halves
 
 from .records import BEAM, record
 

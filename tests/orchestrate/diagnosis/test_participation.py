@@ -7,11 +7,11 @@ import orchestrate
 from orchestrate.diagnosis.even_orders import sensor_difference, thresholds
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.errors import InputError
-from tools.benches.beam import DelaminatedBeam
-from tools.benches.bench import Bench
-from tools.benches.excitation import Swept
-from tools.benches.lumped import TURN, Faces
-from tools.benches.sensors import Sensor
+from tests.benches.beam import DelaminatedBeam
+from tests.benches.bench import Bench
+from tests.benches.excitation import Swept
+from tests.benches.lumped import TURN, Faces
+from tests.benches.sensors import Sensor
 
 from .records import BEAM, RATE, SWEEP, guess, seen_at
 

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from tools.chromium import start_chromium
+from tests.chromium import start_chromium
 
 COMPLETE = "return document.getElementById('diagram').dataset.complete === 'true'"
 PACK = """

@@ -1,4 +1,4 @@
-"""The oscillator's kernel as a native FMU, driven as :class:`tools.web_instance.WebInstance` is."""
+"""The oscillator's kernel as a native FMU, driven as :class:`tests.web_instance.WebInstance` is."""
 
 import math
 

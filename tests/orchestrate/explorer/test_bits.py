@@ -5,7 +5,7 @@ import struct
 import pytest
 
 from orchestrate.fmu.webassembly import web_kernel
-from tools.web_instance import WebInstance
+from tests.web_instance import WebInstance
 
 from .kernels import Native, period
 

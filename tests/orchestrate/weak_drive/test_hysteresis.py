@@ -10,7 +10,7 @@ from orchestrate.weak_drive.hysteresis import LOST, UNDECIDED, HeldPoint, Hyster
 from orchestrate.weak_drive.ramp_record import RampRecord, find_falls, jump_labels
 from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.settled import settled_speed
-from tools.draws import draw_system
+from tests.draws import draw_system
 
 from .coupled import QUICK, System
 from .test_couple import run

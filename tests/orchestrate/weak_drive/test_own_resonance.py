@@ -6,7 +6,7 @@ from scipy.linalg import expm
 
 from orchestrate import Structure
 from orchestrate.weak_drive import averaged, own_resonance
-from tools.draws import draw_with_folds
+from tests.draws import draw_with_folds
 
 from .coupled import BEAM, QUICK, System
 from .test_couple import run

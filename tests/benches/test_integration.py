@@ -8,11 +8,11 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
-from tools.benches.integrator import equilibrium, integrate
-from tools.benches.lumped import TURN, Faces, Halves, cubic_stiffness, frequency_change
-from tools.benches.recipe import OPENED
+from tests.benches.integrator import equilibrium, integrate
+from tests.benches.lumped import TURN, Faces, Halves, cubic_stiffness, frequency_change
+from tests.benches.recipe import OPENED
 
-from ...sparing import ordinary
+from ..sparing import ordinary
 
 HALVES = Halves(zeta1=0.03, zeta2=0.03)
 LAWS = ("linear", "hunt-crossley", "hertz")

@@ -1,4 +1,4 @@
-"""Compare answers before and after a change: ``python -m tools.referee --before REV``.
+"""Compare answers before and after a change: ``python -m tests.referee --before REV``.
 
 The earlier commit and this tree answer the same questions. Bits of numeric variables have to be
 the same where nothing is decided anew; decisions are counted before and after. Answers of a commit
@@ -27,9 +27,9 @@ import xarray as xr
 from orchestrate.errors import VibroimpactError
 from orchestrate.flags import flag_words
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "results" / "referee"
-SOURCES = ("tools/referee.py", "tools/referee_questions.py", "tools/draws.py", "tools/benches")
+SOURCES = ("tests/__init__.py", "tests/referee", "tests/draws.py", "tests/benches")
 FULL = {"stride": 1, "beams": 500, "structures": 2000, "drives": 40}
 PARTS = ("orchestrate", "fmu_src", "pyproject.toml")  # of a commit; the questions are this tree's
 Answer = dict[str, Any]
@@ -64,7 +64,7 @@ def summarize(data: xr.Dataset) -> Answer:
 
 def ask(group: str, number: int, stride: int) -> Answer:
     """Answer one question, in the checkout that this process runs in."""
-    from . import referee_questions as questions
+    from . import questions
 
     try:
         if group.startswith("figure "):
@@ -83,7 +83,7 @@ def ask(group: str, number: int, stride: int) -> Answer:
 
 def groups(options: argparse.Namespace) -> dict[str, int]:
     """Return the number of questions of each group that the options choose."""
-    from . import referee_questions as questions
+    from . import questions
 
     counts = {f"figure {number}": 1 for number in questions.PAPER}
     few = max(1, options.questions // 4)
@@ -133,7 +133,7 @@ def questions_digest() -> str:
 def run_side(checkout: Path, folder: Path, arguments: Sequence[str]) -> Path:
     """Answer in a process that imports the package of a checkout and the tools of this tree."""
     folder.mkdir(parents=True, exist_ok=True)
-    command = [sys.executable, "-m", "tools.referee", *arguments, "--answer", str(folder)]
+    command = [sys.executable, "-m", "tests.referee", *arguments, "--answer", str(folder)]
     subprocess.run(command, cwd=checkout, env={**os.environ, "PYTHONPATH": str(ROOT)}, check=True)
     return folder
 
@@ -194,7 +194,7 @@ def compare(group: str, before: Sequence[Answer], after: Sequence[Answer]) -> bo
 
 def parse_arguments(arguments: Sequence[str] | None) -> tuple[argparse.Namespace, list[str]]:
     """Return the options, and those of them that choose questions as arguments."""
-    parser = argparse.ArgumentParser(prog="python -m tools.referee", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.referee", description=__doc__)
     parser.add_argument("--before", metavar="REV", help="commit to compare this tree with")
     parser.add_argument("--answer", type=Path, help=argparse.SUPPRESS)
     chosen: Mapping[str, tuple[int, str]] = {

@@ -7,7 +7,9 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from tools import referee, referee_questions
+
+from . import __main__ as referee
+from . import questions as referee_questions
 
 
 def test_every_public_function_is_asked():

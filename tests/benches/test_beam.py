@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from tools.benches.beam import DelaminatedBeam, intact_frequency
-from tools.benches.integrator import integrate
-from tools.benches.lumped import TURN, Faces
+from tests.benches.beam import DelaminatedBeam, intact_frequency
+from tests.benches.integrator import integrate
+from tests.benches.lumped import TURN, Faces
 
-from ...sparing import ordinary
+from ..sparing import ordinary
 
 PUBLISHED = {  # clamped-clamped, delaminated in the middle of span and thickness: Wang, Liu and
     # Gibby (1982), Della and Shu (2005), as tabled by Erdelyi and Hashemi (2016): modes 1 and 2

@@ -12,7 +12,7 @@ import xarray as xr
 
 import orchestrate as o
 
-from . import draws
+from .. import draws
 
 SLOW = ("border", "detect", "detect_all", "fit", "couple_all", "jump_voltages")  # 1 s or more
 NOT_COMPARED = ("plot", "report", "write_ssp")  # they draw and write: nothing is computed

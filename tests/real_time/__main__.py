@@ -39,7 +39,7 @@ def print_times(fmu: Path, steps: int) -> None:
 
 def main() -> None:
     """Run the measurements on real-time targets that the options name."""
-    parser = argparse.ArgumentParser(prog="python -m tools.real_time", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.real_time", description=__doc__)
     parser.add_argument("--steps", type=int, default=100_000_000, help="to be timed (default 1e8)")
     arguments = parser.parse_args()
     fmu = Path(find(OSCILLATOR).path)

@@ -9,11 +9,11 @@ import xarray as xr
 from scipy.signal import butter, freqs, welch
 
 import orchestrate
-from tools.benches import recipe, tutorial, verdicts
-from tools.benches.bench import Bench
-from tools.benches.excitation import Random, Swept
-from tools.benches.lumped import TURN, Halves
-from tools.benches.sensors import Sensor
+from tests.benches import recipe, tutorial, verdicts
+from tests.benches.bench import Bench
+from tests.benches.excitation import Random, Swept
+from tests.benches.lumped import TURN, Halves
+from tests.benches.sensors import Sensor
 
 
 @pytest.mark.parametrize("log", [False, True])

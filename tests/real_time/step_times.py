@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from orchestrate.model import Structure
-from tools import importers
+from tests import importers
 
 from .sources import HERE
 

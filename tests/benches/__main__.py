@@ -1,4 +1,4 @@
-"""``python -m tools.benches``: records of the manual's tutorial, rates of verdicts by kind."""
+"""``python -m tests.benches``: records of the manual's tutorial, rates of verdicts by kind."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from . import tutorial, verdicts
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line: ``tutorial`` writes records, ``verdicts`` prints a table of rates."""
-    parser = argparse.ArgumentParser(prog="python -m tools.benches", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.benches", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     one = commands.add_parser("tutorial", help="write the CSV files of the manual's tutorial")
     one.add_argument("--folder", type=Path, default=tutorial.FOLDER)
