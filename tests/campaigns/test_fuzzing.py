@@ -75,7 +75,7 @@ def test_the_python_kernel_raises_nothing_in_the_declared_range(model, seed, bud
             run_declared(kernel, rng, codes)
         except (*DOUBTS, AssertionError) as error:
             findings.append(f"run {number}: {error!r}")
-    assert codes[0] > budget
+    assert codes[0] > budget // 2
     expect_none(findings, codes)
 
 
