@@ -34,6 +34,7 @@ from .record_checks import ascends, first_hole, implausible_times
 
 MOST_NAMES = 12  # of columns in a message
 LONG_HEADING = 300  # letters of a heading that are read: patterns take the square of them in time
+LARGEST = 1e100  # of a number in SI units: derivatives and spectra of larger ones leave the range
 FREQUENCIES = {  # in Hz
     **{"hz": 1.0, "1/s": 1.0, "khz": 1e3, "rad/s": 1.0 / TURN},
     **dict.fromkeys(("rpm", "1/min"), 1.0 / 60.0),
@@ -279,14 +280,16 @@ def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
     if column.text:
         text = f"{describe_text(column.text)}; expected numbers"
         raise InputError(f"{column_label(table, column)}, row {table.first_row}: {text}")
-    wrong = np.flatnonzero(~np.isfinite(column.values))
+    values = column.values if factor == 1.0 else factor * column.values
+    wrong = np.flatnonzero(~(np.abs(values) <= LARGEST))
     if len(wrong):
         row, value = wrong[0] + table.first_row, column.values[wrong[0]]
         more = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
         raise InputError(
-            f"{column_label(table, column)}, row {row}: {value}{more}; expected numbers"
+            f"{column_label(table, column)}, row {row}: {value}{more}; expected numbers of sizes "
+            f"up to {LARGEST:g} in SI units"
         )
-    return column.values if factor == 1.0 else factor * column.values
+    return values
 
 
 def channel_places(

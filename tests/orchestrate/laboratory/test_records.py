@@ -358,6 +358,10 @@ def test_a_record_says_which_unit_was_taken_in_place_of_the_file_s(tmp_path):
         (lines(r10="0.010,,3"), 'column "base", row 12: nothing; expected a number'),
         (lines(r10="0.010,nan,3"), 'column "base", row 12: nan; expected numbers'),
         (lines(r10="0.010,1,inf"), 'column "mass 1", row 12: inf; expected numbers'),
+        (
+            lines(r10="0.010,-1e101,3"),
+            'column "base", row 12: -1e+101; expected numbers of sizes up to 1e+100',
+        ),
         (lines(r10="0.010,1"), "row 12: 2 columns; expected 3"),
         (lines(r10="0.010,1,2,3"), "row 12: 4 columns; expected 3"),
         (lines(r10="0.0105,1,2"), "time, row 12: a step of 0.0015 s where others are 0.001 s"),
