@@ -42,16 +42,16 @@ def draw_structure(rng: np.random.Generator) -> tuple[Structure, float]:
 
 
 def draw_system(rng: np.random.Generator) -> System:
-    """Draw a structure with a drive."""
-    damping = rng.uniform(0.006, 0.03)
-    b = float(np.exp(rng.uniform(np.log(0.01), np.log(0.5))))
-    mu, kappa = rng.uniform(0.5, 2.0), rng.uniform(1.05, 2.0)
-    second, restitution = damping * rng.uniform(0.5, 3.0), rng.uniform(0.3, 0.9)
-    beta, epsilon = rng.uniform(0.05, 0.4), rng.uniform(3e-4, 2e-3)
-    box, box_damping = rng.uniform(0.05, 0.3), rng.uniform(0.005, 0.05)
-    structure = Structure.nondimensional(mu=mu, kappa=kappa, D1=damping, D2=second, e=restitution)
-    numbers = {"beta": beta, "epsilon": epsilon, "b": b, "Omega_b": box, "D_b": box_damping}
-    return System(structure, Drive.nondimensional(**numbers, structure=structure))
+    """Draw a structure with a drive, as widely as users may enter them."""
+    ratios = {"mu": draw_log_uniform(rng, 0.25, 4.0), "kappa": draw_log_uniform(rng, 0.4, 3.0)}
+    dampings = {name: draw_log_uniform(rng, 0.003, 0.2) for name in ("D1", "D2")}
+    contact = {"e": float(rng.uniform(0.05, 0.95)), "clearance": float(rng.uniform(-8.0, 8.0))}
+    contact["clearance"] *= bool(rng.random() < 0.7)
+    motor = {"b": draw_log_uniform(rng, 0.004, 0.5), "beta": float(rng.uniform(0.05, 0.4))}
+    motor["epsilon"] = float(rng.uniform(3e-4, 2e-3))
+    box = {"Omega_b": float(rng.uniform(0.05, 0.3)), "D_b": float(rng.uniform(0.005, 0.05))}
+    structure = Structure.nondimensional(**ratios, **dampings, **contact)
+    return System(structure, Drive.nondimensional(**motor, **box, structure=structure))
 
 
 def draw_with_folds(rng: np.random.Generator) -> System:

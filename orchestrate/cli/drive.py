@@ -63,8 +63,8 @@ STEP = """
     a controller or a picture takes samples)
 """
 HOLD = """
---hold TIME  longest time for which a voltage is held where the record suggests a jump, 0 for none,
-    in 1/omega (default: 4000 and 200 times the rotor's own)
+--hold TIME  longest time for which a voltage is held until the speed settles, 0 for none, in
+    1/omega (default: 4000 and 200 times the rotor's own)
 """
 SETTLE = "--settle X = 300.0  time at the first voltage, in 1/omega"
 VOLTAGE = """

@@ -15,9 +15,10 @@ module                  idea
 :mod:`.controllers`     the voltage from the measured speed
 :mod:`.revolutions`     a run as one row per revolution of the motor
 :mod:`.run`             both FMU instances of a run, stepped together
-:mod:`.ramp_record`     where a ramp's record suggests a jump of the speed, and what it shows
+:mod:`.ramp_record`     where the record of a ramp shows a jump, and how
 :mod:`.settled`         whether the speed at a held voltage has settled
-:mod:`.hysteresis`      the rule that decides about jumps: voltages held there and back
+:mod:`.growth`          how fast disturbances of a held motion grow
+:mod:`.hysteresis`      the rule that decides about jumps: voltages held over a ramp, and back
 :mod:`.cosimulate`      the oscillator and any drive that is an FMU
 :mod:`.couple`          a run of both FMUs under a varying voltage, and its jumps
 :mod:`.couple_all`      many coupled runs at once

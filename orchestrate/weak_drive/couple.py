@@ -25,9 +25,10 @@ from ..running.job import Fmus, Table
 from ..running.options import Running
 from . import averaged, own_resonance
 from .controllers import Controller
+from .growth import growth_rate
 from .hysteresis import LOST, UNDECIDED, HysteresisLoop, HysteresisSettings, Jump
 from .master import Scheme
-from .ramp_record import NOT_SHOWN, RampRecord, Suspect, jump_labels, time_beyond, variables_shown
+from .ramp_record import DONE, RampRecord, jump_labels, time_beyond, variables_shown
 from .revolutions import COLUMNS
 from .run import CoupledRun, Run, begin_run
 from .schedule import Constant, Ramp, Schedule, check
@@ -94,9 +95,9 @@ class CoupleJob(CoupledRun):
         return "voltages held at jumps" if first == self.steps() else ""
 
     def decide_jumps(self, fmus: Fmus, table: Table, every: int) -> Table:
-        """Hold voltages where the ramp's record suggests jumps; return those, in rows."""
+        """Hold voltages over each ramp; return its jumps, in rows."""
         slots = self.hysteresis.slots
-        rows = np.full((1, len(DIRECTIONS), slots, len(Jump._fields) + 2), math.nan)
+        rows = np.full((1, len(DIRECTIONS), slots, len(Jump._fields)), math.nan)
         if self.control is not None:
             return {"jump_rows": rows}
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
@@ -109,13 +110,20 @@ class CoupleJob(CoupledRun):
 
             volts = RampRecord(self, table, True).sense * self.drive.volts(self.structure)
             units = self.scheme.h, self.structure.omega, volts, self.hold
-            loop = HysteresisLoop(start_run, self.schedule, *units, self.hysteresis)
+            loop = HysteresisLoop(start_run, self.schedule, *units, self.hysteresis, growth_rate)
             loop.add_checkpoints(table, every, self.steps())
             for i, up in enumerate((True, False)):
-                jumps = loop.decide(RampRecord(self, table, up))
-                for j, jump in enumerate(jumps[:slots]):
-                    rows[0, i, j] = (*jump[:-1], *jump.shown)
+                jumps = loop.decide(RampRecord(self, table, up))[:slots]
+                rows[0, i, : len(jumps)] = np.array(jumps).reshape(-1, rows.shape[-1])
         return {"jump_rows": rows}
+
+    def jumps(self, table: Table) -> list[list[Jump]]:
+        """Return the jumps of both directions; the first sure one stands for all."""
+        every = [
+            [Jump(int(row[0]), *row[1:]) for row in rows[np.isfinite(rows[:, 0])].tolist()]
+            for rows in table["jump_rows"][-1]
+        ]
+        return [sorted(jumps, key=lambda jump: jump.outcome != LOST) for jumps in every]
 
     def dataset(self, table: Table) -> xr.Dataset:
         if not len(table["time"]):
@@ -144,17 +152,14 @@ class CoupleJob(CoupledRun):
     def jump_variables(self, table: Table) -> tuple[list[str], dict[str, Variable]]:
         """Build the variables of all jumps and their labels: "up", "down", then further ones."""
         records = [RampRecord(self, table, up) for up in (True, False)]
-        first: list[tuple[str, Jump | None, RampRecord]] = []
-        further: list[tuple[str, Jump | None, RampRecord]] = []
-        legs = zip(DIRECTIONS, records, table["jump_rows"][-1], strict=True)
-        for direction, record, rows in legs:
-            known = rows[np.isfinite(rows[:, 0])].tolist()
-            jumps = [Jump(int(row[0]), row[1], row[2], Suspect(*row[3:])) for row in known]
-            jumps.sort(key=lambda jump: jump.outcome != LOST)  # the first sure one stands for all
-            first.append((direction, jumps[0] if jumps else None, record))
-            further += [(direction, jump, record) for jump in jumps[1:]]
+        each = list(zip(DIRECTIONS, self.jumps(table), records, strict=True))
+        first = [(way, jumps[0] if jumps else None, record) for way, jumps, record in each]
+        further = [(way, jump, record) for way, jumps, record in each for jump in jumps[1:]]
         directions, every, records_of = zip(*first, *further, strict=True)
-        shown = [jump.shown if jump else NOT_SHOWN for jump in every]
+        shown = [
+            record.rows_shown(*jump[1:]) if jump else [math.nan] * len(DONE)
+            for jump, record in zip(every, records_of, strict=True)
+        ]
         columns = variables_shown(records[0].forward(), shown)
         columns |= bracket_variables(every, columns, self.drive.volts(self.structure))
         columns |= self.theory_variables(len(every))
@@ -180,12 +185,9 @@ class CoupleJob(CoupledRun):
             return "by held voltages", ""
         if self.control is not None:
             return "", "a controller sets the voltage"
-        direction, rule = "rise" if record.up else "fall", self.hysteresis
-        if not record.rows().size:
-            return "", f"the voltage does not {direction}"
-        if any(record.suspects(leg, *rule.of_a_record) for leg in record.legs()):
-            return "by held voltages", "no jump: held voltages lead back to the same speeds"
-        return "by the record", "no jump: the speed follows the voltage"
+        if not record.legs():
+            return "", f"the voltage does not {'rise' if record.up else 'fall'}"
+        return "by held voltages", "no jump: held voltages lead back to the same speeds"
 
     def theory_variables(self, count: int) -> dict[str, Variable]:
         """Build the variables of where averaged theory loses the bonded structure's motion."""
@@ -385,10 +387,9 @@ def couple(
         ``voltage``, once a communication step, by the speed. There are no jumps to be found then;
         ``passage_time`` says whether the motor has passed the resonance.
     hold : float, optional
-        Longest time for which a voltage is held where the ramp's record suggests a jump, s;
-        (4000 + 200/b)/omega by default, 1/b being the time in which the rotor settles. A jump that
-        is undecided may need more. With 0 no voltage is held, and all suspected jumps are
-        undecided.
+        Longest time for which a voltage is held until the speed settles, s; (4000 + 200/b)/omega by
+        default, 1/b being the time in which the rotor settles. A jump that is undecided may need
+        more. With 0 no voltage is held, and all ramps are undecided.
     hysteresis : HysteresisSettings, optional
         Steps and thresholds of the rule that decides about jumps, of
         :mod:`orchestrate.weak_drive.hysteresis`.
@@ -414,12 +415,13 @@ def couple(
         Dimension ``jump``: "up" and "down", the first sure jump in each direction, then further
         ones as "up 2". ``jumps`` (V): the voltage at which the motion is lost, whatever the rate;
         NaN where there is no jump or it is undecided. ``jump_low`` and ``jump_high`` (V): its
-        bracket, or that in which it is undecided. ``decided`` says how: "by held voltages", "by
-        the record" (which suggests none), or "undecided"; ``no_jump`` says why there is none.
+        bracket, or that in which it is undecided. ``decided`` says how: "by held voltages", or
+        "undecided"; ``no_jump`` says why there is none.
         ``ramp_voltage`` (V), ``jump_time`` (s), ``jump_speed`` (rad/s), speed and amplitude before
         and after, and ``jump_rate`` (V/s) are what the ramp shows, ``jump_lag`` (V) by how much
-        later. For a bonded structure ``averaged_jumps`` (V) and ``averaged_kind``: where the
-        averaged theory loses the motion, by a fold or a Neimark-Sacker point.
+        later; NaN where it ends before. For a bonded structure ``averaged_jumps`` (V) and
+        ``averaged_kind``: where the averaged theory loses the motion, by a fold or a Neimark-Sacker
+        point.
 
     Raises
     ------
@@ -429,8 +431,8 @@ def couple(
     Notes
     -----
     A ramp's jump comes late, about as rate^(2/3). The rule that decides about jumps is that of
-    :mod:`orchestrate.weak_drive.hysteresis`: where the ramp's record suggests one, a state of the
-    run is restored, and voltages are held there and back.
+    :mod:`orchestrate.weak_drive.hysteresis`: the state at the beginning of each ramp is restored,
+    and voltages are held over all of it.
 
     Examples
     --------

@@ -1,22 +1,23 @@
 """Decide by a hysteresis loop of held voltages where the motor's speed jumps.
 
 A jump is a loss of stability of the slow motion: two motions exist at one voltage, and the ramp
-loses the first. A steep but continuous branch is not a jump. The rule, for a stretch of the voltage
-in which the ramp's record suggests a jump:
+loses the first. A steep but continuous branch is not a jump. The rule, for each ramp as a whole:
 
-- Voltages are held on a grid of steps `grid`, from the ramp's own state before the stretch to the
-  stretch's end, each taken to at `rate` and held until the speed has settled (:mod:`.settled`);
-  those at which it does not are left out.
-- Every step in which the speed gains `smallest` on the voltage, or moves by `against` against it,
-  is halved, to `width`.
-- Then the voltage goes back over that step. The motion is *lost* there where the speed comes back
-  more than `clear` away, and both motions last, within `same`, when they are held `again` times.
-  Where it comes back, the step is halved further.
-- There is *no* jump where no such step is left, and on the way back the speed is nowhere `clear`
-  away.
-- All else is *undecided*: a first speed, or one on the way back, that does not settle, two motions
-  nearer than `clear`, a step still large at `finest`, another motion on the way back, a speed that
-  moves against the voltage and what comes after it, or after `max_rounds` of this.
+- Voltages are held on a grid of steps `grid`, from the ramp's own state at its beginning to its
+  end, each taken to at `rate` and held until the speed has settled (:mod:`.settled`); those at
+  which it does not are left out.
+- Every step in which the speed gains `smallest` more or less than at the lower rate of the steps
+  next to it (without these: than the voltage), or moves by `against` against the voltage, is
+  halved, to `width`, and to `finest` where the speed comes back over it.
+- The motion before such a step has to last, and what it becomes counts: where disturbances are
+  known to grow (:mod:`.growth`), after `growths` growth times, and where these are longer than
+  `patience` holds it is left out; where nothing is known, when it is held `again` times.
+- It is *lost* over that step where the speed, taken back over it, is `clear` away and stays within
+  `same` when it is held `again` times. There is *no* jump where no such step is left, and on a way
+  back over all of the ramp the speed is nowhere `clear` away.
+- All else is *undecided*: a ramp's beginning or end, or a way back, that does not settle, two
+  motions nearer than `clear`, a step still large at `finest` or after `max_rounds` of this, another
+  motion on the way back, and what comes after a loss at which the speed moves against the voltage.
 
 From differences the `errors` of irregular motions' speeds are taken off, but not on the last way
 back. Non-dimensional: voltages over K omega, speeds over omega, times in 1/omega, in the mirror
@@ -34,7 +35,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..running.job import Table
-from .ramp_record import NOT_SHOWN, RampRecord, Suspect
+from .ramp_record import RampRecord
 from .run import Run
 from .schedule import Course, Schedule
 from .settled import SettledSettings, settled_speed
@@ -50,32 +51,25 @@ SAVED = (
 class HysteresisSettings(SettledSettings):
     """Set the steps and thresholds of the hysteresis loop; defaults serve all drives tried."""
 
-    shown: float = 4e-3  # fall of the slip in a ramp's record that suggests a jump
-    share: float = 0.1  # of that fall, before and after the stretch over which voltages are held
-    apart: int = 12  # widths of the record's mean: falls of the slip that are closer are one
-    grid: float = 4e-3  # longest first step of the voltage
+    grid: float = 0.02  # longest first step of the voltage
     rate: float = 5e-5  # of the voltage from one step to the next, in a time 1/omega
-    width: float = 1e-4  # widest bracket of a jump
+    width: float = 1e-4  # widest bracket of a jump, where motions settle in time
     finest: float = 1e-6  # shortest step of the voltage
-    # change of the speed over a step, beyond that of the voltage, up to which it may be one branch;
-    # below 0.866 of `clear`, so that no steps find a jump that others rule out
+    # change of the speed over a step, beyond what its neighbours' are, up to which it may be one
+    # branch; below 0.866 of `clear`, so that no steps find a jump that others rule out
     smallest: float = 4e-3
     against: float = 1e-3  # the same where the speed moves against the voltage
+    neighbour: float = 0.25  # of a step, what one next to it is at least to be compared with
     same: float = 2e-3  # largest difference of two settled speeds of one motion
     clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
-    again: int = 3  # times that the motions beside a jump are held again
-    lag: float = 2.0  # rotor times 1/b by which a speed follows a ramp late, without a jump
-    lead: float = 6.0  # how much earlier than the record a course begins, in rotor times 1/b
-    max_rounds: int = 150  # of looking at the largest step of a course
+    again: int = 3  # times that a motion beside a jump is held again
+    growths: float = 30.0  # growth times after which a motion is seen to last, or not
+    patience: float = 10.0  # longest holds that these may be
+    max_rounds: int = 150  # of looking at the largest step of a ramp
     errors: float = 3.0  # standard errors that are taken off a difference of speeds
     parts: tuple[float, ...] = (0.5, 0.25, 0.75)  # of a step: where a speed between is sought
     left: float = 0.1  # of the way between two motions' speeds: with less to go, the first is left
     slots: int = 12  # jumps of a direction that are stored, by their voltages
-
-    @property
-    def of_a_record(self) -> tuple[float, float, float]:
-        """Return what of the rule concerns a ramp's record."""
-        return self.shown, self.share, self.apart
 
 
 class HeldPoint(NamedTuple):
@@ -85,6 +79,7 @@ class HeldPoint(NamedTuple):
     speed: float  # NaN where it did not settle in time
     error: float  # of the speed of an irregular motion; 0 where it converged
     state: Table
+    lasts: bool = False  # whether the motion is known to last
 
 
 class Jump(NamedTuple):
@@ -93,7 +88,8 @@ class Jump(NamedTuple):
     outcome: int  # `LOST` or `UNDECIDED`
     low: float
     high: float
-    shown: Suspect = NOT_SHOWN  # where the run's record shows it
+    before: float = math.nan  # settled speeds at these voltages
+    after: float = math.nan
 
 
 class VoltageHolder:
@@ -108,11 +104,13 @@ class VoltageHolder:
         volts: float,
         longest: float,
         settings: HysteresisSettings | None = None,
+        growth: Callable[[Run, float, float], float] | None = None,
     ) -> None:
-        # `volts` is negative where the motor turns backward; `longest` is the longest hold, s
+        # `volts` is negative where the motor turns backward; `longest` is the longest hold, s;
+        # `growth` returns the rate, 1/s, at which disturbances of a run's motion grow
         self.begin, self.schedule, self.step = begin, schedule, step
         self.omega, self.volts, self.longest = omega, volts, longest
-        self.settings = settings or HysteresisSettings()
+        self.settings, self.growth = settings or HysteresisSettings(), growth
         self.checkpoints: dict[int, Table] = {}
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
@@ -151,12 +149,14 @@ class VoltageHolder:
         first: float,
         voltage: float,
         ends: tuple[float, float] | None = None,
+        least: float = 0.0,
     ) -> HeldPoint:
         """Take the voltage to another one at `rate`, and hold it until the speed settles."""
-        # with `ends`, until the speed has come from the first of two nearly to the second one
+        # with `ends`, until the speed has come from the first of two nearly to the second one;
+        # for the time `least`, s, unless it has left
         settings = self.settings
         moves = math.ceil(abs(voltage - first) / settings.rate / self.omega / self.step)
-        count = moves + math.ceil(self.longest / self.step)
+        count = moves + math.ceil((least + self.longest) / self.step)
         piece = max(1, round(settings.piece / self.omega / self.step))
         times = (0.0, moves * self.step, count * self.step)
         volts = (self.volts * first, self.volts * voltage, self.volts * voltage)
@@ -171,7 +171,10 @@ class VoltageHolder:
                 speeds = np.append(speeds, np.abs(found) / self.omega)
                 speed, error = settled_speed(speeds, settings)
                 if math.isfinite(speed):
-                    break
+                    away = abs(speed - speeds[: settings.block].mean()) - settings.errors * error
+                    if away > settings.clear or (begin - moves) * self.step >= least:
+                        break
+                    speed = math.nan
                 late = speeds[-settings.block :]
                 if ends and late.size:
                     to_go = abs(float(late.mean()) - ends[1])
@@ -190,121 +193,89 @@ class HysteresisLoop(VoltageHolder):
         """Return all jumps of a run in one direction, by their voltages."""
         jumps = []
         for leg in record.legs():
-            suspects = record.suspects(leg, *self.settings.of_a_record)
-            if not self.longest:
-                ends = ((record.eta0(at.before), record.eta0(at.after), at) for at in suspects)
-                jumps += [Jump(UNDECIDED, *end) for end in ends]
-                continue
-            for suspect in suspects:
-                jumps += self.decide_stretch(record, leg, suspect)
-            rest = leg[leg > suspects[-1].after] if suspects else leg
-            jumps += self.decide_end(record, rest) if rest.size else []
+            first, last = record.eta0(leg[[0, -1]]).tolist()
+            if self.longest:
+                jumps += self.jumps(self.hold_step(record.step(int(leg[0]))), last)
+            else:
+                jumps.append(Jump(UNDECIDED, first, last))
         return merge_overlapping(jumps, record.sign)
-
-    def decide_stretch(self, record: RampRecord, leg: np.ndarray, suspect: Suspect) -> list[Jump]:
-        """Return the jumps of a stretch in which the record of a ramp suggests one."""
-        point = self.first_point(record, leg, suspect.before)
-        jumps = self.jumps(point, record.eta0(suspect.after))
-        earlier = [jump._replace(shown=record.suspect_at(jump.high, leg)) for jump in jumps[:-1]]
-        return earlier + [jump._replace(shown=suspect) for jump in jumps[-1:]]
-
-    def decide_end(self, record: RampRecord, leg: np.ndarray) -> list[Jump]:
-        """Return the jumps shortly before the end of a ramp, which show after it only."""
-        last = int(leg[-1])
-        end = self.hold_step(record.step(last))
-        change = abs(end.speed - record.speed(last)) - self.settings.errors * end.error
-        if change - self.lag(record, leg, last) <= self.settings.shown:
-            return []
-        jumps = self.jumps(self.first_point(record, leg, last), record.eta0(last))
-        return [jump._replace(shown=Suspect(last, last, last)) for jump in jumps]
-
-    def first_point(self, record: RampRecord, leg: np.ndarray, before: int) -> HeldPoint:
-        """Hold a voltage before a row, from the ramp's state, where the ramp's motion lasts."""
-        row = record.row_earlier(before, self.settings.lead, leg)
-        back = max(1, before - row)
-        while True:
-            point = self.hold_step(record.step(row))
-            gained = record.sign * (point.speed - record.speed(row))
-            margin, error = 2.0 * self.settings.same, self.settings.errors * point.error
-            lasts = -margin - error < gained < margin + self.lag(record, leg, row)
-            if lasts or row == leg[0]:
-                return point
-            row, back = max(int(leg[0]), row - back), 2 * back
-
-    def lag(self, record: RampRecord, leg: np.ndarray, row: int) -> float:
-        """Return by how much a speed may follow a ramp late, without a jump."""
-        earlier = record.row_earlier(row, self.settings.lag, leg)
-        return float(abs(record.eta0(row) - record.eta0(earlier)))
 
     def jumps(self, first: HeldPoint, last: float) -> list[Jump]:
         """Return the jumps between a held point and a voltage: an empty list for none."""
-        undecided = [Jump(UNDECIDED, first.voltage, last)]
-        if math.isnan(first.speed):
-            return undecided
         sign = math.copysign(1.0, last - first.voltage)
         points = self.hold_grid(first, last)
+        if not points:
+            return [Jump(UNDECIDED, first.voltage, last)]
         jumps: dict[tuple[float, float], Jump] = {}
         for _ in range(self.settings.max_rounds):
-            i = self.largest_step(points, jumps, sign)
+            i = self.largest_step(points, jumps)
             if i is None:
                 break
-            step = points[i].voltage, points[i + 1].voltage
-            is_wide = abs(step[1] - step[0]) > self.settings.width
+            if not points[i].lasts:
+                point = self.lasting(points[i])
+                points[i : i + 1] = [point] if math.isfinite(point.speed) else []
+                continue
+            low, high = points[i : i + 2]
+            is_wide = abs(high.voltage - low.voltage) > self.settings.width
             if is_wide and self.insert_between(points, i):
                 continue
-            if jump := self.jump_over(points, i, last):
-                jumps[step] = jump
+            if jump := self.jump_over(points, i, sign):
+                jumps[low.voltage, points[i + 1].voltage] = jump
         else:
-            return undecided
+            del points[(self.largest_step(points, jumps) or 0) + 1 :]
         if not jumps and not self.comes_back(points):
-            return undecided
-        steps = ((low.voltage, high.voltage) for low, high in pairwise(points))
-        return [jumps[step] for step in steps if step in jumps]
+            return [Jump(UNDECIDED, first.voltage, last)]
+        steps = {(low.voltage, high.voltage) for low, high in pairwise(points)}
+        known = [jump for step, jump in jumps.items() if step in steps]
+        beyond = [(first.voltage, points[0].voltage), (points[-1].voltage, last)]
+        unsettled = [Jump(UNDECIDED, *ends) for ends in beyond if ends[0] != ends[1]]
+        return merge_overlapping([*known, *unsettled], sign)
 
-    def jump_over(self, points: list[HeldPoint], i: int, last: float) -> Jump | None:
+    def jump_over(self, points: list[HeldPoint], i: int, sign: float) -> Jump | None:
         """Return the jump over a step, by the way back; None where the step is small or halved."""
         low, high = points[i : i + 2]
-        sign, length = math.copysign(1.0, last - low.voltage), abs(high.voltage - low.voltage)
-        landed, before = self.hold_from(low, high.voltage), low.voltage
+        landed = self.hold_beside(low, high.voltage, high.speed)
         outcome = self.way_back(low, landed)
         points[i + 1] = high = landed if math.isfinite(landed.speed) else high
-        may_be_none = outcome == NONE and length > self.settings.finest
-        if may_be_none and (self.excess(low, high, sign) <= 0.0 or self.insert_between(points, i)):
+        may_be_none = outcome == NONE and abs(high.voltage - low.voltage) > self.settings.finest
+        if may_be_none and (self.excess(points, i, {}) <= 0.0 or self.insert_between(points, i)):
             return None
         if sign * (high.speed - low.speed) < 0.0:  # what a ramp comes to there is chance
             del points[i + 2 :]
-            return Jump(UNDECIDED, low.voltage, last)
-        if outcome == LOST:
-            outcome, before = self.confirm(points[: i + 1], sign)
-        return Jump(outcome or UNDECIDED, before, high.voltage)
+        return Jump(outcome or UNDECIDED, low.voltage, high.voltage, low.speed, high.speed)
 
     def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:
         """Step the voltage over the grid; return the points at which the speed settled."""
         count = max(1, math.ceil(abs(last - first.voltage) / self.settings.grid - 1e-9))
         points = [first]
         for voltage in np.linspace(first.voltage, last, count + 1)[1:].tolist():
-            point = self.hold_from(points[-1], voltage)
-            if math.isfinite(point.speed):
-                points.append(point)
-        return points
+            points.append(self.hold_from(points[-1], voltage))
+        return [point for point in points if math.isfinite(point.speed)]
 
     def largest_step(
-        self, points: list[HeldPoint], decided: dict[tuple[float, float], Jump], sign: float
+        self, points: list[HeldPoint], decided: dict[tuple[float, float], Jump]
     ) -> int | None:
         """Return the index of the largest undecided step of the speed; None if all are small."""
-        excess = [
-            -math.inf if (low.voltage, high.voltage) in decided else self.excess(low, high, sign)
-            for low, high in pairwise(points)
-        ]
+        excess = [self.excess(points, i, decided) for i in range(len(points) - 1)]
         i = int(np.argmax(excess)) if excess else 0
         return i if excess and excess[i] > 0.0 else None
 
-    def excess(self, low: HeldPoint, high: HeldPoint, sign: float) -> float:
-        """Return by how much the speed changes more than on one branch, on which it rises."""
+    def excess(
+        self, points: list[HeldPoint], i: int, decided: dict[tuple[float, float], Jump]
+    ) -> float:
+        """Return by how much the speed changes more over a step than on one branch."""
+        low, high = points[i : i + 2]
+        if (low.voltage, high.voltage) in decided:
+            return -math.inf
+        length, rates = abs(high.voltage - low.voltage), []
+        for a, b in (points[j : j + 2] for j in (i - 1, i + 1) if 0 <= j < len(points) - 1):
+            own = abs(b.voltage - a.voltage)
+            if own >= self.settings.neighbour * length and (a.voltage, b.voltage) not in decided:
+                rates.append((b.speed - a.speed) / (b.voltage - a.voltage))
+        gained = length * (high.speed - low.speed) / (high.voltage - low.voltage)
+        changed = abs(gained - length * min(rates, default=1.0)) - self.settings.smallest
         scatter = min(self.error(low, high), self.settings.smallest)
-        gained, length = sign * (high.speed - low.speed), abs(high.voltage - low.voltage)
-        against = -gained - self.settings.against
-        return max(gained - self.settings.smallest - length, against) - scatter
+        return max(changed, -gained - self.settings.against) - scatter
 
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
         """Return whether two motions exist at a step's lower voltage and the first is lost."""
@@ -316,18 +287,35 @@ class HysteresisLoop(VoltageHolder):
             return UNDECIDED
         return LOST if self.hold_again(back) is back else UNDECIDED
 
-    def confirm(self, points: list[HeldPoint], sign: float) -> tuple[int, float]:
-        """Hold the motion before a loss again; return outcome and the voltage where it stays."""
-        # near its end a motion seems to settle before it leaves: then one `width` earlier counts
-        low, voltage = points[-1], points[-1].voltage - sign * self.settings.width
-        later = self.hold_again(low)
-        if later is low:
-            return LOST, low.voltage
-        earlier = [point for point in points if sign * (voltage - point.voltage) >= 0.0]
-        stays = self.hold_from(earlier[-1], voltage) if earlier else later
-        if stays is later or self.hold_again(stays) is not stays:
-            return UNDECIDED, low.voltage
-        return self.way_back(stays, later), voltage
+    def hold_beside(
+        self, low: HeldPoint, voltage: float, other: float, limit: float | None = None
+    ) -> HeldPoint:
+        """Hold a voltage from a point until it is there or has lost its motion for another one."""
+        point = self.hold_from(low, voltage, limit)
+        is_near = abs(point.speed - low.speed) < abs(point.speed - other)
+        return self.lasting(point) if is_near else point
+
+    def lasting(self, point: HeldPoint) -> HeldPoint:
+        """Hold a motion until it is known to last; return it, or what it has become."""
+        rate = self.growth_rate(point)
+        time = self.settings.growths / rate if rate > 0.0 else 0.0
+        if time > self.settings.patience * self.longest:
+            return point._replace(speed=math.nan)
+        later = self.hold(point.state, point.voltage, point.voltage, least=time) if time else point
+        later = self.hold_again(point) if math.isnan(rate) else later
+        return later._replace(lasts=self.distance(later, point) <= self.settings.same)
+
+    def growth_rate(self, point: HeldPoint) -> float:
+        """Return the rate, 1/s, at which disturbances of a motion grow; NaN if it is unknown."""
+        if self.growth is None:
+            return math.nan
+        run = self.begin(self.schedule)
+        try:
+            run.set_state(point.state)
+            speed = math.copysign(point.speed, self.volts) * self.omega
+            return self.growth(run, point.voltage * self.volts, speed)
+        finally:
+            run.master.close()
 
     def hold_again(self, point: HeldPoint) -> HeldPoint:
         """Hold a motion again and again; return its new point if it has left, else the point."""
@@ -341,9 +329,10 @@ class HysteresisLoop(VoltageHolder):
     def insert_between(self, points: list[HeldPoint], i: int) -> bool:
         """Hold voltages within a step until one settles, and insert it; return whether one does."""
         low, high = points[i : i + 2]
+        change = high.voltage - low.voltage
+        limit = high.speed if abs(change) < 0.5 * self.settings.smallest else None
         for part in self.settings.parts:
-            voltage = low.voltage + part * (high.voltage - low.voltage)
-            point = self.hold_from(low, voltage, high.speed)
+            point = self.hold_beside(low, low.voltage + part * change, high.speed, limit)
             if math.isfinite(point.speed):
                 points.insert(i + 1, point)
                 return True

@@ -6,6 +6,7 @@ ramp shows its jump late, about as rate^(2/3).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -23,17 +24,23 @@ from ..response.labels import variable
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
-from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
-from .hysteresis import HysteresisSettings
+from .couple import (
+    CoupleJob,
+    couple_job,
+    require_motor,
+    schedule_from_arguments,
+    scheme_from_arguments,
+)
+from .hysteresis import Jump
 from .master import Scheme
+from .ramp_record import RampRecord
 from .schedule import Ramp
 
 IGNORED = ("clearance", "e", "e_slope", "gamma")  # by the bonded structure
 KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
 COLUMNS = ("jumps", "jump_low", "jump_high")
-SLOTS = HysteresisSettings().slots
-SHOWN = ("ramp_voltage", "jump_speed_before")
+SHOWN = ("voltage", "speed")
 
 
 @dataclass(frozen=True)
@@ -48,25 +55,28 @@ class JumpVoltagesJob(Job):
     values: tuple[float, ...] = ()
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
-    item: ClassVar[str] = "ramp"
+    item: ClassVar[str] = "structure"
 
-    def items(self) -> Sequence[tuple[Structure, Ramp]]:
+    def items(self) -> Sequence[Structure]:
         parted = self.structure.as_delaminated()
         varied = [parted.replace(**{self.over: value}) for value in self.values] or [parted]
-        structures = (self.structure.as_bonded(), *varied)
-        return [(structure, schedule) for schedule in self.schedules for structure in structures]
+        return [self.structure.as_bonded(), *varied]
 
-    def work(self, fmus: Fmus, items: Sequence[tuple[Structure, Ramp]], previous: Any) -> Table:
-        """Run some ramps; return their jumps, and of faster ones what their records show."""
+    def work(self, fmus: Fmus, items: Sequence[Structure], previous: Any) -> Table:
+        """Run the ramps of some structures; return jumps, and where each ramp shows them."""
         rows, shown, decided = [], [], []
-        for structure, schedule in items:
-            hold = None if schedule is self.schedules[0] else 0.0
-            job = couple_job(structure, self.drive, schedule, self.scheme, hold=hold)
-            data = job.dataset(job.run_here(fmus))
-            first = data.sel(jump=list(DIRECTIONS))
+        for structure in items:
+            slowest = couple_job(structure, self.drive, self.schedules[0], self.scheme)
+            table = slowest.run_here(fmus)
+            first = slowest.dataset(table).sel(jump=list(DIRECTIONS))
             rows.append([first[name].values for name in COLUMNS])
             decided.append(first.decided.values.astype("U20"))
-            shown.append([shown_jumps(data, direction) for direction in DIRECTIONS])
+            runs = [(slowest, table)]
+            for schedule in self.schedules[1:]:
+                job = couple_job(structure, self.drive, schedule, self.scheme, hold=0.0)
+                runs.append((job, job.run_here(fmus)))
+            jumps = [each[0] if each else None for each in slowest.jumps(table)]
+            shown.append([[shown_jump(*run, *each) for each in enumerate(jumps)] for run in runs])
         return {"jumps": np.array(rows), "decided": np.array(decided), "shown": np.array(shown)}
 
     def dataset(self, table: Table) -> xr.Dataset:
@@ -78,24 +88,19 @@ class JumpVoltagesJob(Job):
             at = np.stack([np.zeros(count - 1, dtype=int), np.arange(1, count)])
             each = ("structure", self.over, "jump")
         every = ("rate", *each)
-        table = {
-            name: values.reshape(len(rates), count, *values.shape[1:])[:, at]
-            for name, values in table.items()
-        }
-        jumps, low, high = np.moveaxis(table["jumps"], -2, 0)
-        shown = table["shown"].reshape(*jumps.shape, SLOTS, len(SHOWN))
-        voltages, speeds = np.moveaxis(first_past(jumps[0], shown), -1, 0)
+        jumps, low, high = np.moveaxis(table["jumps"][at], -2, 0)
+        voltages, speeds = np.moveaxis(table["shown"].swapaxes(0, 1)[:, at], -1, 0)
         late = "voltage at which the speed jumps on the ramp"
         before = "mean speed where it leaves its branch"
         error = "half of the bracket of that voltage, by held voltages"
-        halves = np.where(np.isfinite(jumps[0]), 0.5 * np.abs(high[0] - low[0]), np.nan)
+        halves = np.where(np.isfinite(jumps), 0.5 * np.abs(high - low), np.nan)
         how = "how jump or none was decided"
         variables = {
             "voltage": variable(every, voltages, "V", late),
             "speed_before": variable(every, speeds, "rad/s", before),
-            "jumps": variable(each, jumps[0], "V", "the same at rate 0"),
+            "jumps": variable(each, jumps, "V", "the same at rate 0"),
             "standard_error": variable(each, halves, "V", error),
-            "decided": (each, table["decided"][0], {"long_name": how}),
+            "decided": (each, table["decided"][at], {"long_name": how}),
         }
         coordinates = {
             "rate": variable("rate", rates, "V/s", "change of the voltage"),
@@ -109,24 +114,14 @@ class JumpVoltagesJob(Job):
         return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
 
 
-def shown_jumps(data: xr.Dataset, direction: str) -> np.ndarray:
-    """Return voltage and speed before of all jumps that a ramp shows in a direction, with NaN."""
-    labels = [label for label in data.jump.values if str(label).split()[0] == direction]
-    rows = np.full((SLOTS, len(SHOWN)), np.nan)
-    rows[: len(labels)] = np.stack([data[name].sel(jump=labels).values for name in SHOWN], axis=1)
-    return rows
-
-
-def first_past(jumps: np.ndarray, shown: np.ndarray) -> np.ndarray:
-    """Return of the jumps that ramps show those that come next after the motion is lost."""
-    signs = np.array([1.0, -1.0]) * np.sign(jumps)
-    late = signs[..., np.newaxis] * (shown[..., 0] - jumps[..., np.newaxis])
-    # a ramp shows its jump no earlier than by a thousandth
-    late = np.where(late > -1e-3 * np.abs(jumps[..., np.newaxis]), late, np.inf)
-    first = np.argmin(late, axis=-1)[..., np.newaxis]
-    chosen = np.take_along_axis(shown, first[..., np.newaxis], axis=-2)[..., 0, :]
-    is_late = np.isfinite(np.take_along_axis(late, first, axis=-1))
-    return np.where(is_late, chosen, np.nan)
+def shown_jump(job: CoupleJob, table: Table, down: int, jump: Jump | None) -> list[float]:
+    """Return voltage and speed before at which a ramp shows a jump, with NaN where it does not."""
+    if jump is None:
+        return [math.nan] * len(SHOWN)
+    before, half, _ = RampRecord(job, table, not down).rows_shown(*jump[1:])
+    rows = np.arange(len(table["time"]))
+    at = zip((half, before), SHOWN, strict=True)
+    return [float(np.interp(row, rows, table[name])) for row, name in at]
 
 
 def jump_voltages(
@@ -152,8 +147,8 @@ def jump_voltages(
     voltage : (float, float)
         Ends of the ramps, V.
     rates : sequence of float, optional
-        Of the ramps, V/s, by default (1e-4, 5e-5, 2.5e-5) K omega^2. The slowest one begins the
-        hysteresis loop that decides.
+        Of the ramps, V/s, by default (1e-4, 5e-5, 2.5e-5) K omega^2. The hysteresis loop that
+        decides begins at the beginnings of the slowest one.
     back : bool
         Whether the ramps come back: the jump down too.
     settle : float, optional
@@ -166,8 +161,8 @@ def jump_voltages(
     values : sequence of float, optional
         Its values, which are a dimension of the result then.
     **running
-        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`; the ramps
-        run side by side.
+        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`; the
+        structures run side by side.
 
     Returns
     -------
@@ -184,9 +179,9 @@ def jump_voltages(
 
     Notes
     -----
-    The rule is that of :mod:`orchestrate.weak_drive.hysteresis`, as for :func:`couple`. A slow loss
-    of stability, which neither ramps nor holds see, is not in the error. With a clearance the
-    voltages of the delaminated structure depend on how large it is beside the amplitude.
+    The rule is that of :mod:`orchestrate.weak_drive.hysteresis`, as for :func:`couple`. With a
+    clearance the voltages of the delaminated structure depend on how large it is beside the
+    amplitude.
 
     Examples
     --------

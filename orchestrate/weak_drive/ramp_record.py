@@ -1,9 +1,8 @@
-"""Find in the record of a ramp where it may have lost a motion: where the slip falls.
+"""Read in the record of a ramp where it shows a jump that held voltages have found.
 
-The slip is the no-load speed less the speed, both over omega: the torque that the vibration takes.
-Where the speed gains on the voltage, on the way up, or loses against it, on the way down, by more
-than `shown`, the record suggests a jump. A resonance without a jump does so too: held voltages tell
-(:mod:`.hysteresis`).
+There the slip falls: the no-load speed less the speed, both over omega, which is the torque that
+the vibration takes. The ramp shows the jump late, where the fall of the slip between the speeds
+held before and after it is half done; it begins and ends where a tenth is done, or left.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -22,22 +21,13 @@ from ..running.job import Table
 from .run import CoupledRun
 
 COLUMNS_SHOWN = ("time", "voltage", "speed", "amplitude")
-
-
-class Suspect(NamedTuple):
-    """Store the rows of a run between which it may have lost a motion, and where most likely."""
-
-    before: int
-    row: float  # where half of the slip's fall is done, between two rows
-    after: int
-
-
-NOT_SHOWN = Suspect(math.nan, math.nan, math.nan)  # type: ignore[arg-type]
+DONE = (0.1, 0.5, 0.9)  # of the slip's fall: where a jump begins, is, and ends
+SMOOTH = 0.5  # rotor times 1/b over which the slip is averaged
 
 
 @dataclass(frozen=True)
 class RampRecord:
-    """Search the revolutions of a run for suspected jumps, in one direction of the voltage."""
+    """Read the revolutions of a run in one direction of the voltage."""
 
     job: CoupledRun  # what was run
     table: Table  # its revolutions, a row each
@@ -77,71 +67,34 @@ class RampRecord:
         """Return the mean speed over omega of revolutions."""
         return np.abs(self.table["speed"][rows]) / self.job.structure.omega
 
-    def slip(self, rows: Any) -> Any:
-        """Return by how much the no-load speed exceeds the speed, over omega, by its direction."""
-        return self.sign * (self.eta0(rows) - self.speed(rows))
-
     def step(self, row: int) -> int:
         """Return the communication step at the end of a revolution."""
         return min(math.ceil(self.table["time"][row] / self.job.scheme.h), self.job.steps() - 1)
 
-    def row_earlier(self, row: int, rotor_times: float, leg: np.ndarray) -> int:
-        """Return the row that is earlier by some of the rotor's times 1/b, within its ramp."""
-        structure, time = self.job.structure, self.table["time"]
-        earlier = time[row] - rotor_times / (self.job.drive.b(structure) * structure.omega)
-        return max(int(np.searchsorted(time, earlier)), int(leg[0]))
-
-    def suspect_at(self, eta0: float, leg: np.ndarray) -> Suspect:
-        """Return where a ramp reaches a voltage, as a suspected jump of no length."""
-        row = float(np.interp(self.sign * eta0, self.sign * self.eta0(leg), leg))
-        return Suspect(math.floor(row), row, math.ceil(row))
-
-    def suspects(self, leg: np.ndarray, shown: float, share: float, apart: float) -> list[Suspect]:
-        """Return the stretches of one ramp over which the slip falls by at least `shown`."""
-        b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
-        turn = float(np.median(np.diff(self.table["time"][leg]))) if len(leg) > 1 else math.inf
-        width = max(4, math.ceil(0.5 / (b * omega * turn)))
-        if len(leg) < 2 * width:
-            return []
-        slip = np.convolve(self.slip(leg), np.full(width, 1.0 / width), "valid")
-        groups: list[list[tuple[int, int]]] = []
-        for fall in find_falls(slip, shown):
-            if groups and fall[0] - groups[-1][-1][1] < apart * width:
-                groups[-1].append(fall)
-            else:
-                groups.append([fall])
-        first, middle = int(leg[0]), 0.5 * (width - 1)
-        suspects = []
-        for group in groups:
-            largest = max(group, key=lambda fall: slip[fall[0]] - slip[fall[1]])
-            before = first + row_where_done(slip, group[0], share)
-            half = first + row_where_done(slip, largest, 0.5) + middle
-            after = first + row_where_done(slip, group[-1], 1.0 - share) + width - 1
-            suspects.append(Suspect(before, half, after))
-        return suspects
-
-
-def row_where_done(slip: np.ndarray, fall: tuple[int, int], part: float) -> int:
-    """Return the first row at which a part of a fall is done."""
-    high, low = fall
-    done = (slip[high] - slip[high : low + 1]) / (slip[high] - slip[low])
-    return high + int(np.argmax(done >= part))
-
-
-def find_falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
-    """Find the spans from a maximum to the next minimum that fall by at least `least`."""
-    spans, high, low, falling = [], 0, 0, False
-    for i, value in enumerate(values.tolist()):
-        if falling:
-            low = i if value < values[low] else low
-            if value >= values[low] + least:
-                spans.append((high, low))
-                high, falling = i, False
-        elif value > values[high]:
-            high = i
-        elif value <= values[high] - least:
-            low, falling = i, True
-    return [*spans, (high, low)] if falling else spans
+    def rows_shown(self, low: float, high: float, before: float, after: float) -> list[float]:
+        """Return the rows at which a jump begins, is half done and ends; NaN where it does not."""
+        # the jump is from a voltage and the speed before to another one and the speed after
+        first, fall = low - before, (low - before) - (high - after)
+        for leg in self.legs():
+            turn = np.median(np.diff(self.table["time"][leg])) if len(leg) > 1 else math.inf
+            b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
+            width = max(4, math.ceil(SMOOTH / (b * omega * turn)))
+            past = self.sign * self.eta0(leg) >= self.sign * low
+            slips = self.eta0(leg) - self.speed(leg)
+            if not past.any() or len(leg) < width:
+                continue
+            done = np.convolve((first - slips) / fall, np.full(width, 1.0 / width), "valid")
+            past, rows = past[len(leg) - len(done) :], []
+            for part in DONE[1:]:
+                there = np.flatnonzero(past & (done >= part))
+                rows.append(float(there[0]) if there.size else math.nan)
+            if math.isnan(rows[0]):
+                continue
+            lead = np.where(past, done, math.inf)[: int(rows[0]) + 1]
+            begun = lead.min() + DONE[0] * (1.0 - lead.min())  # the slip grows on before it falls
+            begin = float(np.flatnonzero(lead <= begun)[-1])
+            return [leg[0] + 0.5 * (width - 1) + row for row in (begin, *rows)]
+        return [math.nan] * len(DONE)
 
 
 def time_beyond(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float:
@@ -162,9 +115,9 @@ def jump_labels(directions: Sequence[str]) -> list[str]:
     return labels
 
 
-def variables_shown(table: Table, shown: Sequence[Suspect]) -> dict[str, Variable]:
+def variables_shown(table: Table, shown: Sequence[Sequence[float]]) -> dict[str, Variable]:
     """Build the variables of what a record shows at jumps; NaN where a row is NaN."""
-    rows = np.array(shown, dtype=float).reshape(-1, 3).T
+    rows = np.array(shown, dtype=float).reshape(-1, len(DONE)).T
     numbers = np.arange(len(table["time"]))
     before, here, after = (
         {name: np.interp(at, numbers, table[name]) for name in COLUMNS_SHOWN} for at in rows

@@ -39,7 +39,7 @@ class CoupledRun(Job):
     schedule: Schedule
     scheme: Scheme
     speed_start: float  # of the motor, rad/s
-    # time for which a voltage is held at most, where the record does not tell a jump, s
+    # time for which a voltage is held at most until the speed settles, s
     hold: float
     # what takes the voltage from the schedule; the motor gets all of it where there is none
     control: Controller | None = None

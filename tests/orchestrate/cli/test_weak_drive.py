@@ -181,7 +181,7 @@ def test_drive_branch(ask, folder):
 def test_a_jump_that_no_ramp_has_and_an_undecided_one():
     """Made-up: a jump up of one of two structures, an undecided one down."""
     each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
-    decided = [["by held voltages", "undecided"], ["by the record"] * 2]
+    decided = [["by held voltages", "undecided"], ["by held voltages"] * 2]
     jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[1e-4, np.nan], [np.nan] * 2]
     made = {"jumps": jumps, "standard_error": errors, "decided": decided}
     data = xr.Dataset({name: (tuple(each), values) for name, values in made.items()}, each)

@@ -1,7 +1,6 @@
 """Structures with their drives, and co-simulations of both FMUs from given states."""
 
 import contextlib
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -42,17 +41,11 @@ QUICK, BEAM = (
 )
 
 
-def drawn(seed, number):
-    """A system drawn at random from a seed, by its number."""
-    rng = np.random.default_rng(seed)
-    for _ in range(number + 1):
-        D, b = rng.uniform(0.006, 0.03), math.exp(rng.uniform(math.log(0.01), math.log(0.5)))
-        ratios = {"mu": rng.uniform(0.5, 2.0), "kappa": rng.uniform(1.05, 2.0)}
-        D2, e = D * rng.uniform(0.5, 3.0), rng.uniform(0.3, 0.9)
-        motor = {"b": b, "beta": rng.uniform(0.05, 0.4), "epsilon": rng.uniform(3e-4, 2e-3)}
-        box = {"Omega_b": rng.uniform(0.05, 0.3), "D_b": rng.uniform(0.005, 0.05)}
-    structure = Structure.nondimensional(**ratios, D1=D, D2=D2, e=e)
-    return System(structure, Drive.nondimensional(**motor, **box, structure=structure))
+def system_of(mu, kappa, D1, D2, e, clearance=0.0, **drive):
+    """A system by its non-dimensional numbers; of the drive beta, epsilon, b, Omega_b and D_b."""
+    numbers = {"mu": mu, "kappa": kappa, "D1": D1, "D2": D2, "e": e, "clearance": clearance}
+    structure = Structure.nondimensional(**numbers)
+    return System(structure, Drive.nondimensional(**drive, structure=structure))
 
 
 def rest(speed=0.0, structure=None):

@@ -9,14 +9,16 @@ from orchestrate.weak_drive.capture import threshold_voltage
 from orchestrate.weak_drive.settling import CONVERGED, UNDECIDED, CaptureOutcome
 
 from . import bonded
-from .coupled import QUICK, drawn, rest
+from .coupled import QUICK, rest, system_of
 from .monolithic import Monolith
 
 SHORT = {"step": 0.2, "progress": False}
 OPEN = QUICK.with_structure(clearance=3.0)
-SWINGING = drawn(
-    11, 30
-)  # a quick motor: it is beyond the resonance for 80 revolutions, and returns
+# a quick motor: it is beyond the resonance for 80 revolutions, and returns
+SWINGING = system_of(
+    *(0.86903, 1.077872, 0.006998, 0.01166, 0.730714),
+    **{"beta": 0.202611, "epsilon": 0.000919, "b": 0.227602, "Omega_b": 0.214632, "D_b": 0.012328},
+)
 
 
 def passes(system, voltage, time=900.0):

@@ -39,7 +39,7 @@ def test_a_jump_on_a_ramp_is_late_by_the_rate_to_two_thirds():
     """At rate 0 it is at the fold of the averaged theory."""
     quick, rates, asked = QUICK.as_bonded(), (1e-4, 3e-5), {"back": False, "hold": 0.0}
     ramps = [run(quick, (1.535, 1.62), rate, speed_start=0.0, **asked) for rate in rates]
-    found = [float(each.ramp_voltage[0]) / quick.drive.volts(quick.structure) for each in ramps]
+    found = [float(each.eta0[np.argmax(each.Omega.values > 1.45)]) for each in ramps]
     assert found == pytest.approx([1.606, 1.593], abs=5e-4)
     lags = np.array([[1.0, rate ** (2 / 3)] for rate in rates])
     assert np.linalg.solve(lags, found)[0] == pytest.approx(1.5831, abs=2e-3)
@@ -49,9 +49,11 @@ def test_energy_balance_of_a_whole_run():
     """Up and down through both jumps: nothing is missing, and nothing is counted twice."""
     more = {"settle": 200.0, "speed_start": 1.26, "step": 0.1, "hold": 0.0}
     found = run(QUICK, (1.34, 1.68), 2e-4, **more)
-    up, down = found.ramp_voltage.values
+    beyond = np.flatnonzero(np.diff(found.Omega.values > 1.36))
+    up, down = found.eta0.values[beyond[[0, -1]]]
     assert 1.58 < up < 1.65
     assert 1.36 < down < 1.43
+    assert found.decided.values.tolist() == ["undecided"] * 2  # no voltage is held
     end = found.isel(revolution=-1)
     assert abs(end.missing) < 1e-6 * end.motor
     assert end.defect_sizes < 1e-6 * end.motor

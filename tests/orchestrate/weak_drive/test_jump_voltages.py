@@ -6,18 +6,9 @@ import pytest
 from orchestrate import InputError, jump_voltages
 from orchestrate.weak_drive.averaged import folds
 from orchestrate.weak_drive.couple import schedule_from_arguments, scheme_from_arguments
-from orchestrate.weak_drive.jump_voltages import SLOTS, JumpVoltagesJob, first_past
+from orchestrate.weak_drive.jump_voltages import JumpVoltagesJob
 
 from .coupled import QUICK
-
-
-def test_of_several_jumps_that_ramps_show_the_next_one_past_the_loss_counts():
-    """Up at 1.5, down at 1.4; a ramp shows one earlier, and one much later."""
-    shown = np.full((1, 1, 2, 4, 2), np.nan)
-    shown[0, 0, 0, :3, 0], shown[0, 0, 1, :2, 0] = (1.45, 1.7, 1.52), (1.38, 1.45)
-    jumps = np.array([[[1.5, 1.4]]])
-    assert first_past(jumps, shown)[..., 0].tolist() == [[[1.52, 1.38]]]
-    assert np.isnan(first_past(jumps + np.nan, shown)).all()
 
 
 @pytest.mark.slow
@@ -41,14 +32,15 @@ def test_over_a_parameter_the_bonded_structure_is_computed_once():
     )
     scheme = scheme_from_arguments(QUICK[0], 0.2)
     job = JumpVoltagesJob("x", *QUICK, ramps, scheme, "clearance", (0.0, 0.01))
-    structures = [structure for structure, _ in job.items()]
-    assert [one.bonded for one in structures] == 2 * [True, False, False]
-    assert [one.clearance for one in structures[1:3]] == [0.0, 0.01]
-    jumps = np.arange(6.0)[:, None, None] + np.zeros((6, 3, 2))
-    how, shown = np.full((6, 2), "by held voltages"), np.full((6, 2, SLOTS, 2), np.nan)
+    assert [one.bonded for one in job.items()] == [True, False, False]
+    assert [one.clearance for one in job.items()[1:]] == [0.0, 0.01]
+    jumps = np.arange(3.0)[:, None, None] + np.zeros((3, 3, 2))
+    how, shown = np.full((3, 2), "by held voltages"), np.arange(24.0).reshape(3, 2, 2, 2)
     data = job.dataset({"jumps": jumps, "decided": how, "shown": shown})
     assert data.jumps.dims == ("structure", "clearance", "jump")
     assert data.jumps.sel(jump="up").values.tolist() == [[0.0, 0.0], [1.0, 2.0]]
+    at = {"rate": 1, "jump": 0}
+    assert data.voltage.isel(at).values.tolist() == [[4.0, 4.0], [12.0, 20.0]]
 
 
 @pytest.mark.parametrize(

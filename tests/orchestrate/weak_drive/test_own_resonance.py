@@ -6,12 +6,14 @@ from scipy.linalg import expm
 
 from orchestrate import Structure
 from orchestrate.weak_drive import averaged, own_resonance
-from tests.draws import draw_with_folds
 
-from .coupled import BEAM, QUICK, System
+from .coupled import BEAM, QUICK, system_of
 from .test_couple import run
 
-APART = System(*draw_with_folds(np.random.default_rng(86000376301191)))
+APART = system_of(
+    *(0.542255, 1.685337, 0.006784, 0.011107, 0.819721),
+    **{"beta": 0.059791, "epsilon": 0.001979, "b": 0.065491, "Omega_b": 0.224885, "D_b": 0.009442},
+)
 OWN_LOSSES = (1.4370, 1.4460)  # over K omega: where held voltages lose its motion, down and up
 
 

@@ -9,7 +9,7 @@ from orchestrate import InputError, capture, couple, passage, waterfall
 from .coupled import QUICK
 
 FAST = {"voltage": (1.5, 1.7), "rate": 4e-4, "back": False, "settle": 50.0, "step": 0.1}
-FAST |= {"hold": 0.0, "progress": False}
+FAST |= {"progress": False}
 
 
 @pytest.fixture(scope="module")

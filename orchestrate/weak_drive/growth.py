@@ -1,0 +1,53 @@
+"""Compute how fast disturbances of a held motion grow, by its Floquet multipliers.
+
+Newton's method begins at the state of the run and keeps its voltage, so that it finds the motion
+that is held, if that repeats after one of `TURNS` revolutions, or none.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..constants import TURN
+from ..dynamics.continuation import SOLVER_ERRORS, newton_correct, unit_vector
+from . import averaged
+from .run import Run
+from .shooting import Shooter
+
+TURNS = (1, 2, 3, 4)  # revolutions after which a motion may repeat
+STEPS = 48  # of a revolution
+NEAR = 0.2  # of the amplitude, of the voltage and of the speed: largest distance of the motion
+CLEAR = 0.3  # of the widest gap: a period begins where it is wider, far from impacts
+
+
+def growth_rate(run: Run, voltage: float, speed: float) -> float:
+    """Return the rate, 1/s, at which disturbances of a run's motion grow; NaN if unknown.
+
+    Voltage (V) and mean speed (rad/s) are those of the motion. The run is over then.
+    """
+    if speed < 0.0:  # the shooter's motors turn forward
+        return math.nan
+    structure, drive = run.job.structure, run.job.drive
+    omega = structure.omega
+    length = float(averaged.amplitude(structure, drive, speed / omega)) * drive.length
+    shooter = Shooter((run.oscillator, run.shaker), structure, drive, 1, STEPS, length)
+    shooter.used, shooter.angle = True, run.master["angle"] % TURN
+    shooter.begin_together(structure.bonded or run.master.motion.x_rel == 0.0)
+    ends = [voltage / shooter.volts, speed / omega]
+    unknowns = np.append(shooter.scaled_state(run.master), ends)
+    try:
+        period = shooter.observe_period(unknowns)
+        if period.share < CLEAR or period.together != shooter.together:
+            unknowns = shooter.begin_later(unknowns, period.clear, period.together)
+        for turns in TURNS:
+            shooter.repeat_after(turns)
+            if np.abs(shooter.residual(unknowns)).max() < NEAR:
+                normal = unit_vector(len(unknowns), -2)
+                newton_correct(shooter, unknowns, normal, max_iterations=12, max_distance=NEAR)
+                largest = abs(shooter.multipliers()[0])
+                return math.log(largest) * speed / (turns * TURN)
+    except SOLVER_ERRORS:
+        pass
+    return math.nan
