@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..kernels import repetition
+from ..kernels import linear_response, repetition
 from .archive import guid_of
 from .compiler import link
 from .errors import CannotExport
@@ -20,10 +20,11 @@ LOOPS = ROOT / "kernels" / "loops"
 HEADER = "fmi.h"  # of loops
 VISIBLE = '__attribute__((visibility("default")))'
 KERNELS = {  # headers that a source may include, translated from Python
-    "repetition.h": {
+    "rules.h": {
         "decide": repetition.decide,
         "repeat": repetition.repeat,
         "confirm": repetition.confirm,
+        "describe": linear_response.describe,
     },
 }
 

@@ -25,6 +25,8 @@ Floats = NDArray[np.float64]
 START_PARAMETERS = tuple(f"{name}_start" for name in STATE)
 SAMPLE_SERIES = tuple(f"{name}_sample" for name in STATE)
 READ = ("sample_count", "x_rel_max", "x_rel_max_on", "impact_count", "contact_count", "in_contact")
+TRAITS = ("m1", "m2", "k1", "k2", "d1", "d2", "clearance", "bonded")  # of a structure, for loops
+TRAIT_COUNT = 15  # with its frequency and excitation, and what follows from them
 SET = {  # before each start, with first values
     **Structure().parameters(),
     **dict.fromkeys(START_PARAMETERS, 0.0),
@@ -57,7 +59,7 @@ def library() -> Any:
     loaded.to_rest.argtypes = [c_void_p, c_void_p, c_void_p]
     loaded.to_rest.restype = None
     loaded.sample_evenly.restype = loaded.sample_periods.restype = c_bool
-    for name in ("decide_multiplicity", "find_repetition", "confirm_impacts"):
+    for name in ("decide_multiplicity", "find_repetition", "describe_linear_response"):
         getattr(loaded, name).argtypes = [c_void_p]
     return loaded
 
@@ -129,15 +131,20 @@ def empty(count: int) -> Floats:
     return np.empty((count, len(STATE)))
 
 
-def traits(structure: Structure) -> tuple[float, float, float]:
-    """Return the gap between unloaded springs, and the places of rest where it is negative."""
-    if structure.gap_offset >= 0.0:
-        return structure.gap_offset, 0.0, 0.0
-    return (structure.gap_offset, *structure.at_rest)
+def traits(structure: Structure, frequency: float = 1.0, amplitude: float = 0.0) -> Any:
+    """Return what a structure under an excitation is for the loops: numbers in C.
+
+    They end with the gap between unloaded springs, the places of rest x1 and x2, and whether the
+    linear response opens or touches, so that no motion without impacts exists.
+    """
+    numbers = (getattr(structure, name) for name in TRAITS)
+    memory = (c_double * TRAIT_COUNT)(*numbers, structure.omega, frequency, amplitude)
+    library().describe_linear_response(memory)
+    return memory
 
 
 def to_rest(structure: Structure, state: Sequence[float]) -> list[float]:
     """Convert a start state from unloaded springs to the FMU's, from rest; all zeros mean rest."""
     numbers, start = (c_double * 4)(*state), (c_double * 4)()
-    library().to_rest(numbers, (c_double * 3)(*traits(structure)), start)
+    library().to_rest(numbers, traits(structure), start)
     return list(start)

@@ -9,7 +9,7 @@ import ctypes
 from collections.abc import Sequence
 from ctypes import byref, c_bool, c_double, c_size_t, c_void_p
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +18,6 @@ from ..fmu import SET, Instance, Oscillator, traits
 from ..fmu.fmi import FAILED, PAUSED
 from .multiplicity import memory_size
 from .questions import Point
-from .threshold import exceeds_threshold
 
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
 COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
@@ -33,8 +32,8 @@ class Task(ctypes.Structure):
         *((name, c_size_t) for name in ("count", "samples", "peak_periods", "points", "piece")),
         *((name, c_double) for name in ("tolerance", "loose", "gap")),
         *((name, c_bool) for name in ("decides", "is_chain", "has_gap")),
-        *((name, c_void_p) for name in ("transients", "reals", "booleans", "periods")),
-        *((name, c_void_p) for name in ("frequencies", "traits", "starts", "memory", "states")),
+        *((name, c_void_p) for name in ("transients", "reals", "booleans", "periods", "traits")),
+        *((name, c_void_p) for name in ("starts", "memory", "states")),
         *((name, c_void_p) for name in ("ends", "largest", "impacts", "deviations", "orbits")),
         ("counts", c_void_p),
     ]
@@ -93,13 +92,12 @@ class Responses(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """What is set before each start, and of each response period, frequency and traits."""
+    """What is set before each start, and of each response the period and traits."""
 
     reals: Floats
     booleans: NDArray[np.bool_]
     periods: Floats
-    frequencies: Floats
-    traits: Floats  # gap between unloaded springs, places of rest, whether it must impact
+    traits: Floats  # as :func:`..fmu.oscillator.traits` has them
 
 
 def response_loop(instance: Instance) -> ResponseLoop:
@@ -171,15 +169,17 @@ class ResponseLoop:
                 np.array([[row[name] for name in some] for row in sets], dtype=kind)
                 for some, kind in zip(names, (float, bool), strict=True)
             ),
-            *(
-                np.array([getattr(point.excitation, name) for point in different.values()])
-                for name in ("period", "frequency")
-            ),
-            np.array([(*traits(p.structure), exceeds_threshold(*p)) for p in different.values()]),
+            np.array([point.excitation.period for point in different.values()]),
+            np.array([traits_of(point) for point in different.values()]),
         )
         self.last_points = list(points)
         self.last_rows = Rows(*(np.ascontiguousarray(table[chosen]) for table in tables))
         return self.last_rows
+
+
+def traits_of(point: Point) -> Any:
+    """Return what a point is for the loops."""
+    return traits(point.structure, point.excitation.frequency, point.excitation.amplitude)
 
 
 def periods_to_sample(multiplicity: int, max_periods: int) -> int:

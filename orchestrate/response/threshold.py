@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from ..fmu import traits
 from ..lazy import xr
 from ..model import Excitation, Structure
 from ..running.job import brief
@@ -23,7 +24,6 @@ from .questions import excitation_numbers, require_delaminated
 
 Floats = NDArray[np.float64]
 GRID = 400  # frequencies between which minima of the threshold are bracketed
-ROUNDING = 1e-12  # of the level at which the linear response opens or touches
 ACCURACY = 1e-12  # of a frequency at a minimum; the level there is flat, and exact far earlier
 
 
@@ -53,10 +53,7 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
 
 def exceeds_threshold(structure: Structure, excitation: Excitation) -> bool:
     """Return whether the linear response opens or touches, so that no response can stay linear."""
-    if structure.gap_offset == 0.0:
-        return False
-    (level,) = threshold_amplitudes(structure, np.array([excitation.frequency])).tolist()
-    return bool(excitation.amplitude > level * (1.0 + ROUNDING))
+    return bool(traits(structure, excitation.frequency, excitation.amplitude)[-1])
 
 
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:

@@ -1,9 +1,9 @@
 /* Responses one after the other: initialise, transient, samples, how often they repeat, and their impacts then.
  *
- * The rule of repetition is ../repetition.py, translated. response/response_loop.py has the same structures and says more of the results.
+ * Its rules are ../repetition.py and ../linear_response.py, translated. response/response_loop.py has the same structures and says more of the results.
  */
 #include "fmi.h"
-#include "repetition.h"
+#include "rules.h"
 
 #define TOUCHING 0x1p-50  /* relative: a gap that is no more than the rounding of displacements */
 #define END_BITS 44  /* binary digits of the state that the next response starts from */
@@ -11,7 +11,7 @@
 #define MAX_REALS 64  /* set before a start */
 
 enum { X1, X2, V1, V2, STATES };
-enum { GAP_OFFSET, REST_1, REST_2, MUST_IMPACT, TRAITS };
+enum { TRAITS = MUST_IMPACT + 1 };
 
 typedef struct {  /* an FMU of the oscillator */
     Fmi fmi;
@@ -30,7 +30,7 @@ typedef struct {  /* what there is to do: a row a response */
     const uint64_t *transients;  /* periods dropped of each */
     const double *reals;
     const bool *booleans;
-    const double *periods, *frequencies, *traits;  /* of each, traits: gap between unloaded springs, places of rest, whether no motion without impacts exists */
+    const double *periods, *traits;  /* of each, traits: those of linear_response.py */
     const double *starts;  /* of each, or of the first of a chain */
     double *memory;  /* of the rule */
     double *states, *ends, *largest, *impacts, *deviations, *orbits;  /* results */
@@ -153,7 +153,7 @@ static bool begin_at(Oscillator *o, const Task *task, size_t i, const double *st
 /* The start of a response: its own, or the end of the one before, with the same faces where the gap between unloaded springs is another one. */
 static void start_of(const Task *task, size_t i, double *start) {
     const double *given = task->is_chain && i ? task->ends + STATES * (i - 1) : task->starts + (task->is_chain ? 0 : STATES * i);
-    double offset = task->traits[TRAITS * i], gap = i ? task->traits[TRAITS * (i - 1)] : task->gap;
+    double offset = task->traits[TRAITS * i + GAP_OFFSET], gap = i ? task->traits[TRAITS * (i - 1) + GAP_OFFSET] : task->gap;
     for (int j = 0; j < STATES; j++) start[j] = given[j];
     if (task->is_chain && (i || task->has_gap) && gap != offset && is_any(start)) for (int j = 0; j < STATES; j++) start[j] += j == X2 ? gap - offset : 0.0;
 }
@@ -174,7 +174,7 @@ static bool drop(Oscillator *o, const Task *task, Progress *progress, int32_t *i
 static int32_t apply_rule(const Task *task, size_t i, double tolerance, int (*rule)(double *, double)) {
     double *memory = task->memory;
     memory[COUNT] = (double)task->samples;
-    memory[FREQUENCY] = task->frequencies[i];
+    memory[FREQUENCY] = task->traits[TRAITS * i + BOX_FREQUENCY];
     memory[GAP] = task->largest[i];
     memory[TOLERANCE] = tolerance;
     for (size_t k = 0; k < STATES * task->samples; k++) memory[HEAD + k] = task->states[STATES * task->samples * i + k];
@@ -223,7 +223,7 @@ static bool finish(Oscillator *o, const Task *task, size_t i) {
     if (!sample_periods(o, task->periods[i], (size_t)task->transients[i], task->samples, states, task->largest + i)) return false;
     if (!get_integer(fmi, o->impact_count, &counts[AFTER]) || !get_integer(fmi, o->contact_count, &counts[CONTACTS_AFTER])) return false;
     task->impacts[i] = (double)(counts[AFTER] - counts[BEFORE]) / (double)task->samples;
-    round_state(last, task->traits[TRAITS * i], task->ends + STATES * i);
+    round_state(last, task->traits[TRAITS * i + GAP_OFFSET], task->ends + STATES * i);
     if (task->loose != 0.0) {
         counts[NEARLY] = apply_rule(task, i, task->loose, kernel_repeat);
         task->deviations[i] = task->memory[DEVIATION];
@@ -267,4 +267,4 @@ EXPORT int decide_multiplicity(double *memory) { return kernel_decide(memory, 0.
 
 EXPORT int find_repetition(double *memory) { return kernel_repeat(memory, 0.0); }
 
-EXPORT int confirm_impacts(double *memory) { return kernel_confirm(memory, 0.0); }
+EXPORT int describe_linear_response(double *memory) { return kernel_describe(memory, 0.0); }
