@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..errors import FmuError
 from .c_library import loaded_loop
-from .fmi import FAILED, NOT_FINITE, PAUSED, Fmi, references
+from .fmi import BROKEN, NOT_FINITE, PAUSED, Fmi, references
 from .impacts import EVENT_OUTPUTS, Impacts
 from .instance import Instance
 
@@ -32,7 +32,7 @@ class Played(NamedTuple):
     impacts: Impacts
 
 
-class Calls(ctypes.Structure):
+class PlayerCalls(ctypes.Structure):
     """C struct of an instance, and of the variables that are set and read."""
 
     _fields_ = [
@@ -42,7 +42,7 @@ class Calls(ctypes.Structure):
     ]
 
 
-class Task(ctypes.Structure):
+class PlayTask(ctypes.Structure):
     """C struct of what there is to do: addresses, sizes of input pieces and sample times."""
 
     _fields_ = [
@@ -53,7 +53,7 @@ class Task(ctypes.Structure):
     ]
 
 
-class Progress(ctypes.Structure):
+class PlayProgress(ctypes.Structure):
     """C struct of what is done: how many pieces, samples and impacts."""
 
     _fields_ = [
@@ -74,7 +74,7 @@ class EventLoop:
         self._play.argtypes = [c_void_p] * 3
         self._buffer = np.empty((IMPACT_CAPACITY, len(EVENT_OUTPUTS) + 2))
         names = self.inputs, self.outputs, EVENT_OUTPUTS, ("in_contact",)
-        self._calls = Calls(
+        self._calls = PlayerCalls(
             Fmi.from_instance(instance),
             *(references(instance, some) for some in names),
             *map(len, names[:3]),
@@ -90,18 +90,18 @@ class EventLoop:
         counts = len(nodes) - 1, len(samples)
         outputs = (part.ctypes.data for part in (rows, touching, self._buffer))
         inputs = (part.ctypes.data for part in arrays)
-        task = Task(*inputs, *counts, *outputs, len(self._buffer), MAX_STEPS)
-        progress = Progress(time=float(nodes[0]))
+        task = PlayTask(*inputs, *counts, *outputs, len(self._buffer), MAX_STEPS)
+        progress = PlayProgress(time=float(nodes[0]))
         pointers, tables, answer = (byref(self._calls), byref(task), byref(progress)), [], PAUSED
         while answer == PAUSED:
             self.instance._messages.clear()
             answer = self._play(*pointers)
-            if answer == FAILED:
+            if answer == BROKEN:
                 raise self._failure(rows, progress)
             tables.append(self._buffer[: progress.impact].copy())
         return Played(rows, touching, Impacts.from_table(np.concatenate(tables)))
 
-    def _failure(self, rows: Floats, progress: Progress) -> FmuError:
+    def _failure(self, rows: Floats, progress: PlayProgress) -> FmuError:
         """Return the ``FmuError`` for the call at which the loop stopped."""
         fmi: Fmi = self._calls.fmi
         if fmi.status != NOT_FINITE:

@@ -11,7 +11,7 @@ from ..errors import FmuError
 from .instance import Instance, function_addresses
 
 NOT_FINITE = -1  # a status that FMI does not have
-PAUSED, FAILED = 1, 2  # what a loop answers: to be called again, or stopped at an error
+PAUSED, BROKEN = 1, 2  # what a loop answers: to be called again, or stopped at an error
 FUNCTIONS = {  # by FMI's version, as `Fmi` of the C header has them; "" where there is none
     2: (
         *("Reset", "SetupExperiment", "EnterInitializationMode", "ExitInitializationMode"),

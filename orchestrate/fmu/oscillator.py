@@ -27,6 +27,8 @@ SAMPLE_SERIES = tuple(f"{name}_sample" for name in STATE)
 READ = ("sample_count", "x_rel_max", "x_rel_max_on", "impact_count", "contact_count", "in_contact")
 TRAITS = ("m1", "m2", "k1", "k2", "d1", "d2", "clearance", "bonded")  # of a structure, for loops
 TRAIT_COUNT = 15  # with its frequency and excitation, and what follows from them
+COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
+COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
 SET = {  # before each start, with first values
     **Structure().parameters(),
     **dict.fromkeys(START_PARAMETERS, 0.0),
@@ -35,7 +37,7 @@ SET = {  # before each start, with first values
 }
 
 
-class Calls(ctypes.Structure):
+class OscillatorCalls(ctypes.Structure):
     """C struct of an instance, and of the variables that are set before a start or read."""
 
     _fields_ = [
@@ -45,6 +47,30 @@ class Calls(ctypes.Structure):
         *((name, c_size_t) for name in ("series_count", "capacity")),
         *((name, c_uint) for name in READ),
         ("kept", c_void_p),
+    ]
+
+
+class ResponseTask(ctypes.Structure):
+    """C struct of responses to compute: sizes and settings, then addresses of rows."""
+
+    _fields_ = [
+        *((name, c_size_t) for name in ("count", "samples", "peak_periods", "points", "piece")),
+        *((name, c_double) for name in ("tolerance", "loose", "gap")),
+        *((name, c_bool) for name in ("decides", "is_chain", "has_gap")),
+        *((name, c_void_p) for name in ("transients", "reals", "booleans", "periods", "traits")),
+        *((name, c_void_p) for name in ("starts", "memory", "states")),
+        *((name, c_void_p) for name in ("ends", "largest", "impacts", "deviations", "orbits")),
+        ("counts", c_void_p),
+    ]
+
+
+class ResponseProgress(ctypes.Structure):
+    """C struct of how far responses are computed."""
+
+    _fields_ = [
+        *((name, c_size_t) for name in ("response", "period")),
+        ("time", c_double),
+        ("is_begun", c_bool),
     ]
 
 
@@ -76,7 +102,7 @@ class Oscillator:
         self.capacity = instance.size(*SAMPLE_SERIES) // len(SAMPLE_SERIES)
         self.kept = np.zeros((len(SAMPLE_SERIES), self.capacity))
         series = (c_uint * len(elements))(*(variable.valueReference for variable in elements))
-        self.calls = Calls(
+        self.calls = OscillatorCalls(
             Fmi.from_instance(instance),
             *(references(instance, names) for names in (self.reals, self.booleans)),
             *(series, len(self.reals), len(self.booleans), self.reals.index(START_PARAMETERS[0])),

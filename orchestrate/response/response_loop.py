@@ -5,9 +5,8 @@ The loop is ``fmu_src/kernels/loops/respond.c``, which calls the FMU's functions
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Sequence
-from ctypes import byref, c_bool, c_double, c_size_t, c_void_p
+from ctypes import byref
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -15,38 +14,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..fmu import SET, Instance, Oscillator, traits
-from ..fmu.fmi import FAILED, PAUSED
+from ..fmu.fmi import BROKEN, PAUSED
+from ..fmu.oscillator import COUNTED, COUNTS, ResponseProgress, ResponseTask
 from .multiplicity import memory_size
 from .questions import Point
 
-COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
-COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
 MAX_WORK = 200_000  # periods and impacts of one call: between two calls an interrupt is heard
+__all__ = ["COUNTED", "COUNTS"]
 Floats = NDArray[np.float64]
-
-
-class Task(ctypes.Structure):
-    """C struct of what there is to do: sizes and settings, then addresses of rows."""
-
-    _fields_ = [
-        *((name, c_size_t) for name in ("count", "samples", "peak_periods", "points", "piece")),
-        *((name, c_double) for name in ("tolerance", "loose", "gap")),
-        *((name, c_bool) for name in ("decides", "is_chain", "has_gap")),
-        *((name, c_void_p) for name in ("transients", "reals", "booleans", "periods", "traits")),
-        *((name, c_void_p) for name in ("starts", "memory", "states")),
-        *((name, c_void_p) for name in ("ends", "largest", "impacts", "deviations", "orbits")),
-        ("counts", c_void_p),
-    ]
-
-
-class Progress(ctypes.Structure):
-    """C struct of what is done."""
-
-    _fields_ = [
-        *((name, c_size_t) for name in ("response", "period")),
-        ("time", c_double),
-        ("is_begun", c_bool),
-    ]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,7 +110,7 @@ class ResponseLoop:
         memory = np.empty(memory_size(chosen.samples))
         transients = np.full(count, chosen.transient, dtype=np.uint64)
         inputs = (transients, *rows, np.ascontiguousarray(starts, dtype=float), memory)
-        task = Task(
+        task = ResponseTask(
             *(count, chosen.samples, chosen.peak_periods, chosen.peak_points, MAX_WORK),
             *(chosen.tolerance, chosen.loose, chosen.chain_gap or 0.0),
             *(chosen.decides, chosen.is_chain, chosen.chain_gap is not None),
@@ -144,12 +119,12 @@ class ResponseLoop:
         self.run(task)
         return results
 
-    def run(self, task: Task) -> None:
+    def run(self, task: ResponseTask) -> None:
         """Run a task to its end."""
-        progress, answer = Progress(), PAUSED
+        progress, answer = ResponseProgress(), PAUSED
         while answer == PAUSED:
             answer = self.oscillator.run("respond", byref(task), byref(progress), MAX_WORK)
-        if answer == FAILED:
+        if answer == BROKEN:
             raise self.oscillator.error()
 
     def rows(self, points: Sequence[Point]) -> Rows:

@@ -16,7 +16,7 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
-enum { DONE, PAUSED, FAILED };  /* what a loop answers: paused, it is to be called again */
+enum { DONE, PAUSED, BROKEN };  /* what a loop answers: paused, it is to be called again */
 enum { NOT_FINITE = -1 };  /* a status that FMI does not have */
 
 typedef void Function(void);
@@ -88,18 +88,19 @@ static inline bool get_boolean(Fmi *fmi, unsigned reference, bool *value) {
     return true;
 }
 
-/* Take an instance with its start values set through initialisation at time 0. */
+/* Take an instance with its start values set through initialisation at time 0, so that it can be stepped. */
 static inline bool initialize(Fmi *fmi) {
     int status;
     if (fmi->version == 2) {
         if (!answered(fmi, "fmi2SetupExperiment", ((Setup2)fmi->setup)(fmi->instance, false, 0.0, 0.0, false, 0.0))) return false;
         status = ((Enter2)fmi->enter_initialization)(fmi->instance);
     } else status = ((Enter3)fmi->enter_initialization)(fmi->instance, false, 0.0, 0.0, false, 0.0);
-    return answered(fmi, "EnterInitializationMode", status) && answered(fmi, "ExitInitializationMode", fmi->exit_initialization(fmi->instance));
+    return answered(fmi, "EnterInitializationMode", status) && answered(fmi, "ExitInitializationMode", fmi->exit_initialization(fmi->instance))
+        && (!fmi->enter_step_mode || answered(fmi, "fmi3EnterStepMode", fmi->enter_step_mode(fmi->instance)));
 }
 
 /* One step towards a target; an instance that has events may stop before it. */
-static inline bool step(Fmi *fmi, double time, double target, bool *event, double *reached) {
+static inline bool do_step(Fmi *fmi, double time, double target, bool *event, double *reached) {
     bool terminate, early;
     *event = false;
     *reached = target;

@@ -44,14 +44,14 @@ static bool read_sample(Player *player, const Task *task, Progress *progress) {
     return get_reals(&player->fmi, player->outputs, count, task->rows + i * count, count) && get_boolean(&player->fmi, *player->contact, task->contacts + i);
 }
 
-/* Play from where the progress stands: DONE, PAUSED for the caller to take the impacts away, or FAILED. */
+/* Play from where the progress stands: DONE, PAUSED for the caller to take the impacts away, or BROKEN. */
 EXPORT int play(Player *player, const Task *task, Progress *progress) {
     size_t steps = 0;
     progress->impact = 0;
     for (; progress->piece < task->piece_count; progress->piece++, progress->piece_is_set = false) {
         double end = task->nodes[progress->piece + 1];
         const double *values = task->derivatives + progress->piece * player->input_count;
-        if (!progress->piece_is_set && !set_reals(&player->fmi, player->inputs, player->input_count, values)) return FAILED;
+        if (!progress->piece_is_set && !set_reals(&player->fmi, player->inputs, player->input_count, values)) return BROKEN;
         progress->piece_is_set = true;
         for (bool reads = true; reads;) {
             reads = progress->sample < task->sample_count && task->samples[progress->sample] < end;
@@ -59,12 +59,12 @@ EXPORT int play(Player *player, const Task *task, Progress *progress) {
             while (progress->time < target) {
                 bool event;
                 if (steps++ == task->max_steps || progress->impact == task->impact_capacity) return PAUSED;
-                if (!step(&player->fmi, progress->time, target, &event, &progress->time)) return FAILED;
-                if (event && !keep_impact(player, task, progress)) return FAILED;
+                if (!do_step(&player->fmi, progress->time, target, &event, &progress->time)) return BROKEN;
+                if (event && !keep_impact(player, task, progress)) return BROKEN;
             }
-            if (reads && !read_sample(player, task, progress)) return FAILED;
+            if (reads && !read_sample(player, task, progress)) return BROKEN;
         }
     }
-    while (progress->sample < task->sample_count) if (!read_sample(player, task, progress)) return FAILED;  /* at the last node */
+    while (progress->sample < task->sample_count) if (!read_sample(player, task, progress)) return BROKEN;  /* at the last node */
     return DONE;
 }

@@ -50,15 +50,11 @@ EXPORT const unsigned sizes_of_respond[] = {sizeof(Oscillator), sizeof(Task), si
 /* -- states -- */
 
 /* The gap x2 - x1 + offset; rounding next to an offset is 0. */
-EXPORT double gap_between(const double *state, double offset) {
+static double gap_between(const double *state, double offset) {
     double gap = state[X2] - state[X1];
     if (offset == 0.0) return gap;
     gap = gap + offset;
     return __builtin_fabs(gap) <= TOUCHING * (__builtin_fabs(state[X1]) + __builtin_fabs(state[X2]) + __builtin_fabs(offset)) ? 0.0 : gap;
-}
-
-EXPORT void gaps_between(const double *states, const double *offsets, size_t count, double *gaps) {
-    for (size_t i = 0; i < count; i++) gaps[i] = gap_between(states + STATES * i, offsets[i]);
 }
 
 static bool is_any(const double *state) {
@@ -103,7 +99,7 @@ static void round_state(const double *state, double offset, double *end) {
 
 static bool advance(Fmi *fmi, double time, double target, double *reached) {
     bool event;
-    return step(fmi, time, target, &event, reached);
+    return do_step(fmi, time, target, &event, reached);
 }
 
 /* States at equal parts of a step, the last at its end. */
@@ -242,26 +238,28 @@ EXPORT bool begin(Oscillator *o, const Task *task, size_t i) {
     return begin_at(o, task, i, start);
 }
 
-/* Compute responses from where the progress stands: DONE, PAUSED after some work (periods and impacts), or FAILED. */
+/* Compute responses from where the progress stands: DONE, PAUSED after some work (periods and impacts), or BROKEN. */
 EXPORT int respond(Oscillator *o, const Task *task, Progress *progress, size_t budget) {
     size_t work = 0;
     for (; progress->response < task->count; progress->response++, progress->is_begun = false) {
         size_t i = progress->response;
         int32_t impacts = 0, *counts = task->counts + COUNTS * i;
-        if (!progress->is_begun && !begin(o, task, i)) return FAILED;
+        if (!progress->is_begun && !begin(o, task, i)) return BROKEN;
         if (!progress->is_begun) progress->period = 0, progress->time = 0.0;
-        else if (!get_integer(&o->fmi, o->impact_count, &impacts)) return FAILED;
+        else if (!get_integer(&o->fmi, o->impact_count, &impacts)) return BROKEN;
         progress->is_begun = true;
         while (progress->period < task->transients[i]) {
             if (work >= budget) return PAUSED;
-            if (!drop(o, task, progress, &impacts, &work)) return FAILED;
+            if (!drop(o, task, progress, &impacts, &work)) return BROKEN;
         }
         if (work >= budget) return PAUSED;
-        if (!finish(o, task, i)) return FAILED;
+        if (!finish(o, task, i)) return BROKEN;
         work += task->samples + (size_t)(counts[AFTER] - counts[BEFORE]);
     }
     return DONE;
 }
+
+EXPORT size_t memory_size(size_t samples) { return HEAD + (STATE + COLUMNS + 1) * samples; }
 
 EXPORT int decide_multiplicity(double *memory) { return kernel_decide(memory, 0.0); }
 

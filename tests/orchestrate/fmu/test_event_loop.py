@@ -11,7 +11,7 @@ from orchestrate.errors import FmuError
 from orchestrate.fmu import PLAYED, REST, Player
 from orchestrate.fmu import event_loop as loops
 from orchestrate.fmu.c_library import loaded_loop
-from orchestrate.fmu.event_loop import Calls, EventLoop, Played, Progress, Task
+from orchestrate.fmu.event_loop import EventLoop, Played, PlayerCalls, PlayProgress, PlayTask
 from orchestrate.fmu.impacts import EVENT_OUTPUTS, Impacts
 from orchestrate.fmu.play import CUBIC
 from orchestrate.model import Structure
@@ -180,7 +180,7 @@ def test_shapes_that_do_not_fit_are_refused(event_fmu):
 def test_structures_have_the_sizes_of_the_source():
     """A field forgotten on one side would shift all that follow."""
     sizes = (ctypes.c_uint * 3).in_dll(loaded_loop("play"), "sizes_of_play")
-    assert list(sizes) == [ctypes.sizeof(kind) for kind in (Calls, Task, Progress)]
+    assert list(sizes) == [ctypes.sizeof(kind) for kind in (PlayerCalls, PlayTask, PlayProgress)]
 
 
 def test_what_is_not_read_changes_nothing(event_fmu):

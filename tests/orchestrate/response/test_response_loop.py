@@ -8,10 +8,10 @@ import pytest
 
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu import OSCILLATOR, Instance, find, library, sampled
-from orchestrate.fmu.oscillator import Calls
+from orchestrate.fmu.oscillator import OscillatorCalls, ResponseProgress, ResponseTask
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
-from orchestrate.response.response_loop import LoopSettings, Progress, Task, response_loop
+from orchestrate.response.response_loop import LoopSettings, response_loop
 
 from ...sparing import ordinary
 from . import reference_loop
@@ -132,4 +132,6 @@ def test_what_the_fmu_refuses_is_its_own_message(instance):
 def test_structures_have_the_sizes_of_the_source():
     """A field forgotten on one side would shift all that follow."""
     sizes = (ctypes.c_uint * 3).in_dll(library(), "sizes_of_respond")
-    assert list(sizes) == [ctypes.sizeof(kind) for kind in (Calls, Task, Progress)]
+    assert list(sizes) == [
+        ctypes.sizeof(kind) for kind in (OscillatorCalls, ResponseTask, ResponseProgress)
+    ]
