@@ -1,4 +1,4 @@
-"""What a response's structure and excitation tell of it: places at rest, and whether it impacts.
+"""What a structure and its excitation tell of responses: places at rest, and what they impact at.
 
 In the subset of Python that :mod:`fmu_src.export.translation` translates, over a flat memory.
 """
@@ -7,12 +7,15 @@ import math
 
 # given, then found
 M1, M2, K1, K2, D1, D2, CLEARANCE, BONDED, OMEGA, BOX_FREQUENCY, BOX_AMPLITUDE = range(11)
-GAP_OFFSET, REST_1, REST_2, MUST_IMPACT, TRAITS = range(11, 16)
-ROUNDING = 1e-12  # of the level at which the linear response opens or touches
+GAP_OFFSET, REST_1, REST_2, THRESHOLD, MUST_IMPACT, TRAITS = range(11, 17)
+LEVEL_ROUNDING = 1e-12  # of the level at which the linear response opens or touches
+NEVER = float("inf")
 
 
 def describe(m, time):
-    """Write the gap between unloaded springs, the places of rest, and whether it must impact."""
+    """Write the gap between unloaded springs, the places of rest, the threshold, and whether the
+    excitation exceeds it, so that no response without impacts exists.
+    """
     offset = m[CLEARANCE]
     if m[BONDED] != 0.0:
         offset = 0.0
@@ -20,33 +23,37 @@ def describe(m, time):
     m[GAP_OFFSET] = offset
     m[REST_1] = 0.0 - preload / m[K1]
     m[REST_2] = preload / m[K2]
+    m[THRESHOLD] = threshold(m, offset)
     m[MUST_IMPACT] = 0.0
-    if exceeds_threshold(m, offset):
+    if offset != 0.0 and m[BOX_AMPLITUDE] > m[THRESHOLD] * (1.0 + LEVEL_ROUNDING):
         m[MUST_IMPACT] = 1.0
     return 0
 
 
-def exceeds_threshold(m, offset):
-    """Return whether the linear response opens or touches, so that no response can stay linear.
+def threshold(m, offset):
+    """Return the box amplitude at which the linear response opens or touches.
 
     With a gap the masses move alone, (11) with i = 1, 2, and touch where the amplitude of x2 - x1
     is the gap; with a preload they move as one, i = 3, and part where the force (18) is 0.
     """
-    if offset == 0.0:
-        return False
-    eta = m[BOX_FREQUENCY] / m[OMEGA]
-    first, second = m[K1] / m[M1], m[K2] / m[M2]
+    if m[BONDED] != 0.0:
+        return NEVER
+    omega = m[OMEGA]
+    eta, square = m[BOX_FREQUENCY] / omega, omega * omega
     both, mass = m[K1] + m[K2], m[M1] + m[M2]
-    rate, square = m[OMEGA], m[OMEGA] * m[OMEGA]
-    loss_1, loss_2 = eta * m[D1] / m[M1] / rate, eta * m[D2] / m[M2] / rate
-    difference = length((first - second) / square, loss_1 - loss_2) * eta * eta * m[BOX_AMPLITUDE]
+    stiff_1, stiff_2, stiff_3 = m[K1] / m[M1] / square, m[K2] / m[M2] / square, both / mass / square
+    loss_1, loss_2 = eta * m[D1] / m[M1] / omega, eta * m[D2] / m[M2] / omega
+    answer = length(stiff_1 - stiff_2, loss_1 - loss_2) * eta * eta
     if offset < 0.0:
-        share = second / (both / mass)
-        answer = length(both / mass / square - eta * eta, eta * (m[D1] + m[D2]) / mass / rate)
-        return difference > -offset * share * answer * (1.0 + ROUNDING)
-    answer = length(first / square - eta * eta, loss_1)
-    answer = answer * length(second / square - eta * eta, loss_2)
-    return difference > offset * answer * (1.0 + ROUNDING)
+        loss_3 = eta * (m[D1] + m[D2]) / mass / omega
+        level = -offset * stiff_2 / stiff_3 * length(stiff_3 - eta * eta, loss_3)
+    else:
+        level = offset * length(stiff_1 - eta * eta, loss_1) * length(stiff_2 - eta * eta, loss_2)
+    if level == 0.0:
+        return 0.0
+    if answer == 0.0:  # the halves move alike
+        return NEVER
+    return level / answer
 
 
 def length(real, imaginary):

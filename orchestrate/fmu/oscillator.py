@@ -26,7 +26,7 @@ START_PARAMETERS = tuple(f"{name}_start" for name in STATE)
 SAMPLE_SERIES = tuple(f"{name}_sample" for name in STATE)
 READ = ("sample_count", "x_rel_max", "x_rel_max_on", "impact_count", "contact_count", "in_contact")
 TRAITS = ("m1", "m2", "k1", "k2", "d1", "d2", "clearance", "bonded")  # of a structure, for loops
-TRAIT_COUNT = 15  # with its frequency and excitation, and what follows from them
+TRAIT_COUNT = 16  # with its frequency and excitation, and what follows from them
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
 COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
 SET = {  # before each start, with first values
@@ -160,8 +160,8 @@ def empty(count: int) -> Floats:
 def traits(structure: Structure, frequency: float = 1.0, amplitude: float = 0.0) -> Any:
     """Return what a structure under an excitation is for the loops: numbers in C.
 
-    They end with the gap between unloaded springs, the places of rest x1 and x2, and whether the
-    linear response opens or touches, so that no motion without impacts exists.
+    They end with the gap between unloaded springs, the places of rest x1 and x2, the amplitude at
+    which the linear response opens or touches, and whether it does: then every motion impacts.
     """
     numbers = (getattr(structure, name) for name in TRAITS)
     memory = (c_double * TRAIT_COUNT)(*numbers, structure.omega, frequency, amplitude)
