@@ -57,7 +57,9 @@ def bits(results):
 @pytest.mark.parametrize("number", ordinary([12, 400]))
 def test_the_loop_has_the_bits_of_python(instance, is_chain, number, monkeypatch):
     some, random = list(points(3, number)), np.random.default_rng(4)
-    starts = [(0.0,) * 4, *random.uniform(0.0, 1.0, (len(some) - 1, 4)) * (-1, 5, 1, 1)]
+    starts = random.uniform(0.0, 1.0, (len(some), 4)) * (-1, 5, 1, 1)
+    starts[:, 1] += [max(0.0, -structure.clearance) for structure, _ in some]
+    starts[0] = 0.0
     settings = LoopSettings(
         transient=30 if is_chain else [30 + i % 50 for i in range(len(some))],
         is_chain=is_chain,
