@@ -122,6 +122,11 @@ def references(folder: str) -> dict[str, int]:
     return {v.name: v.slot for v in model.variables if not v.series} | arrays
 
 
+def array_sizes(folder: str) -> dict[str, int]:
+    """Return how many numbers each array of a model has."""
+    return {array.name: array.size for array in load_model(folder).arrays}
+
+
 def starts(folder: str) -> dict[str, float]:
     """Return the start values of a model's variables, where they are not zero."""
     given = {v.name: float(v.start) for v in load_model(folder).variables if v.start is not None}

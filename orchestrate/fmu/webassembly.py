@@ -108,6 +108,7 @@ def loop_tables() -> dict[str, Any]:
         "reals": [name for name in SET if name not in booleans],
         "read": READ,
         "series": SAMPLE_SERIES,
+        "capacity": sources.array_sizes(MODELS[OSCILLATOR])[SAMPLE_SERIES[0]],
         "counts": COUNTS,
         "traits": TRAITS,
         "trait_count": TRAIT_COUNT,

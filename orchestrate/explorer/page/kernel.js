@@ -7,14 +7,13 @@ import { omegaOf } from "./structure.js";
  *   [name: string]: number}} Slots
  * @typedef {{structures: Record<string, [string, string][]>, set: Record<string, number>,
  *   reals: string[], booleans: string[], read: string[], series: string[], counts: string[],
- *   traits: string[], trait_count: number}} Loops
+ *   capacity: number, traits: string[], trait_count: number}} Loops capacity: states that a step keeps
  * @typedef {{module: WebAssembly.Module, slots: Slots, starts: Record<string, number>,
  *   variables: Record<string, number>, loops: Loops}} Compiled
  * @typedef {"u32" | "i32" | "f64" | "u8"} Kind
  */
 
 const WIDTH = { u32: 4, i32: 4, f64: 8, u8: 1 };
-const ROOM = 200; // states that a step can keep
 const [PAUSED, BROKEN] = [1, 2]; // what a loop answers
 const WORK = 10000; // periods, steps and impacts between two pauses: a few milliseconds
 const PIECE = 100; // periods of one step of a transient, at most
@@ -114,11 +113,11 @@ export class Oscillator {
   constructor(library, stops = false) {
     this.library = library;
     this.rooms = new Rooms(library);
-    const { reals, booleans, read, series } = library.loops;
+    const { reals, booleans, read, series, capacity } = library.loops;
     this.own = this.rooms.structure("OscillatorCalls", {
       ...{ reals: this.references(reals), booleans: this.references(booleans), series: this.references(series) },
       ...{ real_count: reals.length, boolean_count: booleans.length, start: reals.indexOf("x1_start") },
-      ...{ series_count: series.length, capacity: ROOM, kept: this.rooms.array("f64", series.length * ROOM) },
+      ...{ series_count: series.length, capacity, kept: this.rooms.array("f64", series.length * capacity) },
       ...Object.fromEntries(read.map((name) => [name, library.variables[name]])),
     });
     if (!library.calls.open_fmu(this.own, Number(stops))) throw new Error(library.message() || "out of memory");
