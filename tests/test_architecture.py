@@ -61,7 +61,7 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
     "runtime": set(),
     "models": {"kernels.oscillator", "kernels.shaker", "runtime", "version"}
     | {"kernels.electrodynamic_shaker"},
-    "export": {"runtime", "kernels.repetition"},
+    "export": {"runtime", "kernels.repetition", "kernels.linear_response"},
 }
 DYNAMIC = {"orchestrate/__init__.py", "orchestrate/reader_child.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them
@@ -211,6 +211,25 @@ def test_the_sources_of_the_fmus_are_known_in_six_places():
     access = {f"orchestrate/fmu/{name}.py" for name in ("c_library", "exported", "webassembly")}
     rule = "orchestrate/response/multiplicity.py"
     assert found == {*access, rule, "orchestrate/model/ranges.py", "orchestrate/version.py"}
+
+
+DRAWING = {
+    "animation",
+    "diagram",
+    "diagram_view",
+    "scale",
+    "waveform",
+}  # angles, logarithmic axes, clicks
+UNITS = {"structure", "opening"}  # frequencies and damping ratios of a structure that is entered
+OWN = {"lyapunov", "spectrum", "record"}  # still computed by the page itself
+
+
+def test_what_the_page_computes_by_itself():
+    """Motions and decisions come from the compiled loops."""
+    folder = ROOT / "orchestrate/explorer/page"
+    functions = re.compile(r"Math\.(?:sin|cos|tan|sqrt|exp|log\d*|hypot|pow)\b")
+    texts = {file.stem: file.read_text(encoding="utf-8") for file in folder.glob("*.js")}
+    assert {name for name, text in texts.items() if functions.search(text)} <= DRAWING | UNITS | OWN
 
 
 def test_imports_can_be_read():

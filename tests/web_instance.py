@@ -19,12 +19,10 @@ class WebInstance:
         module = wasmtime.Module(self.store.engine, kernel.module)
         assert not module.imports
         self.exports = wasmtime.Instance(self.store, module, []).exports(self.store)
-        base = self.exports["__heap_base"].value(self.store)
-        self.address = -(-base // 16) * 16
-        memory = self.exports["memory"]
-        missing = self.address + 8 * self.slots["SIZE"] - memory.data_len(self.store)
-        if missing > 0:
-            memory.grow(self.store, -(-missing // 65536))
+        self.exports["_initialize"](self.store)
+        place = self.exports["malloc"](self.store, 1024)
+        assert self.exports["open_fmu"](self.store, place, 0)
+        self.address = self.exports["memory_of"](self.store, place)
         self.starts = kernel.starts
 
     def bytes(self) -> bytes:

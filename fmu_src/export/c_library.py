@@ -1,8 +1,8 @@
 """Compile one C source to a shared library, for what orchestration uses beside the FMUs.
 
-The source includes ``token.h``, which defines ``TOKEN``, and keeps it as a string: so a library of
-other sources is known by its bytes, for whatever platform it was made. A digest of the bytes stands
-beside it: one that was damaged, or replaced, is known too.
+A library has a token of its sources among its bytes: so one of other sources is known, for whatever
+platform it was made. A digest of the bytes stands beside it: one that was damaged, or replaced, is
+known too.
 """
 
 from __future__ import annotations
@@ -10,16 +10,24 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from ..kernels import repetition
+from ..kernels import linear_response, repetition
 from .archive import guid_of
 from .compiler import link
 from .errors import CannotExport
 from .platforms import PLATFORMS
-from .sources import import_closure
+from .sources import ROOT, Files, import_closure
 from .translation.kernel import translate
 
+LOOPS = ROOT / "kernels" / "loops"
+HEADER = "fmi.h"  # of loops
+VISIBLE = '__attribute__((visibility("default")))'
 KERNELS = {  # headers that a source may include, translated from Python
-    "repetition.h": {"decide": repetition.decide, "repeat": repetition.repeat},
+    "rules.h": {
+        "decide": repetition.decide,
+        "repeat": repetition.repeat,
+        "confirm": repetition.confirm,
+        "describe": linear_response.describe,
+    },
 }
 
 
@@ -31,7 +39,23 @@ def guid(source: Path) -> str:
     source : Path
         The C file.
     """
-    return guid_of({**import_closure("export/c_library.py"), source.name: source.read_bytes()})
+    return guid_of({**import_closure("export/c_library.py"), **loop_files(source)})
+
+
+def loop_files(source: Path) -> Files:
+    """Return a C source, and the header of loops if it includes that."""
+    files = {source.name: source.read_bytes()}
+    if HEADER.encode() in files[source.name]:
+        files[HEADER] = (LOOPS / HEADER).read_bytes()
+    return files
+
+
+def compiled_files(source: Path) -> Files:
+    """Return a C source and all that it includes, kernels translated."""
+    files = loop_files(source)
+    text = files[source.name]
+    needed = {name: entries for name, entries in KERNELS.items() if name.encode() in text}
+    return {**files, **{name: translate(entries).encode() for name, entries in needed.items()}}
 
 
 def export(source: Path, platform: str) -> bytes:
@@ -42,18 +66,21 @@ def export(source: Path, platform: str) -> bytes:
     CannotExport
         Where there is no compiler for it.
     """
-    if platform not in PLATFORMS:
-        raise CannotExport(f"platform {platform}: expected one of {', '.join(PLATFORMS)}")
-    text = source.read_bytes()
-    files = {source.name: text, "token.h": f'#define TOKEN "{guid(source)}"\n'.encode()}
-    for name, entries in KERNELS.items():
-        if name.encode() in text:
-            files[name] = translate(entries).encode()
-    return link(platform, source.stem, files)
+    kept = "__declspec(dllexport)" if platform.endswith("-windows") else VISIBLE
+    token = f'{kept} const char token[] = "{guid(source)}";\n'.encode()
+    return link(platform, source.stem, {**compiled_files(source), "token.c": token})
 
 
 def file_name(source: Path, platform: str) -> str:
-    """Return the library's file name, with its platform as the folder."""
+    """Return the library's file name, with its platform as the folder.
+
+    Raises
+    ------
+    CannotExport
+        Where the platform is unknown.
+    """
+    if platform not in PLATFORMS:
+        raise CannotExport(f"platform {platform}: expected one of {', '.join(PLATFORMS)}")
     return f"{platform}/{source.stem}{PLATFORMS[platform].suffix}"
 
 

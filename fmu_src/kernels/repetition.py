@@ -6,7 +6,10 @@ co-ordinate, and room for deviations.
 """
 
 # slots of the head, then the states
-COUNT, FREQUENCY, GAP, TOLERANCE, MULTIPLICITY, DECIDED, DEVIATION, LATER, AWAY, HEAD = range(10)
+COUNT, FREQUENCY, GAP, TOLERANCE, MULTIPLICITY, DECIDED, DEVIATION, LATER, AWAY = range(9)
+# of :func:`confirm`: impacts over the samples, over as many periods as it repeats after, and
+# whether no motion without impacts exists
+IMPACTS, OWN_IMPACTS, MUST, HEAD = range(9, 13)
 STATE, COLUMNS = 4, 6  # numbers of a state, and of a scaled one: the gap and its rate come last
 IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
 MIN_RELATIVE_GAP = 1.0 / 1048576.0  # of the motion's size: smaller gaps are as large
@@ -94,6 +97,33 @@ def repeat(m, time):
     if n > 0:
         m[DEVIATION] = measure_deviations(m, n)
     return conclude(m, n, IRREGULAR)
+
+
+def confirm(m, time):
+    """Make a decision undecided where impacts contradict it.
+
+    - *Repeated*: the samples do not have the impacts of a motion with so many in n periods, up to
+      one at either end, or these are too few.
+    - *Irregular*: the samples have no impacts. Then the motion is linear, and converges.
+    """
+    n, found, own = int(m[MULTIPLICITY]), m[IMPACTS], m[OWN_IMPACTS]
+    if m[DECIDED] == IRREGULAR and found == 0.0:
+        return conclude(m, 1, UNDECIDED)
+    if m[DECIDED] != REPEATED:
+        return 0
+    whole = int(m[COUNT] / n)
+    parts = whole
+    if whole * n < m[COUNT]:
+        parts = whole + 1
+    repeats = whole * own - 1.0 <= found and found <= parts * own + 1.0
+    if lacks_impacts(own, n, m[MUST]) or not repeats:
+        m[DECIDED] = UNDECIDED
+    return 0
+
+
+def lacks_impacts(impacts, n, must):
+    """Return whether so many impacts, namely none, are too few for n periods to last."""
+    return impacts == 0.0 and (must != 0.0 or n > 1)
 
 
 def conclude(m, n, decided):

@@ -12,7 +12,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..errors import InputError
-from ..fmu import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, gap_between
+from ..fmu import (
+    OSCILLATOR,
+    STATE,
+    EventInstance,
+    Instance,
+    begin,
+    finder,
+    gap_between,
+    stroboscopic_samples,
+)
 from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
 from ..model.arguments import checked_integer
@@ -27,7 +36,6 @@ from ..response.questions import (
     checked_state,
     require_delaminated,
 )
-from ..response.response_loop import stroboscopic_samples
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .attractors import (

@@ -23,11 +23,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..errors import FmuError, InputError
-from ..fmu import STATE, EventInstance, Instance, begin
+from ..fmu import STATE, EventInstance, Instance, begin, stroboscopic_samples
 from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, respond
-from ..response.response_loop import stroboscopic_samples
 from .clusters import SettlingRun, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting

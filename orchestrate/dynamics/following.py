@@ -50,9 +50,9 @@ class ImpactsQuestion(SeriesQuestion, ABC):
             for item in items:
                 start = state_after_transient(plain, item, self.transient)
                 begin(eventful, *item.point, start)
-                first, state = eventful.flag("in_contact")(), tuple(eventful.get(*STATE))
+                (first,), state = eventful.get("in_contact"), tuple(eventful.get(*STATE))
                 impacts = follow_impacts(eventful, item.point, start, self.periods)
-                last = eventful.flag("in_contact")()
+                (last,) = eventful.get("in_contact")
                 rows.append(self.row(impacts, FollowedResponse(item.point, state, (first, last))))
         return {"rows": np.array(rows, dtype=float)}
 

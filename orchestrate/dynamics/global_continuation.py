@@ -18,11 +18,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fmu import EventInstance, Instance, begin
+from ..fmu import EventInstance, Instance, begin, stroboscopic_samples
 from ..fmu.description import describe
 from ..model.outcomes import IRREGULAR, ORBIT, UNDECIDED
 from ..response.questions import Point
-from ..response.response_loop import stroboscopic_samples
 from ..running.job import Table
 from .clusters import AttractorSettings, SettlingRun, irregular_clusters
 from .decision import MotionDecider

@@ -96,10 +96,10 @@ def close_returns(
     """Yield stroboscopic states that nearly repeat after some periods, the closest return first."""
     period = point.excitation.period
     begin_at_state(instance, point, form, np.zeros(4))
-    instance.advance(0.0, transient * period)
+    instance.impacts(0.0, transient * period)
     states = np.empty((max_periods, 4))
     for i, state in enumerate(states):
-        instance.advance((transient + i) * period, (transient + i + 1) * period)
+        instance.impacts((transient + i) * period, (transient + i + 1) * period)
         state[:] = instance.read("x1", "x2", "v1", "v2")
     scale = np.maximum(np.abs(states).max(axis=0), 1e-300)
     distance = (np.abs(states[periods:] - states[:-periods]) / scale).max(axis=1)

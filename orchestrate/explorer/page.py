@@ -16,7 +16,7 @@ from markupsafe import Markup
 from ..errors import InputError
 from ..files import open_folder, write_whole
 from ..fmu import OSCILLATOR, SHAKER
-from ..fmu.webassembly import WebKernel, web_kernel
+from ..fmu.webassembly import WebKernel, loop_tables, web_kernel
 from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.ranges import STRUCTURE
@@ -80,7 +80,10 @@ def render_page(
     """Return the page's HTML, made by a template that escapes all text."""
     scripts = read_modules()
     made_by = f"vibroimpact {__version__}, kernel {kernels['oscillator'].guid}"
-    tables = {name: {"slots": one.slots, "starts": one.starts} for name, one in kernels.items()}
+    tables = {
+        name: {"slots": one.slots, "starts": one.starts, "variables": one.variables}
+        for name, one in kernels.items()
+    }
     style, script = read_source("style.css"), bundle(scripts, "main")
     return (
         template_environment()
@@ -95,7 +98,14 @@ def render_page(
             branches=drawn["branches"],
             source=made_by,
             swept=f"sweep by {chosen.source}" if chosen.source else "",
-            table={**page_data(chosen), "shown": shown, **drawn, **tables, "drive": drive_data()},
+            table={
+                **page_data(chosen),
+                "shown": shown,
+                **drawn,
+                **tables,
+                "loops": loop_tables(),
+                "drive": drive_data(),
+            },
             data=compress(chosen.numbers.astype("<f8").tobytes()),
             **{name: compress(kernel.module) for name, kernel in kernels.items()},
             **voltage_slider(),

@@ -11,11 +11,12 @@ module               idea
 :mod:`.unpacked`     unpacking of FMUs, once per process
 :mod:`.library`      binaries of FMUs, loaded once per process
 :mod:`.instance`     a co-simulation instance: set, step, read, save its state
-:mod:`.stepping`     steps that end at events, and fast calls for loops over them
+:mod:`.fmi`          an instance as the compiled loops call it
 :mod:`.events`       a motion computed impact by impact
-:mod:`.event_loop`   its loop over pieces of the input, samples and impacts, compiled
+:mod:`.event_loop`   its loop over pieces of the input, samples and impacts
+:mod:`.oscillator`   an oscillator for its loops: starts, states at equal times
 :mod:`.impacts`      the impacts of a motion
-:mod:`.begin`        start of a motion, and its states at equal times
+:mod:`.begin`        start of a motion
 :mod:`.play`         a motion under a box acceleration given as cubics
 :mod:`.channel`      fast calls on one instance, for co-simulation masters
 :mod:`.c_library`    C libraries of the package: found, or compiled
@@ -25,14 +26,9 @@ module               idea
 
 from .begin import (
     REST,
-    SAMPLE_SERIES,
-    START_PARAMETERS,
     begin,
     four_numbers,
     gap_between,
-    last_samples,
-    sampled,
-    samples_per_step,
 )
 from .c_library import build_libraries
 from .channel import Channel
@@ -43,6 +39,7 @@ from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_o
 from .impacts import STATE, Impacts
 from .instance import Instance, function_addresses
 from .models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
+from .oscillator import SET, Oscillator, library, sampled, stroboscopic_samples, traits
 from .play import PLAYED, Player
 from .webassembly import build_web_kernels
 
@@ -52,12 +49,12 @@ __all__ = [
     "MODELS",
     "NO_INPUT",
     "OSCILLATOR",
+    "Oscillator",
     "PLAIN_FORMS",
     "PLAYED",
     "REST",
-    "SAMPLE_SERIES",
+    "SET",
     "SHAKER",
-    "START_PARAMETERS",
     "STATE",
     "Channel",
     "Description",
@@ -76,9 +73,10 @@ __all__ = [
     "four_numbers",
     "function_addresses",
     "gap_between",
-    "last_samples",
-    "samples_per_step",
+    "library",
     "sampled",
+    "stroboscopic_samples",
+    "traits",
     "sources_of",
     "up_to_date",
 ]

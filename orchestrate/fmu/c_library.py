@@ -7,6 +7,7 @@ that were compiled, by the digest beside it.
 from __future__ import annotations
 
 import ctypes
+import functools
 import logging
 from collections.abc import Iterable
 from os import PathLike
@@ -15,58 +16,63 @@ from typing import Any
 
 from fmu_src.export import c_library as sources
 from fmu_src.export.errors import CannotExport
-from fmu_src.export.platforms import PLATFORMS, chosen, this_machine, usual
+from fmu_src.export.platforms import chosen, this_machine, usual
 
-from ..errors import StoreError
+from ..errors import InputError, StoreError
 from ..files import is_private, made_once, make_private, open_folder, write_whole
-from .exported import NOT_PRIVATE, SHIPPED, default_folder, warn_once
+from .exported import NOT_PRIVATE, SHIPPED, default_folder
 
 log = logging.getLogger(__name__)
 FORM = "libraries"
-SOURCES = tuple(sorted(Path(__file__).resolve().parents[1].glob("*/*.c")))
+OWN = Path(__file__).resolve().parents[1].glob("*/*.c")
+SOURCES = tuple(sorted([*OWN, *sources.LOOPS.glob("*.c")]))
 
 
-def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | None:
-    """Return the path of a C source's shared library, compiled if missing; None if it cannot be."""
+def library(source: Path, folder: str | PathLike[str] | None = None) -> Path:
+    """Return the path of a C source's shared library, compiled if missing or out of date."""
     platform = this_machine()
-    if platform not in PLATFORMS:
-        return None
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     token = sources.guid(source)
-    paths = [candidate / FORM / sources.file_name(source, platform) for candidate in folders]
-    for path in paths:
-        if is_trusted(path) and sources.is_current(path, token):
-            return path
-    path = paths[0]
     try:
+        name = sources.file_name(source, platform)
+        paths = [candidate / FORM / name for candidate in folders]
+        for path in paths:
+            if is_trusted(path) and sources.is_current(path, token):
+                return path
+        path = paths[0]
         with made_once(path):
             if not (is_trusted(path) and sources.is_current(path, token)):
                 compile_library(source, platform, folders[0])
-            if is_trusted(path):
-                return path
-            warn_once(f"{path}: {NOT_PRIVATE}, Python does the same, slower")
-            return None
+        if is_trusted(path):
+            return path
+        raise InputError(f"{path}: {NOT_PRIVATE}")
     except (CannotExport, StoreError) as reason:
-        log.info("%s is not compiled, Python does the same: %s", source.name, reason)
-        return None
+        text = f"{source.name}: no library of it is here, and none can be compiled"
+        raise InputError(f"{text}: {reason}") from None
 
 
 def loaded_function(source: Path) -> Any:
     """Load the C function ``run`` of a source's shared library; None without a library."""
-    loaded = loaded_library(source)
-    return None if loaded is None else loaded.run
+    try:
+        return loaded_library(source).run
+    except InputError as reason:
+        log.info("Python does the same as %s: %s", source.name, reason)
+        return None
+
+
+@functools.cache
+def loaded_loop(name: str) -> Any:
+    """Load the library of a loop, once per process."""
+    return loaded_library(sources.LOOPS / f"{name}.c")
 
 
 def loaded_library(source: Path) -> Any:
-    """Load a C source's shared library; None where there is none."""
+    """Load a C source's shared library."""
     path = library(source)
-    if path is None:
-        return None
     try:
         return ctypes.CDLL(str(path))
     except OSError as reason:  # such as a folder from which nothing may be run
-        log.info("%s cannot be loaded, Python does the same: %s", path, reason)
-        return None
+        raise InputError(f"{path}: cannot be loaded ({reason})") from None
 
 
 def is_trusted(path: Path) -> bool:

@@ -13,14 +13,14 @@ from os import PathLike
 import numpy as np
 
 from ..errors import InputError
-from .event_loop import EventLoop, event_loop_of
+from .event_loop import EventLoop
 from .impacts import Impacts
-from .stepping import SteppingInstance
+from .instance import Instance
 
 NO_INPUT, NO_TIMES = np.empty((1, 0)), np.empty(0)
 
 
-class EventInstance(SteppingInstance):
+class EventInstance(Instance):
     """FMI 3.0 FMU instance that stops at each impact, so that all impacts can be read exactly."""
 
     EVENTS = {"eventModeUsed": True, "earlyReturnAllowed": True}
@@ -41,5 +41,5 @@ class EventInstance(SteppingInstance):
         """Return the event loop with these input and output names; made once and cached."""
         key = tuple(inputs), tuple(outputs)
         if key not in self._loops:
-            self._loops[key] = event_loop_of(self, *key)
+            self._loops[key] = EventLoop(self, *key)
         return self._loops[key]

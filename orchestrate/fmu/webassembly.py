@@ -1,11 +1,14 @@
-"""The models' kernels as WebAssembly modules for web pages: found, or compiled if out of date."""
+"""The models' FMUs and loops as WebAssembly modules for web pages: found, or compiled."""
 
 from __future__ import annotations
 
+import ctypes
 import logging
+from ctypes import c_bool, c_double
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from fmu_src.export import webassembly as sources
 from fmu_src.export.archive import fingerprint
@@ -15,12 +18,28 @@ from fmu_src.export.sources import model_sources
 
 from ..errors import InputError
 from ..files import made_once, open_folder, write_whole
+from . import event_loop
 from .exported import SHIPPED, check, default_folder
 from .models import OSCILLATOR, SHAKER
+from .oscillator import (
+    COUNTS,
+    READ,
+    SAMPLE_SERIES,
+    SET,
+    TRAIT_COUNT,
+    TRAITS,
+    OscillatorCalls,
+    ResponseProgress,
+    ResponseTask,
+)
 
 log = logging.getLogger(__name__)
 FORM = "wasm"
 WEB_MODELS = (OSCILLATOR, SHAKER)
+STRUCTURES = (
+    *(OscillatorCalls, ResponseTask, ResponseProgress),
+    *(event_loop.PlayerCalls, event_loop.PlayTask, event_loop.PlayProgress),
+)
 
 
 @dataclass(frozen=True)
@@ -35,6 +54,7 @@ class WebKernel:
     # input from the places `CUBIC` to `CUBIC_END` is set, the last not included
     slots: dict[str, int]
     starts: dict[str, float]  # start values of variables, where they are not zero
+    variables: dict[str, int]  # value references by FMI 3.0
     guid: str  # of the module
 
 
@@ -43,7 +63,8 @@ def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKern
     check(model, "fmi3")
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     guid = sources.guid(MODELS[model])
-    tables = sources.slots(MODELS[model]), sources.starts(MODELS[model])
+    name = MODELS[model]
+    tables = sources.slots(name), sources.starts(name), sources.references(name)
     paths = [base / FORM / f"{model}.wasm" for base in folders]
     for path in paths:
         module = read_module(path, guid)
@@ -75,6 +96,34 @@ def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
         except CannotExport as reason:
             log.warning("%s.wasm left out: %s", model, reason)
     return made
+
+
+def loop_tables() -> dict[str, Any]:
+    """Return what a page needs to call the loops, as JSON: structures, names, and their order."""
+    booleans = [name for name, value in SET.items() if isinstance(value, bool)]
+    return {
+        "structures": {kind.__name__: layout(kind) for kind in STRUCTURES},
+        "set": {name: float(value) for name, value in SET.items()},
+        "booleans": booleans,
+        "reals": [name for name in SET if name not in booleans],
+        "read": READ,
+        "series": SAMPLE_SERIES,
+        "capacity": sources.array_sizes(MODELS[OSCILLATOR])[SAMPLE_SERIES[0]],
+        "counts": COUNTS,
+        "traits": TRAITS,
+        "trait_count": TRAIT_COUNT,
+    }
+
+
+def layout(kind: type[ctypes.Structure]) -> list[tuple[str, str]]:
+    """Return name and type of each field on a machine of 32 bits, those of inner structures too."""
+    fields: list[tuple[str, str]] = []
+    for name, type_, *_ in kind._fields_:
+        if isinstance(type_, type) and issubclass(type_, ctypes.Structure):
+            fields += [(f"{name}.{inner}", word) for inner, word in layout(type_)]
+        else:
+            fields.append((name, {c_double: "f64", c_bool: "u8"}.get(type_, "u32")))
+    return fields
 
 
 def kernel_digest(model: str) -> str:

@@ -12,11 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..fmu import Instance, four_numbers, gap_between
 from ..model import Excitation, Structure
-from ..model.outcomes import IRREGULAR, REPEATED, UNDECIDED
-from .multiplicity import Decision, Repetition, decide_multiplicity, find_repetition
+from .multiplicity import Decision, Repetition, find_repetition, lacks_impacts
 from .questions import Point
-from .response_loop import COUNTS, LoopSettings, Responses, response_loop, round_state
-from .threshold import exceeds_threshold
+from .response_loop import COUNTS, LoopSettings, Responses, response_loop
 
 
 @dataclass(frozen=True)
@@ -24,6 +22,7 @@ class Response:
     """Steady-state response at one operating point: stroboscopic samples, impacts, largest gap."""
 
     samples: NDArray[np.float64]  # x1, x2, v1, v2 at the excitation's phase 0 of successive periods
+    end: tuple[float, ...]  # the last one, rounded, from which the next response starts
     x_rel_max: float  # largest gap in them, exact between the samples too
     impacts_per_period: float  # mean over the samples' periods
     impact_count: int  # impacts from the beginning of the transient to the last sample
@@ -46,47 +45,14 @@ class Response:
         """Return the multiplicity within a tolerance, and the largest deviation from it."""
         return find_repetition(self.samples, self.frequency, self.x_rel_max, tolerance)
 
-    def decision(self, tolerance: float) -> Decision:
-        """Return the multiplicity as decided by how deviations decay, and how it was decided."""
-        return decide_multiplicity(self.samples, self.frequency, self.x_rel_max, tolerance)
-
-    def conclude(self, decision: Decision, impacts: int) -> tuple[Decision, float]:
-        """Return a decision, undecided where impacts contradict it, and impacts per period.
-
-        A repeated response is undecided if the samples do not have the ``impacts`` of its next n
-        periods, up to one at either end, or if there are none though n > 1 or no motion without
-        impacts exists. An irregular one is undecided if it has no impacts: then it is linear, and
-        converges. Impacts per period are exact where it repeats, else the samples' mean.
-        """
-        (n, decided), mean = decision, self.impacts_per_period
-        if decided == IRREGULAR and not mean:
-            return Decision(1, UNDECIDED), mean
-        if decided != REPEATED:
-            return decision, mean
-        if self.lacks_impacts(impacts, n) or not self.repeats(impacts, n):
-            decided = UNDECIDED
-        return Decision(n, decided), impacts / n
-
-    def repeats(self, impacts: int, n: int) -> bool:
-        """Return whether the samples have the impacts of a motion with so many in n periods."""
-        count = len(self.samples)
-        whole, rest = divmod(count, n)
-        found = round(self.impacts_per_period * count)
-        return whole * impacts - 1 <= found <= (whole + (rest > 0)) * impacts + 1
-
     def lacks_impacts(self, impacts: float, n: int) -> bool:
         """Return whether so many impacts, namely none, are too few for n periods to last."""
-        return not impacts and (self.has_to_impact or n > 1)
+        return bool(lacks_impacts(impacts, n, self.has_to_impact))
 
     @property
     def gap(self) -> NDArray[np.float64]:
         """Return the gap at the samples, m."""
         return gap_between(self.samples, self.gap_offset)
-
-    @cached_property
-    def end(self) -> tuple[float, ...]:
-        """Return the rounded state at the last sample, from which the next response starts."""
-        return round_state(self.samples[-1], self.gap_offset)
 
 
 def respond(
@@ -114,13 +80,11 @@ def responses_from(
     """Yield the responses of a loop's rows, with their multiplicity where it has been found."""
     count = results.states.shape[1]
     columns = zip(*(results.counts[name].tolist() for name in COUNTS), strict=True)
-    exceeding: dict[int, bool] = {}  # by point: a basin's responses have one in common
     for i, (point, numbers) in enumerate(zip(points, columns, strict=True)):
         before, contacts_before, touching, after, contacts_after, *_ = numbers
-        if id(point) not in exceeding:
-            exceeding[id(point)] = exceeds_threshold(*point)
         yield Response(
             samples=results.states[i],
+            end=tuple(results.ends[i].tolist()),
             x_rel_max=float(results.x_rel_max[i]),
             impacts_per_period=(after - before) / count,
             impact_count=after,
@@ -128,7 +92,7 @@ def responses_from(
             frequency=point.excitation.frequency,
             tolerance=tolerance,
             gap_offset=point.structure.gap_offset,
-            has_to_impact=exceeding[id(point)],
+            has_to_impact=bool(results.must_impact[i]),
             known_multiplicity=None if multiplicity is None else multiplicity[i],
         )
 
@@ -142,10 +106,8 @@ class DecidedResponse(NamedTuple):
 
 
 def decisions_from(results: Responses, responses: Iterable[Response]) -> Iterator[DecidedResponse]:
-    """Yield the responses of a loop that decides, with their decisions as impacts leave them."""
-    columns = (
-        results.counts[name].tolist() for name in ("multiplicity", "decided", "later_impacts")
-    )
-    for response, n, decided, later in zip(responses, *columns, strict=True):
-        decision = Decision(n, decided)
-        yield DecidedResponse(response, *response.conclude(decision, later - response.impact_count))
+    """Yield the responses of a loop that decides, with their decisions."""
+    decisions = (results.counts[name].tolist() for name in ("multiplicity", "decided"))
+    columns = *decisions, results.impacts.tolist()
+    for response, n, decided, impacts in zip(responses, *columns, strict=True):
+        yield DecidedResponse(response, Decision(n, decided), impacts)

@@ -61,7 +61,7 @@ class SimulateJob(OneMotionQuestion):
         grid = self.grid()
         with EventInstance(fmus[OSCILLATOR]) as instance:
             begin(instance, *items[0], self.start)
-            instance.advance(0.0, float(grid[0]))
+            instance.impacts(0.0, float(grid[0]))
             ends = grid[[0, -1]]
             loop = instance.event_loop((), OUTPUTS)
             rows, touching, impacts = loop.run(ends, NO_INPUT, grid)

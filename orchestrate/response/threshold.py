@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from ..fmu import traits
 from ..lazy import xr
 from ..model import Excitation, Structure
 from ..running.job import brief
@@ -22,41 +23,23 @@ from .labels import Variable, make_dataset, parameter_variable, variable
 from .questions import excitation_numbers, require_delaminated
 
 Floats = NDArray[np.float64]
+THRESHOLD = -2  # its place among the traits
 GRID = 400  # frequencies between which minima of the threshold are bracketed
-ROUNDING = 1e-12  # of the level at which the linear response opens or touches
 ACCURACY = 1e-12  # of a frequency at a minimum; the level there is flat, and exact far earlier
 
 
 def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
-    """Return box amplitudes, m, at which the linear response first opens or touches."""
-    omega, m1, m2 = structure.omega, structure.m1, structure.m2
-    eta = np.asarray(frequency, dtype=float) / omega
-    masses = np.array([m1, m2, m1 + m2])
-    stiffness = np.array([structure.k1, structure.k2, structure.k1 + structure.k2]) / masses
-    damping = np.array([structure.d1, structure.d2, structure.d1 + structure.d2]) / masses
-    square, twice = stiffness / omega**2, damping / omega
-    if structure.bonded:
-        return np.full_like(eta, np.inf)
-    # what the accelerations of both masses alone differ by, for a common motion e^{i eta tau}
-    difference = (square[0] - square[1]) + 1j * eta * (twice[0] - twice[1])
-    one, two, both = ((square[i] - eta**2) + 1j * eta * twice[i] for i in range(3))
-    if structure.gap_offset < 0.0:
-        limit, response = -structure.gap_offset * square[1] / square[2], difference * eta**2 / both
-    else:
-        limit, response = structure.gap_offset, difference * eta**2 / (one * two)
-    if limit == 0.0:
-        return np.zeros_like(eta)
-    with np.errstate(divide="ignore"):
-        amplitudes: Floats = limit / np.abs(response)
-    return amplitudes
+    """Return box amplitudes, m, at which the linear response first opens or touches.
+
+    They are 0 without a clearance, and infinite where the halves move alike.
+    """
+    levels = [traits(structure, each)[THRESHOLD] for each in np.ravel(frequency).tolist()]
+    return np.reshape(levels, np.shape(frequency))
 
 
 def exceeds_threshold(structure: Structure, excitation: Excitation) -> bool:
     """Return whether the linear response opens or touches, so that no response can stay linear."""
-    if structure.gap_offset == 0.0:
-        return False
-    (level,) = threshold_amplitudes(structure, np.array([excitation.frequency])).tolist()
-    return bool(excitation.amplitude > level * (1.0 + ROUNDING))
+    return bool(traits(structure, excitation.frequency, excitation.amplitude)[-1])
 
 
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:

@@ -7,15 +7,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "token.h"
-
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
 #else
 #define EXPORT __attribute__((visibility("default")))
 #endif
-
-EXPORT const char token[] = TOKEN;  /* of these sources: tells their library from others */
 
 typedef double Cubic[4];
 

@@ -8,8 +8,6 @@
  */
 #include <math.h>
 
-#include "token.h"
-
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
 #else
@@ -18,8 +16,6 @@
 #define MOST_MODES 64
 #define MOST_CONTACTS 256
 #define FAR 1e3  /* mass-normalised displacement that nothing here reaches: the motion has escaped */
-
-EXPORT const char token[] = TOKEN;  /* of these sources: tells their library from others */
 
 enum { LINEAR, HUNT_CROSSLEY, HERTZ };
 

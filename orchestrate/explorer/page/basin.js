@@ -1,16 +1,17 @@
 /** Basins of attraction: where starts on a plane of gap and gap velocity lead to. */
 
-import { respond } from "./response.js";
+import { periodsOf, REPEATED, respond, UNDECIDED } from "./response.js";
 import { gapOffset } from "./clearance.js";
 import { lengthOf, omegaOf } from "./structure.js";
 
 /**
  * @typedef {{side: number, gap: number, speed: number, mean: [number, number]}} Plane
  *   gap from 0 and gap velocity to both sides, over a eta^2; means of displacements, velocities
- * @typedef {{multiplicity: number, samples: Float64Array, impacts: number}} Attractor
+ * @typedef {{multiplicity: number, decided: number, samples: Float64Array, impacts: number}} Attractor
  */
 
 export const SETTLING = { transient: 300, samples: 64, tolerance: 1e-2 };
+const LONGEST = 6000; // periods after which what is undecided stays so
 
 /** The start at a cell of a plane. @param {Point} point @param {Plane} plane @param {number} column @param {number} row */
 export function startAt(point, plane, column, row) {
@@ -22,19 +23,25 @@ export function startAt(point, plane, column, row) {
 }
 
 /**
- * Where a start leads to.
+ * Where a start leads to: it is run on, for as long again each time, while that is undecided.
  * @param {Oscillator} instance
  * @param {Point} point
  * @param {number[]} start
  * @returns {Generator<undefined, Attractor>} it pauses, so that the instance may do other things
  */
 export function* destination(instance, point, start) {
-  return attractorOf(yield* respond(instance, point, start, SETTLING));
+  let found = yield* respond(instance, point, start, SETTLING);
+  for (let done = SETTLING.transient + SETTLING.samples; found.decided === UNDECIDED && done < LONGEST; ) {
+    found = yield* respond(instance, point, found.end, { ...SETTLING, transient: done });
+    done += done + SETTLING.samples;
+  }
+  return attractorOf(found);
 }
 
 /**
  * Number of an attractor among those known, to which it is added where it is new. Periodic ones are
- * the same where a state of one lies near one of the other; irregular ones are not told apart.
+ * the same where a state of one lies near one of the other; irregular ones are not told apart, nor
+ * are undecided ones.
  * @param {Attractor[]} known
  * @param {Attractor} one
  * @param {number} tolerance
@@ -48,14 +55,20 @@ export function label(known, one, tolerance) {
 export function placeOf(known, one, tolerance) {
   return known.findIndex(
     (other) =>
-      other.multiplicity === one.multiplicity &&
-      (one.multiplicity === 0 || distance(other.samples, one.samples) <= tolerance),
+      other.decided === one.decided &&
+      periodsOf(other) === periodsOf(one) &&
+      (one.decided !== REPEATED || distance(other.samples, one.samples) <= tolerance),
   );
 }
 
-/** What a response is to the picture: as if it had so few samples. @param {import("./response.js").Response} response @returns {Attractor} */
-export function attractorOf({ states, multiplicity, impacts }) {
-  return { multiplicity: multiplicity <= SETTLING.samples / 4 ? multiplicity : 0, samples: states.slice(-64), impacts };
+/** Whether a motion is another one than the one that is shown: both are decided. @param {Attractor} shown @param {Attractor} one @param {number} tolerance */
+export function isOther(shown, one, tolerance) {
+  return [shown, one].every(({ decided }) => decided !== UNDECIDED) && placeOf([shown], one, tolerance) < 0;
+}
+
+/** What a response is to the picture. @param {import("./response.js").Response} response @returns {Attractor} */
+export function attractorOf({ states, multiplicity, decided, impacts }) {
+  return { multiplicity, decided, samples: states.slice(-4 * SETTLING.samples), impacts };
 }
 
 /** Least distance of the last state of `one` from states of `other`, relative. @param {Float64Array} other @param {Float64Array} one */

@@ -1,6 +1,6 @@
 /** Other motions at the chosen frequency: where a plane of starts leads to, asked of all workers. */
 
-import { attractorOf, label, placeOf } from "./basin.js";
+import { attractorOf, isOther, label } from "./basin.js";
 import { BasinView, coarseFirst, SAME } from "./basin_view.js";
 import { shares } from "./requests.js";
 
@@ -67,7 +67,7 @@ export class BasinPart {
   /** Whether a motion is known to which the one that is shown is another. */
   get others() {
     const { shown } = this;
-    return shown !== null && [...this.view.attractors, ...this.few].some((one) => placeOf([shown], one, SAME) < 0);
+    return shown !== null && [...this.view.attractors, ...this.few].some((one) => isOther(shown, one, SAME));
   }
 
   /** What is known of other motions. @param {boolean} [differ] whether sweeps up and down do */

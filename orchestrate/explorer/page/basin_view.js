@@ -4,7 +4,8 @@ import { label, placeOf, SETTLING, startAt } from "./basin.js";
 import { drawFrame, areaOf } from "./chart.js";
 import { inHertz, PAPER } from "./excitation.js";
 import { Picture } from "./picture.js";
-import { averageWords, meanCountOf } from "./words_of.js";
+import { averageWords, meanCountOf, repeatWords } from "./words_of.js";
+import { periodsOf } from "./response.js";
 import { omegaOf } from "./structure.js";
 import { channels } from "./theme.js";
 import { gapUnit, wordsOf } from "./units.js";
@@ -102,11 +103,13 @@ export class BasinView {
     if (!point || !plane) return [];
     const total = this.labels.reduce((sum, one) => sum + (one >= 0 ? 1 : 0), 0) || 1;
     const now = shown ? placeOf(this.attractors, shown, SAME) : -1;
-    return this.attractors.map(({ multiplicity, impacts }, number) => {
+    return this.attractors.map((one, number) => {
+      const { impacts } = one;
+      const periods = periodsOf(one);
       const share = this.labels.reduce((sum, one) => sum + (one === number ? 1 : 0), 0) / total;
-      const kind = multiplicity ? `repeats after ${multiplicity} period${multiplicity > 1 ? "s" : ""}` : "has not repeated";
-      const worth = multiplicity ? "" : ` (${averageWords(SETTLING.samples)})`;
-      const text = `${kind}, ${meanCountOf(impacts, multiplicity)}${worth}: ${(100 * share).toFixed(1)} % of starts`;
+      const kind = periods ? `repeats after ${repeatWords(one)}` : repeatWords(one);
+      const worth = periods ? "" : ` (${averageWords(SETTLING.samples)})`;
+      const text = `${kind}, ${meanCountOf(impacts, periods)}${worth}: ${(100 * share).toFixed(1)} % of starts`;
       return { colour: colourOf(number), text, now: number === now, start: startAt(point, plane, ...this.examples[number]) };
     });
   }

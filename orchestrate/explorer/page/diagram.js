@@ -2,13 +2,14 @@
 
 import { atRest, gapBetween, gapOffset } from "./clearance.js";
 import { hertzOf, inHertz, pointAt, pointAtHertz } from "./excitation.js";
+import { periodsOf, UNDECIDED } from "./response.js";
 import { niceStep } from "./scale.js";
 import { lengthOf, omegaOf } from "./structure.js";
 
 /**
  * @typedef {"up" | "down" | "both"} Direction
  * @typedef {{index: number, gaps: Float64Array, peak: number, impacts: number, contact: boolean,
- *   multiplicity: number, start: number[], end: number[]}} Found
+ *   multiplicity: number, decided: number, start: number[], end: number[]}} Found
  * @typedef {{direction: "up" | "down", found: (Found | undefined)[], starts: Float64Array | null, from: number[] | null}} Lane
  *   `starts`: where each response begins, if that is known beforehand; `from`: where a chain does
  * @typedef {{low: number, high: number, direction: Direction, level: Level}} Region frequency ratios
@@ -113,6 +114,7 @@ export function scaled(start, from, to) {
 /** Whether up and down lead to different motions at an index, by how often they repeat and how far they part. @param {Diagram} diagram @param {number} index */
 export function lanesDiffer({ lanes }, index) {
   const [up, down] = lanes.map(({ found }) => found[index]);
-  if (!up || !down) return false;
-  return up.multiplicity !== down.multiplicity || (up.multiplicity > 0 && Math.abs(up.peak - down.peak) > 0.03 * Math.max(up.peak, down.peak));
+  if (!up || !down || [up, down].some(({ decided }) => decided === UNDECIDED)) return false;
+  const periods = [up, down].map(periodsOf);
+  return periods[0] !== periods[1] || (periods[0] > 0 && Math.abs(up.peak - down.peak) > 0.03 * Math.max(up.peak, down.peak));
 }

@@ -11,6 +11,7 @@ import {
   spectrumChart,
 } from "./motion_view.js";
 import { opensFrom } from "./opening.js";
+import { periodsOf } from "./response.js";
 import { shown } from "./scale.js";
 import { Sound } from "./audio.js";
 import { averageWords, exponentWords, numbersOf, sentenceOf } from "./words_of.js";
@@ -125,7 +126,7 @@ export class Inspector {
     const { response, motion } = /** @type {{response: Response, motion: Motion}} */ (this.found);
     this.at("sentence").textContent = sentenceOf(response, this.exponent, motion.contact.some(Boolean), opensFrom(point, level));
     this.at("average").textContent = averageWords(response.gaps.length);
-    this.at("average").classList.toggle("absent", response.multiplicity > 0 || !response.impacts);
+    this.at("average").classList.toggle("absent", periodsOf(response) > 0 || !response.impacts);
     this.listNumbers(numbersOf(response, point, level));
   }
 
@@ -191,7 +192,7 @@ export class Inspector {
   takeSpectra(part) {
     if (part.exponent !== undefined) {
       this.exponent = part.exponent;
-      this.at("exponent").textContent = exponentWords(part.exponent, this.found?.response.multiplicity ?? 0);
+      this.at("exponent").textContent = exponentWords(part.exponent, this.found ? periodsOf(this.found.response) : 0);
       if (this.found) this.showNumbers();
       return;
     }

@@ -1,32 +1,290 @@
-/** Kernels in WebAssembly: an instance each, driven as the FMU drives it. */
+/** FMUs in WebAssembly and the compiled loops over them: what Python does by ctypes. */
 
-import { fromRest } from "./clearance.js";
+import { omegaOf } from "./structure.js";
 
 /**
  * @typedef {{SIZE: number, TIME: number, STOP: number, SET: number, CUBIC: number, CUBIC_END: number,
  *   [name: string]: number}} Slots
- * @typedef {{module: WebAssembly.Module, slots: Slots, starts: Record<string, number>}} Compiled
- * @typedef {[number, number, number, number]} State x1, x2 in m, v1, v2 in m/s
+ * @typedef {{structures: Record<string, [string, string][]>, set: Record<string, number>,
+ *   reals: string[], booleans: string[], read: string[], series: string[], counts: string[],
+ *   capacity: number, traits: string[], trait_count: number}} Loops capacity: states that a step keeps
+ * @typedef {{module: WebAssembly.Module, slots: Slots, starts: Record<string, number>,
+ *   variables: Record<string, number>, loops: Loops}} Compiled
+ * @typedef {"u32" | "i32" | "f64" | "u8"} Kind
  */
 
-const ROOM = 200; // states that a step can keep
+const WIDTH = { u32: 4, i32: 4, f64: 8, u8: 1 };
+const [PAUSED, BROKEN] = [1, 2]; // what a loop answers
+const WORK = 10000; // periods, steps and impacts between two pauses: a few milliseconds
+const PIECE = 100; // periods of one step of a transient, at most
+const IMPACTS = 4096; // that a loop keeps until it pauses
 
-/** Entry points and memory of a compiled kernel, with one instance in it. */
-export class Instance {
+/** A compiled model: its functions, and memory for any number of instances. */
+export class Library {
   /** @param {Compiled} compiled */
-  constructor({ module, slots, starts }) {
-    const { exports } = new WebAssembly.Instance(module);
-    const memory = /** @type {WebAssembly.Memory} */ (exports.memory);
-    const base = /** @type {WebAssembly.Global} */ (exports.__heap_base).value;
-    this.address = Math.ceil(base / 16) * 16;
-    const missing = this.address + 8 * slots.SIZE - memory.buffer.byteLength;
-    if (missing > 0) memory.grow(Math.ceil(missing / 65536));
-    this.memory = new Float64Array(memory.buffer, this.address, slots.SIZE);
+  constructor({ module, slots, starts, variables, loops }) {
     this.slots = slots;
     this.starts = starts;
-    this.entries = /** @type {Record<string, (address: number, time: number) => number>} */ (
-      /** @type {unknown} */ (exports)
-    );
+    this.variables = variables;
+    this.loops = loops;
+    const { exports } = new WebAssembly.Instance(module);
+    this.calls = /** @type {Record<string, (...numbers: number[]) => number>} */ (/** @type {unknown} */ (exports));
+    this.memory = /** @type {WebAssembly.Memory} */ (exports.memory);
+    this.text = /** @type {WebAssembly.Global} */ (exports.message).value;
+    this.calls._initialize();
+  }
+
+  /** What the FMU said last. */
+  message() {
+    const bytes = new Uint8Array(this.memory.buffer, this.text);
+    return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
+  }
+
+  /** @param {Kind} kind @param {number} address @param {number} count */
+  view(kind, address, count) {
+    const type = { u32: Uint32Array, i32: Int32Array, f64: Float64Array, u8: Uint8Array }[kind];
+    return new type(this.memory.buffer, address, count);
+  }
+}
+
+/** Room in a library's memory: arrays and structures of C, freed together. */
+export class Rooms {
+  /** @param {Library} library */
+  constructor(library) {
+    this.library = library;
+    /** @type {number[]} */
+    this.taken = [];
+  }
+
+  /** @param {number} bytes */
+  take(bytes) {
+    const address = this.library.calls.malloc(Math.max(bytes, 8));
+    if (!address) throw new Error("out of memory");
+    this.taken.push(address);
+    return address;
+  }
+
+  /** An array of numbers, or of so many zeros. @param {Kind} kind @param {ArrayLike<number> | number} values */
+  array(kind, values) {
+    const count = typeof values === "number" ? values : values.length;
+    const address = this.take(count * WIDTH[kind]);
+    const view = this.library.view(kind, address, count);
+    if (typeof values === "number") view.fill(0);
+    else view.set(values);
+    return address;
+  }
+
+  /** A structure with some of its fields set, the others zero. @param {string} name @param {Record<string, number>} values */
+  structure(name, values) {
+    const fields = this.library.loops.structures[name];
+    const { places, size } = layout(fields);
+    const address = this.array("u8", size);
+    const view = new DataView(this.library.memory.buffer, address, size);
+    fields.forEach(([field, kind], i) => {
+      const value = values[field] ?? 0;
+      if (kind === "f64") view.setFloat64(places[i], value, true);
+      else if (kind === "u8") view.setUint8(places[i], value);
+      else view.setUint32(places[i], value, true);
+    });
+    return address;
+  }
+
+  free() {
+    this.taken.forEach((address) => this.library.calls.free(address));
+    this.taken = [];
+  }
+}
+
+/** Where C puts fields. @param {[string, string][]} fields */
+function layout(fields) {
+  let size = 0;
+  const places = fields.map(([, kind]) => {
+    const width = WIDTH[/** @type {Kind} */ (kind)];
+    const place = Math.ceil(size / width) * width;
+    size = place + width;
+    return place;
+  });
+  return { places, size: Math.ceil(size / 8) * 8 };
+}
+
+/** An instance of `TwoMassImpactOscillator`, with the loops that run it; to be closed. */
+export class Oscillator {
+  /** @param {Library} library @param {boolean} [stops] whether steps end at its events */
+  constructor(library, stops = false) {
+    this.library = library;
+    this.rooms = new Rooms(library);
+    const { reals, booleans, read, series, capacity } = library.loops;
+    this.own = this.rooms.structure("OscillatorCalls", {
+      ...{ reals: this.references(reals), booleans: this.references(booleans), series: this.references(series) },
+      ...{ real_count: reals.length, boolean_count: booleans.length, start: reals.indexOf("x1_start") },
+      ...{ series_count: series.length, capacity, kept: this.rooms.array("f64", series.length * capacity) },
+      ...Object.fromEntries(read.map((name) => [name, library.variables[name]])),
+    });
+    if (!library.calls.open_fmu(this.own, Number(stops))) throw new Error(library.message() || "out of memory");
+  }
+
+  close() {
+    this.library.calls.close_fmu(this.own);
+    this.rooms.free();
+  }
+
+  /** Value references as an array of C. @param {string[]} names */
+  references(names) {
+    return this.rooms.array("u32", names.map((name) => this.library.variables[name]));
+  }
+
+  /** Call a loop until it is done. @param {string} name @param {number[]} numbers @returns {Generator<undefined, void>} it pauses */
+  *loop(name, ...numbers) {
+    for (;;) {
+      const answer = this.library.calls[name](...numbers);
+      if (answer === BROKEN) throw new Error(this.library.message() || `${name} stopped`);
+      if (answer !== PAUSED) return;
+      yield;
+    }
+  }
+
+  /** What there is to compute: one response. @param {Rooms} rooms @param {Point} point @param {Iterable<number>} start @param {Record<string, number>} more */
+  task(rooms, { structure, frequency, amplitude }, start, more) {
+    const { set, reals, booleans, traits, trait_count } = this.library.loops;
+    /** @type {Record<string, number>} */
+    const values = { ...set, ...structure, box_frequency: frequency, box_amplitude: amplitude };
+    const known = [...traits.map((name) => values[name]), omegaOf(structure), frequency, amplitude];
+    const row = rooms.array("f64", [...known, ...new Array(trait_count - known.length).fill(0)]);
+    this.library.calls.describe_linear_response(row);
+    return rooms.structure("ResponseTask", {
+      ...{ count: 1, piece: PIECE, traits: row, starts: rooms.array("f64", Array.from(start)) },
+      reals: rooms.array("f64", reals.map((name) => values[name])),
+      booleans: rooms.array("u8", booleans.map((name) => values[name])),
+      periods: rooms.array("f64", [(2 * Math.PI) / frequency]),
+      ...more,
+    });
+  }
+
+  /** Begin at phase 0. @param {Point} point @param {Iterable<number>} start */
+  begin(point, start) {
+    const rooms = new Rooms(this.library);
+    const begun = this.library.calls.begin(this.own, this.task(rooms, point, start, {}), 0);
+    rooms.free();
+    if (!begun) throw new Error(this.library.message());
+  }
+
+  /** States at equal parts of a span, the last at its end. @param {number} time @param {number} target @param {number} count */
+  sampled(time, target, count) {
+    const rooms = new Rooms(this.library);
+    const room = rooms.array("f64", 4 * count);
+    const done = this.library.calls.sample_evenly(this.own, time, target, count, room);
+    const states = new Float64Array(this.library.view("f64", room, 4 * count));
+    rooms.free();
+    if (!done) throw new Error(this.library.message());
+    return states;
+  }
+
+  /**
+   * A response after a transient, from a state at phase 0, as the loop has it.
+   * @param {Point} point
+   * @param {Iterable<number>} start
+   * @param {{transient: number, samples: number, tolerance: number}} settings
+   * @param {boolean} decides whether its multiplicity is decided; the instance goes on for that
+   * @returns {Generator<undefined, {states: Float64Array, largest: number, impacts: number, end: number[], counts: Record<string, number>}>}
+   */
+  *respond(point, start, { transient, samples, tolerance }, decides) {
+    const { calls, loops } = this.library;
+    const rooms = new Rooms(this.library);
+    try {
+      const places = {
+        ...{ states: rooms.array("f64", 4 * samples), ends: rooms.array("f64", 4), largest: rooms.array("f64", 1) },
+        ...{ impacts: rooms.array("f64", 1), counts: rooms.array("i32", loops.counts.length) },
+      };
+      const more = { transients: rooms.array("u32", [transient, 0]), memory: rooms.array("f64", calls.memory_size(samples)) };
+      const asked = { samples, tolerance, decides: Number(decides), ...more, ...places };
+      const task = this.task(rooms, point, start, asked);
+      yield* this.loop("respond", this.own, task, rooms.structure("ResponseProgress", {}), WORK);
+      /** @param {number} address @param {number} count */
+      const numbers = (address, count) => new Float64Array(this.library.view("f64", address, count));
+      const counts = this.library.view("i32", places.counts, loops.counts.length);
+      return {
+        states: numbers(places.states, 4 * samples),
+        largest: numbers(places.largest, 1)[0],
+        impacts: numbers(places.impacts, 1)[0],
+        end: Array.from(numbers(places.ends, 4)),
+        counts: Object.fromEntries(loops.counts.map((name, i) => [name, counts[i]])),
+      };
+    } finally {
+      rooms.free();
+    }
+  }
+
+  /**
+   * Play from event to event, from a time to the last of some times, of an instance that stops.
+   * @param {number} from
+   * @param {Float64Array} times
+   * @param {string[]} outputs read at the times
+   * @param {string[]} told read at impacts
+   * @returns {Generator<undefined, {rows: Float64Array, contact: Uint8Array, impacts: number[][]}>} of each impact its time and what is told
+   */
+  *play(from, times, outputs, told) {
+    const rooms = new Rooms(this.library);
+    const width = told.length + 2;
+    try {
+      const references = (/** @type {string[]} */ names) => rooms.array("u32", names.map((name) => this.library.variables[name]));
+      const player = rooms.structure("PlayerCalls", {
+        ...{ outputs: references(outputs), impact_outputs: references(told), contact: references(["in_contact"]) },
+        ...{ output_count: outputs.length, impact_output_count: told.length },
+      });
+      const fmi = this.library.loops.structures.PlayerCalls.findIndex(([name]) => !name.startsWith("fmi.")) * WIDTH.u32;
+      this.library.view("u8", player, fmi).set(this.library.view("u8", this.own, fmi));
+      const places = {
+        rows: rooms.array("f64", outputs.length * times.length),
+        ...{ contacts: rooms.array("u8", times.length), impacts: rooms.array("f64", width * IMPACTS) },
+      };
+      const task = rooms.structure("PlayTask", {
+        ...{ nodes: rooms.array("f64", [from, times[times.length - 1]]), samples: rooms.array("f64", times) },
+        ...{ piece_count: 1, sample_count: times.length, impact_capacity: IMPACTS, max_steps: WORK, ...places },
+      });
+      const progress = rooms.structure("PlayProgress", { time: from });
+      const kept = layout(this.library.loops.structures.PlayProgress).places[3] / WIDTH.u32;
+      /** @type {number[][]} */
+      const impacts = [];
+      const take = () => {
+        const count = this.library.view("u32", progress, kept + 1)[kept];
+        const rows = this.library.view("f64", places.impacts, width * count);
+        for (let i = 0; i < count; i++) impacts.push(Array.from(rows.subarray(width * i, width * (i + 1) - 1)));
+      };
+      for (const _ of this.loop("play", player, task, progress)) {
+        take();
+        yield;
+      }
+      take();
+      return {
+        rows: new Float64Array(this.library.view("f64", places.rows, outputs.length * times.length)),
+        contact: new Uint8Array(this.library.view("u8", places.contacts, times.length)),
+        impacts,
+      };
+    } finally {
+      rooms.free();
+    }
+  }
+}
+
+/** An instance with its bare memory, for the coupled run. */
+export class Instance {
+  /** @param {Library} library */
+  constructor(library) {
+    this.library = library;
+    this.slots = library.slots;
+    this.rooms = new Rooms(library);
+    this.fmi = this.rooms.structure("OscillatorCalls", {});
+    if (!library.calls.open_fmu(this.fmi, 0)) throw new Error(library.message() || "out of memory");
+    this.address = library.calls.memory_of(this.fmi);
+  }
+
+  close() {
+    this.library.calls.close_fmu(this.fmi);
+    this.rooms.free();
+  }
+
+  get memory() {
+    return /** @type {Float64Array} */ (this.library.view("f64", this.address, this.slots.SIZE));
   }
 
   /** @param {string} name */
@@ -37,97 +295,35 @@ export class Instance {
   /** As the FMU's setters do: a cubic input begins where it is set. @param {Record<string, number>} values by variable */
   set(values) {
     const { SET, CUBIC, CUBIC_END } = this.slots;
+    const memory = this.memory;
     for (const name in values) {
       const slot = this.slots[name];
-      this.memory[slot] = values[name];
-      if (CUBIC <= slot && slot < CUBIC_END) this.memory[SET] = 1;
+      memory[slot] = values[name];
+      if (CUBIC <= slot && slot < CUBIC_END) memory[SET] = 1;
     }
   }
 
   /** Reset and initialise at time 0. @param {Record<string, number>} values by variable */
   initialize(values) {
     this.memory.fill(0);
-    this.set(this.starts);
+    this.set(this.library.starts);
     this.set(values);
     this.call("kernel_initialize", 0);
   }
 
   /** @param {string} name @param {number} time */
   call(name, time) {
-    const code = this.entries[name](this.address, time);
+    const code = this.library.calls[name](this.address, time);
     if (code !== 0) throw new Error(`the kernel stopped at ${time} s with code ${code}`);
   }
 
-  /**
-   * One communication step from `time` to `target`, rounded as an importer's call rounds it.
-   * @param {number} time
-   * @param {number} target
-   * @param {boolean} stop whether to end at the first event
-   * @returns {number} the time reached
-   */
-  step(time, target, stop = false) {
-    return this.stepBy(time, target - time, stop);
-  }
-
-  /** @param {number} time @param {number} h length of the step @param {boolean} stop */
-  stepBy(time, h, stop = false) {
+  /** @param {number} time @param {number} h length of the step */
+  stepBy(time, h) {
     const { TIME, STOP } = this.slots;
-    const reached = this.memory[TIME];
-    this.memory[STOP] = stop ? 1 : 0;
+    const memory = this.memory;
+    const reached = memory[TIME];
+    memory[STOP] = 0;
     this.call("kernel_advance", Math.max(time + h, reached));
-    if (this.memory[TIME] < reached) this.memory[TIME] = reached;
-    return this.memory[TIME];
-  }
-}
-
-/** `TwoMassImpactOscillator`. */
-export class Oscillator extends Instance {
-  /** Begin at phase 0. @param {Point} point @param {Iterable<number>} start */
-  begin(point, start) {
-    const [x1, x2, v1, v2] = fromRest(start, point.structure);
-    this.initialize({
-      ...point.structure,
-      x1_start: x1,
-      x2_start: x2,
-      v1_start: v1,
-      v2_start: v2,
-      box_amplitude: point.amplitude,
-      box_frequency: point.frequency,
-      x_rel_max_on: 0,
-    });
-  }
-
-  /** @returns {State} */
-  state() {
-    const first = this.slots.x1;
-    return /** @type {State} */ (Array.from(this.memory.subarray(first, first + 4)));
-  }
-
-  /**
-   * States at equal parts of a span, the last at its end, taken inside few steps.
-   * @param {number} count
-   * @param {(index: number) => number} time of the end of part `index`, 0 for the span's start
-   * @returns {{states: Float64Array, peak: number}} four numbers a state; largest gap if watched
-   */
-  sampled(count, time) {
-    const states = new Float64Array(4 * count);
-    let peak = 0;
-    for (let done = 0; done < count; done += ROOM) {
-      const size = Math.min(ROOM, count - done);
-      this.set({ sample_count: size });
-      this.step(time(done), time(done + size));
-      this.keep(states, done, size);
-      peak = Math.max(peak, this.get("x_rel_max"));
-    }
-    this.set({ sample_count: 0 });
-    return { states, peak };
-  }
-
-  /** @param {Float64Array} states @param {number} done @param {number} size */
-  keep(states, done, size) {
-    ["x1_sample", "x2_sample", "v1_sample", "v2_sample"].forEach((name, part) => {
-      const first = this.slots[name];
-      for (let i = 0; i < size; i++) states[4 * (done + i) + part] = this.memory[first + i];
-    });
+    if (memory[TIME] < reached) memory[TIME] = reached;
   }
 }

@@ -27,8 +27,7 @@ export function* exponentOf(instance, point, start, { periods, most, distance })
   /** @param {number[]} state */
   const next = (state) => {
     instance.begin(point, state);
-    instance.step(0, period);
-    return instance.state();
+    return Array.from(instance.sampled(0, period, 1));
   };
   let state = start;
   let difference = [-0.5, 0.5, 0.5, -0.5].map((part) => part * distance);

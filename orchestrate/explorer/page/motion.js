@@ -1,6 +1,5 @@
 /** A motion in time with its impacts, and what an accelerometer on mass 1 would read. */
 
-import { Pauses } from "./pauses.js";
 import { periodOf } from "./structure.js";
 
 /**
@@ -10,55 +9,28 @@ import { periodOf } from "./structure.js";
  *   of each impact: closing speed, the common displacement of both masses, energy lost in J
  */
 
+const TOLD = ["impact_velocity", "x1", "impact_energy"];
+
 /**
- * Go on from where the instance stands, `first` periods after its start.
- * @param {Oscillator} instance
+ * A motion from a start, kept from `first` periods on.
+ * @param {Oscillator} stopping that stops at its events
  * @param {Point} point
+ * @param {Iterable<number>} start
  * @param {number} first
  * @param {number} periods
  * @param {number} points a period
- * @returns {Generator<undefined, Motion>} it pauses, so that the instance may do other things
+ * @returns {Generator<undefined, Motion>} it pauses
  */
-export function* record(instance, point, first, periods, points) {
+export function* record(stopping, point, start, first, periods, points) {
   const period = periodOf(point);
-  const count = periods * points + 1;
-  const time = new Float64Array(count);
-  const states = new Float64Array(4 * count);
-  const contact = new Uint8Array(count);
-  /** @type {number[][]} */
-  const impacts = [];
-  instance.set({ x_rel_max_on: 0, sample_count: 0 });
-  const pauses = new Pauses(instance);
-  for (let i = 0; i < count; i++) {
-    time[i] = (first + i / points) * period;
-    if (i > 0) advance(instance, time[i - 1], time[i], impacts);
-    states.set(instance.state(), 4 * i);
-    contact[i] = instance.get("in_contact");
-    yield* pauses.after(1);
-  }
-  /** @param {number} part */
-  const column = (part) => Float64Array.from(impacts, (impact) => impact[part]);
-  const [impactTime, impactSpeed, impactPlace, impactEnergy] = [0, 1, 2, 3].map(column);
-  const found = { impactTime, impactSpeed, impactPlace, impactEnergy };
-  return { time, states, contact, ...found, period, first, points };
-}
-
-/**
- * Step to `target`, stopping at each impact.
- * @param {Oscillator} instance
- * @param {number} time
- * @param {number} target
- * @param {number[][]} impacts
- */
-function advance(instance, time, target, impacts) {
-  while (time < target) {
-    const before = ["impact_count", "impact_energy"].map((name) => instance.get(name));
-    time = instance.step(time, target, true);
-    if (instance.get("impact_count") > before[0]) {
-      const told = ["impact_time", "impact_velocity", "x1"].map((name) => instance.get(name));
-      impacts.push([...told, instance.get("impact_energy") - before[1]]);
-    }
-  }
+  const time = Float64Array.from({ length: periods * points + 1 }, (_, i) => (first + i / points) * period);
+  stopping.begin(point, start);
+  const before = yield* stopping.play(0, time.slice(0, 1), [], TOLD);
+  const { rows, contact, impacts } = yield* stopping.play(time[0], time, ["x1", "x2", "v1", "v2"], TOLD);
+  const [impactTime, impactSpeed, impactPlace, lost] = [0, 1, 2, 3].map((part) => Float64Array.from(impacts, (impact) => impact[part]));
+  const lostBefore = before.impacts[before.impacts.length - 1]?.[3] ?? 0;
+  const impactEnergy = lost.map((energy, i) => energy - (i ? lost[i - 1] : lostBefore));
+  return { time, states: rows, contact, impactTime, impactSpeed, impactPlace, impactEnergy, period, first, points };
 }
 
 /**

@@ -1,8 +1,8 @@
 /** What the page carries: the compiled kernel, tables, and where the responses of a sweep begin. */
 
 /**
- * @typedef {{slots: Slots, starts: Record<string, number>}} Kernel
- * @typedef {{oscillator: Kernel, shaker: Kernel, drive: Start,
+ * @typedef {{slots: Slots, starts: Record<string, number>, variables: Record<string, number>}} Kernel
+ * @typedef {{oscillator: Kernel, shaker: Kernel, loops: Loops, drive: Start,
  *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>, units: Units,
  *   settings: Settings, directions: ("up" | "down")[], count: number,
  *   low: number, high: number, level: ["paper" | "g" | "mm", number],
@@ -32,7 +32,8 @@ export async function load() {
   const packed = ["oscillator", "shaker", "data"].map(bytes);
   const [first, second, data] = await Promise.all(packed);
   const [one, other] = await Promise.all([first, second].map((code) => WebAssembly.compile(code)));
-  const compiled = { oscillator: { module: one, ...table.oscillator }, shaker: { module: other, ...table.shaker } };
+  const { oscillator, shaker, loops } = table;
+  const compiled = { oscillator: { module: one, loops, ...oscillator }, shaker: { module: other, loops, ...shaker } };
   return { table, compiled, worker: text("worker"), diagram: shipped(table, new Float64Array(data)) };
 }
 

@@ -21,15 +21,13 @@ export function* spectrumOf(instance, point, first, { periods, points, highest }
   const count = periods * points;
   const real = new Float64Array(count);
   for (let done = 0; done < count; done += PIECE) {
-    const { states } = instance.sampled(PIECE, (index) => (first + (done + index) / points) * period);
+    const states = instance.sampled((first + done / points) * period, (first + (done + PIECE) / points) * period, PIECE);
     for (let k = 0; k < PIECE; k++) {
       const i = done + k;
       const box = point.amplitude * Math.sin((2 * Math.PI * ((i + 1) % points)) / points);
       real[i] = states[4 * k] + box;
     }
-    const kept = instance.memory.slice();
     yield;
-    instance.memory.set(kept);
   }
   windowed(real);
   const imaginary = new Float64Array(count);

@@ -1,6 +1,7 @@
 /** What is shown as tables: the diagram, of the motion, of a spectrum. */
 
 import { accelerations } from "./motion.js";
+import { DECIDED } from "./response.js";
 
 /** Samples of all responses that have come. @param {Diagram} diagram */
 export function diagramCsv({ points, lanes, settings }) {
@@ -9,12 +10,12 @@ export function diagramCsv({ points, lanes, settings }) {
       for (let i = 0; i < found.length; i++) {
         const one = found[i];
         if (!one) continue;
-        yield [direction, points[i].eta, one.impacts, one.multiplicity, one.peak, ...one.gaps];
+        yield [direction, points[i].eta, one.impacts, one.multiplicity, DECIDED[one.decided], one.peak, ...one.gaps];
       }
     }
   }
   const names = Array.from({ length: settings.samples }, (_, i) => `xi_rel_${i + 1}`);
-  return { head: ["direction", "eta", "impacts_per_period", "multiplicity", "xi_rel_max", ...names], rows: rows() };
+  return { head: ["direction", "eta", "impacts_per_period", "multiplicity", "multiplicity_decided", "xi_rel_max", ...names], rows: rows() };
 }
 
 /** The motion in time. @param {Motion} motion @param {Point} point */

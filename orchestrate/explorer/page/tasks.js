@@ -2,6 +2,7 @@
 
 import { destination, startAt } from "./basin.js";
 import { Coupled } from "./coupled.js";
+import { Instance, Oscillator } from "./kernel.js";
 import { exponentOf } from "./lyapunov.js";
 import { record } from "./motion.js";
 import { respond } from "./response.js";
@@ -41,8 +42,24 @@ function* chain(instance, { columns, indices, start, settings }) {
 }
 
 /** @param {number} index @param {Response} found */
-function answer(index, { gaps, peak, impacts, contact, multiplicity, start, end }) {
-  return { index, gaps, peak, impacts, contact, multiplicity, start, end };
+function answer(index, { gaps, peak, impacts, contact, multiplicity, decided, start, end }) {
+  return { index, gaps, peak, impacts, contact, multiplicity, decided, start, end };
+}
+
+/**
+ * What is computed on an instance of its own, which stops at its events.
+ * @template T
+ * @param {Oscillator} instance
+ * @param {(own: Oscillator) => Generator<undefined, T>} run
+ * @returns {Generator<undefined, T>}
+ */
+function* stopping({ library }, run) {
+  const own = new Oscillator(library, true);
+  try {
+    return yield* run(own);
+  } finally {
+    own.close();
+  }
 }
 
 /**
@@ -53,7 +70,7 @@ function answer(index, { gaps, peak, impacts, contact, multiplicity, start, end 
 function* motion(instance, { point, start, settings, periods, points }) {
   const first = settings.transient + settings.samples;
   const response = yield* respond(instance, point, start, settings);
-  yield { response, motion: yield* record(instance, point, first, periods, points) };
+  yield { response, motion: yield* stopping(instance, (own) => record(own, point, start, first, periods, points)) };
 }
 
 /**
@@ -63,7 +80,7 @@ function* motion(instance, { point, start, settings, periods, points }) {
  */
 function* section(instance, { point, start, periods }) {
   for (let done = 0; done < periods; done += 200) {
-    const found = yield* respond(instance, point, start, { transient: 0, samples: 200, tolerance: 1e-2 });
+    const found = yield* respond(instance, point, start, { transient: 0, samples: 200, tolerance: 1e-2 }, false);
     start = found.end;
     yield found.states;
   }
@@ -78,7 +95,7 @@ function* spectra(instance, { point, start }) {
   instance.begin(point, start);
   const delaminated = yield* spectrumOf(instance, point, 0, SPAN);
   const glued = { ...point, structure: { ...point.structure, bonded: 1 } };
-  const settled = yield* respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 });
+  const settled = yield* respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 }, false);
   const bonded = yield* spectrumOf(instance, glued, 2001, SPAN);
   yield { delaminated, bonded, bondedState: settled.end };
   yield { exponent: yield* exponentOf(instance, point, start, EXPONENT) };
@@ -90,8 +107,7 @@ function* spectra(instance, { point, start }) {
  * @param {{point: Point, start: number[], periods: number, pitch: number, rate: number}} asked
  */
 function* sound(instance, { point, start, periods, pitch, rate }) {
-  instance.begin(point, start);
-  const { impactTime, impactEnergy } = yield* record(instance, point, 0, periods, 1);
+  const { impactTime, impactEnergy } = yield* stopping(instance, (own) => record(own, point, start, 0, periods, 1));
   const time = impactTime.map((t) => t / periodOf(point));
   yield waveform({ time, energy: impactEnergy, turns: periods }, pitch, rate);
 }
@@ -101,10 +117,11 @@ function* sound(instance, { point, start, periods, pitch, rate }) {
  * @param {Oscillator} instance
  * @param {{run: Run | null, start: Start,
  *   voltages: number[]}} asked a voltage for each step
- * @param {Instance} shaker
+ * @param {Library} library of the shaker
  */
-function* drive(instance, { run, start, voltages }, shaker) {
-  const coupled = run ? Coupled.resumed(instance, shaker, run) : Coupled.begun(instance, shaker, start);
+function* drive(instance, { run, start, voltages }, library) {
+  const [oscillator, shaker] = [instance.library, library].map((one) => new Instance(one));
+  const coupled = run ? Coupled.resumed(oscillator, shaker, run) : Coupled.begun(oscillator, shaker, start);
   const rows = [];
   for (const voltage of voltages) {
     coupled.step(voltage);
@@ -112,6 +129,7 @@ function* drive(instance, { run, start, voltages }, shaker) {
     if (row) rows.push(row);
   }
   yield { rows, run: coupled.memory() };
+  [oscillator, shaker].forEach((one) => one.close());
 }
 
 /**
@@ -125,5 +143,21 @@ function* basin(instance, { point, plane, cells }) {
   }
 }
 
-/** @type {Record<string, (instance: Oscillator, asked: any, shaker: Instance) => Generator<unknown>>} */
-export const TASKS = { replay, chain, motion, section, spectra, sound, drive, basin };
+/** @type {Record<string, (instance: Oscillator, asked: any, shaker: Library) => Generator<unknown>>} */
+const TASKS = { replay, chain, motion, section, spectra, sound, drive, basin };
+
+/**
+ * Run a task on an instance of its own.
+ * @param {string} task
+ * @param {unknown} asked
+ * @param {{oscillator: Library, shaker: Library}} libraries
+ * @returns {Generator<unknown>}
+ */
+export function* perform(task, asked, { oscillator, shaker }) {
+  const instance = new Oscillator(oscillator);
+  try {
+    yield* TASKS[task](instance, asked, shaker);
+  } finally {
+    instance.close();
+  }
+}

@@ -1,6 +1,7 @@
 /** A response in words: its numbers, its exponent, and a sentence. */
 
 import { inHertz } from "./excitation.js";
+import { periodsOf, UNDECIDED } from "./response.js";
 import { shown } from "./scale.js";
 import { scaleAt, wordsOf } from "./units.js";
 
@@ -27,8 +28,15 @@ export function exponentWords(exponent, repeats) {
   return `${shown(value, 3)}${within} (${words})`;
 }
 
-/** How many periods a motion of so many samples is compared over. @param {number} samples */
-const comparedOver = (samples) => Math.max(1, Math.floor(samples / 4));
+/** @param {number} count */
+const countedPeriods = (count) => `${count} period${count > 1 ? "s" : ""}`;
+
+/** After how many periods a motion repeats, or how it does not. @param {{multiplicity: number, decided: number}} motion */
+export function repeatWords(motion) {
+  const periods = periodsOf(motion);
+  if (periods) return countedPeriods(periods);
+  return motion.decided === UNDECIDED ? "undecided" : "irregular";
+}
 
 /** How a beam of one's own is shaken, and how far it opens. @param {number} peak @param {Point} point @param {Level} level @returns {Record<string, string>} */
 function ownNumbers(peak, point, level) {
@@ -43,15 +51,15 @@ function ownNumbers(peak, point, level) {
 }
 
 /** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @returns {Record<string, string>} */
-export function numbersOf({ peak, impacts, contact, multiplicity, gaps }, point, level) {
+export function numbersOf(response, point, level) {
+  const { peak, impacts, contact } = response;
   /** @type {Record<string, string>} */
   const first = inHertz(level) ? ownNumbers(peak, point, level) : { "frequency ratio η": shown(point.eta, 6), "largest gap ξ": shown(peak, 6) };
   const count = shown(impacts, DIGITS);
-  const often = multiplicity ? `${multiplicity} period${multiplicity > 1 ? "s" : ""}` : `not within ${comparedOver(gaps.length)} periods`;
   return {
     ...first,
-    "impacts a period": multiplicity === 1 ? count : `${count} on average`,
-    "repeats after": often,
+    "impacts a period": periodsOf(response) === 1 ? count : `${count} on average`,
+    "repeats after": repeatWords(response),
     "stick together": !contact ? "no" : peak > 0 ? "for a while" : "always",
   };
 }
@@ -69,20 +77,23 @@ export function countOf(impacts, each = "a period") {
 export const meanCountOf = (impacts, multiplicity) => `${multiplicity === 1 ? "" : "on average "}${countOf(impacts)}`;
 
 /** A response in a sentence. @param {Response} response @param {Exponent | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown @param {string} opening what is said of halves that stay closed */
-export function sentenceOf({ impacts, contact, multiplicity, peak, gaps }, exponent, seen, opening) {
+export function sentenceOf(response, exponent, seen, opening) {
+  const { impacts, contact, peak } = response;
+  const periods = periodsOf(response);
   if (!impacts) return peak > 0 ? "The halves never touch." : `The halves stay closed: no impact.${opening}`;
-  const count = meanCountOf(impacts, multiplicity);
-  if (multiplicity) {
-    const every = multiplicity === 1 ? "every shaking period" : `after ${multiplicity} shaking periods`;
+  const count = meanCountOf(impacts, periods);
+  if (periods) {
+    const every = periods === 1 ? "every shaking period" : `after ${periods} shaking periods`;
     return `Repeats ${every}: ${count}${contact ? ", then the halves stick together for a while" : ""}.`;
   }
   const sticks = `; at times${seen ? "" : ", outside the periods shown,"} the halves stick together`;
-  return `${withoutRepeating(exponent, gaps.length)}, ${count}${contact ? sticks : ""}.`;
+  return `${withoutRepeating(response, exponent)}, ${count}${contact ? sticks : ""}.`;
 }
 
-/** @param {Exponent | undefined} exponent @param {number} samples */
-function withoutRepeating(exponent, samples) {
-  const so = `Has not repeated within ${comparedOver(samples)} periods`;
+/** @param {Response} response @param {Exponent | undefined} exponent */
+function withoutRepeating({ decided, multiplicity, gaps }, exponent) {
+  const guess = multiplicity ? `, perhaps after ${countedPeriods(multiplicity)}` : "";
+  const so = decided === UNDECIDED ? `Undecided whether it repeats${guess}` : `Irregular: does not repeat in ${gaps.length} periods`;
   if (!exponent) return so;
   return { chaotic: "Chaos: never repeats", converging: `${so}, but converges`, undecided: UNDECIDED_MOTION }[kindOf(exponent)];
 }

@@ -1,14 +1,12 @@
 /** A worker: computes tasks in short slices, an urgent one first, else the newest and the one before in turn. */
 
-import { Instance, Oscillator } from "./kernel.js";
-import { TASKS } from "./tasks.js";
+import { Library } from "./kernel.js";
+import { perform } from "./tasks.js";
 
 const SLICE = 8; // ms
 
-/** @type {Oscillator} */
-let instance;
-/** @type {Instance} */
-let shaker;
+/** @type {{oscillator: Library, shaker: Library}} */
+let libraries;
 /** @type {{id: number, urgent: boolean, run: Generator<unknown>}[]} */
 const tasks = [];
 const wake = new MessageChannel();
@@ -20,10 +18,10 @@ const scope = /** @type {{onmessage: unknown, postMessage: (message: unknown) =>
 
 scope.onmessage = (/** @type {MessageEvent} */ { data }) => {
   if (data.compiled) {
-    instance = new Oscillator(data.compiled.oscillator);
-    shaker = new Instance(data.compiled.shaker);
+    const { oscillator, shaker } = data.compiled;
+    libraries = { oscillator: new Library(oscillator), shaker: new Library(shaker) };
   }
-  if (data.task) tasks.push({ id: data.id, urgent: data.urgent, run: TASKS[data.task](instance, data.asked, shaker) });
+  if (data.task) tasks.push({ id: data.id, urgent: data.urgent, run: perform(data.task, data.asked, libraries) });
   if (data.cancel !== undefined) drop(data.cancel);
   rouse();
 };
@@ -31,7 +29,7 @@ scope.onmessage = (/** @type {MessageEvent} */ { data }) => {
 /** @param {number} id */
 function drop(id) {
   const place = tasks.findIndex((task) => task.id === id);
-  if (place >= 0) tasks.splice(place, 1);
+  if (place >= 0) tasks.splice(place, 1)[0].run.return(undefined);
 }
 
 function rouse() {

@@ -1,4 +1,4 @@
-"""The sound structure's motion: closed forms, another integrator, and C against Python."""
+"""The sound structure's motion against another integrator."""
 
 from dataclasses import replace
 
@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from orchestrate.diagnosis import single_mass
 from orchestrate.diagnosis.single_mass import SingleMass
 from orchestrate.laboratory.sampled import Sampled
 
@@ -45,17 +44,6 @@ def test_motion_is_that_of_an_adaptive_integrator(name):
     )
     found = mass.displacements(pieces.derivatives, 1.0 / RATE)
     np.testing.assert_allclose(found[:150], exact.y[0], atol=2e-4 * abs(exact.y[0]).max())
-
-
-@pytest.mark.parametrize("name", KINDS)
-def test_compiled_steps_are_those_in_python(name, monkeypatch):
-    pieces = cubics()
-    assert single_mass.run_function() is not None
-    compiled = KINDS[name].displacements(pieces.derivatives, 1.0 / RATE)
-    monkeypatch.setattr(single_mass, "run_function", lambda: None)
-    slow = KINDS[name].displacements(pieces.derivatives, 1.0 / RATE)
-    assert abs(slow).max() > 1e-4
-    np.testing.assert_array_equal(compiled, slow)
 
 
 def test_a_mass_that_escapes_is_no_number_from_there_on():

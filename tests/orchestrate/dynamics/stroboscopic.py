@@ -11,7 +11,7 @@ def flown(structure, excitation, states, periods=1):
     with EventInstance(find(OSCILLATOR).path) as instance:
         for state in np.atleast_2d(states):
             begin(instance, structure, excitation, state)
-            instance.advance(0.0, periods * excitation.period)
+            instance.impacts(0.0, periods * excitation.period)
             ends.append(instance.read("x1", "x2", "v1", "v2").copy())
     return np.array(ends)
 

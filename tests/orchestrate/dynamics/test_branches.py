@@ -183,9 +183,9 @@ def contacts(instance, eta, found):
     """Permanent contacts of the FMU over 20 periods, from a branch's last orbit on."""
     excitation = Excitation.nondimensional(eta, PAPER)
     begin(instance, PAPER, excitation, found.state.values[-1, 0])
-    instance.advance(0.0, 500 * excitation.period)
+    instance.impacts(0.0, 500 * excitation.period)
     before = instance.get("contact_count")[0]
-    instance.advance(500 * excitation.period, 520 * excitation.period)
+    instance.impacts(500 * excitation.period, 520 * excitation.period)
     return instance.get("contact_count")[0] - before
 
 

@@ -10,16 +10,10 @@ import xarray as xr
 import orchestrate
 from orchestrate import cli
 from orchestrate.explorer.page import explore
-from orchestrate.fmu import OSCILLATOR, Instance, find
-from orchestrate.model import Excitation, Structure
-from orchestrate.response.questions import Point
-from orchestrate.response.respond import responses_from
-from orchestrate.response.response_loop import LoopSettings, response_loop
 
 from ...sparing import ordinary
 from .test_own_beam import pasted
 
-PAPER = Structure()
 DIAGRAM = "explorer.regions.diagram"
 MOTION = "explorer.inspector.found.motion"
 
@@ -41,17 +35,88 @@ def test_every_response_has_the_samples_of_the_file_to_the_last_bit(browser, swe
     found = f"{DIAGRAM}.lanes[0].found"
     numbers = browser.numbers(f"{found}.map((one) => one.peak)")
     assert numbers.tobytes() == swept.xi_rel_max.values.tobytes()
-    # the page counts over the samples, and compares within the tolerance alone
-    points = [
-        Point(PAPER, Excitation.nondimensional(float(eta), PAPER)) for eta in swept.eta.values
+    theirs = {
+        "impacts": swept.impacts_per_period,
+        "multiplicity": swept.multiplicity,
+        "decided": swept.multiplicity_decided,
+    }
+    for name, expected in theirs.items():
+        numbers = browser.numbers(f"{found}.map((one) => one.{name})")
+        assert np.array_equal(numbers, expected.values), name
+
+
+ASK = """
+explorer.answers = [];
+for (const [structure, eta] of arguments[0]) {
+  const one = new Float64Array(1).fill(eta);
+  const frequency = one.map(() => eta * Math.sqrt(structure.k1 / structure.m1));
+  const columns = { structure, eta: one, frequency, amplitude: one.map(() => 1 / (eta * eta)) };
+  const asked = { columns, starts: new Float64Array(4), indices: [0], settings: arguments[1] };
+  const index = explorer.answers.push(null) - 1;
+  explorer.pool.ask("replay", asked, ([part]) => { explorer.answers[index] = part; });
+}
+"""
+SETTINGS = {"transient": 500, "samples": 200, "tolerance": 1e-2}
+
+
+def random_structures(seed, count):
+    """Structures with a gap, a preload or neither, and a frequency ratio each."""
+    random = np.random.default_rng(seed)
+    for i in range(count):
+        structure = orchestrate.Structure.nondimensional(
+            mu=random.uniform(0.25, 4.0),
+            kappa=random.uniform(0.4, 3.0),
+            D1=random.uniform(0.0005, 0.2),
+            D2=random.uniform(0.0005, 0.2),
+            e=random.uniform(0.05, 0.95),
+        ).replace(clearance=(0.0, random.uniform(-3.0, 3.0))[i % 2])
+        yield structure, float(random.uniform(0.3, 5.0))
+
+
+def asked_of_the_page(browser, pairs):
+    """Responses of the page from rest."""
+    numbers = [[{k: float(v) for k, v in s.parameters().items()}, eta] for s, eta in pairs]
+    browser.run(ASK, numbers, SETTINGS)
+    browser.until("return explorer.answers.every(Boolean)", seconds=300)
+
+
+@pytest.mark.parametrize("count", ordinary([20, 300]))
+def test_the_numbers_are_those_of_python(shown, count):
+    pairs = list(random_structures(11, count))
+    asked_of_the_page(shown, pairs)
+    found = [
+        orchestrate.sweep(structure, eta=[eta], progress=False, jobs=1, **SETTINGS)
+        for structure, eta in pairs
     ]
-    with Instance(find(OSCILLATOR).path) as instance:
-        settings = LoopSettings(transient=500, samples=200, is_chain=True)
-        results = response_loop(instance).respond(points, [(0.0,) * 4], settings)
-        responses = list(responses_from(results, points, 1e-2))
-    for mine, theirs in (("impacts", "impacts_per_period"), ("multiplicity", "multiplicity")):
-        numbers = browser.numbers(f"{found}.map((one) => one.{mine})")
-        assert np.array_equal(numbers, [getattr(one, theirs) for one in responses])
+    names = {
+        "peak": "xi_rel_max",
+        "impacts": "impacts_per_period",
+        "multiplicity": "multiplicity",
+        "decided": "multiplicity_decided",
+        "contact": "permanent_contact",
+    }
+    for mine, theirs in names.items():
+        numbers = shown.numbers(f"explorer.answers.map((one) => Number(one.{mine}))")
+        expected = np.concatenate([data[theirs].values for data in found]).astype(float)
+        assert np.array_equal(numbers, expected), mine
+    gaps = shown.numbers("explorer.answers.flatMap((one) => Array.from(one.gaps))")
+    assert gaps.tobytes() == np.concatenate([d.xi_rel.values[0] for d in found]).tobytes()
+    assert len({int(data.multiplicity_decided[0]) for data in found}) >= 2
+
+
+def test_a_response_that_settles_slowly_repeats_after_no_invented_period(chromium, page):
+    chromium.open(page, "#e=0.5&eta=2.5929473397488296&start=0,0,0,0", whole=False)
+    chromium.chosen()
+    structure = orchestrate.Structure(e=0.5)
+    data = orchestrate.sweep(structure, eta=[2.5929473397488296], progress=False)
+    response = "explorer.inspector.found.response"
+    found = chromium.run(f"return [{response}.multiplicity, {response}.decided]")
+    (row,) = zip(data.multiplicity.values, data.multiplicity_decided.values, strict=True)
+    assert found == list(row) == [1, 2]
+    assert chromium.text("sentence").startswith("Undecided whether it repeats, perhaps after 1 p")
+    chromium.until("return explorer.basin.tried")
+    assert not chromium.run("return explorer.basin.others")
+    assert chromium.console() == []
 
 
 def test_a_click_shows_the_motion_that_the_command_computes(browser, swept, tmp_path, capsys):

@@ -11,33 +11,43 @@ from orchestrate.explorer.page import read_modules
 from ...sparing import ordinary
 
 PROBE = """
-import { Oscillator } from "./kernel.js";
+import { Library } from "./kernel.js";
 import { load } from "./payload.js";
-import { TASKS } from "./tasks.js";
-load().then(({ compiled }) => {
-  window.probe = { instance: new Oscillator(compiled.oscillator), TASKS };
+import { perform } from "./tasks.js";
+load().then(({ compiled: { oscillator, shaker } }) => {
+  const libraries = { oscillator: new Library(oscillator), shaker: new Library(shaker) };
+  window.probe = { libraries, perform: (task, asked) => perform(task, asked, libraries) };
 });
 """
 LONGEST = """
 const [task, asked, eta, changes] = arguments;
-const { instance, TASKS } = window.probe;
+const { libraries, perform } = window.probe;
 const structure = { ...explorer.table.usual, ...changes };
 const frequency = eta * Math.sqrt(structure.k1 / structure.m1);
 const point = { structure, eta, frequency, amplitude: 1 / (eta * eta) };
-const proto = Object.getPrototypeOf(Object.getPrototypeOf(instance));
-const call = proto.call;
+const { oscillator } = libraries;
+const { calls, slots } = oscillator;
 let work = 0;
-instance.call = function (...words) {
-  const before = instance.get("impact_count");
-  call.apply(instance, words);
-  work += 1 + Math.max(0, instance.get("impact_count") - before);
+// what a loop runs on begins with its FMU
+const counted = (name) => (fmu, ...numbers) => {
+  const memory = () => oscillator.view("f64", calls.memory_of(fmu), slots.SIZE);
+  const impacts = () => memory()[slots.impact_count];
+  const before = impacts();
+  const answer = calls[name](fmu, ...numbers);
+  work += 1 + Math.max(0, impacts() - before);
+  return answer;
 };
+oscillator.calls = { ...calls };
+for (const name of ["begin", "respond", "sample_evenly", "play"]) {
+  oscillator.calls[name] = counted(name);
+}
 const found = [];
 const settings = { transient: 500, samples: 200, tolerance: 1e-2 };
-for (const _ of TASKS[task](instance, { point, start: [0, 0, 0, 0], settings, ...asked })) {
+for (const _ of perform(task, { point, start: [0, 0, 0, 0], settings, ...asked })) {
   found.push(work);
   work = 0;
 }
+oscillator.calls = calls;
 return [...found, work];
 """
 PLANE = {"side": 64, "gap": 3.0, "speed": 3.0, "mean": [0.0, 0.0]}
@@ -69,23 +79,31 @@ def test_little_is_done_between_two_pauses(probed, task, eta):
 
 
 def test_a_motion_that_paused_goes_on_as_if_it_had_not(probed):
-    """Another task has the instance in every pause."""
+    """Other tasks have their turn in every pause, and one is called off."""
     same = """
-    const { instance, TASKS } = window.probe;
+    const { perform, libraries } = window.probe;
     const structure = explorer.table.usual;
-    const point = { structure, eta: 0.3, frequency: 0.3, amplitude: 1 / (0.3 * 0.3) };
+    const at = (eta) => ({ structure, eta, frequency: eta, amplitude: 1 / (eta * eta) });
     const settings = { transient: 500, samples: 200, tolerance: 1e-2 };
-    const asked = { point, start: [0, 0, 0, 0], settings, periods: 100, points: 200 };
+    const asked = { start: [0, 0, 0, 0], settings, periods: 100, points: 200 };
+    const task = (eta) => perform("motion", { ...asked, point: at(eta) });
     const run = (between) => {
       let pauses = 0;
-      for (const part of TASKS.motion(instance, asked)) {
+      for (const part of task(0.3)) {
         if (part) return [pauses, Array.from(part.motion.states)];
         pauses += 1;
-        if (between) instance.begin({ ...point, frequency: 2.9 }, [0, 0, 1, -1]);
+        if (between) {
+          const other = task(0.31);
+          other.next();
+          other.return();
+        }
       }
     };
     const [[first, alone], [second, shared]] = [run(false), run(true)];
-    return [first, second, alone.length, alone.every((value, i) => value === shared[i])];
+    const size = libraries.oscillator.memory.buffer.byteLength;
+    for (let i = 0; i < 20; i++) run(true);
+    const grown = libraries.oscillator.memory.buffer.byteLength - size;
+    return [first, second, alone.length, alone.every((value, i) => value === shared[i]), grown];
     """
-    first, second, count, alike = probed.run(same)
-    assert first == second > 2 and count > 80_000 and alike
+    first, second, count, alike, grown = probed.run(same)
+    assert first == second > 2 and count > 80_000 and alike and not grown

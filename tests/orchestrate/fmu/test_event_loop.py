@@ -1,4 +1,4 @@
-"""The compiled loop through events against the same in Python: equal bits, equal refusals."""
+"""The loop through events: the bits of plain Python, equal refusals."""
 
 import ctypes
 import shutil
@@ -10,8 +10,9 @@ import pytest
 from orchestrate.errors import FmuError
 from orchestrate.fmu import PLAYED, REST, Player
 from orchestrate.fmu import event_loop as loops
-from orchestrate.fmu.c_library import library
-from orchestrate.fmu.event_loop import SOURCE, Calls, CompiledEventLoop, EventLoop, Progress, Task
+from orchestrate.fmu.c_library import loaded_loop
+from orchestrate.fmu.event_loop import EventLoop, Played, PlayerCalls, PlayProgress, PlayTask
+from orchestrate.fmu.impacts import EVENT_OUTPUTS, Impacts
 from orchestrate.fmu.play import CUBIC
 from orchestrate.model import Structure
 
@@ -28,6 +29,42 @@ RANDOM = np.random.default_rng(3)
 NODES = np.concatenate([[0.0], np.cumsum(RANDOM.uniform(0.1, 0.9, 400))])
 CUBICS = RANDOM.normal(size=(400, 4)) * (1.0, 1.0, 1.0, 3.0)
 SAMPLES = np.sort(np.concatenate([RANDOM.uniform(0.0, NODES[-1], 900), NODES, NODES[7:9]]))
+
+
+class PythonEventLoop:
+    """The loop by calls of the FMU one after the other: slow, to compare."""
+
+    def __init__(self, instance, inputs, outputs):
+        self.instance, self.inputs, self.outputs = instance, inputs, outputs
+
+    def run(self, nodes, derivatives, samples):
+        call, get = self.instance.call, self.instance.get
+        rows, touching, table = [], [], []
+
+        def advance(time, target):
+            while time < target:
+                event, _, _, time = call("doStep", time, target - time)
+                if event:
+                    table.append([time, *get(*EVENT_OUTPUTS), *get("in_contact")])
+                    for change in ("enterEventMode", "updateDiscreteStates", "enterStepMode"):
+                        call(change)
+            return time
+
+        def read():
+            rows.append(get(*self.outputs))
+            touching.append(*get("in_contact"))
+
+        time, done = float(nodes[0]), 0
+        ends = np.searchsorted(samples, nodes[1:], side="left")
+        for values, target, last in zip(derivatives.tolist(), nodes[1:], ends, strict=True):
+            self.instance.set(**dict(zip(self.inputs, values, strict=True)))
+            for sample in samples[done:last]:
+                time = advance(time, float(sample))
+                read()
+            time, done = advance(time, float(target)), last
+        for _ in samples[done:]:  # at the last node
+            read()
+        return Played(np.array(rows), np.array(touching), Impacts.from_table(np.array(table)))
 
 
 def bits(played):
@@ -48,8 +85,8 @@ def done(kind, fmu, structure, nodes=NODES, cubics=CUBICS, samples=SAMPLES):
 @pytest.mark.parametrize("name", STRUCTURES)
 def test_the_same_bits(name, event_fmu):
     structure = STRUCTURES[name]
-    expected, end = done(EventLoop, event_fmu, structure)
-    result, compiled_end = done(CompiledEventLoop, event_fmu, structure)
+    expected, end = done(PythonEventLoop, event_fmu, structure)
+    result, compiled_end = done(EventLoop, event_fmu, structure)
     assert bits(result) == bits(expected)
     assert compiled_end == end
     count = len(expected.impacts.time)
@@ -59,16 +96,16 @@ def test_the_same_bits(name, event_fmu):
 
 def test_pauses_change_no_bit(event_fmu, monkeypatch):
     """However small the buffer for impacts, and however often the loop returns to Python."""
-    expected, end = done(EventLoop, event_fmu, STRUCTURE)
+    expected, end = done(PythonEventLoop, event_fmu, STRUCTURE)
     monkeypatch.setattr(loops, "IMPACT_CAPACITY", 3)
     monkeypatch.setattr(loops, "MAX_STEPS", 7)
-    result, compiled_end = done(CompiledEventLoop, event_fmu, STRUCTURE)
+    result, compiled_end = done(EventLoop, event_fmu, STRUCTURE)
     assert (bits(result), compiled_end) == (bits(expected), end)
 
 
 def test_where_it_is_read_changes_no_impact(event_fmu):
-    at_samples, end = done(CompiledEventLoop, event_fmu, STRUCTURE)
-    unread, same_end = done(CompiledEventLoop, event_fmu, STRUCTURE, samples=np.empty(0))
+    at_samples, end = done(EventLoop, event_fmu, STRUCTURE)
+    unread, same_end = done(EventLoop, event_fmu, STRUCTURE, samples=np.empty(0))
     assert bits(at_samples)[2:] == bits(unread)[2:]
     assert unread.rows.shape == (0, len(PLAYED))
     assert len(end) == len(same_end)
@@ -76,7 +113,7 @@ def test_where_it_is_read_changes_no_impact(event_fmu):
 
 def test_an_open_instance_serves_any_number_of_motions(event_fmu):
     """After another structure, and after a refusal, the motion is that of a new instance."""
-    expected, _ = done(CompiledEventLoop, event_fmu, STRUCTURE)
+    expected, _ = done(EventLoop, event_fmu, STRUCTURE)
     with Player(event_fmu) as player:
         for structure in (*STRUCTURES.values(), STRUCTURE):
             player.start(structure)
@@ -114,8 +151,8 @@ def bad_row(value):
     ids=["input", "time", "discarded"],
 )
 def test_a_refusal_is_passed_on(words, arguments, event_fmu):
-    text = refusal(CompiledEventLoop, event_fmu, **arguments)
-    assert text == refusal(EventLoop, event_fmu, **arguments)
+    text = refusal(EventLoop, event_fmu, **arguments)
+    assert text == refusal(PythonEventLoop, event_fmu, **arguments)
     assert words in text
 
 
@@ -126,7 +163,7 @@ def test_numbers_that_are_not_finite_are_refused(first, event_fmu, tmp_path):
     if shutil.which("cc") is None and shutil.which("gcc") is None:
         pytest.importorskip("ziglang")
     found = []
-    for kind in (EventLoop, CompiledEventLoop):  # each with a count of readings of its own
+    for kind in (PythonEventLoop, EventLoop):  # each with a count of readings of its own
         fmu = misbehaving(event_fmu, tmp_path / f"{kind.__name__}.fmu", "NaN", first=first)
         found.append(refusal(kind, fmu))
     assert found[0] == found[1]
@@ -142,8 +179,8 @@ def test_shapes_that_do_not_fit_are_refused(event_fmu):
 
 def test_structures_have_the_sizes_of_the_source():
     """A field forgotten on one side would shift all that follow."""
-    sizes = (ctypes.c_uint * 3).in_dll(ctypes.CDLL(str(library(SOURCE))), "sizes")
-    assert list(sizes) == [ctypes.sizeof(kind) for kind in (Calls, Task, Progress)]
+    sizes = (ctypes.c_uint * 3).in_dll(loaded_loop("play"), "sizes_of_play")
+    assert list(sizes) == [ctypes.sizeof(kind) for kind in (PlayerCalls, PlayTask, PlayProgress)]
 
 
 def test_what_is_not_read_changes_nothing(event_fmu):

@@ -20,12 +20,11 @@ from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
 from orchestrate.response.multiplicity import (
     MIN_RELATIVE_GAP,
-    Decision,
     decide_multiplicity,
     find_repetition,
 )
 from orchestrate.response.questions import Point
-from orchestrate.response.respond import Response, respond
+from orchestrate.response.respond import respond
 
 from ...sparing import ordinary
 
@@ -283,7 +282,8 @@ def checked_by_newton(points, transient, samples):
     with Instance(path) as plain, EventInstance(path) as eventful:
         for point in points:
             response = respond(plain, *point, (0.0,) * 4, transient, samples, TOLERANCE)
-            n, decided = response.decision(TOLERANCE)
+            size = response.frequency, response.x_rel_max
+            n, decided = decide_multiplicity(response.samples, *size, TOLERANCE)
             if decided != REPEATED:
                 continue
             end = respond(plain, *point, response.end, 3000, 4, TOLERANCE).end
@@ -334,22 +334,18 @@ def test_where_a_response_has_repeated_it_lies_on_a_stable_orbit_of_as_many_peri
     ],
 )
 def test_impacts_of_all_samples_are_those_of_the_response(found, impacts, n, same):
-    samples = np.arange(800.0).reshape(200, 4)
-    response = Response(
-        samples=samples,
-        x_rel_max=1.0,
-        impacts_per_period=found / 200,
-        impact_count=found,
-        permanent_contact=False,
-        frequency=1.0,
-        tolerance=TOLERANCE,
-    )
-    assert response.repeats(impacts, n) == same
-    decided = response.conclude(Decision(n, REPEATED), impacts)[0].decided
-    assert decided == (REPEATED if same else UNDECIDED)
-    # without impacts a motion is linear
-    irregular = response.conclude(Decision(0, IRREGULAR), impacts)[0]
-    assert irregular == (Decision(0, IRREGULAR) if found else Decision(1, UNDECIDED))
+    memory = [0.0] * repetition.memory_size(200)
+    memory[repetition.COUNT], memory[repetition.MULTIPLICITY] = 200, n
+    memory[repetition.IMPACTS], memory[repetition.OWN_IMPACTS] = found, impacts
+    memory[repetition.DECIDED] = REPEATED
+    repetition.confirm(memory, 0.0)
+    assert memory[repetition.DECIDED] == (REPEATED if same else UNDECIDED)
+
+
+def test_none_where_there_must_be_some_are_too_few():
+    for impacts, n, must in ((0, 1, True), (0, 2, False)):
+        assert repetition.lacks_impacts(impacts, n, must)
+    assert not repetition.lacks_impacts(0, 1, False) and not repetition.lacks_impacts(1, 2, True)
 
 
 @pytest.mark.parametrize(
@@ -359,3 +355,11 @@ def test_a_spiral_that_shrinks_is_not_irregular(halving, expected):
     n = np.arange(200)
     size, turns = 0.5 ** (n / halving), 2.0 * np.pi * GOLDEN * n
     assert decide(four(size * np.cos(turns), size * np.sin(turns))).decided == expected
+
+
+@pytest.mark.parametrize(("found", "expected"), [(0, (1, UNDECIDED)), (1, (0, IRREGULAR))])
+def test_irregular_motions_have_impacts(found, expected):
+    memory = [0.0] * repetition.memory_size(200)
+    memory[repetition.IMPACTS], memory[repetition.DECIDED] = found, IRREGULAR
+    repetition.confirm(memory, 0.0)
+    assert (memory[repetition.MULTIPLICITY], memory[repetition.DECIDED]) == expected

@@ -2,7 +2,6 @@
 
 import ctypes
 
-from fmu_src.export.errors import CannotExport
 from orchestrate.fmu import c_library as libraries
 from orchestrate.weak_drive import compiled
 from orchestrate.weak_drive.compiled import SOURCE, CompiledMaster, Pair, create_master
@@ -34,14 +33,6 @@ def test_a_library_of_other_sources_is_made_anew(tmp_path):
     assert found.read_bytes() == first
     found.write_bytes(first.replace(b"{", b"("))
     assert libraries.library(SOURCE, tmp_path).read_bytes() == first
-
-
-def test_no_compiler_is_no_failure(tmp_path, monkeypatch):
-    def none(*arguments):
-        raise CannotExport("no C compiler")
-
-    monkeypatch.setattr(libraries.sources, "export", none)
-    assert libraries.library(SOURCE, tmp_path) is None
 
 
 def test_structures_have_the_sizes_of_the_source():

@@ -1,19 +1,7 @@
-/* A single mass on a spring that is not linear, on a shaken base: Runge-Kutta steps, compiled.
- *
- * single_mass.py says what is done and why; here is the same, operation by operation, so the bits are the same.
- */
+/* A single mass on a spring that is not linear, on a shaken base: classical Runge-Kutta steps. diagnosis/single_mass.py has the equation. */
 #include <math.h>
-#include <stddef.h>
 
-#include "token.h"
-
-#ifdef _WIN32
-#define EXPORT __declspec(dllexport)
-#else
-#define EXPORT __attribute__((visibility("default")))
-#endif
-
-EXPORT const char token[] = TOKEN;  /* of these sources: tells their library from others */
+#include "fmi.h"
 
 typedef struct { double stiffness, damping, square, cube, friction, slow, stop, position, side; } Mass;
 
@@ -26,11 +14,11 @@ static double acceleration(const Mass *p, double base, double x, double v) {
     return -base - force;
 }
 
-/* Displacements at the beginning of each cubic and at the end of the last one; how many are bounded. */
-EXPORT ptrdiff_t run(const Mass *p, const double *cubics, ptrdiff_t count, double step, int parts, double bound, double *displacement) {
+/* Displacements at the beginning of each cubic and at the end of the last one, as long as they are bounded. */
+EXPORT void displace(const Mass *p, const double *cubics, size_t count, double step, int parts, double bound, double *displacement) {
     double x = 0.0, v = 0.0, h = step / parts;
     displacement[0] = x;
-    for (ptrdiff_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         const double *c = cubics + 4 * i;
         double right = c[0];
         for (int part = 0; part < parts; part++) {
@@ -45,8 +33,7 @@ EXPORT ptrdiff_t run(const Mass *p, const double *cubics, ptrdiff_t count, doubl
             x = x + h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
             v = v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
         }
-        if (!(fabs(x) < bound)) return i;
+        if (!(fabs(x) < bound)) return;
         displacement[i + 1] = x;
     }
-    return count;
 }

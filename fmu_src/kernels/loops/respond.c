@@ -1,0 +1,271 @@
+/* Responses one after the other: initialise, transient, samples, how often they repeat, their peaks and impacts then.
+ *
+ * Its rules are ../repetition.py and ../linear_response.py, translated. response/response_loop.py has the same structures and says more of the results.
+ */
+#include "fmi.h"
+#include "rules.h"
+
+#define TOUCHING 0x1p-50  /* relative: a gap that is no more than the rounding of displacements */
+#define END_BITS 44  /* binary digits of the state that the next response starts from */
+#define MIN_EXPONENT -970  /* of two: smaller numbers are not rounded */
+#define MAX_REALS 64  /* set before a start */
+
+enum { X1, X2, V1, V2, STATES };
+enum { PEAKS = 4 };  /* largest |x1|, |x2|, |a1|, |a2| */
+enum { TRAITS = MUST_IMPACT + 1 };
+
+typedef struct {  /* an FMU of the oscillator */
+    Fmi fmi;
+    const unsigned *reals, *booleans, *series, *peaks;  /* what is set before the start; the samples kept in a step; PEAKS */
+    size_t real_count, boolean_count, start_position, series_count, capacity;  /* of the start among the reals; samples of a step */
+    unsigned sample_count, x_rel_max, x_rel_max_on, peaks_on, impact_count, contact_count, in_contact;
+    double *kept;  /* room for the samples of a step */
+} Oscillator;
+
+typedef struct {  /* what there is to do: a row a response */
+    size_t count, samples, peak_periods;  /* the periods looked at for peaks, at most; 0: none */
+    size_t piece;  /* periods of a transient from one step to the next */
+    double tolerance, loose;  /* loose, unless 0: a wider tolerance; repetitions within both are found */
+    double gap;  /* between unloaded springs, that the first start of a chain belongs to */
+    bool decides, is_chain, has_gap;  /* the multiplicity is decided; each starts from the end of the one before; the gap is known */
+    const uint64_t *transients;  /* periods dropped of each */
+    const double *reals;
+    const bool *booleans;
+    const double *periods, *traits;  /* of each, traits: those of linear_response.py */
+    const double *starts;  /* of each, or of the first of a chain */
+    double *memory;  /* of the rule */
+    double *states, *ends, *largest, *impacts, *deviations, *peaks;  /* results */
+    int32_t *counts;
+} Task;
+
+typedef struct {  /* what is done */
+    size_t response, period;  /* of this response the periods of its transient */
+    double time;
+    bool is_begun;
+} Progress;
+
+enum { BEFORE, CONTACTS_BEFORE, TOUCHES, AFTER, CONTACTS_AFTER, PERIODS, HOW, NEARLY, COUNTS };  /* of each response */
+
+EXPORT const unsigned sizes_of_respond[] = {sizeof(Oscillator), sizeof(Task), sizeof(Progress)};  /* Python has to have the same */
+
+/* -- states -- */
+
+/* The gap x2 - x1 + offset; rounding next to an offset is 0. */
+static double gap_between(const double *state, double offset) {
+    double gap = state[X2] - state[X1];
+    if (offset == 0.0) return gap;
+    gap = gap + offset;
+    return __builtin_fabs(gap) <= TOUCHING * (__builtin_fabs(state[X1]) + __builtin_fabs(state[X2]) + __builtin_fabs(offset)) ? 0.0 : gap;
+}
+
+static bool is_any(const double *state) {
+    return state[X1] != 0.0 || state[X2] != 0.0 || state[V1] != 0.0 || state[V2] != 0.0;
+}
+
+/* A start as the FMU takes it, from the places of rest: of a preload, unless it is at rest, which all zeros are. */
+EXPORT void to_rest(const double *state, const double *traits, double *start) {
+    for (int i = 0; i < STATES; i++) start[i] = state[i];
+    if (traits[GAP_OFFSET] >= 0.0 || !is_any(state)) return;
+    start[X1] = state[X1] - traits[REST_1];
+    start[X2] = gap_between(state, traits[GAP_OFFSET]) == 0.0 ? start[X1] : state[X2] - traits[REST_2];
+}
+
+static double power_of_two(int exponent) {
+    union { uint64_t bits; double value; } number = {(uint64_t)(exponent + 1023) << 52};
+    return number.value;
+}
+
+/* Two numbers to a number of binary digits of the larger one. */
+static void round_to_bits(double *first, double *second) {
+    double shift = 0x1.8p52, a = __builtin_fabs(*first), b = __builtin_fabs(*second);
+    union { double value; uint64_t bits; } largest = {a > b ? a : b};
+    int exponent = (int)(largest.bits >> 52) - 1022;
+    if (exponent < MIN_EXPONENT) return;
+    double digit = power_of_two(exponent - END_BITS);
+    *first = __builtin_copysign((*first / digit + shift - shift) * digit, *first);
+    *second = __builtin_copysign((*second / digit + shift - shift) * digit, *second);
+}
+
+/* A state to 44 bits (13 digits) of the larger face and velocity: what converged from two sides differs in its last digits for good; rounded, it is the same,
+   and parts of a sweep that are begun elsewhere join it. */
+static void round_state(const double *state, double offset, double *end) {
+    for (int i = 0; i < STATES; i++) end[i] = state[i];
+    round_to_bits(&end[V1], &end[V2]);
+    if (offset != 0.0) end[X2] = state[X1] + gap_between(state, offset);
+    round_to_bits(&end[X1], &end[X2]);
+    if (offset != 0.0) end[X2] -= offset;
+}
+
+/* -- steps -- */
+
+static bool advance(Fmi *fmi, double time, double target, double *reached) {
+    bool event;
+    return do_step(fmi, time, target, &event, reached);
+}
+
+/* States at equal parts of a step, the last at its end. */
+static bool sample(Oscillator *o, double time, double target, size_t count, double *states) {
+    double reached;
+    if (!set_integer(&o->fmi, o->sample_count, (int32_t)count) || !advance(&o->fmi, time, target, &reached)) return false;
+    if (!get_reals(&o->fmi, o->series, o->series_count, o->kept, STATES * o->capacity)) return false;
+    for (size_t k = 0; k < count; k++) for (int j = 0; j < STATES; j++) states[STATES * k + j] = o->kept[j * o->capacity + k];
+    return true;
+}
+
+/* States at equal parts of a span of any length. */
+EXPORT bool sample_evenly(Oscillator *o, double time, double target, size_t points, double *states) {
+    double width = (target - time) / (double)points;
+    for (size_t done = 0; done < points; done += o->capacity) {
+        size_t count = points - done < o->capacity ? points - done : o->capacity;
+        if (!sample(o, time + (double)done * width, time + (double)(done + count) * width, count, states + STATES * done)) return false;
+    }
+    return true;
+}
+
+/* States at the excitation's phase 0 of successive periods after a transient, and the largest gap over them. */
+EXPORT bool sample_periods(Oscillator *o, double period, size_t transient, size_t samples, double *states, double *largest) {
+    *largest = 0.0;
+    for (size_t done = 0; done < samples; done += o->capacity) {
+        size_t count = samples - done < o->capacity ? samples - done : o->capacity, first = transient + done;
+        double peak;
+        if (!set_boolean(&o->fmi, o->x_rel_max_on, true)) return false;
+        if (!sample(o, (double)first * period, (double)(first + count) * period, count, states + STATES * done)) return false;
+        if (!get_reals(&o->fmi, &o->x_rel_max, 1, &peak, 1)) return false;
+        if (peak > *largest) *largest = peak;
+    }
+    return true;
+}
+
+/* The largest displacements and accelerations over a step. */
+static bool find_peaks(Oscillator *o, double time, double target, double *peaks) {
+    double reached;
+    return set_boolean(&o->fmi, o->peaks_on, true) && advance(&o->fmi, time, target, &reached)
+        && get_reals(&o->fmi, o->peaks, PEAKS, peaks, PEAKS) && set_boolean(&o->fmi, o->peaks_on, false);
+}
+
+/* Begin response number i, or any motion, at its start. */
+static bool begin_at(Oscillator *o, const Task *task, size_t i, const double *start) {
+    Fmi *fmi = &o->fmi;
+    double reals[MAX_REALS];
+    for (size_t k = 0; k < o->real_count; k++) reals[k] = task->reals[i * o->real_count + k];
+    to_rest(start, task->traits + TRAITS * i, reals + o->start_position);
+    if (!answered(fmi, "Reset", fmi->reset(fmi->instance)) || !set_reals(fmi, o->reals, o->real_count, reals)) return false;
+    for (size_t k = 0; k < o->boolean_count; k++) if (!set_boolean(fmi, o->booleans[k], task->booleans[i * o->boolean_count + k])) return false;
+    return initialize(fmi);
+}
+
+/* The start of a response: its own, or the end of the one before, with the same faces where the gap between unloaded springs is another one. */
+static void start_of(const Task *task, size_t i, double *start) {
+    const double *given = task->is_chain && i ? task->ends + STATES * (i - 1) : task->starts + (task->is_chain ? 0 : STATES * i);
+    double offset = task->traits[TRAITS * i + GAP_OFFSET], gap = i ? task->traits[TRAITS * (i - 1) + GAP_OFFSET] : task->gap;
+    for (int j = 0; j < STATES; j++) start[j] = given[j];
+    if (task->is_chain && (i || task->has_gap) && gap != offset && is_any(start)) for (int j = 0; j < STATES; j++) start[j] += j == X2 ? gap - offset : 0.0;
+}
+
+/* Some periods of the transient, with the work that they are. The last step, which begins after half of it, ends where one over all would, to the last bit. */
+static bool drop(Oscillator *o, const Task *task, Progress *progress, int32_t *impacts, size_t *work) {
+    size_t i = progress->response, left = (size_t)task->transients[i] - progress->period, count = left < task->piece ? left : task->piece;
+    int32_t before = *impacts;
+    progress->period += count;
+    if (!advance(&o->fmi, progress->time, (double)progress->period * task->periods[i], &progress->time)) return false;
+    if (!get_integer(&o->fmi, o->impact_count, impacts)) return false;
+    *work += count + (size_t)(*impacts - before);
+    return true;
+}
+
+/* -- decisions -- */
+
+static int32_t apply_rule(const Task *task, size_t i, double tolerance, int (*rule)(double *, double)) {
+    double *memory = task->memory;
+    memory[COUNT] = (double)task->samples;
+    memory[FREQUENCY] = task->traits[TRAITS * i + BOX_FREQUENCY];
+    memory[GAP] = task->largest[i];
+    memory[TOLERANCE] = tolerance;
+    for (size_t k = 0; k < STATES * task->samples; k++) memory[HEAD + k] = task->states[STATES * task->samples * i + k];
+    rule(memory, 0.0);
+    return (int32_t)memory[MULTIPLICITY];
+}
+
+/* Run on and decide: peaks over the periods after which the response repeats, or some, and the impacts of one that has repeated, over its own period. */
+static bool run_on(Oscillator *o, const Task *task, size_t i) {
+    double period = task->periods[i], *memory = task->memory;
+    int32_t *counts = task->counts + COUNTS * i, later;
+    size_t first = (size_t)task->transients[i] + task->samples, n = (size_t)counts[PERIODS], span = n < task->peak_periods ? n : task->peak_periods;
+    if (!span) span = (task->peak_periods + 1) / 2;
+    double done = (double)first * period, end = (double)(first + n) * period;
+    if (!set_boolean(&o->fmi, o->x_rel_max_on, false) || !set_integer(&o->fmi, o->sample_count, 0)) return false;
+    if (span && !find_peaks(o, done, (double)(first + span) * period, task->peaks + PEAKS * i)) return false;
+    if (span) done = (double)(first + span) * period;
+    if (counts[HOW] == REPEATED) {
+        if (end > done && !advance(&o->fmi, done, end, &done)) return false;
+        if (!get_integer(&o->fmi, o->impact_count, &later)) return false;
+        memory[OWN_IMPACTS] = (double)(later - counts[AFTER]);
+        task->impacts[i] = memory[OWN_IMPACTS] / (double)n;
+    }
+    memory[IMPACTS] = (double)(counts[AFTER] - counts[BEFORE]);
+    memory[MUST] = task->traits[TRAITS * i + MUST_IMPACT];
+    kernel_confirm(memory, 0.0);
+    counts[PERIODS] = (int32_t)memory[MULTIPLICITY];
+    counts[HOW] = (int32_t)memory[DECIDED];
+    return true;
+}
+
+/* Sample a response whose transient is over, and decide. */
+static bool finish(Oscillator *o, const Task *task, size_t i) {
+    Fmi *fmi = &o->fmi;
+    double *states = task->states + STATES * task->samples * i, *last = states + STATES * (task->samples - 1);
+    int32_t *counts = task->counts + COUNTS * i;
+    bool touches;
+    if (!get_integer(fmi, o->impact_count, &counts[BEFORE]) || !get_integer(fmi, o->contact_count, &counts[CONTACTS_BEFORE])) return false;
+    if (!get_boolean(fmi, o->in_contact, &touches)) return false;
+    counts[TOUCHES] = touches;
+    if (!sample_periods(o, task->periods[i], (size_t)task->transients[i], task->samples, states, task->largest + i)) return false;
+    if (!get_integer(fmi, o->impact_count, &counts[AFTER]) || !get_integer(fmi, o->contact_count, &counts[CONTACTS_AFTER])) return false;
+    task->impacts[i] = (double)(counts[AFTER] - counts[BEFORE]) / (double)task->samples;
+    round_state(last, task->traits[TRAITS * i + GAP_OFFSET], task->ends + STATES * i);
+    if (task->loose != 0.0) {
+        counts[NEARLY] = apply_rule(task, i, task->loose, kernel_repeat);
+        task->deviations[i] = task->memory[DEVIATION];
+        counts[PERIODS] = apply_rule(task, i, task->tolerance, kernel_repeat);
+    }
+    if (!task->decides) return true;
+    counts[PERIODS] = apply_rule(task, i, task->tolerance, kernel_decide);
+    counts[HOW] = (int32_t)task->memory[DECIDED];
+    return run_on(o, task, i);
+}
+
+/* Begin the motion of a row at its start. */
+EXPORT bool begin(Oscillator *o, const Task *task, size_t i) {
+    double start[STATES];
+    start_of(task, i, start);
+    return begin_at(o, task, i, start);
+}
+
+/* Compute responses from where the progress stands: DONE, PAUSED after some work (periods and impacts), or BROKEN. */
+EXPORT int respond(Oscillator *o, const Task *task, Progress *progress, size_t budget) {
+    size_t work = 0;
+    for (; progress->response < task->count; progress->response++, progress->is_begun = false) {
+        size_t i = progress->response;
+        int32_t impacts = 0, *counts = task->counts + COUNTS * i;
+        if (!progress->is_begun && !begin(o, task, i)) return BROKEN;
+        if (!progress->is_begun) progress->period = 0, progress->time = 0.0;
+        else if (!get_integer(&o->fmi, o->impact_count, &impacts)) return BROKEN;
+        progress->is_begun = true;
+        while (progress->period < task->transients[i]) {
+            if (work >= budget) return PAUSED;
+            if (!drop(o, task, progress, &impacts, &work)) return BROKEN;
+        }
+        if (work >= budget) return PAUSED;
+        if (!finish(o, task, i)) return BROKEN;
+        work += task->samples + (size_t)(counts[AFTER] - counts[BEFORE]);
+    }
+    return DONE;
+}
+
+EXPORT size_t memory_size(size_t samples) { return HEAD + (STATE + COLUMNS + 1) * samples; }
+
+EXPORT int decide_multiplicity(double *memory) { return kernel_decide(memory, 0.0); }
+
+EXPORT int find_repetition(double *memory) { return kernel_repeat(memory, 0.0); }
+
+EXPORT int describe_linear_response(double *memory) { return kernel_describe(memory, 0.0); }

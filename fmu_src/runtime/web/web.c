@@ -1,0 +1,37 @@
+/* What a web page calls beside the loops: an instance of the FMU, as fmi.h has it, its memory and its last message. */
+#include <string.h>
+
+#include "core.h"
+#include "fmi.h"
+#include "fmi3Functions.h"
+
+EXPORT char message[TEXT];
+
+static void report(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String text) {
+    (void)environment, (void)status, (void)category;
+    message[0] = 0;
+    strncat(message, text, TEXT - 1);
+}
+
+/* Make an instance, which stops at its events or has none; false without memory. */
+EXPORT bool open_fmu(Fmi *fmi, bool has_events) {
+    void *instance = fmi3InstantiateCoSimulation("", MODEL_TOKEN, "", false, true, has_events, has_events, NULL, 0, NULL, report, NULL);
+    *fmi = (Fmi){
+        .instance = instance, .version = 3, .reset = (int (*)(void *))fmi3Reset,
+        .enter_initialization = (Function *)fmi3EnterInitializationMode, .exit_initialization = (int (*)(void *))fmi3ExitInitializationMode,
+        .step = (Function *)fmi3DoStep,
+        .set_real = (Function *)fmi3SetFloat64, .set_integer = (Function *)fmi3SetInt32, .set_boolean = (Function *)fmi3SetBoolean,
+        .get_real = (Function *)fmi3GetFloat64, .get_integer = (Function *)fmi3GetInt32, .get_boolean = (Function *)fmi3GetBoolean,
+    };
+    if (has_events) {
+        fmi->enter_event_mode = (int (*)(void *))fmi3EnterEventMode;
+        fmi->update = (int (*)(void *, bool *, bool *, bool *, bool *, bool *, double *))fmi3UpdateDiscreteStates;
+        fmi->enter_step_mode = (int (*)(void *))fmi3EnterStepMode;
+    }
+    return instance != NULL;
+}
+
+EXPORT void close_fmu(Fmi *fmi) { fmi3FreeInstance(fmi->instance); }
+
+/* The kernel's memory of an instance. */
+EXPORT double *memory_of(Fmi *fmi) { return ((Instance *)fmi->instance)->state.memory; }

@@ -1,0 +1,186 @@
+"""An oscillator FMU as the compiled loops have it: states at equal times, and starts.
+
+The loops are in ``fmu_src/kernels/loops/respond.c``; they call the FMU's functions past Python.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+from collections.abc import Sequence
+from ctypes import POINTER, byref, c_bool, c_double, c_size_t, c_uint, c_void_p
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import FmuError
+from ..model import Excitation, Structure
+from .c_library import loaded_loop
+from .fmi import NOT_FINITE, Fmi, references
+from .impacts import STATE
+from .instance import Instance
+
+Floats = NDArray[np.float64]
+START_PARAMETERS = tuple(f"{name}_start" for name in STATE)
+SAMPLE_SERIES = tuple(f"{name}_sample" for name in STATE)
+READ = (
+    *("sample_count", "x_rel_max", "x_rel_max_on", "peaks_on"),
+    *("impact_count", "contact_count", "in_contact"),
+)
+PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max")
+TRAITS = ("m1", "m2", "k1", "k2", "d1", "d2", "clearance", "bonded")  # of a structure, for loops
+TRAIT_COUNT = 16  # with its frequency and excitation, and what follows from them
+COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
+COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
+SET = {  # before each start, with first values
+    **Structure().parameters(),
+    **dict.fromkeys(START_PARAMETERS, 0.0),
+    **Excitation(frequency=1.0, amplitude=1.0).inputs(),
+    "x_rel_max_on": False,
+}
+
+
+class OscillatorCalls(ctypes.Structure):
+    """C struct of an instance, and of the variables that are set before a start or read."""
+
+    _fields_ = [
+        ("fmi", Fmi),
+        *((name, POINTER(c_uint)) for name in ("reals", "booleans", "series", "peaks")),
+        *((name, c_size_t) for name in ("real_count", "boolean_count", "start")),
+        *((name, c_size_t) for name in ("series_count", "capacity")),
+        *((name, c_uint) for name in READ),
+        ("kept", c_void_p),
+    ]
+
+
+class ResponseTask(ctypes.Structure):
+    """C struct of responses to compute: sizes and settings, then addresses of rows."""
+
+    _fields_ = [
+        *((name, c_size_t) for name in ("count", "samples", "peak_periods", "piece")),
+        *((name, c_double) for name in ("tolerance", "loose", "gap")),
+        *((name, c_bool) for name in ("decides", "is_chain", "has_gap")),
+        *((name, c_void_p) for name in ("transients", "reals", "booleans", "periods", "traits")),
+        *((name, c_void_p) for name in ("starts", "memory", "states")),
+        *((name, c_void_p) for name in ("ends", "largest", "impacts", "deviations", "peaks")),
+        ("counts", c_void_p),
+    ]
+
+
+class ResponseProgress(ctypes.Structure):
+    """C struct of how far responses are computed."""
+
+    _fields_ = [
+        *((name, c_size_t) for name in ("response", "period")),
+        ("time", c_double),
+        ("is_begun", c_bool),
+    ]
+
+
+@functools.cache
+def library() -> Any:
+    """Return the library of responses, as ctypes has it, types set."""
+    loaded = loaded_loop("respond")
+    loaded.respond.argtypes = [c_void_p, c_void_p, c_void_p, c_size_t]
+    loaded.sample_evenly.argtypes = [c_void_p, c_double, c_double, c_size_t, c_void_p]
+    periods = [c_double, c_size_t, c_size_t]
+    loaded.sample_periods.argtypes = [c_void_p, *periods, c_void_p, c_void_p]
+    loaded.to_rest.argtypes = [c_void_p, c_void_p, c_void_p]
+    loaded.to_rest.restype = None
+    loaded.sample_evenly.restype = loaded.sample_periods.restype = c_bool
+    for name in ("decide_multiplicity", "find_repetition", "describe_linear_response"):
+        getattr(loaded, name).argtypes = [c_void_p]
+    return loaded
+
+
+class Oscillator:
+    """An oscillator FMU instance with what its loops need, made once."""
+
+    def __init__(self, instance: Instance) -> None:
+        self.instance = instance
+        kinds = {name: instance.variable(name).type for name in SET}
+        self.booleans = [name for name, kind in kinds.items() if kind == "Boolean"]
+        self.reals = [name for name in kinds if name not in self.booleans]
+        elements = [variable for name in SAMPLE_SERIES for variable, _ in instance.elements(name)]
+        self.capacity = instance.size(*SAMPLE_SERIES) // len(SAMPLE_SERIES)
+        self.kept = np.zeros((len(SAMPLE_SERIES), self.capacity))
+        series = (c_uint * len(elements))(*(variable.valueReference for variable in elements))
+        self.calls = OscillatorCalls(
+            Fmi.from_instance(instance),
+            *(references(instance, names) for names in (self.reals, self.booleans)),
+            *(
+                series,
+                references(instance, PEAKS),
+                len(self.reals),
+                len(self.booleans),
+                self.reals.index(START_PARAMETERS[0]),
+            ),
+            *(len(elements), self.capacity, *references(instance, READ), self.kept.ctypes.data),
+        )
+
+    @classmethod
+    def from_instance(cls, instance: Instance) -> Oscillator:
+        """Return what the loops need of an instance, made once."""
+        known: Oscillator | None = instance.cache.get(cls)
+        if known is None:
+            known = instance.cache[cls] = cls(instance)
+        return known
+
+    def run(self, name: str, *arguments: Any) -> Any:
+        """Call a function of the library on the instance; return its answer."""
+        self.instance._messages.clear()
+        return getattr(library(), name)(byref(self.calls), *arguments)
+
+    def error(self) -> FmuError:
+        """Return the error of the call at which a loop stopped."""
+        fmi: Fmi = self.calls.fmi
+        if fmi.status != NOT_FINITE:
+            return fmi.error(self.instance)
+        if np.isfinite(self.kept).all():
+            return self.instance.not_finite_error(("x_rel_max", *PEAKS), np.array([np.nan]))
+        names = [name for name in SAMPLE_SERIES for _ in range(self.capacity)]
+        return self.instance.not_finite_error(names, self.kept)
+
+
+def sampled(instance: Instance, time: float, target: float, count: int) -> Floats:
+    """Step an FMU from ``time`` to ``target``; return ``count`` equidistant states (count, 4)."""
+    oscillator, states = Oscillator.from_instance(instance), np.empty((count, len(STATE)))
+    if not oscillator.run("sample_evenly", time, target, count, states.ctypes.data):
+        raise oscillator.error()
+    return states
+
+
+def stroboscopic_samples(
+    instance: Instance, period: float, transient: int, samples: int
+) -> tuple[Floats, float]:
+    """Run the FMU over some periods; return states at phase 0, and the largest gap."""
+    oscillator, states, peak = Oscillator.from_instance(instance), empty(samples), c_double()
+    places = states.ctypes.data, byref(peak)
+    if not oscillator.run("sample_periods", period, transient, samples, *places):
+        raise oscillator.error()
+    return states, peak.value
+
+
+def empty(count: int) -> Floats:
+    """Return room for so many states."""
+    return np.empty((count, len(STATE)))
+
+
+def traits(structure: Structure, frequency: float = 1.0, amplitude: float = 0.0) -> Any:
+    """Return what a structure under an excitation is for the loops: numbers in C.
+
+    They end with the gap between unloaded springs, the places of rest x1 and x2, the amplitude at
+    which the linear response opens or touches, and whether it does: then every motion impacts.
+    """
+    numbers = (getattr(structure, name) for name in TRAITS)
+    memory = (c_double * TRAIT_COUNT)(*numbers, structure.omega, frequency, amplitude)
+    library().describe_linear_response(memory)
+    return memory
+
+
+def to_rest(structure: Structure, state: Sequence[float]) -> list[float]:
+    """Convert a start state from unloaded springs to the FMU's, from rest; all zeros mean rest."""
+    numbers, start = (c_double * 4)(*state), (c_double * 4)()
+    library().to_rest(numbers, traits(structure), start)
+    return list(start)
