@@ -17,7 +17,7 @@ from .run import Run
 from .shooting import Shooter
 
 TURNS = (1, 2, 3, 4)  # revolutions after which a motion may repeat
-STEPS = 48  # of a revolution
+STEPS = 24  # of a revolution
 NEAR = 0.2  # of the amplitude, of the voltage and of the speed: largest distance of the motion
 CLEAR = 0.3  # of the widest gap: a period begins where it is wider, far from impacts
 
