@@ -49,6 +49,10 @@ def answer(request: dict[str, Any]) -> tuple[dict[str, Any], Arrays]:
         reader: Callable[..., Any] = getattr(import_module(module), name)
         set_limits(request["seconds"], request["memory"])
         value = pack(reader(Path(request["path"]), *request["arguments"]), arrays)
+        size, room = sum(array.nbytes for array in arrays), request["room"]
+        if size > room:
+            text = f"its numbers take {size} bytes, from a file of its size expected at most {room}"
+            return {"failed": text}, []
         return {"value": value, "notes": notes.lines}, arrays
     except InputError as error:
         return {"refused": str(error)}, []

@@ -32,6 +32,7 @@ log = logging.getLogger(__name__)
 SECONDS, BYTES_A_SECOND = 10.0, 1e6  # processor time: some, and more for a large file
 WAITING = 3.0  # times the processor time: the deadline, of a processor that others use too
 MEMORY, MEMORY_PER_BYTE = 1 << 30, 32  # bytes, and more for a large file
+NUMBERS = 4  # part of it that the numbers of a file may take: what is made of them takes more
 START = """
 import json, sys, types
 root, paths, excluded = json.loads(sys.argv[1])
@@ -66,6 +67,7 @@ def read_in_process(
     request = {
         **{"reader": f"{reader.__module__}:{reader.__qualname__}", "path": str(whole)},
         **{"arguments": arguments, "seconds": seconds, "memory": allowed_memory(size)},
+        "room": allowed_memory(size) // NUMBERS,
     }
     child = IDLE.pop(os.getpid(), None) if keep else None
     answer = child.ask(request) if child else {}
@@ -121,7 +123,7 @@ class Child:
             assert self.process.stdin is not None
             self.process.stdin.write(json.dumps(request).encode() + b"\n")
             self.process.stdin.flush()
-            answer = self.receive(request["memory"])
+            answer = self.receive(request["room"])
         except (OSError, EOFError, ValueError, KeyError, TypeError, MemoryError, RecursionError):
             pass  # it ended, or what it sent is no answer
         finally:

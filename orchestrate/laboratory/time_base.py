@@ -29,6 +29,8 @@ def checked_times(
         if spread <= rounding_error(resolution, 1.0 / rate):
             return times[0] + count / rate, rate, f"rounded to {resolution:g} s"
     step = float(times[-1] - times[0]) / (len(times) - 1)
+    if step <= 0.0:  # some are not ascending
+        return resampled_times(times, first_row, resample)
     off = float(np.abs(times - times[0] - step * count).max())
     rounded = roundest_rate(times, resolution)
     if rate is not None and (rounded is not None or off <= UNEVEN * step):

@@ -100,6 +100,7 @@ def changed(column, row, value):
         ({"acceleration1": "abc", "sample_rate": 9.0}, "acceleration1: expected a list of numbers"),
         ({"time": [0.0, 1.0, 2.0, 3.0, 4.0], "acceleration1": [1.0] * 4}, "4 values; expected 5"),
         ({"time": [0.0, 1.0, 2.0, 4.0], "acceleration1": [1.0] * 4}, "time, row 3: a step of 2 s"),
+        ({"time": [0.0] * 4, "acceleration1": [1.0] * 4}, "time, row 1: 0 s after 0 s; expected"),
         (
             {"time": np.arange(99) / 2.05, "acceleration1": [1.0] * 99, "sample_rate": 2.0},
             "sample_rate = 2.0 Hz: expected 2.05, as the times have",
@@ -934,6 +935,14 @@ def test_a_small_file_that_unpacks_to_much_is_one_line(tmp_path, monkeypatch, en
     with pytest.raises(InputError, match="unpacks to 335544320 bytes|llocate|memory") as error:
         read_record(path, unit="m/s2")
     assert str(error.value).isprintable() and len(str(error.value)) < 300
+
+
+def test_more_numbers_than_a_file_of_its_size_has_are_one_line(tmp_path, monkeypatch):
+    path = tmp_path / "a.csv"
+    path.write_text(lines())
+    monkeypatch.setattr(reader_process, "NUMBERS", 1 << 21)
+    with pytest.raises(InputError, match="its numbers take 960 bytes, from a file of .* most 5"):
+        read_record(path, unit="m/s2")
 
 
 HOSTILE = {
