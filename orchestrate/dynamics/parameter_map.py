@@ -260,7 +260,7 @@ def map(
     >>> from orchestrate.dynamics.parameter_map import map
     >>> found = map(Structure.nondimensional(), eta=[0.4, 1.047], e=[0.3, 0.7])
     >>> found.impacts_per_period.values.tolist()
-    [[10.0, 30.0], [2.0, 2.0]]
+    [[9.0, 30.0], [2.0, 2.0]]
     """
     running = {name: value for name, value in others.items() if name not in PARAMETERS}
     known = [field.name for field in fields(RunOptions)]

@@ -332,7 +332,7 @@ def sweep(
     2
     >>> found = sweep(Structure(), over="e", values=[0.3, 0.7], eta=0.4, transient=50)
     >>> found.impacts_per_period.values
-    array([10., 30.])
+    array([ 9., 30.])
     """
     job = SweepJob.from_call(locals(), f"_{direction}")
     if len(job.start) > len(COORDINATES):
