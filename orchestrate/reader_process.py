@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 SECONDS, BYTES_A_SECOND = 10.0, 1e6  # processor time: some, and more for a large file
 WAITING = 3.0  # times the processor time: the deadline, of a processor that others use too
 MEMORY, MEMORY_PER_BYTE = 1 << 30, 32  # bytes, and more for a large file
-NUMBERS = 4  # part of it that the numbers of a file may take: what is made of them takes more
+NUMBERS, NUMBERS_PER_BYTE = 1 << 26, 8  # bytes of a file's numbers: what is made of them takes more
 START = """
 import json, sys, types
 root, paths, excluded = json.loads(sys.argv[1])
@@ -55,19 +55,25 @@ def allowed_memory(size: int) -> int:
 
 
 def read_in_process(
-    reader: Reader, path: Path, *arguments: object, expected: str, keep: bool = True
+    reader: Reader,
+    path: Path,
+    *arguments: object,
+    expected: str,
+    keep: bool = True,
+    numbers: int | None = None,
 ) -> Any:
     """Return what a reader, a function of a module, returns for a path and plain arguments.
 
     Dataclasses come back as dicts. ``expected`` ends the line on a file that cannot be read;
-    without ``keep`` the process is not used again.
+    without ``keep`` the process is not used again. ``numbers`` are the bytes that arrays may take
+    whatever the file's size, NUMBERS by default.
     """
     whole, size = path.absolute(), path.stat().st_size
     seconds = SECONDS + size / BYTES_A_SECOND
     request = {
         **{"reader": f"{reader.__module__}:{reader.__qualname__}", "path": str(whole)},
         **{"arguments": arguments, "seconds": seconds, "memory": allowed_memory(size)},
-        "room": allowed_memory(size) // NUMBERS,
+        "room": (NUMBERS if numbers is None else numbers) + NUMBERS_PER_BYTE * size,
     }
     child = IDLE.pop(os.getpid(), None) if keep else None
     answer = child.ask(request) if child else {}

@@ -20,7 +20,9 @@ EXPECTED = "expected a NetCDF file that is whole"
 
 def read_dataset(path: Path) -> xr.Dataset:
     """Return the dataset of a file, a large one lazily, after all of it was read elsewhere once."""
-    content = read_in_process(netcdf_content, path, MAX_LOADED, expected=EXPECTED, keep=False)
+    content = read_in_process(
+        *(netcdf_content, path, MAX_LOADED), expected=EXPECTED, keep=False, numbers=MAX_LOADED
+    )
     if content["is_large"]:
         return xr.open_dataset(path, engine="netcdf4", cache=False)
     variables = {

@@ -940,8 +940,9 @@ def test_a_small_file_that_unpacks_to_much_is_one_line(tmp_path, monkeypatch, en
 def test_more_numbers_than_a_file_of_its_size_has_are_one_line(tmp_path, monkeypatch):
     path = tmp_path / "a.csv"
     path.write_text(lines())
-    monkeypatch.setattr(reader_process, "NUMBERS", 1 << 21)
-    with pytest.raises(InputError, match="its numbers take 960 bytes, from a file of .* most 5"):
+    monkeypatch.setattr(reader_process, "NUMBERS", 0)
+    monkeypatch.setattr(reader_process, "NUMBERS_PER_BYTE", 1)
+    with pytest.raises(InputError, match="its numbers take 960 bytes, from a file of .* most 430"):
         read_record(path, unit="m/s2")
 
 
