@@ -33,6 +33,7 @@ MODEL = Model(
         SlotRange(at.COMMAND_ORDER, 1, 0.0, at.TERMS),
         SlotRange(at.OTHER_ORDER, 1, 0.0, at.TERMS),
         SlotRange(at.INTERVAL, 1, 0.0, COUNTABLE),
+        SlotRange(at.FORCE_SERIES + at.CUBIC, at.TERMS - at.CUBIC, 0.0, 0.0),  # never written
         SlotRange(at.GUARD, at.TERMS),  # written before they are read
         SlotRange(at.OUTPUT_RATES, at.SIZE - at.OUTPUT_RATES),
     ),
