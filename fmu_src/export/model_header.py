@@ -18,7 +18,8 @@ typedef struct {
     double start, minimum, maximum;
     int input_derivatives, set_flag, rate, element;
 } Variable;
-typedef struct { unsigned first, size; } Array;"""
+typedef struct { unsigned first, size; } Array;
+typedef struct { unsigned first, size; double lowest, highest; } SlotRange;"""
 
 
 def c_string(text: str) -> str:
@@ -77,6 +78,7 @@ def shim_definitions(model: Model, slots: dict[str, int], real_outputs: bool) ->
         "EVENT_COUNT_SLOT": str(slots[model.clock.counter] if model.clock else 0),
         "CLOCK_REFERENCE": f"{CLOCK_REFERENCE}u",
         "ARRAY_BASE": f"{ARRAY_BASE}u",
+        "RANGE_COUNT": f"{len(model.ranges)}u",
         "ARRAY_COUNT": f"{len(model.arrays)}u",
         "MESSAGE_COUNT": str(max(model.messages) + 1),
         "CATEGORY_COUNT": str(len(TAKEN_CATEGORIES)),
@@ -107,6 +109,10 @@ def model_header(model: Model, token: str, digest: str, real_outputs: bool = Fal
     }
     categories = ", ".join(map(c_string, TAKEN_CATEGORIES))
     arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]
+    ranges = [
+        f"    {{{row.first}, {row.size}, {c_number(row.lowest)}, {c_number(row.highest)}}},"
+        for row in model.ranges
+    ]
     lines = [
         "/* Generated from the variable table. */",
         "#include <math.h>",
@@ -120,6 +126,9 @@ def model_header(model: Model, token: str, digest: str, real_outputs: bool = Fal
         "#endif",
         "static const Array ARRAYS[] = {",
         *(arrays or ["    {0, 0},"]),
+        "};",
+        "static const SlotRange RANGES[] = {",
+        *ranges,
         "};",
         f"static const char *const CATEGORIES[] = {{{categories}}};",
         "static const char *const MESSAGES[] = {",

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from .compiled import load_compiled
-from .table import BOOLEAN, INTEGER, REAL, Model, Variable, explain
+from .table import BOOLEAN, INTEGER, REAL, Model, Variable, explain, hidden_problem
 
 PHASES = INSTANTIATED, INITIALIZING, STEPPING, TERMINATED = 0.0, 1.0, 2.0, 3.0
 ERRORS, WARNINGS, ALL = "logStatusError", "logStatusWarning", "logAll"  # of messages
@@ -439,21 +439,19 @@ class Slave:
         self._memory = memory
 
     def _state_problem(self, head: Sequence[float], memory: Any) -> str:
-        """Say why a saved state cannot be one that this FMU had; return an empty string if it can.
-
-        What follows from other numbers in it is computed anew.
+        """Say why a saved state cannot be one that this FMU had; return an empty string if it can:
+        no number in it is a danger to memory, nor to the end of a step.
         """
         phase, start_time, stale = head
         if phase not in PHASES or stale not in (0.0, 1.0) or start_time - start_time != 0.0:
             return f"phase {phase!r}, start time {start_time!r} s: expected a saved state's"
-        for variable in self.model.variables:
-            problem = state_problem(variable, memory[variable.slot])
-            if problem:
-                return f"a saved state that this FMU never had: {problem}"
-        if phase == STEPPING:
-            code = self._entries["restore"](memory, start_time)
-            return explain(self.model, memory, code) if code else ""
-        return ""
+        problems = (state_problem(known, memory[known.slot]) for known in self.model.variables)
+        problem = next(filter(None, problems), "")
+        if phase >= STEPPING and not problem:
+            problem = hidden_problem(self.model, memory)
+            code = 0 if problem else self._entries["restore"](memory, start_time)
+            problem = explain(self.model, memory, code) if code else problem
+        return problem and f"a saved state that this FMU never had: {problem}"
 
     # the bytes are looked at when they are set: an exception here would corrupt the instance
     _fmu_state_to_bytes = _fmu_state_from_bytes = staticmethod(lambda state: state)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
+from math import inf, isfinite
 from types import ModuleType
 from typing import Any, Callable
 
@@ -222,6 +222,20 @@ class Terminal:
     members: Mapping[str, str]
 
 
+@dataclass(frozen=True)
+class SlotRange:
+    """What numbers slots of a saved memory may have; any, NaN too, where no range is given."""
+
+    first: int
+    size: int = 1
+    lowest: float = inf
+    highest: float = -inf
+
+    def has(self, value: float) -> bool:
+        """Return whether a slot may have a value."""
+        return self.lowest > self.highest or self.lowest <= value <= self.highest
+
+
 @dataclass(frozen=True, eq=False)  # each is one thing: known by itself, not by its contents
 class Model:
     """Everything that the exporters need to know of a model.
@@ -248,8 +262,11 @@ class Model:
         Another one: rates of change of the outputs at the point reached, the inputs as they are,
         into ``rates``.
     restore : callable
-        Another one, with the start time: checks a memory that came from outside and computes anew
-        all that follows from other numbers.
+        Another one, with the start time: computes anew what the parameters decide in a memory
+        that came from outside.
+    ranges : tuple of SlotRange
+        Of the memory behind the variables: numbers that index, count or bound a loop, and those
+        that need not be finite. All others are finite.
     rates : mapping of int to int
         Slots of rates by the slots of outputs: those of the outputs behind each follow as these do.
     refresh : callable or None
@@ -287,6 +304,7 @@ class Model:
     advance: Entry
     differentiate: Entry
     restore: Entry
+    ranges: tuple[SlotRange, ...]
     rates: Mapping[int, int]
     messages: Mapping[int, str]
     stop_time: float
@@ -332,6 +350,18 @@ class Model:
             "coast": self.coast,
         }
         return {name: function for name, function in given.items() if function is not None}
+
+
+def hidden_problem(model: Model, memory: Sequence[float]) -> str:
+    """Say which slot behind the variables cannot have its value; return an empty string if all
+    can.
+    """
+    ranges = {slot: row for row in model.ranges for slot in range(row.first, row.first + row.size)}
+    for slot in range(len(model.variables), model.memory_size):
+        value = float(memory[slot])
+        if not (ranges[slot].has(value) if slot in ranges else isfinite(value)):
+            return f"{value!r} in slot {slot}"
+    return ""
 
 
 def with_slots(messages: Mapping[int, str], memory: ModuleType) -> dict[int, str]:

@@ -124,5 +124,3 @@ SIZE = slot.used
 # -- return codes of the entry points --------------------------------------------------------------
 OK, UNFINISHED, NOT_FINITE, LIMITED_WORK, TRAVEL, START_TRAVEL, START_CURRENT = 0, 1, 2, 3, 4, 5, 6
 INDUCTANCE = 7
-FORGED = 100  # a saved state that this model never had; which slot, and why:
-NOT_A_NUMBER, NO_TIME, NO_FLAG, NO_SIDE, NO_COUNT = 0, 1, 2, 3, 4

@@ -22,10 +22,15 @@ def begin_state(m):
 
 def begin_interval(m):
     """Write all that the present interval is described by."""
-    m[at.SPACING] = m[at.VOLTAGE_SPACING] if is_voltage_driven(m) else m[at.CURRENT_SPACING]
+    set_spacing(m)
     write_inputs(m, m[at.SPACING])
     write_interval(m)
     find_event(m)
+
+
+def set_spacing(m):
+    """Set the length of the present state's intervals."""
+    m[at.SPACING] = m[at.VOLTAGE_SPACING] if is_voltage_driven(m) else m[at.CURRENT_SPACING]
 
 
 def local_time(m, time):

@@ -6,7 +6,7 @@ An instance is one flat memory.
 from . import memory as at
 from .inputs import keep_inputs
 from .intervals import SHORTEST, set_spacings
-from .motion import begin_state, local_time, renew_inputs, run_to
+from .motion import begin_state, local_time, renew_inputs, run_to, set_spacing
 from .outputs import check_finite, write_outputs
 
 WORK_MOST = 4e6  # series of a step: some seconds, compiled; EVALUATION_LIMIT may allow less
@@ -65,6 +65,19 @@ def derive(m):
         m[at.COMMAND_LIMIT] = m[at.VOLTAGE_LIMIT]
         m[at.OTHER_LIMIT] = m[at.CURRENT_LIMIT]
     return at.OK if m[at.VOLTAGE_SPACING] >= SHORTEST else at.INDUCTANCE
+
+
+def restore(m, time):
+    """Compute anew what the parameters decide in a saved memory; ``time`` is not used.
+
+    Returns
+    -------
+    int
+        OK, or INDUCTANCE of a forged one.
+    """
+    code = derive(m)
+    set_spacing(m)
+    return code
 
 
 def advance(m, time):

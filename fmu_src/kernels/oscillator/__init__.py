@@ -29,7 +29,6 @@ module                    the paper's equations
 :mod:`.maximum`           the largest values of gap, displacements and accelerations over a step
 :mod:`.outputs`           what an importer sees at a communication point
 :mod:`.rates`             time derivatives of the outputs: the entry point ``differentiate``  (6)
-:mod:`.restore`           a saved state that came from outside, checked and made whole
 :mod:`.stepper`           the other entry points: ``initialize``, ``advance`` and ``coast``
 ========================  =====================================================================
 """

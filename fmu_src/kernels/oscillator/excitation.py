@@ -39,11 +39,17 @@ def begin_segment(m):
         begin_cubic(m)
     for i in range(6):
         m[at.SEGMENT_INPUTS + i] = m[at.BOX_AMPLITUDE + i]
+    set_excitation(m)
+
+
+def set_excitation(m):
+    """Set the constants of the harmonic excitation from the segment's inputs."""
+    amplitude, frequency = m[at.SEGMENT_INPUTS], m[at.SEGMENT_INPUTS + 1]
     scale = 1.0 / m[at.OMEGA]
-    eta = m[at.BOX_FREQUENCY] * scale
+    eta = frequency * scale
     m[at.ETA] = eta
     m[at.ETA_TURNS] = eta / TWO_PI
-    m[at.FORCING] = m[at.BOX_AMPLITUDE] * eta * eta
+    m[at.FORCING] = amplitude * eta * eta
     set_grid(m)
     set_secular(m)
     set_harmonic(m, at.OSCILLATOR_1, at.HARMONIC_1)

@@ -190,6 +190,3 @@ SIZE = slot.used
 # -- return codes of the entry points --------------------------------------------------------------
 OK, UNFINISHED, NOT_FINITE, START_OVERLAP, START_BONDED, LIMITED = 0, 1, 2, 3, 4, 5
 START_BEYOND_CLEARANCE, BEYOND, TOO_FAST = 6, 7, 8
-FORGED = 100  # a saved state that this model never had; which slot, and why:
-NOT_A_NUMBER, NO_INPUT, NO_AGE, NO_MODE, NO_END_KIND, NO_SERIES = 0, 1, 2, 3, 4, 5
-NO_COUNT, NO_PHASE, NO_TIME, NO_GAP, NO_EVENT = 6, 7, 8, 9, 10

@@ -7,7 +7,7 @@ memory.
 from ..numerics.elementary import TWO_PI
 from . import memory as at
 from .event_function import evaluate
-from .excitation import begin_segment, inputs_changed
+from .excitation import begin_segment, inputs_changed, set_excitation
 from .hermite import has_summit
 from .maximum import record_peaks, walk_with_largest_gap
 from .motion import (
@@ -35,6 +35,7 @@ from .outputs import (
 )
 from .parameters import derive
 from .roots import value_on_decided_side, walk
+from .secular import clear_secular, set_event_drive
 
 TOUCHING = 4.440892098500626e-16  # 2**-51, relative: a gap at the start that is rounding alone
 WORK_BASE = 100000.0  # evaluations of the event function a step may take whatever its length,
@@ -88,6 +89,32 @@ def initialize(m, time):
     if m[at.PEAKS_ON] != 0.0:
         record_peaks(m, 0.0, 0.0)
     return check_finite(finite_check_sum(seen) + sum_of_peaks(m))
+
+
+def restore(m, time):
+    """Compute anew what parameters and inputs decide in a saved memory that began at ``time`` (s):
+    then every step of it ends, whatever its other numbers are.
+
+    Returns
+    -------
+    int
+        OK, or TOO_FAST or BEYOND of a forged one.
+    """
+    m[at.START_TIME] = time
+    derive(m)
+    clear_secular(m)
+    set_excitation(m)
+    if m[at.SECULAR] != 0.0:  # rarely
+        set_event_drive(m)
+    m[at.LEFT_AGE] = m[at.NODE] * m[at.SPACING]
+    m[at.RIGHT_AGE] = (m[at.NODE] + 1.0) * m[at.SPACING]
+    if is_too_fast(m):
+        return at.TOO_FAST
+    if not is_countable(m, local_time(m, m[at.TIME])):
+        m[at.TARGET] = m[at.TIME]
+        m[at.REPORT] = time
+        return at.BEYOND
+    return at.OK
 
 
 def clear_peaks(m):

@@ -15,7 +15,6 @@ module                idea
 :mod:`.integrate`     one sub-step and its error; sub-steps through a communication step
 :mod:`.outputs`       what an importer sees, with the inputs as set now
 :mod:`.rates`         time derivatives of the outputs: the entry point ``differentiate``
-:mod:`.restore`       a saved state that came from outside, checked and made whole
 :mod:`.stepper`       the other entry points: ``initialize``, ``advance``, ``refresh``
 ====================  =====================================================================
 """

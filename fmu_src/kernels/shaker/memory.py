@@ -83,5 +83,3 @@ SIZE = slot.used
 
 # -- return codes of the entry points --------------------------------------------------------------
 OK, UNFINISHED, NOT_FINITE, INERTIA, LIMITED = 0, 1, 2, 3, 4
-FORGED = 100  # a saved state that this model never had; which slot, and why:
-NOT_A_NUMBER, NO_PHASE, NO_TIME, NO_FLAG = 0, 1, 2, 3

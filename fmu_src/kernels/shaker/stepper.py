@@ -34,11 +34,9 @@ def initialize(m, time):
     m[at.TIME] = time
     m[at.FORCE_TIME] = time
     m[at.TARGET] = time
-    unbalance = m[at.UNBALANCE_MASS] * m[at.UNBALANCE_RADIUS]
-    m[at.UNBALANCE] = unbalance
-    if not m[at.BOX_MASS] * m[at.ROTOR_INERTIA] >= REGULAR * unbalance * unbalance:
-        m[at.REPORT] = REGULAR * unbalance * unbalance / m[at.BOX_MASS]
-        return at.INERTIA
+    code = restore(m, time)
+    if code != at.OK:
+        return code
     m[at.STATE + at.POSITION] = m[at.POSITION_START]
     m[at.STATE + at.VELOCITY] = m[at.VELOCITY_START]
     m[at.STATE + at.ROTATION_SPEED] = m[at.SPEED_START]
@@ -47,6 +45,22 @@ def initialize(m, time):
     m[at.TURN] = fraction(m[at.ANGLE_START] / TWO_PI)
     write_outputs(m)
     return check_finite(m)
+
+
+def restore(m, time):
+    """Compute what follows from the parameters alone, of a saved memory too; ``time`` is not used.
+
+    Returns
+    -------
+    int
+        OK, or INERTIA.
+    """
+    unbalance = m[at.UNBALANCE_MASS] * m[at.UNBALANCE_RADIUS]
+    m[at.UNBALANCE] = unbalance
+    if not m[at.BOX_MASS] * m[at.ROTOR_INERTIA] >= REGULAR * unbalance * unbalance:
+        m[at.REPORT] = REGULAR * unbalance * unbalance / m[at.BOX_MASS]
+        return at.INERTIA
+    return at.OK
 
 
 def advance(m, time):

@@ -5,13 +5,6 @@ FMU.
 from ...kernels.electrodynamic_shaker import memory as at
 from ...runtime.table import with_slots
 
-EXPECTED = {  # of a saved state, by complaint
-    at.NOT_A_NUMBER: "a finite number",
-    at.NO_TIME: "a time not before the start, nor after the communication point",
-    at.NO_FLAG: "0 or 1",
-    at.NO_SIDE: "1 or -1, or 0 where no limit acts",
-    at.NO_COUNT: "the number of the interval that the communication point lies in",
-}
 MESSAGES = with_slots(
     {
         at.UNFINISHED: "the step to time = {TARGET} s cannot finish: it needs at least {WORK:0} "
@@ -36,8 +29,6 @@ MESSAGES = with_slots(
         at.INDUCTANCE: "coil_inductance = {COIL_INDUCTANCE} H with coil_resistance = "
         "{COIL_RESISTANCE} Ohm and force_factor = {FORCE_FACTOR} N/A: expected 0 H, or time "
         "constants above {REPORT} s",
-        at.FORGED: "a saved state that this FMU never had: {TARGET} in slot {WORK:0}, expected "
-        f"{{REPORT:{'|'.join(EXPECTED.values())}}}",
     },
     at,
 )

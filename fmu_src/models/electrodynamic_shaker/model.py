@@ -3,12 +3,13 @@ FMU.
 """
 
 from ...kernels.electrodynamic_shaker import memory as at
-from ...kernels.electrodynamic_shaker import rates, restore, stepper
-from ...runtime.table import Model, Terminal
+from ...kernels.electrodynamic_shaker import rates, stepper
+from ...runtime.table import Model, SlotRange, Terminal
 from ...version import VERSION
 from .messages import MESSAGES
 from .variables import VARIABLES
 
+COUNTABLE = 2.0**53  # intervals: up to there each has its own number
 MODEL = Model(
     name="ElectrodynamicShaker",
     description="A coil in a magnet's field, with an amplifier whose voltage and current are "
@@ -26,7 +27,16 @@ MODEL = Model(
     initialize=stepper.initialize,
     advance=stepper.advance,
     differentiate=rates.differentiate,
-    restore=restore.restore,
+    restore=stepper.restore,
+    ranges=(
+        SlotRange(at.COMMAND_LOWEST, 2, 0.0, 1.0),  # and OTHER_LOWEST
+        SlotRange(at.COMMAND_ORDER, 1, 0.0, at.TERMS),
+        SlotRange(at.OTHER_ORDER, 1, 0.0, at.TERMS),
+        SlotRange(at.INTERVAL, 1, 0.0, COUNTABLE),
+        SlotRange(at.FORCE_SERIES + at.CUBIC, at.TERMS - at.CUBIC, 0.0, 0.0),  # never written
+        SlotRange(at.GUARD, at.TERMS),  # written before they are read
+        SlotRange(at.OUTPUT_RATES, at.SIZE - at.OUTPUT_RATES),
+    ),
     rates={at.BOX_POSITION: at.OUTPUT_RATES},
     refresh=stepper.refresh,
     messages=MESSAGES,

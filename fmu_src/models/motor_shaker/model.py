@@ -1,8 +1,8 @@
 """``MotorShaker`` as the exporters see it. Standard library only: it travels inside the FMU."""
 
 from ...kernels.shaker import memory as at
-from ...kernels.shaker import rates, restore, stepper
-from ...runtime.table import Model, Terminal
+from ...kernels.shaker import rates, stepper
+from ...runtime.table import Model, SlotRange, Terminal
 from ...version import VERSION
 from .messages import MESSAGES
 from .variables import VARIABLES
@@ -24,7 +24,12 @@ MODEL = Model(
     initialize=stepper.initialize,
     advance=stepper.advance,
     differentiate=rates.differentiate,
-    restore=restore.restore,
+    restore=stepper.restore,
+    ranges=(
+        SlotRange(at.RATES, at.STATE - at.RATES),  # written before they are read
+        SlotRange(at.TURN, 1, 0.0, 1.0),
+        SlotRange(at.OUTPUT_RATES, at.SIZE - at.OUTPUT_RATES),
+    ),
     rates={at.BOX_POSITION: at.OUTPUT_RATES},
     refresh=stepper.refresh,
     messages=MESSAGES,

@@ -3,9 +3,12 @@
 Standard library only: it travels inside the FMU.
 """
 
+from math import inf
+
 from ...kernels.oscillator import memory as at
-from ...kernels.oscillator import rates, restore, stepper
-from ...runtime.table import Array, Clock, Model, Terminal
+from ...kernels.oscillator import rates, stepper
+from ...kernels.oscillator.nodes import FURTHEST
+from ...runtime.table import Array, Clock, Model, SlotRange, Terminal
 from ...version import VERSION
 from .messages import MESSAGES
 from .variables import VARIABLES
@@ -28,7 +31,26 @@ MODEL = Model(
     advance=stepper.advance,
     coast=stepper.coast,
     differentiate=rates.differentiate,
-    restore=restore.restore,
+    restore=stepper.restore,
+    ranges=(
+        SlotRange(at.OMEGA, at.SEGMENT_INPUTS - at.OMEGA),  # computed anew, as the next ones
+        SlotRange(at.SPACING, at.NODE_SINE + 1 - at.SPACING),
+        SlotRange(at.EVENT_DRIVE, 2 * at.EVENT_ORDERS),
+        *(
+            SlotRange(at.SEGMENT_INPUTS + i, 1, v.minimum, v.maximum)
+            for i, v in enumerate(VARIABLES[at.BOX_AMPLITUDE : at.BOX_CRACKLE + 1])
+        ),
+        SlotRange(at.MODE, 1, at.FLIGHT, at.GLUED),
+        SlotRange(at.TURN, 1, 0.0, 1.0),
+        SlotRange(at.CLEAR, 2, 0.0, inf),  # and END
+        SlotRange(at.END_KIND, 1, at.END_OPEN, at.END_RENEWAL),
+        SlotRange(at.NODE, 1, 0.0, FURTHEST),
+        SlotRange(at.POINT, 6),  # may have overflowed, as the next ones, where nothing reads them
+        SlotRange(at.REMAINDER, 1, 0.0, inf),
+        SlotRange(at.SERIES, 1, 0.0, at.SERIES_LONGEST),
+        SlotRange(at.SERIES_X, at.STEP - at.SERIES_X),
+        SlotRange(at.RATES, at.CUBIC_SET - at.RATES),
+    ),
     rates={at.X1: at.RATES, at.EVALUATIONS: at.ADDED_RATES},
     messages=MESSAGES,
     stop_time=157.0,

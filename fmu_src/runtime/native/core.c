@@ -417,6 +417,14 @@ static bool is_value(const Variable *variable, double value) {
     return in_range(variable, value) && (variable->type == REAL || is_whole(value));
 }
 
+/* Whether a slot behind the variables may have a value: its range, else every finite number. */
+static bool is_hidden_value(unsigned slot, double value) {
+    for (const SlotRange *row = RANGES; row < RANGES + RANGE_COUNT; row++)
+        if (slot >= row->first && slot - row->first < row->size)
+            return row->lowest > row->highest || (value >= row->lowest && value <= row->highest);
+    return isfinite(value);
+}
+
 static Status restored(Instance *instance, const char *call, State *state) {
     char text[TEXT] = "a saved state that this FMU never had: ";
     for (unsigned i = 0; i < VARIABLE_COUNT; i++) {
@@ -433,13 +441,22 @@ static Status restored(Instance *instance, const char *call, State *state) {
         state->stale = state->stale || state->phase == INSTANTIATED || kernel_initialize(state->memory, state->start_time);
         return OK;
     }
+    for (unsigned i = VARIABLE_COUNT; i < MEMORY_SIZE; i++) {
+        if (is_hidden_value(i, state->memory[i])) continue;
+        append_number(text, state->memory[i]);
+        append(text, " in slot ");
+        append_whole(text, i);
+        return refuse(instance, call, text);
+    }
     int code = kernel_restore(state->memory, state->start_time);
     if (!code) return OK;
-    explain(text, state->memory, code);
+    char problem[TEXT];
+    explain(problem, state->memory, code);
+    append(text, problem);
     return refuse(instance, call, text);
 }
 
 Status state_from_bytes(Instance *instance, const char *call, State *state, const char *bytes, size_t size) {
-    if (!unpack(state, bytes, size)) return refuse(instance, call, "expected a state saved by this FMU (" STATE_MAGIC ")");
+    if (!unpack(state, bytes, size)) return refuse(instance, call, "expected a state saved by this FMU (" STATE_MAGIC "), and undamaged");
     return restored(instance, call, state);
 }

@@ -23,7 +23,7 @@ int kernel_initialize(double *memory, double time);
 int kernel_advance(double *memory, double time);
 int kernel_refresh(double *memory, double time);  /* where REFRESH is 1 */
 int kernel_coast(double *memory, double time);  /* where COAST is 1: 0 where the step is done, else nothing is */
-int kernel_restore(double *memory, double start_time);  /* a memory that came from outside: checked, and made whole again */
+int kernel_restore(double *memory, double start_time);  /* what the parameters decide, in a memory that came from outside */
 int kernel_differentiate(double *memory, double time);  /* rates of the continuous outputs into their slots */
 
 typedef enum { OK, WARNING, DISCARD, FAILED, FATAL } Status;  /* numbered as in FMI 2.0 and 3.0 */
@@ -98,7 +98,7 @@ void number(char *text, double value);
 #define STATE_HEADER 64
 void state_to_bytes(const State *, char *bytes);
 
-/* Read a state and compute anew what follows from other numbers in it; FAILED after a refusal. */
+/* Read a state whose checksum fits, and check what indexes, counts or bounds a loop; FAILED after a refusal. */
 Status state_from_bytes(Instance *, const char *call, State *, const char *bytes, size_t size);
 
 #if defined(__GNUC__) && !defined(_WIN32)
