@@ -111,7 +111,7 @@ def wander(rng: random.Random, instance: Instance, course: Course, time: float) 
             if target >= time:
                 end = time + (target - time) * rng.random() ** 4
                 is_event = isinstance(instance, EventInstance) and end > time
-                (instance.advance if is_event else instance.step)(time, end)
+                (instance.impacts if is_event else instance.step)(time, end)
                 return
 
 
