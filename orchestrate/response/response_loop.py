@@ -155,8 +155,3 @@ class ResponseLoop:
 def traits_of(point: Point) -> Any:
     """Return what a point is for the loops."""
     return traits(point.structure, point.excitation.frequency, point.excitation.amplitude)
-
-
-def periods_to_sample(multiplicity: int, max_periods: int) -> int:
-    """Return the periods looked at for peaks: the multiplicity, or half of the most if none."""
-    return min(multiplicity, max_periods) or (max_periods + 1) // 2

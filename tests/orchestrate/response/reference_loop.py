@@ -8,7 +8,7 @@ from fmu_src.kernels import repetition
 from orchestrate.fmu import begin, gap_between
 from orchestrate.fmu.oscillator import PEAKS, SAMPLE_SERIES
 from orchestrate.model.outcomes import REPEATED
-from orchestrate.response.response_loop import COUNTED, COUNTS, Responses, periods_to_sample
+from orchestrate.response.response_loop import COUNTED, COUNTS, Responses
 from orchestrate.response.threshold import exceeds_threshold
 
 
@@ -143,3 +143,8 @@ def round_to_bits(first, second, bits):
         return first, second
     digit = math.ldexp(1.0, exponent - bits)
     return tuple(math.copysign(round(x / digit) * digit, x) for x in (first, second))
+
+
+def periods_to_sample(multiplicity, max_periods):
+    """Periods looked at for peaks: the multiplicity, or half of the most if none."""
+    return min(multiplicity, max_periods) or (max_periods + 1) // 2

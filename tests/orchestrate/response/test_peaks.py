@@ -9,7 +9,9 @@ from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, begin, find, sa
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.equations import absolute_accelerations
 from orchestrate.response.questions import Point
-from orchestrate.response.response_loop import LoopSettings, periods_to_sample, response_loop
+from orchestrate.response.response_loop import LoopSettings, response_loop
+
+from .reference_loop import periods_to_sample
 
 PAPER = Structure.nondimensional()
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=2.9, e=0.6)
