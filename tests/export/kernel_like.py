@@ -90,6 +90,18 @@ def numbers(m, x):
     return share + k + max(x, share, 0.125) - min(x, 0.0) + math.sqrt(abs(x)) - -x
 
 
+WEIGHTS, BEGIN = (0.1, -0.2, 1.0 / 3.0), (0, 1, 3)
+
+
+def tables(m, x):
+    """Entries of tables, by an index that is computed, or read from another table."""
+    total = x
+    for row in range(2):
+        for i in range(BEGIN[row], BEGIN[row + 1]):
+            total = total / 3.0 + WEIGHTS[i] * x
+    return total * BEGIN[2] + WEIGHTS[2 if m[at.COUNT] > 0.0 else 0]
+
+
 def chosen(m, x):
     """What is not chosen is not evaluated."""
     y = bump(m, at.COUNT) if x > 0.0 else -bump(m, at.OUT)
@@ -128,6 +140,11 @@ def run_numbers(m, time):
     return 0
 
 
+def run_tables(m, time):
+    m[at.RESULT] = tables(m, time)
+    return 0
+
+
 def run_chosen(m, time):
     m[at.RESULT] = chosen(m, time)
     return 0
@@ -138,6 +155,7 @@ ENTRIES = {
     "swaps": run_swaps,
     "loops": run_loops,
     "tuples": run_tuples,
+    "tables": run_tables,
     "numbers": run_numbers,
     "chosen": run_chosen,
 }

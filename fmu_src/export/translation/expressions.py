@@ -162,7 +162,16 @@ class Expressions(ABC):
         return thing, *origin(self.module, name)
 
     def subscript(self, node: ast.Subscript) -> Value:
-        """Translate a slot of the memory, or one or several parts of a tuple."""
+        """Translate a slot of the memory, one or several parts of a tuple, or an entry of a
+        table.
+        """
+        if self.is_table(node.value):
+            _, module, name = self.resolved(node.value)
+            place, numbers = self.expression(node.slice), resolve_name(module, name)
+            if place.type != WHOLE:
+                raise self.refuse(node, ast.unparse(node), "a whole number as the index")
+            kind = WHOLE if all(isinstance(n, int) for n in numbers) else REAL
+            return Value(f"{self.constant(module, name)}[{place.text}]", kind)
         whole = self.expression(node.value)
         if whole.type == MEMORY:
             place = self.expression(node.slice)
@@ -180,6 +189,13 @@ class Expressions(ABC):
         if not isinstance(index, int):
             raise self.refuse(node, ast.unparse(node), "a constant index of a tuple")
         return whole.item(index)
+
+    def is_table(self, node: ast.expr) -> bool:
+        """Return whether a name stands for a tuple of numbers, a module's constant."""
+        if not isinstance(node, (ast.Name, ast.Attribute)) or ast.unparse(node) in self.types:
+            return False
+        thing = resolve_name(self.module, ast.unparse(node))
+        return isinstance(thing, tuple) and all(isinstance(n, (int, float)) for n in thing)
 
     # -- what is computed --
 

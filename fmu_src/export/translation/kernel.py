@@ -107,8 +107,8 @@ class Translation:
     ----------
     units : dict
         By function and types of the arguments; those come first that others call.
-    constants : dict of str to float
-        Those used, by their names in C.
+    constants : dict of str to float or tuple of float
+        Those used, by their names in C: numbers and tables.
     structures : dict of Type to str
         Names in C of the tuples used.
     names : dict of str to object
@@ -118,7 +118,7 @@ class Translation:
     """
 
     units: dict[tuple[FunctionType, tuple[Type, ...]], Unit] = field(default_factory=dict)
-    constants: dict[str, float] = field(default_factory=dict)
+    constants: dict[str, float | tuple[float, ...]] = field(default_factory=dict)
     structures: dict[Type, str] = field(default_factory=dict)
     names: dict[str, object] = field(default_factory=dict)
     begun: set[FunctionType] = field(default_factory=set)
@@ -170,7 +170,8 @@ class Translation:
         structures.
         """
         whole = sorted((n, name) for name, n in self.constants.items() if isinstance(n, int))
-        real = [(name, n) for name, n in self.constants.items() if not isinstance(n, int)]
+        real = [(name, n) for name, n in self.constants.items() if isinstance(n, float)]
+        tables = [(name, n) for name, n in self.constants.items() if isinstance(n, tuple)]
         structures = []
         for kind, name in self.structures.items():
             parts = " ".join(f"{self.c_type(part)} i{i};" for i, part in enumerate(kind))
@@ -179,8 +180,16 @@ class Translation:
         return [
             "\n".join(numbers if whole else []),  # C has no empty enum
             "".join(f"static const double {name} = {literal(n)};\n" for name, n in real),
+            "".join(table(name, numbers) for name, numbers in tables),
             "\n".join(structures) + "\n",
         ]
+
+
+def table(name: str, numbers: tuple[float, ...]) -> str:
+    """Return the definition of a table: of whole numbers where all of them are."""
+    whole = all(isinstance(number, int) for number in numbers)
+    entries = "".join(f"    {n if whole else literal(n)},\n" for n in numbers)
+    return f"static const {'int' if whole else 'double'} {name}[] = {{\n{entries}}};\n"
 
 
 def literal(number: float) -> str:

@@ -9,24 +9,8 @@ import math
 
 from ..numerics.elementary import TWO_PI, fraction
 from . import memory as at
-from . import tableau as formula
 from .equations import compute_rates
-from .tableau import (
-    deviation_3,
-    deviation_5,
-    slope,
-    slope_1,
-    slope_2,
-    slope_3,
-    slope_4,
-    slope_5,
-    slope_6,
-    slope_7,
-    slope_8,
-    slope_9,
-    slope_10,
-    slope_11,
-)
+from .tableau import DEVIATION_3, DEVIATION_5, NODES, WHOLE, sum_rates
 
 TOLERANCE = 1e-12  # of each sub-step, relative to the states' scales
 # the longest sub-step, whatever the estimate: it could be blind to what goes round in between
@@ -43,41 +27,14 @@ def compute_stages(m, t, h):
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s]
     compute_rates(m, 0, t)
+    for stage in range(1, at.STAGES):
+        sum_rates(m, stage - 1, at.STAGE)
+        for s in range(at.STATES):
+            m[at.STAGE + s] = m[at.STATE + s] + h * m[at.STAGE + s]
+        compute_rates(m, stage, t + NODES[stage] * h)
+    sum_rates(m, WHOLE, at.NEXT)
     for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_1(m, s)
-    compute_rates(m, 1, t + formula.NODE_1 * h)
-    for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_2(m, s)
-    compute_rates(m, 2, t + formula.NODE_2 * h)
-    for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_3(m, s)
-    compute_rates(m, 3, t + formula.NODE_3 * h)
-    for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_4(m, s)
-    compute_rates(m, 4, t + formula.NODE_4 * h)
-    for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_5(m, s)
-    compute_rates(m, 5, t + formula.NODE_5 * h)
-    for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_6(m, s)
-    compute_rates(m, 6, t + formula.NODE_6 * h)
-    for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_7(m, s)
-    compute_rates(m, 7, t + formula.NODE_7 * h)
-    for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_8(m, s)
-    compute_rates(m, 8, t + formula.NODE_8 * h)
-    for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_9(m, s)
-    compute_rates(m, 9, t + formula.NODE_9 * h)
-    for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_10(m, s)
-    compute_rates(m, 10, t + formula.NODE_10 * h)
-    for s in range(at.STATES):
-        m[at.STAGE + s] = m[at.STATE + s] + h * slope_11(m, s)
-    compute_rates(m, 11, t + formula.NODE_11 * h)
-    for s in range(at.STATES):
-        m[at.NEXT + s] = m[at.STATE + s] + h * slope(m, s)
+        m[at.NEXT + s] = m[at.STATE + s] + h * m[at.NEXT + s]
     m[at.WORK] += at.STAGES
 
 
@@ -105,18 +62,25 @@ def error_scale(m, state, h):
     return size
 
 
+def squared_error(m, row, h):
+    """Return the sum over the states of a difference of two orders, over what is allowed, squared.
+
+    The differences are in STAGE then.
+    """
+    sum_rates(m, row, at.STAGE)
+    total = 0.0
+    for state in range(at.CONTROLLED):
+        error = m[at.STAGE + state] * h / (TOLERANCE * error_scale(m, state, h) + TINY)
+        total += error * error
+    return total
+
+
 def error_ratio(m, h):
     """Return the estimated error of the sub-step over what is allowed.
 
     Hairer's combination of the estimates of order 5 and 3.
     """
-    sum_5, sum_3 = 0.0, 0.0
-    for state in range(at.CONTROLLED):
-        allowed = TOLERANCE * error_scale(m, state, h) + TINY
-        e5 = deviation_5(m, state) * h / allowed
-        e3 = deviation_3(m, state) * h / allowed
-        sum_5 += e5 * e5
-        sum_3 += e3 * e3
+    sum_5, sum_3 = squared_error(m, DEVIATION_5, h), squared_error(m, DEVIATION_3, h)
     if sum_5 == 0.0:
         return 0.0
     return sum_5 / math.sqrt((sum_5 + 0.01 * sum_3) * at.CONTROLLED)
