@@ -34,11 +34,13 @@ class System(NamedTuple):
 
 
 def draw_structure(rng: np.random.Generator) -> tuple[Structure, float]:
-    """Draw a structure and a frequency ratio, lightly damped as in the paper."""
-    mu, kappa = (draw_log_uniform(rng, 0.3, 4.0) for _ in range(2))
-    one, two = (draw_log_uniform(rng, 0.003, 0.06) for _ in range(2))
-    e, eta = float(rng.uniform(0.02, 0.95)), float(rng.uniform(0.3, 4.0))
-    return Structure.nondimensional(mu=mu, kappa=kappa, D1=one, D2=two, e=e), eta
+    """Draw a structure and a frequency ratio, as widely as users may enter them."""
+    ratios = {"mu": draw_log_uniform(rng, 0.25, 4.0), "kappa": draw_log_uniform(rng, 0.4, 3.0)}
+    dampings = {name: draw_log_uniform(rng, 0.002, 0.2) for name in ("D1", "D2")}
+    e, clearance = float(rng.uniform(0.05, 0.95)), float(rng.choice([-1.0, 0.0, 1.0]))
+    clearance *= draw_log_uniform(rng, 1e-3, 8.0)
+    structure = Structure.nondimensional(**ratios, **dampings, e=e, clearance=clearance)
+    return structure, draw_log_uniform(rng, 0.3, 5.0)
 
 
 def draw_system(rng: np.random.Generator) -> System:

@@ -27,11 +27,10 @@ class Draw:
 
     def __init__(self, rng: np.random.Generator) -> None:
         """Draw the structure and its frequency ratio; the rest when it is used."""
-        structure, self.eta = draws.draw_structure(rng)
-        clearance = float(rng.choice([-1.0, 0.0, 1.0]) * 10.0 ** rng.uniform(-3.0, 0.0))
-        self.rng, self.structure = rng, structure.replace(clearance=clearance)
+        self.structure, self.eta = draws.draw_structure(rng)
+        self.rng = rng
         self.near = self.eta * np.array([0.97, 1.0, 1.03])
-        self.frequency = self.near * structure.omega
+        self.frequency = self.near * self.structure.omega
         self.system = draws.System(o.Structure.from_file("quick"), o.Drive.from_file("quick"))
         self.ends = (lambda low: (low, low + 0.03))(float(rng.uniform(1.2, 1.6)))
 

@@ -16,7 +16,7 @@ from orchestrate.dynamics.orbit_search import (
 )
 from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
-from orchestrate.model import Excitation, Structure
+from orchestrate.model import Excitation
 from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
 from orchestrate.response.multiplicity import (
     MIN_RELATIVE_GAP,
@@ -26,6 +26,7 @@ from orchestrate.response.multiplicity import (
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import respond
 
+from ...draws import draw_structure
 from ...sparing import ordinary
 
 TOLERANCE = 1e-2
@@ -269,8 +270,10 @@ def newton(instance, point, state, periods):
     except NoConvergenceError:
         return None
     orbit = family.orbit(root.unknowns)
-    away = np.abs(stroboscopic_states(orbit)[0] - np.array(state) / point.scale).max()
-    if why_no_motion(orbit) or away > 1e-3 * np.abs(orbit.nodes).max():
+    begin = stroboscopic_states(orbit)[0]
+    away = np.abs(begin - point.faces(np.array(state))).max()
+    size = max(np.abs(begin).max(), np.abs(orbit.nodes).max(initial=0.0))
+    if why_no_motion(orbit) or away > 1e-3 * size:
         return None
     return least_periods(orbit), bool(np.abs(orbit.multipliers()).max() < 1.0)
 
@@ -298,12 +301,7 @@ def random_points(seed, count):
     """Structures and excitations of all kinds."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
-        mu = float(np.exp(rng.uniform(np.log(0.3), np.log(3.3))))
-        kappa, D1, D2, e, eta = (
-            float(rng.uniform(*ends))
-            for ends in ((0.4, 2.2), (0.003, 0.05), (0.003, 0.05), (0.1, 0.95), (0.3, 4.0))
-        )
-        structure = Structure.nondimensional(mu=mu, kappa=kappa, D1=D1, D2=D2, e=e)
+        structure, eta = draw_structure(rng)
         yield Point(structure, Excitation.nondimensional(eta, structure))
 
 

@@ -9,10 +9,11 @@ import pytest
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu import OSCILLATOR, Instance, find, library, sampled
 from orchestrate.fmu.oscillator import OscillatorCalls, ResponseProgress, ResponseTask
-from orchestrate.model import Excitation, Structure
+from orchestrate.model import Excitation
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import LoopSettings, response_loop
 
+from ...draws import draw_structure
 from ...sparing import ordinary
 from . import reference_loop
 from .reference_loop import round_state
@@ -35,14 +36,8 @@ def instance(exported):
 def points(seed, count=12):
     """Random structures with a gap, a preload or neither."""
     random = np.random.default_rng(seed)
-    for i in range(count):
-        structure = Structure.nondimensional(
-            mu=random.uniform(0.25, 4.0),
-            kappa=random.uniform(0.4, 3.0),
-            D=random.uniform(0.002, 0.2),
-            e=random.uniform(0.05, 0.95),
-        ).replace(clearance=(0.0, random.uniform(-3.0, 3.0))[i % 2])
-        eta = float(random.uniform(0.3, 5.0))
+    for _ in range(count):
+        structure, eta = draw_structure(random)
         yield Point(structure, Excitation.nondimensional(eta, structure))
 
 
