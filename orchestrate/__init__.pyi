@@ -29,6 +29,7 @@ from .laboratory.analysis.orders import track_orders as track_orders
 from .laboratory.analysis.psd import psd as psd
 from .laboratory.analysis.shock_spectrum import shock_spectrum as shock_spectrum
 from .laboratory.analysis.spectrogram import spectrogram as spectrogram
+from .laboratory.channel_table import channels as channels
 from .laboratory.curve_files import read_curve as read_curve
 from .laboratory.level_control import LevelControl as LevelControl
 from .laboratory.random_vibration import Random as Random

@@ -133,7 +133,7 @@ def read_one_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     from .. import read_record
 
     columns = parse_columns(arguments)
-    record = read_record(path, columns=columns, **values_of(arguments, READING))
+    record = read_record(path, columns, **values_of(arguments, READING))
     if "acceleration1" not in record and "acceleration2" not in record:
         taken = record.attrs.get("columns", "no columns")
         text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"

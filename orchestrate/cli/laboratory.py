@@ -114,7 +114,7 @@ def read_record_excitation(arguments: argparse.Namespace) -> Any:
     if column is not None:
         columns = {"box_acceleration": int(column) if column.isdecimal() else column}
     record = read_record(
-        arguments.record, unit=arguments.unit, columns=columns, scale=arguments.scale
+        arguments.record, unit=arguments.unit, channels=columns, scale=arguments.scale
     )
     if note := unit_note(record.attrs):
         print(f"{arguments.record}: {note}")
@@ -374,7 +374,7 @@ def read_record_file(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     reading = values_of(arguments, (COLUMNS, READING))
     if path.suffix.lower() != ".wav":  # the scale is of the others
         reading.pop("scale", None)
-    return read_record(path, **reading)
+    return read_record(path, reading.pop("columns", None), **reading)
 
 
 def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:

@@ -119,7 +119,7 @@ def notes_without_sine(channels: Channels, settings: WiringSettings) -> Iterator
         if spread[base] < settings.dead * spread[row]:
             yield Note("dead", f"the base has no sine and {face} moves: is the base's cable dead?")
         elif is_face:
-            text = f"the base has no sine and {face} has: swapped? exchange both in columns="
+            text = f"the base has no sine and {face} has: swapped? exchange both in channels="
             yield Note("swapped", f"{text}; or does the base's reading drift?")
     yield from clipped_notes(channels, settings.clipped)
 
@@ -164,7 +164,7 @@ def is_heard(orders: RecordOrders, row: int, settings: WiringSettings) -> bool:
 
 def swapped_note(face: str) -> Note:
     """Return the note on exchanged channels."""
-    text = f"{face} moves as a base and the base as {face}: swapped? exchange both in columns="
+    text = f"{face} moves as a base and the base as {face}: swapped? exchange both in channels="
     return Note("swapped", text)
 
 

@@ -19,6 +19,8 @@ module                    idea
 :mod:`.record_checks`     saturated, dead and identical channels, lost samples
 :mod:`.run_up`            the run of a weak drive as a record
 :mod:`.columns`           which columns of a file are its channels, and their units
+:mod:`.channel_setup`     how the channels of a file are read, as TOML or a mapping
+:mod:`.channel_table`     the columns of a file, and the setup that reads them
 :mod:`.conversion`        velocities, displacements and voltages made accelerations
 :mod:`.time_base`         rounded and uneven times made equal
 :mod:`.record_csv`        columns of numbers as text

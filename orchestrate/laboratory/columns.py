@@ -1,7 +1,7 @@
 """Columns of a file as they stand there, and which of them are a record's channels.
 
-Of columns with unknown names the one that is missing of base and face is taken, others are left out
-with a warning; where no name is known they are taken by their order, and refused if too many.
+Names are known where they are usual (:data:`NAMES`); what is taken by its order is a proposal and
+said, what is not read is named in a warning.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -24,14 +24,15 @@ from .conversion import (
     SPEEDS,
     VOLTAGES,
     ByChannel,
-    by_channel,
     plain_unit,
+    text_by_channel,
     unit_factor,
 )
 from .pieces import Floats
 from .record import CHANNELS, FORCE, SHORT_NAMES
 from .record_checks import ascends, first_hole, implausible_times
 
+Named: TypeAlias = "Mapping[str, str | int] | Sequence[str | int] | None"  # columns by a caller
 MOST_NAMES = 12  # of columns in a message
 LONG_HEADING = 300  # letters of a heading that are read: patterns take the square of them in time
 LARGEST = 1e100  # of a number in SI units: derivatives and spectra of larger ones leave the range
@@ -125,6 +126,10 @@ class Columns:
     first_row: int = 0  # number of the first values in the file's own count
     attributes: dict[str, Any] = field(default_factory=dict)  # what our own records say
 
+    def at_rate(self, sample_rate: float | None) -> Columns:
+        """Return the same columns, sampled at a rate in Hz; None: at the file's own."""
+        return self if sample_rate is None else replace(self, sample_rate=sample_rate)
+
 
 def split_heading(heading: str) -> tuple[str, str]:
     """Split a column's heading; return its name and its unit, an empty string without one."""
@@ -158,6 +163,39 @@ def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
     return known[plain_unit(unit)]
 
 
+BY_USER, BY_NAME, LEFT, BY_ORDER = "by the caller", "by its name", "what is left", "by its order"
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """Say which column the time and each channel is in, and how that is known."""
+
+    places: dict[str, int]
+    known: dict[str, str]  # one of the words above, by channel
+
+    def text(self, table: Columns) -> str:
+        """Return a text that says which column was taken for what."""
+        said = [
+            f'{SHORT_NAMES.get(name, name)} "{table.columns[place].name}"'
+            + (f" ({BY_ORDER})" if self.known[name] == BY_ORDER else "")
+            for name, place in self.places.items()
+        ]
+        return ", ".join(said)
+
+    def warn(self, table: Columns, option: str = "channels=") -> None:
+        """Warn of columns that were taken by their order beside known ones, or not at all."""
+        if not (BY_NAME in self.known.values() or LEFT in self.known.values()):
+            return
+        proposed = {n: i for n, i in self.places.items() if self.known[n] == BY_ORDER}
+        said = [f'"{table.columns[i].name}" as {SHORT_NAMES[n]}' for n, i in proposed.items()]
+        unread = [f'"{table.columns[i].name}"' for i in unread_columns(table, self.places)]
+        texts = [f"read {BY_ORDER}: {', '.join(said)}" if said else ""]
+        texts += [f"not read: {', '.join(unread)}" if unread else ""]
+        if text := "; ".join(filter(None, texts)):
+            text = f"{table.path}: {text}; {option} says which column is which"
+            warnings.warn(text, UserWarning, stacklevel=5)
+
+
 @dataclass(frozen=True)
 class Channel:
     """Hold a channel in SI, and how many derivatives make its acceleration."""
@@ -168,28 +206,25 @@ class Channel:
 
 def converted_channels(
     table: Columns,
-    columns: Mapping[str, str | int] | Sequence[str | int] | None,
+    columns: Named,
     unit: ByChannel = None,
     sensitivity: ByChannel = None,
 ) -> tuple[Floats | None, dict[str, Channel], dict[str, str]]:
     """Convert a file's columns to SI: return times in s or None, channels, how they were read."""
-    refuse_spectra(table, columns)
-    known = channels_by_name(table) if columns is None else {}
-    places = known or channel_places(table, columns)
+    assignment = assigned_columns(table, columns)
+    places = dict(assignment.places)
     check_counters(table, places)
-    if known:
-        warn_of_unread(table, places)
+    assignment.warn(table)
     warn_of_left_out(table)
-    by_order = ", by their order: no name is known" if columns is None and not known else ""
-    read_as = {"columns": taken_text(table, places) + by_order}
+    read_as = {"columns": assignment.text(table)}
     clock = places.pop("time", None)
-    units = by_channel("unit", unit, list(places), ("time",))
+    units = text_by_channel("unit", unit, list(places), ("time",))
     time = None if clock is None else times_in_s(table, table.columns[clock], units.get("time", ""))
     if not places:
         text = f"no channel; expected one of {', '.join(CHANNELS)}"
         text += "" if time is None else " beside the times, or sample_rate= where there are none"
         raise InputError(f"{table.path}: {text}")
-    stated = by_channel("sensitivity", sensitivity, list(places))
+    stated = text_by_channel("sensitivity", sensitivity, list(places))
     used = {name: table.columns[place] for name, place in places.items()}
     of_all = isinstance(sensitivity, str) and "=" not in sensitivity and {*units} - {"time"}
     check_units(table, used, units, {} if of_all else stated)  # not all are in volts where some are
@@ -254,18 +289,11 @@ def unit_attributes(
     return {name: text for name, text in words.items() if text or name == "unit"}
 
 
-def taken_text(table: Columns, places: Mapping[str, int]) -> str:
-    """Return a text that says which column was taken for what."""
-    return ", ".join(
-        f'{SHORT_NAMES.get(name, name)} "{table.columns[i].name}"' for name, i in places.items()
-    )
-
-
 def column_taken(attributes: Mapping[Any, Any], channel: str) -> str:
     """Return what a record's attribute ``columns`` says a channel was read from, or its name."""
     word = re.escape(SHORT_NAMES.get(channel, channel))
     ends = "|".join(map(re.escape, ("time", *SHORT_NAMES.values())))
-    pattern = rf'(?:^|, )({word} ".*?")(?=, (?:{ends}) "|, by their order|$)'
+    pattern = rf'(?:^|, )({word} ".*?")(?=, (?:{ends}) "| \({BY_ORDER}\)|$)'
     match = re.search(pattern, str(attributes.get("columns", "")))
     return match[1] if match else channel
 
@@ -292,17 +320,28 @@ def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
     return values
 
 
-def channel_places(
-    table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
-) -> dict[str, int]:
-    """Return the column index of each channel and of the time, as asked for or by their order."""
+def assigned_columns(table: Columns, columns: Named) -> Assignment:
+    """Return which columns are the time and the channels.
+
+    - A caller's columns are taken as stated; the time, if not stated, by its name, else the first.
+    - Columns with usual names are what these say; several with one name are refused.
+    - The one column left is the base, or the face, that alone is missing beside the other.
+    - Where the base or a force is known and no face, one or two columns left are the faces in
+      their order; more are not read.
+    - Where no name is known, all are taken in their order; more columns than channels are refused.
+    """
+    refuse_spectra(table, columns)
     wanted = (*(() if table.sample_rate else ("time",)), *CHANNELS)[: 3 + (not table.sample_rate)]
-    if columns is None:
-        return places_by_order(table, wanted)
-    places = places_asked_for(table, columns, wanted, ("time", *CHANNELS))
-    if "time" in wanted and "time" not in places:
-        places["time"] = places_by_name(table, {"time": NAMES["time"]}).get("time", 0)
-    return places
+    if columns is not None:
+        places = places_asked_for(table, columns, wanted, ("time", *CHANNELS))
+        if "time" in wanted and "time" not in places:
+            places["time"] = places_by_name(table, {"time": NAMES["time"]}).get("time", 0)
+        return Assignment(places, dict.fromkeys(places, BY_USER))
+    known = channels_by_name(table)
+    if known.places.keys() & set(CHANNELS):
+        return known
+    places = places_by_order(table, wanted)
+    return Assignment(places, dict.fromkeys(places, BY_ORDER))
 
 
 def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
@@ -314,7 +353,7 @@ def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
         numbers = [i for i in numbers if not ascends(table.columns[i].values)]
     names = [table.columns[i].name.lower() for i in numbers]
     stems = [name[:-1] for name in names if name.endswith(("x", "y", "z"))]
-    expected = "expected columns=, which of them are time and channels"
+    expected = "expected channels=, which of them are time and channels"
     if len(stems) > len(set(stems)):
         text = f"directions of one sensor among the columns {column_names(table)}"
         raise InputError(f"{table.path}: {text}; {expected}")
@@ -335,9 +374,7 @@ def check_counters(table: Columns, places: Mapping[str, int]) -> None:
             raise InputError(f"{label}, row {row + table.first_row}: {text}; {expected}")
 
 
-def refuse_spectra(
-    table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
-) -> None:
+def refuse_spectra(table: Columns, columns: Named) -> None:
     """Raise of a file with spectra unless its times and channels are named, by users or usually."""
     if not (spectra := table.attributes.get("spectra")):
         return
@@ -348,16 +385,8 @@ def refuse_spectra(
     else:
         named = by_user or bool(usual) or table.sample_rate is not None
     if not named:
-        text = "expected accelerations over time: columns= names them where the file has some"
+        text = "expected accelerations over time: channels= names them where the file has some"
         raise InputError(f"{table.path}: {spectra}; {text}")
-
-
-def warn_of_unread(table: Columns, places: Mapping[str, int]) -> None:
-    """Warn of columns by no usual name that may be channels, by their unit or without one."""
-    unread = [f'"{table.columns[i].name}"' for i in unread_columns(table, places)]
-    if unread:
-        text = f"not read: {', '.join(unread)}; columns= says which column is which"
-        warnings.warn(f"{table.path}: {text}", UserWarning, stacklevel=4)
 
 
 def warn_of_left_out(table: Columns) -> None:
@@ -393,17 +422,17 @@ def places_asked_for(
     """Return the column index of each quantity that a caller asks for, by the quantity's name."""
     if not isinstance(columns, Mapping):
         if isinstance(columns, str) or len(columns) > len(order):
-            raise InputError(f"columns = {columns!r}: expected {', '.join(order)} in that order")
+            raise InputError(f"channels = {columns!r}: expected {', '.join(order)} in that order")
         columns = dict(zip(order, columns, strict=False))
     if unknown := sorted(set(columns) - set(names)):
-        raise InputError(f"columns: {unknown[0]!r}; expected names of {', '.join(names)}")
+        raise InputError(f"channels: {unknown[0]!r}; expected names of {', '.join(names)}")
     return {name: column_index(table, wish) for name, wish in columns.items()}
 
 
-def channels_by_name(table: Columns) -> dict[str, int]:
-    """Return the column index of time and channels by their usual names; empty if no channel."""
-    known = places_by_name(table, NAMES)
-    if "time" not in known and not table.sample_rate:
+def channels_by_name(table: Columns) -> Assignment:
+    """Assign time and channels by their usual names, and what is left beside them."""
+    places = places_by_name(table, NAMES)
+    if "time" not in places and not table.sample_rate:
         units = [plain_unit(one.unit) for one in table.columns]
         density = [unit for unit in units if re.fullmatch(r".+/\W*hz", unit)]
         if density or "hz" in units or places_by_name(table, {"frequency": SWEPT}):
@@ -411,13 +440,19 @@ def channels_by_name(table: Columns) -> dict[str, int]:
             text = f"{kind} over the frequency in the columns {column_names(table)}"
             expected = "expected accelerations over time; read_curve reads resonance curves"
             raise InputError(f"{table.path}: {text}; {expected}")
-    missing = {"box_acceleration", "acceleration1"} - set(known) if FORCE not in known else set()
-    rest = unread_columns(table, known)
-    channels = (*rest, *(i for name, i in known.items() if name != "time"))
-    with_unit = {bool(table.columns[i].unit) for i in channels}
-    if len(missing) == len(rest) == 1 and len(with_unit) == 1:
-        known |= {missing.pop(): rest[0]}  # of base and face the one whose name is not known
-    return known if set(known) & set(CHANNELS) else {}
+    known = dict.fromkeys(places, BY_NAME)
+    rest = unread_columns(table, places)
+    channels = (*rest, *(i for name, i in places.items() if name != "time"))
+    if len({bool(table.columns[i].unit) for i in channels}) != 1:
+        return Assignment(places, known)
+    missing = [name for name in ("box_acceleration", "acceleration1") if name not in places]
+    if len(missing) == len(rest) == 1 and FORCE not in places:
+        return Assignment(places | {missing[0]: rest[0]}, known | {missing[0]: LEFT})
+    faces = [name for name in ("acceleration1", "acceleration2") if name not in places]
+    if {"box_acceleration", FORCE} & places.keys() and 0 < len(rest) <= len(faces) == 2:
+        proposed = dict(zip(faces, rest, strict=False))
+        return Assignment(places | proposed, known | dict.fromkeys(proposed, BY_ORDER))
+    return Assignment(places, known)
 
 
 def places_by_name(table: Columns, names: Mapping[str, str]) -> dict[str, int]:
@@ -431,7 +466,7 @@ def places_by_name(table: Columns, names: Mapping[str, str]) -> dict[str, int]:
         if len(fits) > 1:
             which = ", ".join(f'"{table.columns[i].name}"' for i in fits)
             text = f"columns {which} may each be {SHORT_NAMES.get(name, name)}"
-            raise InputError(f"{table.path}: {text}; expected columns=, which of them is which")
+            raise InputError(f"{table.path}: {text}; expected channels=, which of them is which")
         if fits:
             places[name] = fits[0]
     return places
@@ -445,6 +480,8 @@ def column_index(table: Columns, wish: str | int) -> int:
     headings = [(column.name, column.unit) for column in table.columns]
     if isinstance(wish, str) and split_heading(wish) in headings:
         return headings.index(split_heading(wish))
+    if isinstance(wish, str) and wish.isdecimal():
+        wish = int(wish)
     number = isinstance(wish, int) and not isinstance(wish, bool)
     if number and 0 <= int(wish) < len(names):
         return int(wish)

@@ -85,6 +85,17 @@ def by_channel(
     return values
 
 
+def text_by_channel(
+    name: str, argument: ByChannel, channels: Sequence[str], also: Sequence[str] = ()
+) -> dict[str, str]:
+    """Return texts by channel; raise where one is none."""
+    texts = by_channel(name, argument, channels, also)
+    for channel, value in texts.items():
+        if not isinstance(value, str):
+            raise InputError(f"{name} of {channel} = {value!r}: expected a text in quotes")
+    return texts
+
+
 def number_by_channel(
     name: str, argument: ByChannel, channels: Sequence[str], smallest: float = 0.0
 ) -> dict[str, float]:

@@ -12,9 +12,12 @@ from ..errors import InputError
 from ..lazy import xr
 from .columns import (
     ANGLES,
+    BY_NAME,
+    BY_USER,
     CURVE_NAMES,
     FREQUENCIES,
     RATIOS,
+    Assignment,
     Column,
     Columns,
     column_label,
@@ -22,9 +25,7 @@ from .columns import (
     places_asked_for,
     places_by_name,
     si_factor,
-    taken_text,
     warn_of_left_out,
-    warn_of_unread,
 )
 from .conversion import plain_unit
 from .pieces import Floats
@@ -103,11 +104,12 @@ def read_curve(
     table = read_columns(path, "csv", True)  # fields may be empty
     warn_of_left_out(table)
     places = curve_places(table, columns)
-    if columns is None:
-        warn_of_unread(table, places)
+    known = BY_NAME if columns is None else BY_USER
+    assignment = Assignment(places, dict.fromkeys(places, known))
+    assignment.warn(table, "columns=")
     made = curve_columns(table, places, unit, level)
     words = {"title": f"Resonance curve {path.name}", "source": path.name}
-    words["columns"] = taken_text(table, places)
+    words["columns"] = assignment.text(table)
     try:
         return made_curve(made, relative, direction, words)
     except InputError as error:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import os
 import stat
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from ..lazy import xr
 from ..reader_process import read_in_process
 from ..running.netcdf import check_size, stored_size
 from .analysis.channels import CHANNELS as ACCELERATIONS
+from .channel_setup import Channels, ChannelSetup
 from .columns import Column, Columns, converted_channels
 from .conversion import SMALLEST, ByChannel, number_by_channel
 from .record import CHANNELS, Reading, checked_record, unit_of_channel
@@ -37,8 +37,8 @@ ENDINGS = {
 
 def read_record(
     path: str | os.PathLike[str],
+    channels: Channels = None,
     *,
-    columns: Mapping[str, str | int] | Sequence[str | int] | None = None,
     unit: ByChannel = None,
     sensitivity: ByChannel = None,
     sample_rate: float | None = None,
@@ -54,16 +54,20 @@ def read_record(
         Its ending says what it is: ``.csv``, ``.txt``, ``.tsv``, ``.asc``, ``.dat`` (text),
         ``.uff``, ``.unv`` (universal files, datasets 58 and 58b), ``.mat`` (MATLAB's up to
         version 7.2, structures too), ``.lvm`` and ``.tdms`` (LabVIEW), ``.nc`` (NetCDF), ``.wav``.
-    columns : mapping or sequence, optional
-        Which column ``time``, ``box_acceleration``, ``acceleration1``, ``acceleration2`` and
-        ``force`` are in, by name or by number from 0; a sequence has them in that order. By
-        default columns with these names or others that are usual, else the first ones in that
-        order, without a force. A time that is not named is in the column of that name, else in
-        the first.
+    channels : path-like, mapping, sequence or str, optional
+        Which column ``time``, ``base``, ``face1``, ``face2`` and ``force`` are in, by name or by
+        number from 0: a mapping, a text such as ``"base=Table,face1=3"``, or a sequence in that
+        order without the force. In place of a column a mapping may have ``column``, ``unit``,
+        ``sensitivity``, ``scale``, ``delay`` and, kept as attributes of the channel, ``sensor``,
+        ``serial_number``, ``calibrated``; beside the channels ``sample_rate`` and ``resample``. Or
+        the path of a TOML file with the same, as :func:`orchestrate.channels` writes it. By default
+        columns with these names or others that are usual; one or two that are left are proposed as
+        faces, in their order, with a warning; where no name is known, the first ones in that
+        order. A time that is not named is in the column of that name, else in the first.
     unit : str or mapping of str to str, optional
-        Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face1=mm/s"``; ``base``,
-        ``face1`` and ``face2`` stand for the names above): of an acceleration, velocity,
-        displacement or voltage. By default what stands in the file, which must be there. Of
+        Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face1=mm/s"``): of an
+        acceleration, velocity, displacement or voltage; before that of ``channels``, as are the
+        next ones. By default what stands in the file, which must be there. Of
         ``time`` (``"time=us"``) too; without any, s.
     sensitivity : str or mapping of str to str, optional
         Of voltages, such as ``"100 mV/g"`` or ``"base=100 mV/g,face1=50 mV/(mm/s)"``.
@@ -110,12 +114,15 @@ def read_record(
     path = Path(path)
     kind = file_kind(path)
     check_file(path)
-    if scale is None and kind == "wav":
-        raise InputError(f"{path}: scale = None; expected for a WAV file: m/s2 at its full scale")
-    table = read_columns(path, kind)
-    if sample_rate is not None:
-        table = replace(table, sample_rate=sample_rate)
-    time, channels, read_as = converted_channels(table, columns, unit, sensitivity)
+    setup = ChannelSetup.of(channels)
+    if kind == "wav" and not setup.keyword("scale", scale):
+        raise InputError(f"{path}: no scale=; expected for a WAV file: m/s2 at its full scale")
+    rate = setup.sample_rate if sample_rate is None else sample_rate
+    table = read_columns(path, kind).at_rate(rate)
+    given = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
+    stated = {name: setup.keyword(name, value) for name, value in given.items()}
+    unit = stated["unit"]
+    time, read, read_as = converted_channels(table, setup.columns, unit, stated["sensitivity"])
     if time is None and table.sample_rate is None:
         raise InputError(f"{path}: no column of times; expected one, or sample_rate=")
     words = {"title": f"Record {path.name}", "source": path.name, **table.attributes}
@@ -123,16 +130,19 @@ def read_record(
         words |= read_as
     reading = Reading(
         table.first_row,
-        resample,
-        {name: one.derivatives for name, one in channels.items()},
-        number_by_channel("scale", scale, list(channels), SMALLEST),
-        number_by_channel("delay", delay, list(channels)),
+        resample or setup.resample,
+        {name: one.derivatives for name, one in read.items()},
+        number_by_channel("scale", stated["scale"], list(read), SMALLEST),
+        number_by_channel("delay", stated["delay"], list(read)),
     )
-    values = {name: one.values for name, one in channels.items()}
+    values = {name: one.values for name, one in read.items()}
     try:
-        return checked_record(time, values, table.sample_rate, words, reading)
+        made = checked_record(time, values, table.sample_rate, words, reading)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+    for name in read:
+        made[name].attrs |= setup.attributes(name)
+    return made
 
 
 def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool = True) -> Path:

@@ -63,7 +63,7 @@ ERRORS = {
     "unit": (changed(face=lambda one: one / 9.80665), r'unit="face1=g", or unit="base=m/s2"'),
     "scale": (changed(face=lambda one: 5.0 * one), r'moves \S+ times .* scale="face1=0.2"'),
     "delay": (changed(face=lambda one: late(one, 0.002)), r'(2|2.1) ms .* delay="face1=0.0021?"'),
-    "swapped": (lambda one: {BASE: one[FACE], FACE: one[BASE]}, "exchange both in columns="),
+    "swapped": (lambda one: {BASE: one[FACE], FACE: one[BASE]}, "exchange both in channels="),
     "dead": (
         changed(face=lambda one: np.random.default_rng(1).normal(0.0, 0.05, COUNT)),
         "is its cable dead",

@@ -169,6 +169,6 @@ def test_messages_name_the_column_that_the_user_gave(tmp_path):
     head = names.replace("shaker, top", '"shaker, top').replace("[g],face", '[g]",face')
     columns = np.column_stack([time, 0.0 * time, np.sin(60.0 * time)])
     np.savetxt(path, columns, delimiter=",", header=head, comments="")
-    data = read_record(path, columns=("t", "shaker, top", "face"))
+    data = read_record(path, channels=("t", "shaker, top", "face"))
     with pytest.raises(InputError, match='^base "shaker, top": does not move'):
         track_orders(data)

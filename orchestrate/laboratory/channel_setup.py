@@ -1,0 +1,84 @@
+"""How the channels of a file are read: which columns they are in, their units and sensors."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError
+from ..model.files import parse
+from ..model.ranges import expected_one_of
+from .columns import Named
+from .conversion import ByChannel, by_channel
+from .record import CHANNELS
+
+ACTING = ("unit", "sensitivity", "scale", "delay")  # keywords of read_record, by channel
+SENSOR_WORDS = ("sensor", "serial_number", "calibrated")  # kept as attributes of the channel
+KEYS = ("column", *ACTING, *SENSOR_WORDS)
+Channels = Mapping[str, Any] | Sequence[str | int] | str | os.PathLike[str] | None
+
+
+@dataclass(frozen=True)
+class ChannelSetup:
+    """State how channels are read: columns, and keywords of :func:`.read_record` by channel."""
+
+    columns: Named = None
+    words: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by key, then channel
+    sample_rate: float | None = None
+    resample: bool = False
+
+    @classmethod
+    def of(cls, channels: Channels) -> ChannelSetup:
+        """Make one from what :func:`.read_record` takes as ``channels``."""
+        if channels is None:
+            return cls()
+        if isinstance(channels, str) and "=" in channels:
+            return cls(by_channel("channels", channels, (), ("time", *CHANNELS)))
+        if isinstance(channels, (str, os.PathLike)):
+            return cls.from_mapping(str(channels), parse(Path(channels)))
+        if isinstance(channels, Mapping):
+            return cls.from_mapping("channels", channels)
+        if not isinstance(channels, Sequence):
+            text = "expected a TOML file, a mapping, a list of columns, or base=...,face1=..."
+            raise InputError(f"channels = {channels!r}: {text}")
+        return cls(channels)
+
+    @classmethod
+    def from_mapping(cls, label: str, given: Mapping[str, Any]) -> ChannelSetup:
+        """Make one from columns or tables by channel, and values that are of all channels."""
+        of_all = {name: given[name] for name in ("sample_rate", "resample") if name in given}
+        rest = {name: one for name, one in given.items() if name not in of_all}
+        columns: dict[str, str | int] = {}
+        words: dict[str, dict[str, Any]] = {}
+        for name, table in by_channel(label, rest, (), ("time", *CHANNELS)).items():
+            if not isinstance(table, Mapping):
+                columns[name] = table
+                continue
+            for key, value in table.items():
+                if key not in KEYS:
+                    raise InputError(f"{label}, {name}: {key}; {expected_one_of(key, KEYS)}")
+                if key == "column":
+                    columns[name] = value
+                elif value != "":
+                    words.setdefault(key, {})[name] = value
+        return cls(columns or None, words, **of_all)
+
+    def keyword(self, name: str, given: ByChannel) -> ByChannel:
+        """Return a keyword of :func:`.read_record`: what is given acts before the setup."""
+        known = self.words.get(name, {})
+        if given is None or not known:
+            return known or None if given is None else given
+        if isinstance(given, Mapping) or (isinstance(given, str) and "=" in given):
+            return {**known, **by_channel(name, given, (), ("time", *CHANNELS))}
+        return given
+
+    def attributes(self, channel: str) -> dict[str, str]:
+        """Return what is known of a channel's sensor."""
+        return {
+            key: str(self.words[key][channel])
+            for key in SENSOR_WORDS
+            if channel in self.words.get(key, {})
+        }

@@ -1,0 +1,171 @@
+"""The columns of a file as a table, and as a setup that can be completed and given back."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..files import write_whole
+from ..lazy import xr
+from ..response.labels import variable
+from .channel_setup import ACTING, SENSOR_WORDS, Channels, ChannelSetup
+from .columns import Assignment, Columns, assigned_columns, times_in_s, warn_of_left_out
+from .conversion import ACCELERATIONS, FORCES, LENGTHS, SPEEDS, VOLTAGES, plain_unit
+from .record import CHANNELS, SHORT_NAMES
+from .record_checks import ascends
+from .record_files import check_file, file_kind, read_columns
+
+NOT_READ = "not read"
+QUANTITIES = {
+    "acceleration": ACCELERATIONS,
+    "velocity": SPEEDS,
+    "displacement": LENGTHS,
+    "voltage": VOLTAGES,
+    "force": FORCES,
+}
+
+
+def channels(
+    path: str | os.PathLike[str],
+    channels: Channels = None,
+    *,
+    sample_rate: float | None = None,
+    output: str | os.PathLike[str] | None = None,
+) -> xr.Dataset:
+    r"""List a file's columns, and the channels that :func:`orchestrate.read_record` reads there.
+
+    Parameters
+    ----------
+    path : path-like
+        As for :func:`orchestrate.read_record`.
+    channels : path-like, mapping, sequence or str, optional
+        As for :func:`orchestrate.read_record`.
+    sample_rate : float, optional
+        Hz; where there is no column of times.
+    output : path-like, optional
+        Where to write the setup as TOML: to complete by hand, and to give as ``channels`` to
+        whatever reads such files.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``column``, by the names in the file: ``role`` (time, base, face 1, ...; empty where
+        it is not read), ``known`` (how that is known), ``quantity``, ``unit`` and ``rms`` (without
+        its mean, in that unit; NaN of times and texts). Attribute ``sample_rate``, Hz; 0 if
+        unknown.
+
+    Raises
+    ------
+    InputError, StoreError
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "a.csv"
+    >>> _ = path.write_text("Zeit [ms];Tisch [g];oben [g]\n0;0,1;0\n1;0,3;2\n2;-0,2;0\n3;0;-1\n")
+    >>> found = channels(path)
+    >>> found.role.values.tolist(), found.known.values.tolist()[1:]
+    (['time', 'base', 'face 1'], ['by its name', 'by its order'])
+    """
+    path = Path(path)
+    kind = file_kind(path)
+    check_file(path)
+    table = read_columns(path, kind)
+    setup = ChannelSetup.of(channels)
+    rate = sample_rate or setup.sample_rate or table.sample_rate
+    assignment = assigned_columns(table.at_rate(rate), setup.columns)
+    warn_of_left_out(table)
+    found = described_columns(table, assignment, setup, rate)
+    if output is not None:
+        write_setup(found, setup, Path(output))
+    return found
+
+
+def described_columns(
+    table: Columns, assignment: Assignment, setup: ChannelSetup, rate: float | None
+) -> xr.Dataset:
+    """Return the dataset of :func:`channels`."""
+    import xarray as xr
+
+    roles = {place: name for name, place in assignment.places.items()}
+    units = setup.words.get("unit", {})
+    rows = []
+    for place, column in enumerate(table.columns):
+        name = roles.get(place)
+        unit = str(units.get(name, column.unit)) if name else column.unit
+        rms = np.nan if column.text or name == "time" else float(np.std(column.values))
+        known = assignment.known[name] if name else NOT_READ
+        role = SHORT_NAMES.get(name, name) if name else ""
+        rows.append((role, known, quantity_of(column.values, column.text, unit, role), unit, rms))
+    texts = {
+        "role": "channel it is read as",
+        "known": "how that is known",
+        "quantity": "what it holds",
+        "unit": "unit in the file",
+        "rms": "root mean square without the mean, in its unit",
+    }
+    parts = zip(texts.items(), zip(*rows, strict=True), strict=True)
+    made = {name: variable("column", list(values), "1", text) for (name, text), values in parts}
+    names = variable("column", [one.name for one in table.columns], "1", "name in the file")
+    if rate is None and "time" in assignment.places:
+        rate = rate_of(table, assignment.places["time"], units)
+    words = {"title": f"Columns of {Path(table.path).name}", "sample_rate": rate or 0.0}
+    return xr.Dataset(made, {"column": names}, words)
+
+
+def rate_of(table: Columns, place: int, units: Mapping[str, str]) -> float | None:
+    """Return the sampling rate by a column of times, Hz; None if it has none."""
+    time = times_in_s(table, table.columns[place], str(units.get("time", "")))
+    if time is None or not time[-1] > time[0]:
+        return None
+    return float((len(time) - 1) / (time[-1] - time[0]))
+
+
+def quantity_of(values: Any, text: str, unit: str, role: str) -> str:
+    """Return what a column holds, by its unit or its role."""
+    if text:
+        return "text"
+    if role == "time":
+        return "time"
+    plain = plain_unit(unit)
+    known = [name for name, units in QUANTITIES.items() if plain in units]
+    return known[0] if known else "counter" if ascends(values) else "unknown"
+
+
+def write_setup(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
+    """Write a setup as TOML; what is not known of the sensors is left to be filled in."""
+    of_role = {SHORT_NAMES.get(name, name): name for name in ("time", *CHANNELS)}
+    lines = [f"# {found.attrs['title']}: columns by name or number from 0, units as in the file"]
+    if found.attrs["sample_rate"] and "time" not in found.role.values:
+        lines.append(f"sample_rate = {float(found.attrs['sample_rate'])!r}  # Hz")
+    for place, role in enumerate(found.role.values.tolist()):
+        one = found.isel(column=place)
+        label = f"{one.column.item()}, {one.quantity.item()}, rms {one.rms.item():.4g}"
+        if not role:
+            lines.append(f"\n# not read: {label} {one.unit.item()}".rstrip())
+            continue
+        name = of_role[role]
+        lines += [f"\n[{role.replace(' ', '')}]  # {one.known.item()}; {label}"]
+        repeated = found.column.values.tolist().count(one.column.item()) > 1
+        column = place if repeated else one.column.item()
+        lines.append(f"column = {toml_value(column)}")
+        keys = ("unit",) if name == "time" else (*ACTING, *SENSOR_WORDS)
+        for key in keys:
+            value = setup.words.get(key, {}).get(name, one.unit.item() if key == "unit" else "")
+            lacking = key == "sensitivity" and one.quantity.item() == "voltage"
+            if value != "" or lacking or key in ("unit", *SENSOR_WORDS):
+                lines.append(f"{key} = {toml_value(value)}")
+    text = "\n".join(lines) + "\n"
+    return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
+
+
+def toml_value(value: Any) -> str:
+    """Return a text or a number as TOML."""
+    if not isinstance(value, str):
+        return repr(value)
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'

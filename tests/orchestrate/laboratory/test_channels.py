@@ -1,0 +1,97 @@
+"""Which columns of a file are its channels: by name, by order, by a caller, by a setup file."""
+
+import numpy as np
+import pytest
+
+from orchestrate import InputError, channels, read_record
+
+TIME = np.arange(400) / 1000.0
+WAVES = [np.sin(250.0 * TIME + i) * (i + 1.0) for i in range(4)]
+BASE, FACE1, FACE2 = "box_acceleration", "acceleration1", "acceleration2"
+
+
+def written(tmp_path, headings, unit="m/s2"):
+    path = tmp_path / "a.csv"
+    names = headings.split(";")
+    rows = zip(TIME, *WAVES[: len(names) - 1], strict=True)
+    units = ["s" if not i else "N" if name == "Force" else unit for i, name in enumerate(names)]
+    head = ";".join(f"{name} [{own}]" for name, own in zip(names, units, strict=True))
+    path.write_text(
+        head + "\n" + "".join(";".join(map(repr, map(float, row))) + "\n" for row in rows)
+    )
+    return path
+
+
+@pytest.mark.parametrize(
+    ("headings", "expected", "proposed"),
+    [
+        ("Zeit;Tisch;oben;unten", (BASE, FACE1, FACE2), 2),
+        ("Zeit;Tisch;Aufnehmer 1;Aufnehmer 2", (BASE, FACE1, FACE2), 2),
+        ("Time;Base;Ch2;Ch3", (BASE, FACE1, FACE2), 2),
+        ("Zeit;Referenz;Antwort 1;Antwort 2", (BASE, FACE1, FACE2), 2),
+        ("Zeit;Kanal 1;Kanal 2;Kanal 3", (BASE, FACE1, FACE2), 0),  # no name is known
+        ("Time;left;Base;right", (FACE1, BASE, FACE2), 2),
+        ("Time;Force;left;right", ("force", FACE1, FACE2), 2),
+        ("Time;Control;Response", (BASE, FACE1), 0),  # the one that is left
+        ("Time;Base;Face 1;right", (BASE, FACE1, None), 0),  # a known face: no guess beside it
+        ("Time;Base;a;b;c", (BASE, None, None, None), 0),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:.*(by its order|not read)")
+def test_what_is_left_beside_known_columns_is_proposed_and_said(
+    tmp_path, headings, expected, proposed
+):
+    path = written(tmp_path, headings)
+    with pytest.warns(UserWarning) if proposed or None in expected else no_warning():
+        record = read_record(path)
+    wanted = {name: wave for name, wave in zip(expected, WAVES, strict=False) if name}
+    assert set(record.data_vars) == set(wanted)
+    assert all(np.array_equal(record[name].values, wave) for name, wave in wanted.items())
+    assert record.attrs["columns"].count("by its order") in (proposed, len(expected) + 1)
+
+
+def no_warning():
+    return pytest.MonkeyPatch.context()
+
+
+def test_a_setup_file_reads_as_it_says_and_again_the_same(tmp_path):
+    path = written(tmp_path, "Zeit;Tisch;oben;Strom", "V")
+    toml = tmp_path / "setup.toml"
+    found = channels(path, "time=0,base=Strom,face1=1", output=toml)
+    assert found.role.values.tolist() == ["time", "face 1", "", "base"]
+    assert found.quantity.values.tolist() == ["time", "voltage", "voltage", "voltage"]
+    assert found.attrs["sample_rate"] == pytest.approx(1000.0)
+    assert found.rms.values[1:] == pytest.approx([wave.std() for wave in WAVES[:3]])
+    with pytest.raises(InputError, match="sensitivity"):
+        read_record(path, toml)
+    text = toml.read_text(encoding="utf-8").replace(
+        'sensitivity = ""', 'sensitivity = "1 V/(m/s2)"'
+    )
+    toml.write_text(text.replace('serial_number = ""', 'serial_number = "A7"\nscale = -2', 1))
+    record = read_record(path, toml)
+    assert np.array_equal(record[FACE1].values, -2.0 * WAVES[0])
+    assert np.array_equal(record[BASE].values, WAVES[2])
+    assert record[FACE1].attrs["serial_number"] == "A7"
+    assert "serial_number" not in record[BASE].attrs
+    stated = {"base": {"column": 3, "sensitivity": "1 V/(m/s2)"}, "face1": 1, "time": "Zeit"}
+    other = read_record(path, stated, sensitivity="face1=1 V/(m/s2)", scale={"face1": -2.0})
+    assert other.drop_attrs().identical(record.drop_attrs())
+    again = tmp_path / "again.toml"
+    channels(path, toml, output=again)
+    assert read_record(path, again).identical(record)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "names"),
+    [
+        ({"fase1": 2}, "fase1"),
+        ({"face1": {"colum": 2}}, "colum"),
+        ("base=9", "9"),
+        ("no such.toml", "no such.toml"),
+        (5, "5"),
+        ({"base": {"column": 1, "unit": 3}}, "3"),
+    ],
+)
+def test_a_wrong_setup_is_refused_by_name(tmp_path, wrong, names):
+    with pytest.raises(InputError, match=names):
+        read_record(written(tmp_path, "t;a;b;c"), wrong)
