@@ -7,6 +7,7 @@ window are solved once, as a matrix, and applied to as many channels as there ar
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -245,6 +246,7 @@ def moving_average(values: Floats, width: int = 5) -> Floats:
 # -- windows --------------------------------------------------------------------------------------
 
 
+@lru_cache(maxsize=4)  # of a record, decimated for the evidence and for a coarse search
 def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
     """Find the windows in which the base moves as a sine, and all channels' amplitudes in them."""
     phase = measured_phase(channels)
