@@ -111,7 +111,7 @@ MISTAKES = """
     bench.csv : bench.csv | no unit | --unit
     bench.csv --unit stone : unit = 'stone'
     bench.csv --unit g --columns acceleration1=9 : no column 9
-    bench.csv --unit g --columns mass=1 : columns: 'mass'
+    bench.csv --unit g --columns mass=1 : no channel 'mass'
 """
 
 
