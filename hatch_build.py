@@ -56,7 +56,7 @@ class CustomBuildHook(BuildHookInterface):
                 build_data["force_include"][str(path)] = f"{PLACE}/wasm/{name}.wasm"
             else:
                 self.app.display_warning(f"{path}: none of these sources, left out")
-        for source in sorted([*c_library.LOOPS.glob("*.c"), *root.glob("orchestrate/*/*.c")]):
+        for source in sorted(c_library.LOOPS.glob("*.c")):
             token = c_library.guid(source)
             for platform in platforms.PLATFORMS:
                 path = root / "build" / "libraries" / c_library.file_name(source, platform)

@@ -24,8 +24,7 @@ from .exported import NOT_PRIVATE, SHIPPED, default_folder
 
 log = logging.getLogger(__name__)
 FORM = "libraries"
-OWN = Path(__file__).resolve().parents[1].glob("*/*.c")
-SOURCES = tuple(sorted([*OWN, *sources.LOOPS.glob("*.c")]))
+SOURCES = tuple(sorted(sources.LOOPS.glob("*.c")))
 
 
 def library(source: Path, folder: str | PathLike[str] | None = None) -> Path:
@@ -49,15 +48,6 @@ def library(source: Path, folder: str | PathLike[str] | None = None) -> Path:
     except (CannotExport, StoreError) as reason:
         text = f"{source.name}: no library of it is here, and none can be compiled"
         raise InputError(f"{text}: {reason}") from None
-
-
-def loaded_function(source: Path) -> Any:
-    """Load the C function ``run`` of a source's shared library; None without a library."""
-    try:
-        return loaded_library(source).run
-    except InputError as reason:
-        log.info("Python does the same as %s: %s", source.name, reason)
-        return None
 
 
 @functools.cache

@@ -34,6 +34,7 @@ class Fmi(ctypes.Structure):
         *((name or "setup", c_void_p) for name in (*FUNCTIONS[3], *EVENT_FUNCTIONS)),
         ("failed", c_char_p),
         ("status", c_int),
+        ("warned", c_int),
     ]
 
     @classmethod

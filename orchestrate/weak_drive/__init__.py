@@ -6,8 +6,7 @@ module                  idea
 :mod:`.polynomials`     polynomials over one communication step
 :mod:`.connection`      any drive's variables by our names, checked
 :mod:`.inputs`          the drive's other inputs: courses over time, and a controlled one
-:mod:`.master`          the one master: what a step is, and where its length is chosen
-:mod:`.compiled`        the same steps in compiled code, with the same bits
+:mod:`.master`          calls the compiled loop that steps the two
 :mod:`.record`          what a run leaves of its steps, by columns
 :mod:`.extremes`        largest displacements within a communication step
 :mod:`.energy_balance`  where energies are balanced, and the coupling's energy defect

@@ -38,7 +38,6 @@ from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Chunk, Table, brief, plain
 from ..running.options import Running
 from ..running.runner import answer
-from .compiled import create_master
 from .connection import (
     MOTION,
     OURS,
@@ -51,7 +50,7 @@ from .connection import (
 from .controllers import InputControl
 from .energy_balance import given_work
 from .inputs import Input, Inputs, check_inputs
-from .master import DriveSide, Scheme
+from .master import DriveSide, Master, Scheme
 from .polynomials import end_value
 from .record import BOX, Floats, Record, joined
 from .schedule import Course, check
@@ -87,7 +86,7 @@ class Coupling:
         connection = job.begin_drive(drive, self.inputs)
         connection = replace(connection, recorded=job.record if parts == 1 else ())
         self.h = job.step / parts
-        self.master = create_master(oscillator, drive, Scheme(self.h), connection)
+        self.master = Master(oscillator, drive, Scheme(self.h), connection)
         knows = "box_acceleration" in connection.links
         fixed = drive.description.has_fixed_step or drive.description.internal_step
         self.divides_first = not knows and not fixed
@@ -250,7 +249,7 @@ class CosimulateJob(Question):
                 connection = self.begin_drive(drive, Inputs(self.inputs, drive.description))
                 side = DriveSide(drive, replace(connection, inputs=()))  # they stay as they began
                 side.put((force, 0.0, 0.0, 0.0), ())
-                side.channel.step(0.0, self.step)
+                drive.step(0.0, self.step)
                 moved.append(side.get()[: len(BOX)])
         # the first that is connected: its sign is sure whatever springs the drive has
         ways = (after - before for before, after in zip(*moved, strict=True))

@@ -1,51 +1,38 @@
-"""Step the oscillator and its drive together: in an ordinary step the oscillator alone goes back.
+"""Step the oscillator and its drive together, by the compiled loop ``couple.c``.
 
-The structure's ``box_force`` depends on its states only, the box's acceleration on the force: there
-is no algebraic loop, but what each side assumes of the other over a step decides everything.
-
-- The oscillator does the step under an extrapolated acceleration: the cubic of the last step goes
-  on from the present value.
-- The drive does it under the force that came of it: the cubic with its ends, mean and first moment,
-  which are exact through impacts. A drive that takes the force alone is given its mean.
-- The oscillator goes back and does it again, under the acceleration between both ends: the cubic
-  with the changes of the box's velocity and position, or what is known of it.
-- Where nothing is known to extrapolate, at the start, both do the step `first_passes` times, if the
-  drive can go back.
-- With a `tolerance` a step is halved, for both, where the energy defect is a larger part of the
-  work exchanged in it; one with less than `easy` of that is followed by one twice as long.
+What is exchanged, and in which order, stands there; here an instance of each is described to it,
+and its answers are read.
 """
 
 from __future__ import annotations
 
+import ctypes
+import functools
 import math
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from ctypes import POINTER, byref, c_double, c_int, c_size_t, c_uint, c_void_p, pointer
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
-from ..fmu.channel import Channel, SimulationEnded
-from ..fmu.instance import Instance
-from .connection import FORCE, MOTOR, Connection
-from .polynomials import (
-    Cubic,
-    derivatives,
-    end_derivatives,
-    integrate_work,
-    matched_cubic,
-    matched_parabola,
-)
+from ..fmu.c_library import loaded_loop
+from ..fmu.channel import Channel, SimulationEnded, StepAnswer
+from ..fmu.fmi import NOT_FINITE, Fmi, references
+from ..fmu.instance import REAL_TYPES, WARNING, Instance, function_addresses
+from .connection import FORCE, MOTOR, Connection, Link
 from .record import BOX, LEADING, PLACE, OscillatorOutputs, Record
 
 CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
-TIME, H, LEVEL, THEN, IMPACTS = (
-    PLACE[name] for name in ("time", "h", "level", "acceleration_then", "impacts")
-)
+TIME, IMPACTS = PLACE["time"], PLACE["impacts"]
 MOTION, DRIVE = PLACE["x1"], PLACE[BOX[0]]
-VELOCITY, ACCELERATION, END = DRIVE + 1, DRIVE + 2, DRIVE + 3
+END = DRIVE + len(BOX)
 FORCE_PLACE = OscillatorOutputs._fields.index("box_force")
 PAST = 3  # communication points that are remembered where no acceleration is connected
+NOT_WHOLE = -2  # a status that FMI does not have
 
 
 @dataclass(frozen=True)
@@ -73,6 +60,79 @@ class Scheme:
         return intervals << self.halvings if self.tolerance else intervals
 
 
+STATES = {3: ("GetFMUState", "SetFMUState", "FreeFMUState")}
+STATES[2] = ("GetFMUstate", "SetFMUstate", "FreeFMUstate", "GetRealStatus", "GetBooleanStatus")
+
+
+class Side(ctypes.Structure):
+    """C struct of one FMU instance: functions, variables and buffers."""
+
+    _fields_ = [
+        ("fmi", Fmi),
+        *((name, c_void_p) for name in ("save", "restore", "release")),
+        *((name, c_void_p) for name in ("real_status", "boolean_status")),
+        *((name, POINTER(c_uint)) for name in ("inputs", "outputs", "impacts")),
+        *((name, c_size_t) for name in ("input_count", "output_count")),
+        ("kept", POINTER(c_void_p)),
+        ("answer", POINTER(StepAnswer)),
+        ("keeps_anew", c_int),
+    ]
+
+    @classmethod
+    def of(cls, channel: Channel, impacts: Sequence[str] = ()) -> Side:
+        """Describe the instance of a channel; the channel frees the state that is kept."""
+        instance = channel.instance
+        fmi = Fmi.from_instance(instance)
+        _, *states = function_addresses(instance, STATES[fmi.version])
+        states += [None] * (len(STATES[2]) - len(states))
+        inputs, outputs = channel.references()
+        buffers = (pointer(channel.kept), pointer(channel.answer))
+        counts = (len(inputs), len(outputs))
+        names = (inputs, outputs, references(instance, impacts))
+        return cls(fmi, *states, *names, *counts, *buffers, instance.description.needs_tool)
+
+
+class Links(ctypes.Structure):
+    """C struct of our variables that are connected, with the size of their units in SI."""
+
+    _fields_ = [("count", c_int), ("places", c_int * 4), ("scales", c_double * 4)]
+
+    @classmethod
+    def of(cls, links: Sequence[tuple[int, Link]]) -> Links:
+        """Describe the connections of one direction."""
+        places, scales = (c_int * 4)(*(i for i, _ in links)), (one.scale for _, one in links)
+        return cls(len(links), places, (c_double * 4)(*scales))
+
+
+class Pair(ctypes.Structure):
+    """C struct of both FMU instances, the scheme and what is remembered between steps."""
+
+    _fields_ = [
+        *((name, Side) for name in ("oscillator", "drive")),
+        *((name, c_double) for name in ("tolerance", "easy")),
+        *((name, c_int) for name in ("halvings", "first_passes")),
+        *((name, Links) for name in ("force", "motion")),
+        ("cubic", c_int),
+        ("recorded", POINTER(c_uint)),
+        ("recorded_count", c_size_t),
+        ("table", c_void_p),
+        ("stride", c_size_t),
+        ("scratch", POINTER(c_double)),
+        ("points", c_double * (2 * PAST)),
+        ("point_count", c_int),
+    ]
+
+
+@functools.cache
+def couple_loop() -> Any:
+    """Return the C function of the loop, once per process."""
+    library = loaded_loop("couple")
+    sizes = (c_uint * 3).in_dll(library, "sizes_of_couple")
+    assert [*sizes] == [ctypes.sizeof(Pair), MOTION, DRIVE]
+    library.couple.argtypes = [*[c_void_p] * 5, c_int, c_double]
+    return library.couple
+
+
 class DriveSide:
     """The drive's FMU: what is set and read, by our names and in SI."""
 
@@ -80,7 +140,6 @@ class DriveSide:
         links, self.instance = connection.links, instance
         self.forces = [(i, links[name]) for i, name in enumerate(FORCE) if name in links]
         self.motions = [(i, links[name]) for i, name in enumerate(BOX) if name in links]
-        self.is_whole = len(self.forces) == len(FORCE)
         self.channel = Channel(
             instance,
             (*(link.theirs for _, link in self.forces), *connection.inputs),
@@ -121,8 +180,7 @@ class Master:
         step, motion = [start_time, *[0.0] * (IMPACTS - TIME)], self.oscillator.get()
         self.drive.put((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())  # its acceleration follows it
         self.row = [*step, *motion, *self.drive.get(), *unknown]
-        self.points: list[float] = []  # times and values, where no acceleration is connected
-        self._remember()
+        self.pair = self._described()
 
     @property
     def time(self) -> float:
@@ -144,29 +202,53 @@ class Master:
 
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
         """Run an interval for each row of the drive's inputs, held constant; return the record."""
-        values = np.asarray(inputs, dtype=float)
+        values = np.ascontiguousarray(inputs, dtype=float)
         rows = values.reshape(len(values), self.width)
-        return self.run_controlled(rows.tolist(), len(values), h)
+        size = 1 if self._reads_itself else max(1, len(rows))
+        pieces = (rows[i : i + size] for i in range(0, len(rows), size))
+        return self._run_pieces(pieces, len(rows), h)
 
     def run_controlled(
         self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
     ) -> Record:
-        """Run a number of intervals; its inputs are requested at its start.
+        """Run a number of intervals; the inputs of each are asked for when it begins.
 
         Fewer, if an FMU ends the simulation (:attr:`ended`): those that it reached the end of.
         """
-        rows, ends, recorded = [list(self.row)], [], []
-        own = len(self.connection.inputs)
-        for values in inputs:
-            try:
-                rows += self._interval(list(values[:own]), h or self.scheme.h)
-            except SimulationEnded:
+        return self._run_pieces((np.array([row], dtype=float) for row in inputs), count, h)
+
+    def _run_pieces(
+        self, pieces: Iterable[NDArray[np.float64]], count: int, h: float | None
+    ) -> Record:
+        """Run pieces of so many intervals together into one record."""
+        now, width = np.array(self.row), len(self.row)
+        rows = np.empty((1 + self.scheme.most_rows(count), width))
+        rows[0], ends, at, intervals = self.row, np.zeros(count, dtype=np.intc), 0, 0
+        recorded = np.empty((count, len(self.connection.recorded)))
+        self.pair.table = recorded.ctypes.data
+        for values in pieces:
+            self.oscillator.begin()
+            self.drive.channel.begin()
+            buffers = (now, rows[at:], ends[intervals:], values)
+            addresses = (one.ctypes.data for one in buffers)
+            done = couple_loop()(byref(self.pair), *addresses, len(values), h or self.scheme.h)
+            self.row = now.tolist()
+            self._check()
+            ends[intervals : intervals + done] += at
+            if done and self._reads_itself:
+                own = len(self.connection.inputs)
+                recorded[intervals] = self.recorded(values[0, own:].tolist())
+            intervals += done
+            at = int(ends[intervals - 1]) if intervals else 0
+            if done < len(values) or self.ended:
                 break
-            ends.append(len(rows) - 1)
-            recorded += [self.recorded(values[own:])] if self.connection.recorded else []
-            if self.ended:
-                break
-        return Record.of_rows(self.names, rows, ends, recorded)
+        return Record.of_rows(self.names, rows[: at + 1], ends[:intervals], recorded[:intervals])
+
+    @functools.cached_property
+    def _reads_itself(self) -> bool:
+        """Whether something is recorded that is no real number: the loop does not read that."""
+        kinds = (self.drive.instance.variable(n).type for n in self.connection.recorded)
+        return not all(kind in REAL_TYPES for kind in kinds)
 
     @property
     def ended(self) -> str:
@@ -183,152 +265,54 @@ class Master:
         self.drive.put((self.row[MOTION + FORCE_PLACE], 0.0, 0.0, 0.0), inputs)
         return [float(value) for value in self.drive.instance.get(*self.connection.recorded)]
 
-    def _interval(self, inputs: list[float], h: float) -> list[list[float]]:
-        """Run one communication interval; return the rows of its steps."""
-        end = self.time + h
-        # the acceleration belongs to the inputs as set now
-        if inputs != self.row[self.inputs] or self.connection.cubic >= 0:
-            self.row[self.inputs] = inputs
-            force = self.row[MOTION + FORCE_PLACE]
-            self.row[DRIVE : self.inputs.start] = self._outputs_at(force, inputs)
-        rows = self._steps(h, self.scheme.halvings if self.scheme.tolerance else 0)
-        rows[-1][TIME] = self.row[TIME] = end
-        return rows
+    def _described(self) -> Pair:
+        """Describe both FMUs and the scheme in the C structure."""
+        connection, drive = self.connection, self.drive
+        pair = Pair(Side.of(self.oscillator, ["impact_count"]), Side.of(drive.channel))
+        for name in ("tolerance", "easy", "halvings", "first_passes"):
+            setattr(pair, name, getattr(self.scheme, name))
+        pair.first_passes = self.scheme.first_passes if self.goes_back else 1
+        pair.force, pair.motion = Links.of(drive.forces), Links.of(drive.motions)
+        names = () if self._reads_itself else connection.recorded
+        pair.cubic, pair.recorded = connection.cubic, references(drive.instance, names)
+        pair.recorded_count, pair.stride = len(names), self.width
+        pair.scratch = (c_double * (2 * pair.drive.input_count))()
+        if math.isnan(self.row[DRIVE + 2]):  # no acceleration
+            position, velocity = self.row[DRIVE : DRIVE + 2]
+            pair.points[:2] = self.time, position if math.isnan(velocity) else velocity
+            pair.point_count = 1
+        return pair
 
-    def _steps(self, h: float, halvings: int) -> list[list[float]]:
-        """Run an interval in steps of its length halved, so that each defect is small."""
-        # doubled only on their own grid: the end is met without a rest, lengths are exact
-        level, rows, most, done = int(self.row[LEVEL]), [], 1 << halvings, 0
-        while done < most:
-            size = most >> level
-            row, defect = self._attempt(h / (1 << level), level < halvings)
-            if row:
-                rows.append(row)
-                done += size
-                is_easy = defect < self.scheme.tolerance * self.scheme.easy
-                level -= is_easy and done % (2 * size) == 0 and level > 0
+    def _check(self) -> None:
+        """Raise what ended the run, keep warnings; an FMU that ended the simulation is no error."""
+        sides = (
+            (self.oscillator, self.pair.oscillator.fmi),
+            (self.drive.channel, self.pair.drive.fmi),
+        )
+        for channel, side in sides:
+            if side.warned:
+                channel.instance.check("the step", WARNING)
+                side.warned = 0
+            if side.status == NOT_FINITE:
+                channel.get()  # it raises
+            if side.status in (0, NOT_WHOLE) or side.failed == b"the step":
+                with suppress(SimulationEnded):
+                    channel.check_step(max(side.status, 0))
             else:
-                level += 1
-            self.row[LEVEL] = float(level)
-        return rows
-
-    def _attempt(self, h: float, may_refuse: bool) -> tuple[list[float] | None, float]:
-        """Try one step; return its row, None where it is refused, and its relative defect."""
-        now, inputs, drive = self.row, self.row[self.inputs], self.drive
-        passes = self.scheme.first_passes if self.goes_back and now[H] == 0.0 else 1
-        self.oscillator.save()
-        if may_refuse or passes > 1:
-            drive.channel.save()
-        acceleration = self._run_on()
-        for i in range(passes):
-            if i:
-                self.oscillator.restore()
-                drive.channel.restore()
-            motion = self._oscillate(acceleration, h)
-            drive.put(self._force_over(motion, h), inputs)
-            drive.channel.step(now[TIME], h)
-            outputs = self._outputs_at(motion[FORCE_PLACE], self._later(inputs, h))
-            acceleration = self._acceleration_over(outputs, h)
-        self.oscillator.restore()
-        motion = self._oscillate(acceleration, h)
-        outputs = self._outputs_at(motion[FORCE_PLACE], self._later(inputs, h))
-        defect = 0.0
-        if self.scheme.tolerance:
-            defect = self._defect(self._force_over(motion, h), acceleration, outputs, h)
-        if may_refuse and defect > self.scheme.tolerance:
-            self.oscillator.restore()
-            drive.channel.restore()
-            return None, defect
-        count = float(self.oscillator.instance.get("impact_count")[0])
-        step = (now[TIME] + h, h, now[LEVEL], *acceleration, count)
-        self.row = [*step, *motion, *outputs, *inputs]
-        self._remember()
-        return list(self.row), defect
-
-    def _oscillate(self, acceleration: Cubic, h: float) -> list[float]:
-        """Step the oscillator under an acceleration of the box; return its outputs."""
-        self.oscillator.put(*acceleration)
-        self.oscillator.step(self.time, h)
-        return self.oscillator.get()
-
-    def _outputs_at(self, force: float, inputs: Sequence[float]) -> list[float]:
-        """Return the drive's outputs under the force at a communication point."""
-        self.drive.put((force, 0.0, 0.0, 0.0), inputs)
-        return self.drive.get()
-
-    def _later(self, inputs: list[float], h: float) -> list[float]:
-        """Return the drive's inputs at the end of a step: a cubic among them runs on."""
-        first = self.connection.cubic
-        if first < 0:
-            return inputs
-        cubic = end_derivatives(tuple(inputs[first : first + 4]), h)
-        return [*inputs[:first], *cubic, *inputs[first + 4 :]]
-
-    def _force_over(self, motion: Sequence[float], h: float) -> Cubic:
-        """Return the force over a step, exact in its mean and first moment if these are taken."""
-        _, _, _, _, force, impulse, moment, *_ = motion
-        first = self.row[MOTION + FORCE_PLACE]
-        if not self.drive.is_whole:
-            return impulse / h, 0.0, 0.0, 0.0
-        return matched_cubic(first, force, impulse / h, moment / (h * h), h)
-
-    def _acceleration_over(self, after: Sequence[float], h: float) -> Cubic:
-        """Return the box acceleration over a step, from what is known of the box at both ends."""
-        position, velocity, first = self.row[DRIVE:END]
-        if math.isnan(first):
-            return self._slopes_of_points(after, h)
-        knows_velocity = not math.isnan(velocity)
-        mean = (after[1] - velocity) / h if knows_velocity else 0.5 * (first + after[2])
-        if math.isnan(position) or not knows_velocity:
-            return matched_parabola(first, after[2], mean, h)
-        moment = mean - ((after[0] - position) / h - velocity) / h
-        return matched_cubic(first, after[2], mean, moment, h)
-
-    def _slopes_of_points(self, after: Sequence[float], h: float) -> Cubic:
-        """Return the acceleration over a step from velocities or positions alone, as a line."""
-        from_position = math.isnan(after[1])
-        times = [*self.points[::2][-2 - from_position :], self.row[TIME] + h]
-        values = [*self.points[1::2][-2 - from_position :], after[0 if from_position else 1]]
-        ages = [t - self.row[TIME] for t in times]
-        return (*derivatives(ages, values, 1 + from_position), 0.0, 0.0)
-
-    def _remember(self) -> None:
-        """Keep the last points of velocity or position where no acceleration is connected."""
-        position, velocity, acceleration = self.row[DRIVE:END]
-        if math.isnan(acceleration):
-            value = position if math.isnan(velocity) else velocity
-            self.points = [*self.points, self.row[TIME], value][-2 * PAST :]
-
-    def _run_on(self) -> Cubic:
-        """Extrapolate the box acceleration over the coming step: its last cubic goes on."""
-        h, value = self.row[H], self.row[ACCELERATION]
-        slopes: Cubic = (0.0, 0.0, 0.0, 0.0)
-        if h != 0.0:
-            slopes = end_derivatives(tuple(self.row[THEN:IMPACTS]), h)
-        return slopes if math.isnan(value) else (value, *slopes[1:])
-
-    def _defect(
-        self, force: Cubic, acceleration: Cubic, outputs: Sequence[float], h: float
-    ) -> float:
-        """Return the energy that a step loses or makes, over the work exchanged in it."""
-        work, energy = END, END + 1  # by the drive's own account
-        taken = outputs[work - DRIVE] - self.row[work]
-        given = outputs[energy - DRIVE] - self.row[energy]
-        lost = taken - integrate_work(force, self.row[VELOCITY], acceleration, h)
-        exchanged = abs(taken) + abs(given)
-        return abs(lost) / exchanged if exchanged else 0.0
+                raise side.error(channel.instance)
 
     # -- to go on elsewhere --
 
     def get_state(self) -> list[float]:
         """Return the master's own state as a list of floats, to be restored later."""
-        missing = [math.nan] * (2 * PAST - len(self.points))
-        return [*self.row, *self.points, *missing]
+        known = 2 * self.pair.point_count
+        return [*self.row, *self.pair.points[:known], *[math.nan] * (2 * PAST - known)]
 
     def set_state(self, numbers: Sequence[float]) -> None:
         """Restore the state that :meth:`get_state` returned."""
         count = len(self.names)
-        self.row, self.points = list(numbers[:count]), [x for x in numbers[count:] if x == x]
+        self.row, points = list(numbers[:count]), [x for x in numbers[count:] if x == x]
+        self.pair.points[: len(points)], self.pair.point_count = points, len(points) // 2
 
     def close(self) -> None:
         """Free the FMU states saved to go back."""

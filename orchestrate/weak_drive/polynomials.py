@@ -6,7 +6,6 @@ of it may be arrays, of many steps.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -20,12 +19,6 @@ def matched_cubic(first: Any, last: Any, mean: Any, moment: Any, h: Any) -> Cubi
     c = -12.0 * a1 - 96.0 * a2 + 180.0 * a3
     d = 10.0 * a1 + 60.0 * a2 - 120.0 * a3
     return first, b / h, 2.0 * c / (h * h), 6.0 * d / (h * h * h)
-
-
-def matched_parabola(first: float, last: float, mean: float, h: float) -> Cubic:
-    """Return the parabola with given end values and mean over a step."""
-    bend = 3.0 * (first + last) - 6.0 * mean
-    return first, (last - first - bend) / h, 2.0 * bend / (h * h), 0.0
 
 
 def end_value(cubic: Cubic, h: Any) -> Any:
@@ -75,18 +68,3 @@ def matched_quartic(ends: tuple[Any, Any], slopes: tuple[Any, Any], mean: Any) -
     rise = p1 - p0
     q = 30.0 * (mean - 0.5 * (p0 + p1) - (d0 - d1) / 12.0)
     return p0, d0, 3.0 * rise - 2.0 * d0 - d1 + q, d0 + d1 - 2.0 * rise - 2.0 * q, q
-
-
-def derivatives(times: Sequence[float], values: Sequence[float], order: int) -> tuple[float, float]:
-    """Return two derivatives at time 0, from an order on, of the polynomial through points."""
-    table = list(values)  # of divided differences
-    for level in range(1, len(times)):
-        for i in range(len(times) - 1, level - 1, -1):
-            table[i] = (table[i] - table[i - 1]) / (times[i] - times[i - level])
-    polynomial = [0.0] * (len(times) + 3)  # coefficients, by Horner's scheme in Newton's form
-    for i in range(len(times) - 1, -1, -1):
-        for k in range(len(times) + 2, 0, -1):
-            polynomial[k] = polynomial[k - 1] - times[i] * polynomial[k]
-        polynomial[0] = table[i] - times[i] * polynomial[0]
-    first, second = (math.factorial(k) * polynomial[k] for k in (order, order + 1))
-    return first, second

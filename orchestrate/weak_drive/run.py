@@ -16,9 +16,8 @@ from ..fmu.models import OSCILLATOR, SHAKER
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..running.job import Fmus, Job, Table
-from .compiled import create_master
 from .controllers import Controller, Measurement
-from .master import Scheme
+from .master import Master, Scheme
 from .record import Record
 from .revolutions import Revolutions
 from .schedule import Schedule
@@ -59,7 +58,7 @@ class Run:
         oscillator.initialize(**oscillator_start(job.structure))
         voltage = job.schedule.voltage(0.0)
         shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
-        self.master = create_master(oscillator, shaker, job.scheme)
+        self.master = Master(oscillator, shaker, job.scheme)
         self.revolutions = Revolutions(job.structure)
         self.control_memory = job.control.begin(job.speed_start) if job.control else ()
 

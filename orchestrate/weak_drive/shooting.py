@@ -19,7 +19,6 @@ from ..errors import FmuError
 from ..fmu.instance import Instance
 from ..model.drive import Drive
 from ..model.structure import Structure
-from .compiled import create_master
 from .extremes import range_of_mass
 from .master import Master, Scheme
 from .record import Record
@@ -136,7 +135,7 @@ class Shooter:
         oscillator.initialize(**oscillator_start(self.structure), **structure_starts)
         more = {"angle_start": self.angle, "voltage": voltage}
         shaker.initialize(**self.drive.parameters(), **starts, **more)
-        return create_master(oscillator, shaker, Scheme(h))
+        return Master(oscillator, shaker, Scheme(h))
 
     def begin_period(self, unknowns: Floats) -> tuple[Master, float]:
         """Initialise both FMUs at a period's start; return master and voltage, V."""

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from orchestrate.fmu.c_library import loaded_function
+from orchestrate.fmu.c_library import loaded_library
 
 from .system import LAWS, Floats, Frictions, ModalSystem, Motion, empty_contacts, empty_springs
 
@@ -46,9 +46,7 @@ class CSystem(ctypes.Structure):
 @functools.cache
 def load_library() -> Any:
     """Return the compiled library's integration function; compile it once per process."""
-    run = loaded_function(SOURCE)
-    if run is None:
-        raise RuntimeError(f"{SOURCE.name} cannot be compiled: expected ziglang or a C compiler")
+    run = loaded_library(SOURCE).run
     run.argtypes = [POINTER(CSystem), c_long, c_double, *[NUMBERS] * 6]
     run.restype = c_long
     return run

@@ -17,7 +17,7 @@
 #endif
 
 enum { DONE, PAUSED, BROKEN };  /* what a loop answers: paused, it is to be called again */
-enum { NOT_FINITE = -1 };  /* a status that FMI does not have */
+enum { WARNING = 1, NOT_FINITE = -1 };  /* statuses, of FMI and one that it does not have */
 
 typedef void Function(void);
 
@@ -33,6 +33,7 @@ typedef struct {  /* fmu/fmi.py has the same */
     int (*enter_step_mode)(void *);
     const char *failed;
     int status;
+    int warned;  /* whether a call answered with a warning; the run goes on */
 } Fmi;
 
 typedef int (*Setup2)(void *, int, double, double start, int, double);
@@ -44,7 +45,8 @@ typedef int (*Transfer2)(void *, const unsigned *references, size_t count, void 
 typedef int (*Transfer3)(void *, const unsigned *references, size_t count, void *values, size_t value_count);
 
 static inline bool answered(Fmi *fmi, const char *function, int status) {
-    if (!status) return true;
+    if (status == WARNING) fmi->warned = 1;
+    if (!status || status == WARNING) return true;
     fmi->failed = function;
     fmi->status = status;
     return false;

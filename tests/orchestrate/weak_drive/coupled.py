@@ -7,9 +7,8 @@ import numpy as np
 
 from orchestrate import Drive, Structure
 from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
-from orchestrate.weak_drive.compiled import create_master
 from orchestrate.weak_drive.energy_balance import Energies, EnergyBalance
-from orchestrate.weak_drive.master import Scheme
+from orchestrate.weak_drive.master import Master, Scheme
 from orchestrate.weak_drive.run import oscillator_start
 
 GRID = 0.2  # of the comparisons
@@ -69,7 +68,7 @@ def starts_of(system, state):
 
 
 @contextlib.contextmanager
-def master(system, scheme, state, form="fmi3", kind=create_master):
+def master(system, scheme, state, form="fmi3", kind=Master):
     """A master from a state as :mod:`.monolithic` has it."""
     oscillator, shaker = (find(model, form).path for model in (OSCILLATOR, SHAKER))
     starts, shaker_starts = starts_of(system, state)

@@ -11,14 +11,13 @@ import orchestrate
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu.description import describe
 from orchestrate.weak_drive import cosimulate
-from orchestrate.weak_drive.compiled import CompiledMaster
 from orchestrate.weak_drive.connection import proposals
 from orchestrate.weak_drive.master import Master
-from orchestrate.weak_drive.polynomials import derivatives
 
 from ...sparing import ordinary
 from .drives import table
 from .drives.linear import draw, sine, table_drive, together
+from .reference_master import PythonMaster, derivatives
 
 STRUCTURE = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
 CONNECT = {"box_acceleration": "table_acc", "box_force": "specimen_force"}
@@ -273,13 +272,15 @@ def tables(monkeypatch, exported, path, **run):
     monkeypatch.setattr(cosimulate, "answer", lambda job, *_: job)
     job = orchestrate.cosimulate(STRUCTURE, path, step=0.01, **{**RUN, "duration": 0.6, **run})
     fmus = {"TwoMassImpactOscillator": exported / "fmi3" / "TwoMassImpactOscillator.fmu"}
-    for kind in (CompiledMaster, Master):
-        monkeypatch.setattr(cosimulate, "create_master", kind)
+    for kind in (Master, PythonMaster):
+        monkeypatch.setattr(cosimulate, "Master", kind)
         table = job.work(fmus, range(60), None)
         yield {name: part.tobytes() for name, part in table.items() if "states" not in name}
 
 
-@pytest.mark.parametrize("links", [["acceleration"], ["acceleration", "velocity"], [*"apv"]])
+@pytest.mark.parametrize(
+    "links", [["acceleration"], ["acceleration", "velocity"], [*"apv"], ["velocity"], ["position"]]
+)
 def test_compiled_steps_have_the_bits_of_python(tmp_path, monkeypatch, exported, links):
     drive = draw(0)
     names = dict(zip(("acceleration", "position", "velocity"), drive.names[2:], strict=True))

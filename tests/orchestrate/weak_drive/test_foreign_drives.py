@@ -11,10 +11,11 @@ import pytest
 import orchestrate
 from orchestrate.errors import FmuError
 from orchestrate.running.runner import answer
-from orchestrate.weak_drive import compiled, cosimulate
+from orchestrate.weak_drive import cosimulate
 
 from .drives import table
 from .drives.linear import draw, together
+from .reference_master import PythonMaster
 
 STRUCTURE = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
 START = (0.0, 0.02, 0.0, 0.0)
@@ -41,7 +42,7 @@ def form(request, monkeypatch):
         cosimulate, "answer", lambda job, *known, foreign=0: answer(job, *known[:2])
     )
     if steps == "Python":
-        monkeypatch.setattr(cosimulate, "create_master", compiled.Master)
+        monkeypatch.setattr(cosimulate, "Master", PythonMaster)
     return fmi
 
 

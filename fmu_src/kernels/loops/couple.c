@@ -1,59 +1,52 @@
-/* The master's communication steps between two native instances, compiled.
+/* The communication steps of two instances together: in an ordinary step the oscillator alone goes back.
  *
- * master.py and polynomials.py say what is done and why; here is the same, operation by operation,
- * so the bits are the same. compiled.py has the same structures for ctypes. No library is needed,
- * nothing is allocated.
+ * The structure's box_force depends on its states only, the box's acceleration on the force: there is no algebraic loop, but what each side assumes of the
+ * other over a step decides everything.
+ *
+ * - The oscillator does the step under an extrapolated acceleration: the cubic of the last step goes on from the present value.
+ * - The drive does it under the force that came of it: the cubic with its ends, mean and first moment, which are exact through impacts. A drive that takes the
+ *   force alone is given its mean.
+ * - The oscillator goes back and does it again, under the acceleration between both ends: the cubic with the changes of the box's velocity and position, or
+ *   what is known of it.
+ * - Where nothing is known to extrapolate, at the start, both do the step `first_passes` times, if the drive can go back.
+ * - With a `tolerance` a step is halved, for both, where the energy defect is a larger part of the work exchanged in it; one with less than `easy` of that is
+ *   followed by one twice as long.
+ *
+ * weak_drive/master.py has the same structures.
  */
-#include <stdbool.h>
-#include <stddef.h>
+#include "fmi.h"
 
-#ifdef _WIN32
-#define EXPORT __declspec(dllexport)
-#else
-#define EXPORT __attribute__((visibility("default")))
-#endif
-
-typedef double Cubic[4];
+typedef double Cubic[4];  /* value and three time derivatives at a step's beginning */
 
 enum {  /* places in a row; after the motion of the box the drive's other outputs, and its inputs */
     TIME, H, LEVEL, THEN, IMPACTS = THEN + 4,
     MOTION, FORCE = MOTION + 4, IMPULSE, MOMENT,
     POSITION = MOTION + 10, VELOCITY, ACCELERATION, WORK, ENERGY,
-    LARGEST = 16,  /* inputs of the drive, at most */
-    WARNING = 1, DISCARD = 2, NOT_FINITE = -1, NOT_WHOLE = -2,  /* statuses, of FMI and our own */
+    PAST = 3,  /* communication points that are remembered where no acceleration is connected */
+    DISCARD = 2, NOT_WHOLE = -2,  /* statuses, of FMI and our own */
     LAST_TIME = 2, TERMINATED = 3  /* kinds of fmi2GetRealStatus and fmi2GetBooleanStatus */
 };
-static const double WHOLE = 1e-6;  /* channel.py */
+static const double WHOLE = 1e-6;  /* fmu/channel.py */
 
-typedef int (*Set3)(void *, const unsigned *references, size_t count, const double *values, size_t value_count);
-typedef int (*Get3)(void *, const unsigned *references, size_t count, double *values, size_t value_count);
-typedef int (*Step3)(void *, double time, double h, bool, bool *, bool *, bool *, double *);
-typedef int (*Set2)(void *, const unsigned *references, size_t count, const double *values);
-typedef int (*Get2)(void *, const unsigned *references, size_t count, double *values);
-typedef int (*Step2)(void *, double time, double h, int);
 typedef int (*RealStatus2)(void *, int kind, double *value);
 typedef int (*BooleanStatus2)(void *, int kind, int *value);
-typedef void Function(void);
 
-typedef struct {  /* to the last step: channel.py */
+typedef struct {  /* to the last step: fmu/channel.py */
     double time, h, last;
     bool event, terminate, early;
 } Answer;
 
 typedef struct {
-    void *instance;
-    Function *set, *get;  /* of FMI 2.0 or 3.0 */
-    int (*count)(void *, const unsigned *references, size_t count, int *values, size_t value_count);
-    Function *step;
+    Fmi fmi;
     int (*save)(void *, void **state);
     int (*restore)(void *, void *state);
+    int (*release)(void *, void **state);
     Function *real_status, *boolean_status;  /* of FMI 2.0 */
     const unsigned *inputs, *outputs, *impacts;
     size_t input_count, output_count;
     void **kept;  /* its state at the step's beginning */
     Answer *answer;
-    const char *failed;  /* the function that ended the run */
-    int status, is_fmi3, warned;
+    int keeps_anew;  /* pythonfmu makes a new state each time */
 } Side;
 
 typedef struct {  /* places of our variables in what is set or read of the drive, what is one in SI */
@@ -70,43 +63,25 @@ typedef struct {
     const unsigned *recorded;
     size_t recorded_count;
     double *table;  /* of what is recorded, a row an interval */
+    size_t stride;  /* of the inputs of an interval */
+    double *scratch;  /* two rows of the drive's inputs */
+    double points[2 * PAST];  /* times and values of velocity or position, where no acceleration is connected */
+    int point_count;
 } Pair;
 
-EXPORT const unsigned sizes[] = {sizeof(Pair), MOTION, POSITION};  /* compiled.py has to have the same */
+EXPORT const unsigned sizes_of_couple[] = {sizeof(Pair), MOTION, POSITION};  /* Python has to have the same */
 
 /* -- calls of the FMUs: true where the run goes on -- */
 
-static bool answered(Side *side, const char *function, int status) {
-    if (status == WARNING) side->warned = 1;
-    if (!status || status == WARNING) return true;
-    side->failed = function;
-    side->status = status;
-    return false;
-}
+static bool put(Side *s, const double *values) { return set_reals(&s->fmi, s->inputs, s->input_count, values); }
 
-static bool put(Side *s, const double *values) {
-    size_t n = s->input_count;
-    int status = s->is_fmi3 ? ((Set3)s->set)(s->instance, s->inputs, n, values, n) : ((Set2)s->set)(s->instance, s->inputs, n, values);
-    return answered(s, "setting inputs", status);
-}
-
-static bool read(Side *s, const unsigned *names, size_t n, double *values) {
-    int status = s->is_fmi3 ? ((Get3)s->get)(s->instance, names, n, values, n) : ((Get2)s->get)(s->instance, names, n, values);
-    return answered(s, "reading outputs", status);
-}
-
-static bool get(Side *s, double *values) {
-    double sum = 0.0;
-    if (!read(s, s->outputs, s->output_count, values)) return false;
-    for (size_t i = 0; i < s->output_count; i++) sum += values[i];
-    return answered(s, "reading outputs", sum - sum == 0.0 ? 0 : NOT_FINITE);
-}
+static bool get(Side *s, double *values) { return get_reals(&s->fmi, s->outputs, s->output_count, values, s->output_count); }
 
 static int step2(Side *s, Answer *a) {
-    int ended = 0, status = ((Step2)s->step)(s->instance, a->time, a->h, 0);
+    int ended = 0, status = ((Step2)s->fmi.step)(s->fmi.instance, a->time, a->h, 0);
     if (status == DISCARD) {
-        ((RealStatus2)s->real_status)(s->instance, LAST_TIME, &a->last);
-        ((BooleanStatus2)s->boolean_status)(s->instance, TERMINATED, &ended);
+        ((RealStatus2)s->real_status)(s->fmi.instance, LAST_TIME, &a->last);
+        ((BooleanStatus2)s->boolean_status)(s->fmi.instance, TERMINATED, &ended);
         a->terminate = ended;
     }
     return a->terminate ? 0 : status;
@@ -114,25 +89,28 @@ static int step2(Side *s, Answer *a) {
 
 static bool advance(Side *s, double time, double h) {
     Answer *a = s->answer;
-    if (a->terminate) return answered(s, "the step", NOT_WHOLE);
+    if (a->terminate) return answered(&s->fmi, "the step", NOT_WHOLE);
     a->time = time, a->h = h, a->last = time;
-    int status = s->is_fmi3 ? ((Step3)s->step)(s->instance, time, h, false, &a->event, &a->terminate, &a->early, &a->last) : step2(s, a);
+    int status = s->fmi.version == 2 ? step2(s, a) : ((Step3)s->fmi.step)(s->fmi.instance, time, h, false, &a->event, &a->terminate, &a->early, &a->last);
     bool whole = a->last >= time + (1.0 - WHOLE) * h;
-    return answered(s, "the step", !status && (a->terminate || a->early) && !whole ? NOT_WHOLE : status);
+    return answered(&s->fmi, "the step", !status && (a->terminate || a->early) && !whole ? NOT_WHOLE : status);
 }
 
-static bool save(Side *s) { return answered(s, "saving the state", s->save(s->instance, s->kept)); }
+static bool save(Side *s) {
+    if (s->keeps_anew && *s->kept && !answered(&s->fmi, "freeing the state", s->release(s->fmi.instance, s->kept))) return false;
+    return answered(&s->fmi, "saving the state", s->save(s->fmi.instance, s->kept));
+}
 
-static bool restore(Side *s) { return answered(s, "restoring the state", s->restore(s->instance, *s->kept)); }
+static bool restore(Side *s) { return answered(&s->fmi, "restoring the state", s->restore(s->fmi.instance, *s->kept)); }
 
 static bool count_impacts(Side *s, double *impacts) {
-    int count = 0;
-    if (!answered(s, "counting impacts", s->count(s->instance, s->impacts, 1, &count, 1))) return false;
+    int32_t count = 0;
+    if (!get_integer(&s->fmi, *s->impacts, &count)) return false;
     *impacts = count;
     return true;
 }
 
-/* -- polynomials.py -- */
+/* -- polynomials -- */
 
 static double size_of(double value) { return __builtin_fabs(value); }
 
@@ -154,14 +132,61 @@ static double work(const Cubic force, double velocity, const Cubic a, double h) 
     return h * total;
 }
 
-/* -- master.py: what each side assumes of the other -- */
+/* -- what each side assumes of the other -- */
 
 static void force_over(const Pair *p, Cubic f, const double *now, const double *next, double h) {
     if (p->force.count == 4) matched_cubic(f, now[FORCE], next[FORCE], next[IMPULSE] / h, next[MOMENT] / (h * h), h);
     else set_cubic(f, next[IMPULSE] / h, 0.0, 0.0, 0.0);
 }
 
-static void acceleration_over(Cubic f, const double *now, const double *next, double h) {
+static void end_derivatives(Cubic end, const double *f, double h) {
+    set_cubic(end, f[0] + h * (f[1] + 0.5 * h * (f[2] + h * f[3] / 3.0)), f[1] + h * (f[2] + 0.5 * h * f[3]), f[2] + h * f[3], f[3]);
+}
+
+/* Two derivatives at time 0, from an order on, of the polynomial through points. */
+static void derivatives(const double *times, double *values, int count, int order, double *found) {
+    double polynomial[PAST + 4] = {0.0};  /* coefficients, by Horner's scheme in Newton's form */
+    for (int level = 1; level < count; level++)
+        for (int i = count - 1; i >= level; i--) values[i] = (values[i] - values[i - 1]) / (times[i] - times[i - level]);
+    for (int i = count - 1; i >= 0; i--) {
+        for (int k = count + 2; k > 0; k--) polynomial[k] = polynomial[k - 1] - times[i] * polynomial[k];
+        polynomial[0] = values[i] - times[i] * polynomial[0];
+    }
+    found[0] = order * polynomial[order];  /* its factorial: order is 1 or 2 */
+    found[1] = (order == 1 ? 2.0 : 6.0) * polynomial[order + 1];
+}
+
+/* The acceleration over a step from velocities or positions alone, as a line. */
+static void line_of_points(const Pair *p, Cubic f, const double *now, const double *next, double h) {
+    bool from_position = next[VELOCITY] != next[VELOCITY];
+    int known = p->point_count < 2 + from_position ? p->point_count : 2 + from_position, first = p->point_count - known;
+    double ages[PAST + 1], values[PAST + 1], found[2];
+    for (int i = 0; i < known; i++) {
+        ages[i] = p->points[2 * (first + i)] - now[TIME];
+        values[i] = p->points[2 * (first + i) + 1];
+    }
+    ages[known] = now[TIME] + h - now[TIME];
+    values[known] = next[from_position ? POSITION : VELOCITY];
+    derivatives(ages, values, known + 1, 1 + from_position, found);
+    set_cubic(f, found[0], found[1], 0.0, 0.0);
+}
+
+/* Keep the last points of velocity or position where no acceleration is connected. */
+static void remember(Pair *p, const double *row) {
+    if (row[ACCELERATION] == row[ACCELERATION]) return;
+    if (p->point_count == PAST) {
+        for (int i = 0; i < 2 * PAST - 2; i++) p->points[i] = p->points[i + 2];
+        p->point_count--;
+    }
+    double *point = p->points + 2 * p->point_count++;
+    point[0] = row[TIME], point[1] = row[VELOCITY] == row[VELOCITY] ? row[VELOCITY] : row[POSITION];
+}
+
+static void acceleration_over(const Pair *p, Cubic f, const double *now, const double *next, double h) {
+    if (now[ACCELERATION] != now[ACCELERATION]) {
+        line_of_points(p, f, now, next, h);
+        return;
+    }
     double first = now[ACCELERATION], last = next[ACCELERATION];
     bool knows_velocity = now[VELOCITY] == now[VELOCITY];
     double mean = knows_velocity ? (next[VELOCITY] - now[VELOCITY]) / h : 0.5 * (first + last);
@@ -174,21 +199,18 @@ static void acceleration_over(Cubic f, const double *now, const double *next, do
     }
 }
 
-static void end_derivatives(Cubic end, const double *f, double h) {
-    set_cubic(end, f[0] + h * (f[1] + 0.5 * h * (f[2] + h * f[3] / 3.0)), f[1] + h * (f[2] + 0.5 * h * f[3]), f[2] + h * f[3], f[3]);
-}
-
+/* Extrapolate the box acceleration over the coming step. */
 static void run_on(Cubic f, const double *now) {
-    const double *then = now + THEN, h = now[H];
-    set_cubic(f, now[ACCELERATION], 0.0, 0.0, 0.0);
-    if (h != 0.0) set_cubic(f, f[0], then[1] + h * (then[2] + 0.5 * h * then[3]), then[2] + h * then[3], then[3]);
+    set_cubic(f, 0.0, 0.0, 0.0, 0.0);
+    if (now[H] != 0.0) end_derivatives(f, now + THEN, now[H]);
+    if (now[ACCELERATION] == now[ACCELERATION]) f[0] = now[ACCELERATION];
 }
 
-/* -- master.py: a step -- */
+/* -- a step -- */
 
 /* A force, and the drive's other inputs. */
 static bool put_force(Pair *p, const double *inputs, const Cubic force) {
-    double values[LARGEST];
+    double *values = p->scratch;
     int n = p->force.count;
     for (int i = 0; i < n; i++) values[i] = force[p->force.places[i]] / p->force.scales[i];
     for (size_t i = n; i < p->drive.input_count; i++) values[i] = inputs[i - n];
@@ -198,7 +220,7 @@ static bool put_force(Pair *p, const double *inputs, const Cubic force) {
 /* The drive's outputs under the force at a row's end, a time h after its inputs were set. */
 static bool look(Pair *p, double *row, const double *inputs, double h) {
     int known = p->motion.count;
-    double force[4] = {row[FORCE]}, box[3], later[LARGEST], *read = row + POSITION + 3 - known;
+    double force[4] = {row[FORCE]}, box[3], *later = p->scratch + p->drive.input_count, *read = row + POSITION + 3 - known;
     if (p->cubic >= 0 && h != 0.0) {
         for (size_t i = 0; i < p->drive.input_count - p->force.count; i++) later[i] = inputs[i];
         end_derivatives(later + p->cubic, inputs + p->cubic, h);
@@ -239,7 +261,7 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
         if (!oscillate(p, now, next, acceleration, h)) return false;
         force_over(p, force, now, next, h);
         if (!put_force(p, inputs, force) || !advance(&p->drive, now[TIME], h) || !look(p, next, inputs, h)) return false;
-        acceleration_over(acceleration, now, next, h);
+        acceleration_over(p, acceleration, now, next, h);
     }
     if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h) || !look(p, next, inputs, h)) return false;
     *defect = p->tolerance != 0.0 ? relative_defect(p, now, next, acceleration, h) : 0.0;
@@ -247,6 +269,7 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
     if (*refused) return restore_both(p);
     next[TIME] = now[TIME] + h, next[H] = h, next[LEVEL] = now[LEVEL];
     for (int i = 0; i < 4; i++) next[THEN + i] = acceleration[i];
+    remember(p, next);
     return count_impacts(&p->oscillator, next + IMPACTS);
 }
 
@@ -281,7 +304,7 @@ static bool interval(Pair *p, double *now, double **at, size_t width, const doub
 /* What is recorded of the drive at a row's end, under the force and the inputs there. */
 static bool record(Pair *p, const double *row, const double *inputs) {
     double force[4] = {row[FORCE]};
-    if (!put_force(p, inputs, force) || !read(&p->drive, p->recorded, p->recorded_count, p->table)) return false;
+    if (!put_force(p, inputs, force) || !get_reals(&p->drive.fmi, p->recorded, p->recorded_count, p->table, p->recorded_count)) return false;
     p->table += p->recorded_count;
     return true;
 }
@@ -290,18 +313,14 @@ static bool record(Pair *p, const double *row, const double *inputs) {
  * first row, and the row at which each interval ends. Returns how many there are: all, unless a call
  * failed or an FMU ended the simulation. The inputs of an interval are followed by those at its end,
  * where something is recorded. */
-EXPORT int run(Pair *p, double *now, double *rows, int *ends, const double *inputs, int count, double h) {
+EXPORT int couple(Pair *p, double *now, double *rows, int *ends, const double *inputs, int count, double h) {
     size_t own = p->drive.input_count - p->force.count, width = inputs_at(p) + own;
     double *at = rows;
-    p->oscillator.status = p->drive.status = 0;
-    for (int i = 0; i < count; i++) {
+    p->oscillator.fmi.status = p->drive.fmi.status = 0;
+    for (int i = 0; i < count; i++, inputs += p->stride) {
         if (p->oscillator.answer->terminate || p->drive.answer->terminate) return i;
         if (!interval(p, now, &at, width, inputs, h)) return i;
-        inputs += own;
-        if (p->recorded_count) {
-            if (!record(p, now, inputs)) return i;
-            inputs += own;
-        }
+        if (p->recorded_count && !record(p, now, inputs + own)) return i;
         ends[i] = (int)((size_t)(at - rows) / width);
     }
     return count;

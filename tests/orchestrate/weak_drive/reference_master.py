@@ -1,0 +1,275 @@
+"""The steps of ``couple.c`` in Python, operation by operation, as its reference."""
+
+import math
+from ctypes import byref, c_bool, c_double, c_int
+
+from orchestrate.fmu.channel import ANSWERS, Channel, SimulationEnded, StepAnswer
+from orchestrate.fmu.instance import DISCARD
+from orchestrate.weak_drive.master import (
+    DRIVE,
+    END,
+    FORCE_PLACE,
+    IMPACTS,
+    MOTION,
+    PAST,
+    TIME,
+    Master,
+)
+from orchestrate.weak_drive.polynomials import end_derivatives, integrate_work, matched_cubic
+from orchestrate.weak_drive.record import PLACE, Record
+
+H, LEVEL, THEN = (PLACE[name] for name in ("h", "level", "acceleration_then"))
+VELOCITY, ACCELERATION = DRIVE + 1, DRIVE + 2
+LAST_TIME, TERMINATED = 2, 3  # kinds of fmi2GetRealStatus and fmi2GetBooleanStatus
+
+
+def matched_parabola(first: float, last: float, mean: float, h: float):
+    """Return the parabola with given end values and mean over a step."""
+    bend = 3.0 * (first + last) - 6.0 * mean
+    return first, (last - first - bend) / h, 2.0 * bend / (h * h), 0.0
+
+
+def derivatives(times, values, order: int):
+    """Return two derivatives at time 0, from an order on, of the polynomial through points."""
+    table = list(values)  # of divided differences
+    for level in range(1, len(times)):
+        for i in range(len(times) - 1, level - 1, -1):
+            table[i] = (table[i] - table[i - 1]) / (times[i] - times[i - level])
+    polynomial = [0.0] * (len(times) + 3)  # coefficients, by Horner's scheme in Newton's form
+    for i in range(len(times) - 1, -1, -1):
+        for k in range(len(times) + 2, 0, -1):
+            polynomial[k] = polynomial[k - 1] - times[i] * polynomial[k]
+        polynomial[0] = table[i] - times[i] * polynomial[0]
+    first, second = (math.factorial(k) * polynomial[k] for k in (order, order + 1))
+    return first, second
+
+
+class SteppingChannel(Channel):
+    """A channel that steps, saves and restores its instance from Python."""
+
+    def __init__(self, channel):
+        self.__dict__ |= channel.__dict__
+        self._reused = not self.instance.description.needs_tool
+        functions = self._functions3() if self.instance.is_fmi3 else self._functions2()
+        self._step, self._save, self._restore, self._free = functions
+
+    def _functions2(self):
+        """Return the FMI 2.0 C functions step, and get/set/free of a state."""
+        dll, component, answer = self._fmu.dll, self._fmu.component, self.answer
+        do_step, ended, last = dll.fmi2DoStep, c_int(), self._pointer("last")
+
+        def step(time: float, h: float):
+            answer.time, answer.h, answer.last = time, h, time
+            status = int(do_step(component, time, h, 0))
+            if status == DISCARD:
+                dll.fmi2GetRealStatus(component, LAST_TIME, last)
+                dll.fmi2GetBooleanStatus(component, TERMINATED, byref(ended))
+                answer.terminate = bool(ended.value)
+            return 0 if answer.terminate else status
+
+        states = (dll.fmi2GetFMUstate, dll.fmi2SetFMUstate, dll.fmi2FreeFMUstate)
+        return step, *states
+
+    def _functions3(self):
+        """Return the FMI 3.0 C functions step, and get/set/free of a state."""
+        dll, component, answer = self._fmu.dll, self._fmu.component, self.answer
+        do_step = dll.fmi3DoStep
+        answers = [self._pointer(name) for name in (*ANSWERS, "last")]
+
+        def step(time: float, h: float):
+            answer.time, answer.h, answer.last = time, h, time
+            return int(do_step(component, time, h, False, *answers))
+
+        states = (dll.fmi3GetFMUState, dll.fmi3SetFMUState, dll.fmi3FreeFMUState)
+        return step, *states
+
+    def _pointer(self, name: str):
+        """Return a pointer to a field of the answer to a step."""
+        kind = c_bool if name in ANSWERS else c_double
+        return byref(kind.from_buffer(self.answer, getattr(StepAnswer, name).offset))
+
+    def step(self, time, h: float):
+        """Do one communication step of length ``h`` from ``time``, s."""
+        if self.ended:
+            raise SimulationEnded(self.ended)
+        self.begin()
+        self.check_step(self._step(time, h))
+
+    def save(self):
+        if self.kept and not self._reused:
+            self._call(self._free, self._fmu.component, byref(self.kept))
+        self._call(self._save, self._fmu.component, byref(self.kept))
+
+    def restore(self):
+        self._call(self._restore, self._fmu.component, self.kept)
+
+
+class PythonMaster(Master):
+    """Steps in Python."""
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        self.oscillator = SteppingChannel(self.oscillator)
+        self.drive.channel = SteppingChannel(self.drive.channel)
+        self.is_whole = len(self.drive.forces) == 4
+        self.points = []
+        self._remember()
+
+    def run(self, inputs, h=None):
+        rows = [[float(x) for x in (row if hasattr(row, "__len__") else [row])] for row in inputs]
+        return self.run_controlled(rows, len(rows), h)
+
+    def run_controlled(self, inputs, count, h=None):
+        rows, ends, recorded = [list(self.row)], [], []
+        own = len(self.connection.inputs)
+        for values in inputs:
+            try:
+                rows += self._interval(list(values[:own]), h or self.scheme.h)
+            except SimulationEnded:
+                break
+            ends.append(len(rows) - 1)
+            recorded += [self.recorded(values[own:])] if self.connection.recorded else []
+            if self.ended:
+                break
+        return Record.of_rows(self.names, rows, ends, recorded)
+
+    def get_state(self):
+        missing = [math.nan] * (2 * PAST - len(self.points))
+        return [*self.row, *self.points, *missing]
+
+    def set_state(self, numbers):
+        super().set_state(numbers)
+        self.points = [x for x in numbers[len(self.names) :] if x == x]
+
+    def _interval(self, inputs: list[float], h):
+        """Run one communication interval; return the rows of its steps."""
+        end = self.time + h
+        # the acceleration belongs to the inputs as set now
+        if inputs != self.row[self.inputs] or self.connection.cubic >= 0:
+            self.row[self.inputs] = inputs
+            force = self.row[MOTION + FORCE_PLACE]
+            self.row[DRIVE : self.inputs.start] = self._outputs_at(force, inputs)
+        rows = self._steps(h, self.scheme.halvings if self.scheme.tolerance else 0)
+        rows[-1][TIME] = self.row[TIME] = end
+        return rows
+
+    def _steps(self, h, halvings: int):
+        """Run an interval in steps of its length halved, so that each defect is small."""
+        # doubled only on their own grid: the end is met without a rest, lengths are exact
+        level, rows, most, done = int(self.row[LEVEL]), [], 1 << halvings, 0
+        while done < most:
+            size = most >> level
+            row, defect = self._attempt(h / (1 << level), level < halvings)
+            if row:
+                rows.append(row)
+                done += size
+                is_easy = defect < self.scheme.tolerance * self.scheme.easy
+                level -= is_easy and done % (2 * size) == 0 and level > 0
+            else:
+                level += 1
+            self.row[LEVEL] = float(level)
+        return rows
+
+    def _attempt(self, h, may_refuse: bool):
+        """Try one step; return its row, None where it is refused, and its relative defect."""
+        now, inputs, drive = self.row, self.row[self.inputs], self.drive
+        passes = self.scheme.first_passes if self.goes_back and now[H] == 0.0 else 1
+        self.oscillator.save()
+        if may_refuse or passes > 1:
+            drive.channel.save()
+        acceleration = self._run_on()
+        for i in range(passes):
+            if i:
+                self.oscillator.restore()
+                drive.channel.restore()
+            motion = self._oscillate(acceleration, h)
+            drive.put(self._force_over(motion, h), inputs)
+            drive.channel.step(now[TIME], h)
+            outputs = self._outputs_at(motion[FORCE_PLACE], self._later(inputs, h))
+            acceleration = self._acceleration_over(outputs, h)
+        self.oscillator.restore()
+        motion = self._oscillate(acceleration, h)
+        outputs = self._outputs_at(motion[FORCE_PLACE], self._later(inputs, h))
+        defect = 0.0
+        if self.scheme.tolerance:
+            defect = self._defect(self._force_over(motion, h), acceleration, outputs, h)
+        if may_refuse and defect > self.scheme.tolerance:
+            self.oscillator.restore()
+            drive.channel.restore()
+            return None, defect
+        count = float(self.oscillator.instance.get("impact_count")[0])
+        step = (now[TIME] + h, h, now[LEVEL], *acceleration, count)
+        self.row = [*step, *motion, *outputs, *inputs]
+        self._remember()
+        return list(self.row), defect
+
+    def _oscillate(self, acceleration, h):
+        """Step the oscillator under an acceleration of the box; return its outputs."""
+        self.oscillator.put(*acceleration)
+        self.oscillator.step(self.time, h)
+        return self.oscillator.get()
+
+    def _outputs_at(self, force, inputs):
+        """Return the drive's outputs under the force at a communication point."""
+        self.drive.put((force, 0.0, 0.0, 0.0), inputs)
+        return self.drive.get()
+
+    def _later(self, inputs: list[float], h):
+        """Return the drive's inputs at the end of a step: a cubic among them runs on."""
+        first = self.connection.cubic
+        if first < 0:
+            return inputs
+        cubic = end_derivatives(tuple(inputs[first : first + 4]), h)
+        return [*inputs[:first], *cubic, *inputs[first + 4 :]]
+
+    def _force_over(self, motion, h):
+        """Return the force over a step, exact in its mean and first moment if these are taken."""
+        _, _, _, _, force, impulse, moment, *_ = motion
+        first = self.row[MOTION + FORCE_PLACE]
+        if not self.is_whole:
+            return impulse / h, 0.0, 0.0, 0.0
+        return matched_cubic(first, force, impulse / h, moment / (h * h), h)
+
+    def _acceleration_over(self, after, h):
+        """Return the box acceleration over a step, from what is known of the box at both ends."""
+        position, velocity, first = self.row[DRIVE:END]
+        if math.isnan(first):
+            return self._slopes_of_points(after, h)
+        knows_velocity = not math.isnan(velocity)
+        mean = (after[1] - velocity) / h if knows_velocity else 0.5 * (first + after[2])
+        if math.isnan(position) or not knows_velocity:
+            return matched_parabola(first, after[2], mean, h)
+        moment = mean - ((after[0] - position) / h - velocity) / h
+        return matched_cubic(first, after[2], mean, moment, h)
+
+    def _slopes_of_points(self, after, h):
+        """Return the acceleration over a step from velocities or positions alone, as a line."""
+        from_position = math.isnan(after[1])
+        times = [*self.points[::2][-2 - from_position :], self.row[TIME] + h]
+        values = [*self.points[1::2][-2 - from_position :], after[0 if from_position else 1]]
+        ages = [t - self.row[TIME] for t in times]
+        return (*derivatives(ages, values, 1 + from_position), 0.0, 0.0)
+
+    def _remember(self):
+        """Keep the last points of velocity or position where no acceleration is connected."""
+        position, velocity, acceleration = self.row[DRIVE:END]
+        if math.isnan(acceleration):
+            value = position if math.isnan(velocity) else velocity
+            self.points = [*self.points, self.row[TIME], value][-2 * PAST :]
+
+    def _run_on(self):
+        """Extrapolate the box acceleration over the coming step: its last cubic goes on."""
+        h, value = self.row[H], self.row[ACCELERATION]
+        slopes = (0.0, 0.0, 0.0, 0.0)
+        if h != 0.0:
+            slopes = end_derivatives(tuple(self.row[THEN:IMPACTS]), h)
+        return slopes if math.isnan(value) else (value, *slopes[1:])
+
+    def _defect(self, force, acceleration, outputs, h):
+        """Return the energy that a step loses or makes, over the work exchanged in it."""
+        work, energy = END, END + 1  # by the drive's own account
+        taken = outputs[work - DRIVE] - self.row[work]
+        given = outputs[energy - DRIVE] - self.row[energy]
+        lost = taken - integrate_work(force, self.row[VELOCITY], acceleration, h)
+        exchanged = abs(taken) + abs(given)
+        return abs(lost) / exchanged if exchanged else 0.0
