@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from ..kernels import linear_response, repetition
+from ..kernels import linear_response, repetition, spectrum
 from .archive import guid_of
 from .compiler import link
 from .errors import CannotExport
@@ -26,8 +26,10 @@ KERNELS = {  # headers that a source may include, translated from Python
         "decide": repetition.decide,
         "repeat": repetition.repeat,
         "confirm": repetition.confirm,
+        "nearest": repetition.nearest,
         "describe": linear_response.describe,
     },
+    "lines.h": {"amplitudes": spectrum.amplitudes},
 }
 
 

@@ -87,9 +87,17 @@ def library() -> Any:
     periods = [c_double, c_size_t, c_size_t]
     loaded.sample_periods.argtypes = [c_void_p, *periods, c_void_p, c_void_p]
     loaded.to_rest.argtypes = [c_void_p, c_void_p, c_void_p]
+    loaded.find_gaps.argtypes = [c_void_p, c_size_t, c_void_p, c_bool, c_void_p]
+    loaded.find_accelerations.argtypes = [c_void_p, c_size_t, *[c_void_p] * 3]
+    loaded.find_gaps.restype = loaded.find_accelerations.restype = None
     loaded.to_rest.restype = None
     loaded.sample_evenly.restype = loaded.sample_periods.restype = c_bool
-    for name in ("decide_multiplicity", "find_repetition", "describe_linear_response"):
+    for name in (
+        "decide_multiplicity",
+        "find_repetition",
+        "nearest_state",
+        "describe_linear_response",
+    ):
         getattr(loaded, name).argtypes = [c_void_p]
     return loaded
 

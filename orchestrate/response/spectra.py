@@ -8,6 +8,7 @@ of the frequency times that of the displacement.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from ctypes import c_size_t, c_void_p
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -17,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, REST, Instance, begin, sampled
+from ..fmu.c_library import loaded_loop
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import positive, whole
@@ -31,26 +33,20 @@ Floats = NDArray[np.float64]
 
 
 def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floats]:
-    """Return frequencies, rad/s, and amplitudes of a sampled signal (Hann window)."""
-    signal = np.asarray(signal, dtype=float)
-    turns, amplitude = hann_spectrum(signal, interval)
-    # Of a constant the window makes one line more. Taken away only there: other lines keep their
-    # bits. Over displacements times the frequency squared it would look like a slow motion.
-    moving = signal - signal.mean(axis=-1, keepdims=True)
-    amplitude[..., 1] = hann_spectrum(moving, interval)[1][..., 1]
-    return 2.0 * np.pi * turns, amplitude
+    """Return frequencies, rad/s, and amplitudes of a sampled signal (Hann window).
 
-
-def hann_spectrum(signal: Floats, interval: float) -> tuple[Floats, Floats]:
-    """Return frequencies, Hz, and amplitudes of a signal (Hann window), its mean not removed."""
-    from scipy.signal import periodogram
-
-    turns, power = periodogram(
-        signal, fs=1.0 / interval, window="hann", detrend=False, scaling="spectrum"
-    )
-    both_sides = np.full(len(turns), 2.0)  # a line stands for two of the two-sided spectrum,
-    both_sides[0] = 1.0  # but for the mean
-    return turns, np.sqrt(both_sides * power)
+    By :mod:`fmu_src.kernels.spectrum`, compiled.
+    """
+    rows = np.ascontiguousarray(signal, dtype=float)
+    count, loop = rows.shape[-1], loaded_loop("spectrum")
+    loop.spectrum_size.restype, loop.spectrum_size.argtypes = c_size_t, [c_size_t]
+    loop.amplitude_spectrum.argtypes = [c_void_p, c_size_t, c_void_p, c_void_p]
+    memory, shown = np.empty(loop.spectrum_size(count)), count // 2 + 1
+    amplitudes = np.empty((*rows.shape[:-1], shown))
+    for place in np.ndindex(rows.shape[:-1]):
+        addresses = memory.ctypes.data, amplitudes[place].ctypes.data
+        loop.amplitude_spectrum(rows[place].ctypes.data, count, *addresses)
+    return 2.0 * np.pi * np.arange(shown) / (count * interval), amplitudes
 
 
 @dataclass(frozen=True, kw_only=True)
