@@ -30,7 +30,7 @@ EXPORTED = (
     *("malloc", "free", "open_fmu", "close_fmu", "memory_of", "message"),
     *("begin", "respond", "sample_evenly", "memory_size", "describe_linear_response", "play"),
     *("find_gaps", "find_accelerations", "carry_state", "nearest_state", "spectrum_size"),
-    "amplitude_spectrum",
+    "acceleration_spectrum",
 )
 
 

@@ -30,7 +30,8 @@ READ = (
 )
 PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max")
 TRAITS = ("m1", "m2", "k1", "k2", "d1", "d2", "clearance", "bonded")  # of a structure, for loops
-TRAIT_COUNT = 16  # with its frequency and excitation, and what follows from them
+FOUND = ("gap_offset", "rest_1", "rest_2", "threshold", "must_impact")  # what follows from them
+TRAIT_NAMES = (*TRAITS, "omega", "frequency", "amplitude", *FOUND)
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
 COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
 SET = {  # before each start, with first values
@@ -182,7 +183,7 @@ def traits(structure: Structure, frequency: float = 1.0, amplitude: float = 0.0)
     which the linear response opens or touches, and whether it does: then every motion impacts.
     """
     numbers = (getattr(structure, name) for name in TRAITS)
-    memory = (c_double * TRAIT_COUNT)(*numbers, structure.omega, frequency, amplitude)
+    memory = (c_double * len(TRAIT_NAMES))(*numbers, structure.omega, frequency, amplitude)
     library().describe_linear_response(memory)
     return memory
 

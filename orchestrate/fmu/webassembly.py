@@ -26,8 +26,7 @@ from .oscillator import (
     READ,
     SAMPLE_SERIES,
     SET,
-    TRAIT_COUNT,
-    TRAITS,
+    TRAIT_NAMES,
     OscillatorCalls,
     ResponseProgress,
     ResponseTask,
@@ -110,8 +109,7 @@ def loop_tables() -> dict[str, Any]:
         "series": SAMPLE_SERIES,
         "capacity": sources.array_sizes(MODELS[OSCILLATOR])[SAMPLE_SERIES[0]],
         "counts": COUNTS,
-        "traits": TRAITS,
-        "trait_count": TRAIT_COUNT,
+        "traits": TRAIT_NAMES,
     }
 
 

@@ -7,11 +7,12 @@ of the frequency times that of the displacement.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
-from ctypes import c_size_t, c_void_p
+from ctypes import c_double, c_size_t, c_void_p
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +21,7 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, REST, Instance, begin, sampled
 from ..fmu.c_library import loaded_loop
 from ..lazy import Unpack, xr
-from ..model import Structure
+from ..model import Excitation, Structure
 from ..model.arguments import positive, whole
 from ..running.job import Table
 from ..running.options import Running
@@ -32,21 +33,42 @@ KINDS = ("bonded", "delaminated", "sampled")
 Floats = NDArray[np.float64]
 
 
-def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floats]:
-    """Return frequencies, rad/s, and amplitudes of a sampled signal (Hann window).
+@functools.cache
+def library() -> Any:
+    """Return the library of spectra, as ctypes has it, types set."""
+    loaded = loaded_loop("spectrum")
+    loaded.spectrum_size.restype, loaded.spectrum_size.argtypes = c_size_t, [c_size_t]
+    loaded.amplitude_spectrum.argtypes = [c_void_p, c_size_t, c_void_p, c_void_p]
+    loaded.acceleration_spectrum.argtypes = [
+        *(c_void_p, c_size_t, c_size_t, c_size_t),
+        *(c_double, c_double, c_void_p, c_void_p),
+    ]
+    loaded.amplitude_spectrum.restype = loaded.acceleration_spectrum.restype = None
+    return loaded
 
-    By :mod:`fmu_src.kernels.spectrum`, compiled.
-    """
+
+def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floats]:
+    """Return frequencies, rad/s, and amplitudes of a sampled signal (Hann window)."""
     rows = np.ascontiguousarray(signal, dtype=float)
-    count, loop = rows.shape[-1], loaded_loop("spectrum")
-    loop.spectrum_size.restype, loop.spectrum_size.argtypes = c_size_t, [c_size_t]
-    loop.amplitude_spectrum.argtypes = [c_void_p, c_size_t, c_void_p, c_void_p]
-    memory, shown = np.empty(loop.spectrum_size(count)), count // 2 + 1
-    amplitudes = np.empty((*rows.shape[:-1], shown))
+    count = rows.shape[-1]
+    memory, lines = np.empty(library().spectrum_size(count)), np.arange(count // 2 + 1)
+    amplitudes = np.empty((*rows.shape[:-1], len(lines)))
     for place in np.ndindex(rows.shape[:-1]):
-        addresses = memory.ctypes.data, amplitudes[place].ctypes.data
-        loop.amplitude_spectrum(rows[place].ctypes.data, count, *addresses)
-    return 2.0 * np.pi * np.arange(shown) / (count * interval), amplitudes
+        places = memory.ctypes.data, amplitudes[place].ctypes.data
+        library().amplitude_spectrum(rows[place].ctypes.data, count, *places)
+    return 2.0 * np.pi * lines / (count * interval), amplitudes
+
+
+def acceleration_spectrum(states: Floats, periods: int, excitation: Excitation) -> Floats:
+    """Return both masses' spectra, impulses included, from states at equal parts of periods."""
+    rows, count = np.ascontiguousarray(states, dtype=float), len(states)
+    memory, amplitudes = np.empty(library().spectrum_size(count)), np.empty((2, count // 2 + 1))
+    for column, row in enumerate(amplitudes):
+        library().acceleration_spectrum(
+            *(rows[:, column:].ctypes.data, rows.shape[1], count, periods),
+            *(excitation.frequency, excitation.amplitude, memory.ctypes.data, row.ctypes.data),
+        )
+    return amplitudes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,13 +113,11 @@ class SpectraJob(SeriesQuestion):
         if self.transient:
             instance.step(0.0, first)
         states = sampled(instance, first, last, count)
-        turns = np.arange(1, count + 1) / self.points
-        box = point.excitation.amplitude * np.sin(2.0 * np.pi * turns)
         accelerations = absolute_accelerations(states, point.structure)
         shown, interval = len(self.orders()), span / self.points
-        frequency, displaced = amplitude_spectrum(states[:, :2].T + box, interval)
+        with_impulses = acceleration_spectrum(states, self.periods, point.excitation)
         _, between = amplitude_spectrum(accelerations.T, interval)
-        return (frequency**2 * displaced)[:, :shown], between[:, :shown]
+        return with_impulses[:, :shown], between[:, :shown]
 
     def dataset(self, table: Table) -> xr.Dataset:
         along, orders = self.series.name, self.orders()
