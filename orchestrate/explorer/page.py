@@ -13,6 +13,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
+from ..dynamics.clusters import AttractorSettings
 from ..errors import InputError
 from ..files import open_folder, write_whole
 from ..fmu import OSCILLATOR, SHAKER
@@ -154,6 +155,7 @@ def page_data(chosen: SweepData) -> dict[str, Any]:
             for name, quantity in STRUCTURE.items()
             if quantity.unit != "1"
         },
+        "alike": AttractorSettings().alike,
         "settings": chosen.settings,
         "directions": chosen.directions,
         "count": chosen.count,

@@ -65,21 +65,20 @@ def nearest_state(
     samples: ArrayLike, frequency: float, gap: float, state: ArrayLike
 ) -> tuple[int, float]:
     """Return the number of the sample nearest to a state, and its distance over their size."""
-    memory = apply_rule("nearest_state", samples, (frequency, gap, 0.0), state)
-    return int(memory[repetition.MULTIPLICITY]), float(memory[repetition.DEVIATION])
+    states, near = (np.ascontiguousarray(part, dtype=float) for part in (samples, state))
+    memory = np.empty(memory_size(len(states)))
+    sizes, places = (frequency, gap), (near.ctypes.data, memory.ctypes.data)
+    distance = library().nearest_state(states.ctypes.data, len(states), *sizes, *places)
+    return int(memory[repetition.MULTIPLICITY]), float(distance)
 
 
 def apply_rule(
-    name: str,
-    samples: ArrayLike,
-    settings: tuple[float, float, float],
-    state: ArrayLike = (0.0, 0.0, 0.0, 0.0),
+    name: str, samples: ArrayLike, settings: tuple[float, float, float]
 ) -> NDArray[np.float64]:
     """Run a compiled function of the kernel; return its memory."""
     states = np.asarray(samples, dtype=float)
     memory = np.zeros(memory_size(len(states)))
     memory[: repetition.MULTIPLICITY] = len(states), *settings
-    memory[repetition.GIVEN : repetition.HEAD] = state
     memory[repetition.HEAD : repetition.HEAD + states.size] = states.ravel()
     getattr(library(), name)(memory.ctypes.data)
     return memory

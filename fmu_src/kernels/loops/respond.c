@@ -294,6 +294,15 @@ EXPORT int decide_multiplicity(double *memory) { return kernel_decide(memory, 0.
 
 EXPORT int find_repetition(double *memory) { return kernel_repeat(memory, 0.0); }
 
-EXPORT int nearest_state(double *memory) { return kernel_nearest(memory, 0.0); }
+/* How near states of a motion come to a state, over the motion's size; the memory has the number of that state. */
+EXPORT double nearest_state(const double *states, size_t count, double frequency, double gap, const double *state, double *memory) {
+    memory[COUNT] = (double)count;
+    memory[FREQUENCY] = frequency;
+    memory[GAP] = gap;
+    for (size_t k = 0; k < STATES; k++) memory[GIVEN + k] = state[k];
+    for (size_t k = 0; k < STATES * count; k++) memory[HEAD + k] = states[k];
+    kernel_nearest(memory, 0.0);
+    return memory[DEVIATION];
+}
 
 EXPORT int describe_linear_response(double *memory) { return kernel_describe(memory, 0.0); }

@@ -1,7 +1,7 @@
 /** The box, both masses and their springs in motion; impacts flash. */
 
 import { Picture } from "./picture.js";
-import { gapOffset } from "./clearance.js";
+import { traitsOf } from "./model.js";
 
 const FLASH = 0.04; // of a period
 
@@ -20,7 +20,7 @@ export class Animation {
 
   /** @param {Motion} motion @param {Point} point */
   load(motion, point) {
-    Object.assign(this, { motion, turn: 0, clearance: gapOffset(point.structure) });
+    Object.assign(this, { motion, turn: 0, clearance: traitsOf(point).gap_offset });
     this.largest = motion.states.reduce((most, value, i) => (i % 4 < 2 ? Math.max(most, Math.abs(value)) : most), 0);
     this.picture.redraw();
   }

@@ -1,6 +1,6 @@
 /** The largest Lyapunov exponent, estimated: how fast two motions that begin close by part. */
 
-import { gapBetween, gapOffset } from "./clearance.js";
+import { gapsOf, traitsOf } from "./model.js";
 import { lengthOf, omegaOf, periodOf } from "./structure.js";
 
 /** @typedef {{value: number, error: number}} Exponent per unit of tau */
@@ -40,7 +40,7 @@ export function* exponentOf(instance, point, start, { periods, most, distance })
       end = 2 * n;
       blocks = paired(blocks);
     }
-    const twin = beside(state, difference, scale, gapOffset(point.structure));
+    const twin = beside(state, difference, scale, point);
     const moved = twin.map((value, i) => (value - state[i]) / scale[i]);
     [state, difference] = separate(next(state), next(twin), scale);
     const growth = norm(difference) / norm(moved);
@@ -64,11 +64,12 @@ function meanOf(blocks, periods, step) {
   return { value: sum / time, error: Math.max(chance, Math.log(periods)) / time };
 }
 
-/** A state close by whose gap is none below zero. @param {number[]} state @param {number[]} d @param {number[]} scale @param {number} offset */
-function beside(state, d, scale, offset) {
-  const sign = gapBetween(state[0] + d[0] * scale[0], state[1] + d[1] * scale[1], offset) < 0 ? -1 : 1;
+/** A state close by whose gap is none below zero. @param {number[]} state @param {number[]} d @param {number[]} scale @param {Point} point */
+function beside(state, d, scale, point) {
+  const other = state.map((value, i) => value + d[i] * scale[i]);
+  const sign = gapsOf(other, point)[0] < 0 ? -1 : 1;
   const twin = state.map((value, i) => value + sign * d[i] * scale[i]);
-  return gapBetween(twin[0], twin[1], offset) < 0 ? [twin[0], twin[0] - offset, twin[2], twin[3]] : twin;
+  return gapsOf(twin, point)[0] < 0 ? [twin[0], twin[0] - traitsOf(point).gap_offset, twin[2], twin[3]] : twin;
 }
 
 /** @param {number[]} state @param {number[]} twin @param {number[]} scale @returns {[number[], number[]]} */

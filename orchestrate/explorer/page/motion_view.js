@@ -1,7 +1,7 @@
 /** The motion at the chosen frequency in four pictures, and in words. */
 
 import { axisAround, drawChart } from "./chart.js";
-import { atRest, gapBetween, gapOffset } from "./clearance.js";
+import { gapsOf, traitsOf } from "./model.js";
 import { Picture } from "./picture.js";
 import { scaleAt, wordsOf } from "./units.js";
 
@@ -32,7 +32,8 @@ export function motionPictures(at) {
 /** Columns of a motion as the axes have them: time from its beginning, displacements from rest, where pressed halves touch. @param {Motion} motion @param {Point} point @param {Level} level */
 export function columnsOf(motion, point, level) {
   const { length, speed, time } = scaleAt(point, level);
-  const rest = [...atRest(point.structure), 0, 0];
+  const { rest_1, rest_2 } = traitsOf(point);
+  const rest = [rest_1, rest_2, 0, 0];
   /** @param {number} part @param {number} unit */
   const column = (part, unit) =>
     Float64Array.from({ length: motion.time.length }, (_, i) => (motion.states[4 * i + part] - rest[part]) / unit);
@@ -61,9 +62,9 @@ export function contactSpans({ contact }, turns) {
 }
 
 /** What a displacement is counted from is said where it is not the springs' own length. @param {Point} point @param {Level} level */
-function placeWords({ structure }, level) {
+function placeWords(point, level) {
   const { place } = wordsOf(level);
-  return gapOffset(structure) < 0 ? place.replace("displacement", "displacement from rest") : place;
+  return traitsOf(point).gap_offset < 0 ? place.replace("displacement", "displacement from rest") : place;
 }
 
 /** Time histories with impacts and contact. @param {Motion} motion @param {Point} point @param {Level} level @returns {Chart} */
@@ -71,7 +72,7 @@ export function historyChart(motion, point, level) {
   const { turns, x1, x2 } = columnsOf(motion, point, level);
   const { length, time } = scaleAt(point, level);
   const words = wordsOf(level);
-  const [rest] = atRest(point.structure);
+  const { rest_1 } = traitsOf(point);
   const hits = motion.impactTime.map((t) => (t - motion.time[0]) / time);
   return {
     x: { low: 0, high: turns[turns.length - 1], label: words.time },
@@ -80,7 +81,7 @@ export function historyChart(motion, point, level) {
     series: [
       { x: turns, y: x1, colour: "one", label: "half 1" },
       { x: turns, y: x2, colour: "two", label: "half 2" },
-      { x: hits, y: motion.impactPlace.map((x) => (x - rest) / length), colour: "hit", dots: 2.5, label: "impact" },
+      { x: hits, y: motion.impactPlace.map((x) => (x - rest_1) / length), colour: "hit", dots: 2.5, label: "impact" },
     ],
   };
 }
@@ -106,9 +107,8 @@ const cell = (value, { low, high }) => Math.round((200 * (value - low)) / (high 
 export function sectionChart(states, point, level) {
   const { length, speed } = scaleAt(point, level);
   const words = wordsOf(level);
-  const offset = gapOffset(point.structure);
   const count = states.length / 4;
-  const x = Float64Array.from({ length: count }, (_, i) => gapBetween(states[4 * i], states[4 * i + 1], offset) / length);
+  const x = gapsOf(states, point).map((gap) => gap / length);
   const y = Float64Array.from({ length: count }, (_, i) => (states[4 * i + 3] - states[4 * i + 2]) / speed);
   const axes = { x: axisAround([x], words.gap), y: axisAround([y], words.gapSpeed) };
   const places = new Set(x.map((value, i) => 1000 * cell(value, axes.x) + cell(y[i], axes.y)));

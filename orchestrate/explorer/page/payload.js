@@ -4,7 +4,7 @@
  * @typedef {{slots: Slots, starts: Record<string, number>, variables: Record<string, number>}} Kernel
  * @typedef {{oscillator: Kernel, shaker: Kernel, loops: Loops, drive: Start,
  *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>, units: Units,
- *   settings: Settings, directions: ("up" | "down")[], count: number,
+ *   alike: number, settings: Settings, directions: ("up" | "down")[], count: number,
  *   low: number, high: number, level: ["paper" | "g" | "mm", number],
  *   shown: Asked, tour: Record<string, string>,
  *   branches: {x: number[], y: number[], stable: boolean}[],

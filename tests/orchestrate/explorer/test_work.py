@@ -12,10 +12,12 @@ from ...sparing import ordinary
 
 PROBE = """
 import { Library } from "./kernel.js";
+import { useLibrary } from "./model.js";
 import { load } from "./payload.js";
 import { perform } from "./tasks.js";
 load().then(({ compiled: { oscillator, shaker } }) => {
   const libraries = { oscillator: new Library(oscillator), shaker: new Library(shaker) };
+  useLibrary(libraries.oscillator);
   window.probe = { libraries, perform: (task, asked) => perform(task, asked, libraries) };
 });
 """
