@@ -47,7 +47,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "paper": BELOW_ANSWERS | {"__init__", "response", "dynamics", "weak_drive", "show"},
     "__init__": BELOW_ANSWERS
     | {"response", "dynamics", "laboratory", "diagnosis", "weak_drive", "show"},
-    "explorer": BELOW_ANSWERS,
+    "explorer": BELOW_ANSWERS | {"response", "dynamics", "laboratory"},
     "cli": BELOW_ANSWERS
     | {"__init__", "laboratory", "weak_drive", "diagnosis", "show", "paper"}
     | {"explorer"},
@@ -58,10 +58,11 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
     "kernels.oscillator": {"kernels.numerics"},
     "kernels.shaker": {"kernels.numerics"},
     "kernels.electrodynamic_shaker": {"kernels.numerics"},
+    "kernels.spectrum": {"kernels.numerics"},
     "runtime": set(),
     "models": {"kernels.oscillator", "kernels.shaker", "runtime", "version"}
     | {"kernels.electrodynamic_shaker"},
-    "export": {"runtime", "kernels.repetition", "kernels.linear_response"},
+    "export": {"runtime", "kernels.repetition", "kernels.linear_response"} | {"kernels.spectrum"},
 }
 DYNAMIC = {"orchestrate/__init__.py", "orchestrate/reader_child.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them

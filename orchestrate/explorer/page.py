@@ -25,6 +25,7 @@ from ..units import Units, units_of
 from ..version import __version__
 from .branches import branch_json
 from .bundle import bundle
+from .measured import record_json
 from .sweep_data import SweepData, check_units, first_diagram, read_sweep, shown_in
 from .tour import TOUR, tour_in
 from .words import WORDS
@@ -39,10 +40,14 @@ def explore(
     *,
     output: str | PathLike[str] = "explorer.html",
     branches: xr.Dataset | None = None,
+    record: xr.Dataset | None = None,
     units: str | Units = "",
     build_folder: str | PathLike[str] | None = None,
 ) -> Path:
-    """Write the explorer, one HTML file that needs no other file and no network."""
+    """Write the explorer, one HTML file that needs no other file and no network.
+
+    A ``record``, as :func:`orchestrate.read_record` returns it, is drawn over the spectrum.
+    """
     asked = units if isinstance(units, Units) else Units.from_text(units)
     if data is None or isinstance(data, Structure):
         chosen = first_diagram(data or Structure(), asked)
@@ -63,7 +68,9 @@ def explore(
         "oscillator": web_kernel(OSCILLATOR, build_folder),
         "shaker": web_kernel(SHAKER, build_folder),
     }
-    text = render_page(chosen, shown_in(asked, chosen.level), branch_json(branches), kernels)
+    text = render_page(
+        chosen, shown_in(asked, chosen.level), branch_json(branches) | record_json(record), kernels
+    )
     return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
@@ -97,6 +104,7 @@ def render_page(
             tour=tour_in(shown),
             words=WORDS,
             branches=drawn["branches"],
+            record=drawn["record"],
             source=made_by,
             swept=f"sweep by {chosen.source}" if chosen.source else "",
             table={

@@ -56,7 +56,7 @@ export class App {
     this.pool = new WorkerPool(worker, compiled, size);
     this.pool.onerror = (text, task) => (task === "motion" ? this.inspector.fail(text) : this.tell(text));
     this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.pool, diagram, table, () => this.refreshDiagram());
-    this.inspector = new Inspector(at, this.pool, () => this.refreshMotion());
+    this.inspector = new Inspector(at, this.pool, table.record, () => this.refreshMotion());
     this.player = new Player(at, this.inspector, {
       tell: (text) => this.tell(text),
       changed: () => this.refreshMotion(),

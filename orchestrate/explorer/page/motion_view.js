@@ -1,11 +1,16 @@
 /** The motion at the chosen frequency in four pictures, and in words. */
 
 import { axisAround, drawChart } from "./chart.js";
+import { hertzOf, inHertz } from "./excitation.js";
 import { gapsOf, traitsOf } from "./model.js";
 import { Picture } from "./picture.js";
 import { scaleAt, wordsOf } from "./units.js";
 
-/** @typedef {"history" | "phase" | "section" | "spectrum"} Name */
+/**
+ * @typedef {"history" | "phase" | "section" | "spectrum"} Name
+ * @typedef {{title: string, orders?: {frequency: number[], amplitude: number[][]},
+ *   lines?: {frequency: number[], amplitude: number[]}}} Measured in Hz and m/s²; a row for each order
+ */
 
 const FEW = 24; // places of a section that are drawn as larger dots
 
@@ -116,22 +121,37 @@ export function sectionChart(states, point, level) {
   return { ...axes, series: [{ x, y, colour: "ink", dots, alpha: 0.8 }] };
 }
 
-/** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @returns {Chart} */
-export function spectrumChart({ delaminated, bonded }, point, level) {
+/** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @param {Measured | null} record @returns {Chart} */
+export function spectrumChart({ delaminated, bonded }, point, level, record) {
   const { line, acceleration } = scaleAt(point, level);
   const words = wordsOf(level);
-  const ends = [delaminated, bonded].map(({ amplitude }) => amplitude.reduce((most, value) => Math.max(most, value), 0));
+  const measured = record && inHertz(level) ? seriesOf(record, hertzOf(point.eta, point.structure)) : null;
+  const heights = [delaminated.amplitude, bonded.amplitude, Float64Array.from(measured?.y ?? [])];
+  const ends = heights.map((amplitude) => amplitude.reduce((most, value) => Math.max(most, value), 0));
   const high = Math.max(...ends) / acceleration || 1;
   const low = high * 1e-7;
   /** @param {Float64Array} amplitude */
   const kept = (amplitude) => amplitude.map((value) => Math.max(value / acceleration, low / 10));
   const x = delaminated.order.map((order) => order * line);
+  /** @type {Series[]} */
+  const series = [
+    { x, y: kept(heights[0]), colour: "one", label: "delaminated", width: 1 },
+    { x, y: kept(heights[1]), colour: "two", label: "undamaged" },
+  ];
+  if (measured) series.push({ x: measured.x.map((order) => order * line), y: kept(heights[2]), colour: "ink", label: "measured", dots: measured.dots });
   return {
     x: { low: 0, high: x[x.length - 1], label: words.line },
     y: { low, high: high * 2, log: true, label: words.acceleration },
-    series: [
-      { x, y: kept(delaminated.amplitude), colour: "one", label: "delaminated", width: 1 },
-      { x, y: kept(bonded.amplitude), colour: "two", label: "undamaged" },
-    ],
+    series,
   };
+}
+
+/** What is measured at a frequency: orders of a swept sine, or a spectrum, over the excitation's frequency. @param {Measured} record @param {number} hertz @returns {{x: number[], y: number[], dots?: number} | null} nothing beside the sweep */
+function seriesOf({ orders, lines }, hertz) {
+  if (lines) return { x: lines.frequency.map((value) => value / hertz), y: lines.amplitude };
+  const { frequency, amplitude } = /** @type {NonNullable<Measured["orders"]>} */ (orders);
+  if (hertz < frequency[0] || hertz > frequency[frequency.length - 1]) return null;
+  const after = frequency.findIndex((value) => value >= hertz);
+  const near = after > 0 && hertz - frequency[after - 1] < frequency[after] - hertz ? after - 1 : after;
+  return { x: amplitude.map((_, i) => i + 1), y: amplitude.map((row) => row[near]), dots: 4 };
 }

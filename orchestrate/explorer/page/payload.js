@@ -7,7 +7,7 @@
  *   alike: number, settings: Settings, directions: ("up" | "down")[], count: number,
  *   low: number, high: number, level: ["paper" | "g" | "mm", number],
  *   shown: Asked, tour: Record<string, string>,
- *   branches: {x: number[], y: number[], stable: boolean}[],
+ *   record: Measured | null, branches: {x: number[], y: number[], stable: boolean}[],
  *   bifurcations: {eta: number, gap: number, kind: string}[]}} Table
  */
 

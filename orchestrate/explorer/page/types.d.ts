@@ -19,6 +19,7 @@ type Lane = import("./diagram.js").Lane;
 type Level = import("./excitation.js").Level;
 type Library = import("./kernel.js").Library;
 type Loops = import("./kernel.js").Loops;
+type Measured = import("./motion_view.js").Measured;
 type Motion = import("./motion.js").Motion;
 type Order = import("./worker_pool.js").Order;
 type Oscillator = import("./kernel.js").Oscillator;
