@@ -100,8 +100,9 @@ def read_record_option(arguments: argparse.Namespace) -> xr.Dataset | None:
     from .. import read_record
 
     reading = values_of(arguments, (COLUMNS, READING))
-    if arguments.record is None and reading:
-        raise InputError(f"--{next(iter(reading)).replace('_', '-')}: expected with --record alone")
+    given = [name for name, value in reading.items() if value]
+    if arguments.record is None and given:
+        raise InputError(f"--{given[0].replace('_', '-')}: expected with --record alone")
     return None if arguments.record is None else read_record(arguments.record, **reading)
 
 
