@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from ..kernels import linear_response, repetition, spectrum
+from ..kernels import deviations, linear_response, repetition, spectrum
 from .archive import guid_of
 from .compiler import link
 from .errors import CannotExport
@@ -30,6 +30,11 @@ KERNELS = {  # headers that a source may include, translated from Python
         "describe": linear_response.describe,
     },
     "lines.h": {"amplitudes": spectrum.amplitudes},
+    "growth.h": {
+        "deviate": deviations.deviate,
+        "grow": deviations.grow,
+        "average": deviations.average,
+    },
 }
 
 

@@ -14,6 +14,7 @@ import jinja2
 from markupsafe import Markup
 
 from ..dynamics.clusters import AttractorSettings
+from ..dynamics.lyapunov import BATCHES, BLOCKS, SIGMAS, WANDER
 from ..errors import InputError
 from ..files import open_folder, write_whole
 from ..fmu import OSCILLATOR, SHAKER
@@ -32,6 +33,10 @@ from .words import WORDS
 
 SOURCES = Path(__file__).parent / "page"
 HEAD = b"<title>Explorer of a vibro-impacting structure</title>"  # by which a page is known
+EXPONENT = {  # the usual rule of exponents; periods at first, periods and impacts at most
+    **{"blocks": BLOCKS, "batches": BATCHES, "sigmas": SIGMAS, "wander": WANDER},
+    **{"periods": 400, "longest": 12_800, "most": 100_000},
+}
 FLAG = {"bonded": [0.0, 1.0]}  # a range too
 
 
@@ -112,7 +117,7 @@ def render_page(
                 "shown": shown,
                 **drawn,
                 **tables,
-                "loops": loop_tables(),
+                "loops": {**loop_tables(), "exponent": EXPONENT},
                 "drive": drive_data(),
             },
             data=compress(chosen.numbers.astype("<f8").tobytes()),

@@ -32,6 +32,7 @@ PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max")
 TRAITS = ("m1", "m2", "k1", "k2", "d1", "d2", "clearance", "bonded")  # of a structure, for loops
 FOUND = ("gap_offset", "rest_1", "rest_2", "threshold", "must_impact")  # what follows from them
 TRAIT_NAMES = (*TRAITS, "omega", "frequency", "amplitude", *FOUND)
+DEVIATING = (*TRAITS[:6], "e", "gamma", "bonded", "clearance", "e_slope")  # of deviations' growth
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
 COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
 SET = {  # before each start, with first values

@@ -23,6 +23,7 @@ from .exported import SHIPPED, check, default_folder
 from .models import OSCILLATOR, SHAKER
 from .oscillator import (
     COUNTS,
+    DEVIATING,
     READ,
     SAMPLE_SERIES,
     SET,
@@ -110,6 +111,7 @@ def loop_tables() -> dict[str, Any]:
         "capacity": sources.array_sizes(MODELS[OSCILLATOR])[SAMPLE_SERIES[0]],
         "counts": COUNTS,
         "traits": TRAIT_NAMES,
+        "deviating": DEVIATING,
     }
 
 

@@ -44,7 +44,7 @@ export class Inspector {
     this.found = null;
     /** @type {any} */
     this.spectra = null;
-    /** @type {Exponent | undefined} */
+    /** @type {Exponent | null | undefined} */
     this.exponent = undefined;
     /** @type {Motion | null} */
     this.bonded = null;

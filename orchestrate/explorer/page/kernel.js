@@ -7,10 +7,11 @@ import { omegaOf } from "./structure.js";
  *   [name: string]: number}} Slots
  * @typedef {{structures: Record<string, [string, string][]>, set: Record<string, number>,
  *   reals: string[], booleans: string[], read: string[], series: string[], counts: string[],
- *   capacity: number, traits: string[]}} Loops capacity: states that a step keeps
+ *   capacity: number, traits: string[], deviating: string[], exponent: Record<string, number>}} Loops capacity: states that a step keeps
  * @typedef {{module: WebAssembly.Module, slots: Slots, starts: Record<string, number>,
  *   variables: Record<string, number>, loops: Loops}} Compiled
  * @typedef {"u32" | "i32" | "f64" | "u8"} Kind
+ * @typedef {{value: number, error: number, verdict: number}} Exponent per unit of tau, with its standard error; 1 chaotic, −1 converging, 0 undecided
  * @typedef {{order: Float64Array, amplitude: Float64Array}} Spectrum lines over the excitation's
  */
 
@@ -18,6 +19,7 @@ const WIDTH = { u32: 4, i32: 4, f64: 8, u8: 1 };
 const [PAUSED, BROKEN] = [1, 2]; // what a loop answers
 const WORK = 10000; // periods, steps and impacts between two pauses: a few milliseconds
 const PIECE = 100; // periods of one step of a transient, at most
+const DEVIATED = ["x1", "x2", "v1", "v2", "impact_velocity"];
 const SAMPLED = 4; // periods of a spectrum's states between two pauses
 const IMPACTS = 4096; // that a loop keeps until it pauses
 
@@ -257,7 +259,7 @@ export class Oscillator {
    * @param {Float64Array} times
    * @param {string[]} outputs read at the times
    * @param {string[]} told read at impacts
-   * @returns {Generator<undefined, {rows: Float64Array, contact: Uint8Array, impacts: number[][]}>} of each impact its time and what is told
+   * @returns {Generator<undefined, {rows: Float64Array, contact: Uint8Array, impacts: number[][]}>} of each impact its time, what is told, and whether contact begins
    */
   *play(from, times, outputs, told) {
     const rooms = new Rooms(this.library);
@@ -285,7 +287,7 @@ export class Oscillator {
       const take = () => {
         const count = this.library.view("u32", progress, kept + 1)[kept];
         const rows = this.library.view("f64", places.impacts, width * count);
-        for (let i = 0; i < count; i++) impacts.push(Array.from(rows.subarray(width * i, width * (i + 1) - 1)));
+        for (let i = 0; i < count; i++) impacts.push(Array.from(rows.subarray(width * i, width * (i + 1))));
       };
       for (const _ of this.loop("play", player, task, progress)) {
         take();
@@ -300,6 +302,45 @@ export class Oscillator {
     } finally {
       rooms.free();
     }
+  }
+
+  /**
+   * The largest Lyapunov exponent per unit of tau, of an instance that stops: over so many periods, or twice as many
+   * again and again while it is undecided.
+   * @param {Point} point
+   * @param {number[]} start on the attractor, at phase 0
+   * @returns {Generator<undefined, Exponent | null>} nothing of too few impacts; it pauses
+   */
+  *exponent(point, start) {
+    const { periods, longest, most, batches } = this.library.loops.exponent;
+    const period = (2 * Math.PI) / point.frequency;
+    /** @type {number[][]} */
+    const impacts = [];
+    this.begin(point, start);
+    for (let done = 0, end = periods; ; done = end, end *= 2) {
+      const span = yield* this.play(done * period, Float64Array.of(end * period), [], DEVIATED);
+      for (const impact of span.impacts) impacts.push(impact);
+      if (impacts.length < 2 * batches) return null;
+      const found = this.exponentOf(point, impacts, end * period);
+      if (found.verdict || 2 * end > longest || impacts.length > most) return found;
+    }
+  }
+
+  /** @param {Point} point @param {number[][]} impacts @param {number} end s @returns {Exponent} */
+  exponentOf(point, impacts, end) {
+    const { calls, loops } = this.library;
+    const { blocks, batches, sigmas, wander } = loops.exponent;
+    const rooms = new Rooms(this.library);
+    /** @type {Record<string, number>} */
+    const known = { ...point.structure };
+    const numbers = rooms.array("f64", [...loops.deviating.map((name) => known[name]), point.amplitude, point.frequency]);
+    const rows = rooms.array("f64", impacts.flat());
+    const [memory, found] = [calls.exponent_size(impacts.length), 2].map((size) => rooms.array("f64", size));
+    calls.largest_exponent(numbers, rows, impacts.length, end, blocks, batches, memory, found);
+    const [value, error] = this.library.view("f64", found, 2);
+    rooms.free();
+    const floor = calls.wander_floor(wander, omegaOf(point.structure) * end);
+    return { value, error, verdict: calls.classify_exponent(value, error, floor, sigmas) };
   }
 }
 

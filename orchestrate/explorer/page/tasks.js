@@ -3,7 +3,6 @@
 import { destination, startAt } from "./basin.js";
 import { Coupled } from "./coupled.js";
 import { Instance, Oscillator } from "./kernel.js";
-import { exponentOf } from "./lyapunov.js";
 import { record } from "./motion.js";
 import { respond } from "./response.js";
 import { periodOf, pointOf } from "./structure.js";
@@ -12,7 +11,6 @@ import { waveform } from "./waveform.js";
 /** @typedef {import("./response.js").Response} Response */
 
 const REST = [0, 0, 0, 0];
-const EXPONENT = { periods: 400, most: 12800, distance: 1e-7 };
 const SPAN = { periods: 64, points: 1024, highest: 20 };
 
 /**
@@ -97,7 +95,7 @@ function* spectra(instance, { point, start }) {
   const settled = yield* respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 }, false);
   const bonded = yield* instance.spectrum(glued, 2001, SPAN);
   yield { delaminated, bonded, bondedState: settled.end };
-  yield { exponent: yield* exponentOf(instance, point, start, EXPONENT) };
+  yield { exponent: yield* stopping(instance, (own) => own.exponent(point, start)) };
 }
 
 /**

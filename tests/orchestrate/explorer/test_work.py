@@ -57,7 +57,7 @@ TASKS = {  # what a worker is asked, and how often it hands over at the least
     "motion": ({"periods": 200, "points": 200}, 3),
     "basin": ({"plane": PLANE, "cells": [[32, 32], [5, 60]]}, 2),
     "section": ({"periods": 2000}, 10),
-    "spectra": ({}, 40),
+    "spectra": ({}, 30),
 }
 MOST = 25_000  # impacts and steps: 5 to 15 ms on a core of today
 
