@@ -4,7 +4,7 @@ import { BasinPart } from "./basin_part.js";
 import { diagramCommand, motionCommand } from "./command.js";
 import { Controls } from "./controls.js";
 import { WorkerPool } from "./worker_pool.js";
-import { lanesDiffer, nearest, startAt } from "./diagram.js";
+import { nearest, startAt } from "./diagram.js";
 import { listen } from "./diagram_input.js";
 import { DrivePart } from "./drive_part.js";
 import { inHertz, PAPER, pointAt, sameLevel } from "./excitation.js";
@@ -305,11 +305,7 @@ export class App {
 
   /** Say so where other motions are known at this frequency. */
   hint() {
-    const { diagram } = this.regions;
-    if (!diagram) return;
-    const index = nearest(diagram, this.eta);
-    const known = Math.abs(diagram.points[index].eta - this.eta) < 1e-3 * this.eta && lanesDiffer(diagram, index);
-    const words = this.basin.hint(known);
+    const words = this.basin.hint();
     if (words) at("hint").textContent = words;
     at("hint").classList.toggle("absent", !words);
   }

@@ -72,12 +72,11 @@ export class BasinPart {
     return shown !== null && [...this.view.attractors, ...this.few].some((one) => isOther(shown, one, this.alike));
   }
 
-  /** What is known of other motions. @param {boolean} [differ] whether sweeps up and down do */
-  hint(differ = false) {
+  /** What is known of other motions. */
+  hint() {
     const complete = Boolean(this.point) && this.at("basins").dataset.complete === "true";
     if (this.others) return complete ? "Other motions: see the coloured map." : "There is another motion at this frequency.";
-    if (complete) return `No other motion from ${SIDE * SIDE} starts.`;
-    return differ && !this.tried ? "There may be another motion at this frequency." : "";
+    return complete ? `No other motion from ${SIDE * SIDE} starts.` : "";
   }
 
   /** A motion is shown: mark it, and try a few starts. @param {Choice} choice @param {import("./response.js").Response} response */

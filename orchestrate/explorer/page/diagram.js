@@ -2,7 +2,6 @@
 
 import { hertzOf, inHertz, pointAt, pointAtHertz } from "./excitation.js";
 import { carried } from "./model.js";
-import { periodsOf, UNDECIDED } from "./response.js";
 import { niceStep } from "./scale.js";
 
 /**
@@ -94,12 +93,4 @@ export function startFrom(other, point, direction) {
     if (best < 0 || sign * (eta - other.points[best].eta) > 0) best = i;
   });
   return best < 0 ? rest : carried(startAt(lane, best) ?? rest, other.points[best], point);
-}
-
-/** Whether up and down lead to different motions at an index, by how often they repeat and how far they part. @param {Diagram} diagram @param {number} index */
-export function lanesDiffer({ lanes }, index) {
-  const [up, down] = lanes.map(({ found }) => found[index]);
-  if (!up || !down || [up, down].some(({ decided }) => decided === UNDECIDED)) return false;
-  const periods = [up, down].map(periodsOf);
-  return periods[0] !== periods[1] || (periods[0] > 0 && Math.abs(up.peak - down.peak) > 0.03 * Math.max(up.peak, down.peak));
 }

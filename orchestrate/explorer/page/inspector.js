@@ -128,7 +128,7 @@ export class Inspector {
     this.at("sentence").textContent = sentenceOf(response, this.exponent, motion.contact.some(Boolean), opensFrom(point, level));
     this.at("average").textContent = averageWords(response.gaps.length);
     this.at("average").classList.toggle("absent", periodsOf(response) > 0 || !response.impacts);
-    this.listNumbers(numbersOf(response, point, level));
+    this.listNumbers(numbersOf(response, point, level, this.exponent));
   }
 
   /** Show numbers by name in place of those before. @param {Record<string, string>} numbers */

@@ -29,11 +29,12 @@ export function exponentWords(exponent, repeats) {
 /** @param {number} count */
 const countedPeriods = (count) => `${count} period${count > 1 ? "s" : ""}`;
 
-/** After how many periods a motion repeats, or how it does not. @param {{multiplicity: number, decided: number}} motion */
-export function repeatWords(motion) {
+/** After how many periods a motion repeats, or how it does not: where there is an exponent, it decides. @param {{multiplicity: number, decided: number}} motion @param {Exponent | null} [exponent] */
+export function repeatWords(motion, exponent) {
   const periods = periodsOf(motion);
   if (periods) return countedPeriods(periods);
-  return motion.decided === UNDECIDED ? "undecided" : "irregular";
+  const undecided = exponent ? kindOf(exponent) !== "chaotic" : motion.decided === UNDECIDED;
+  return undecided ? "undecided" : "irregular";
 }
 
 /** How a beam of one's own is shaken, and how far it opens. @param {number} peak @param {Point} point @param {Level} level @returns {Record<string, string>} */
@@ -48,8 +49,8 @@ function ownNumbers(peak, point, level) {
   };
 }
 
-/** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @returns {Record<string, string>} */
-export function numbersOf(response, point, level) {
+/** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @param {Exponent | null} [exponent] @returns {Record<string, string>} */
+export function numbersOf(response, point, level, exponent) {
   const { peak, impacts, contact } = response;
   /** @type {Record<string, string>} */
   const first = inHertz(level) ? ownNumbers(peak, point, level) : { "frequency ratio η": shown(point.eta, 6), "largest gap ξ": shown(peak, 6) };
@@ -57,7 +58,7 @@ export function numbersOf(response, point, level) {
   return {
     ...first,
     "impacts a period": periodsOf(response) === 1 ? count : `${count} on average`,
-    "repeats after": repeatWords(response),
+    "repeats after": repeatWords(response, exponent),
     "stick together": !contact ? "no" : peak > 0 ? "for a while" : "always",
   };
 }
