@@ -83,7 +83,7 @@ def write_saltation(m, row, matrix):
     common = common_velocity(m, v1, v2)
     b1, b2 = common + mu * closing * share, common - closing * share
     sine, _ = sincos_turns(fraction(m[at.ETA_TURNS] * m[at.OMEGA] * m[row]))
-    drive = m[at.FORCING] * sine
+    drive = m[at.FORCING] * sine + m[at.CUBIC]
     after_1 = acceleration(m, at.OSCILLATOR_1, drive, m[row + 1], v1)
     after_2 = acceleration(m, at.OSCILLATOR_2, drive, m[row + 2], v2)
     before_1 = acceleration(m, at.OSCILLATOR_1, drive, m[row + 1], b1)

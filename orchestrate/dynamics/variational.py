@@ -50,7 +50,7 @@ def call_of(impacts: Impacts, end: float, point: Point) -> Call:
     """Return a call about non-dimensional impacts up to an end in tau."""
     structure, excitation = point
     values = [float(getattr(structure, name)) for name in DEVIATING]
-    numbers = np.array([*values, excitation.amplitude, excitation.frequency])
+    numbers = np.array([*values, excitation.amplitude, excitation.frequency, 0.0])
     states, omega = point.from_faces(impacts.state), structure.omega
     columns = impacts.time / omega, states, impacts.closing * point.speed, impacts.sticks
     rows, count = np.column_stack(columns).astype(float), len(impacts.time)
@@ -74,6 +74,24 @@ def deviations(impacts: Impacts, end: float, point: Point) -> tuple[Floats, Floa
     places = (part.ctypes.data for part in (call.memory, matrices, durations))
     library().find_deviations(*call.span, *places)
     return matrices, durations
+
+
+def contact_durations(
+    form: ClosedForm, phase: Floats, position: Floats, velocity: Floats, spans: Floats
+) -> Floats:
+    """Return how long permanent contacts last, in tau; infinite if not released in the span."""
+    mu, eta, push = form.mu, form.eta, -form.offset[0] * form.stiffness[0]
+    dampers = 2.0 * form.damping[0], 2.0 * form.damping[1] * mu
+    half = 1.0, mu, 1.0, mu * form.stiffness[1], *dampers, form.e, 1.0, 0.0
+    numbers = np.array([*half, form.gap_offset, 0.0, eta**-2.0, eta, push])
+    durations, matrix = np.empty(len(spans)), np.empty((4, 4))
+    memory = np.empty(library().exponent_size(1))
+    places = numbers.ctypes.data, memory.ctypes.data, matrix.ctypes.data
+    columns = phase / eta, position, position, velocity, velocity, 0.0 * phase, 1.0 + 0.0 * phase
+    for i, row in enumerate(np.column_stack(columns)):
+        given = places[0], row.ctypes.data, 1, row[0] + 1.5 * spans[i]
+        library().find_deviations(*given, *places[1:], durations[i:].ctypes.data)
+    return np.where(durations <= spans, durations, np.inf)
 
 
 def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:

@@ -2,8 +2,8 @@
 #include "fmi.h"
 #include "growth.h"
 
-enum { NUMBERS = 13 };
-static const int places[NUMBERS] = {M1, M2, K1, K2, D1, D2, E, GAMMA, BONDED, CLEARANCE, E_SLOPE, BOX_AMPLITUDE, BOX_AMPLITUDE + 1};
+enum { NUMBERS = 14 };
+static const int places[NUMBERS] = {M1, M2, K1, K2, D1, D2, E, GAMMA, BONDED, CLEARANCE, E_SLOPE, BOX_AMPLITUDE, BOX_AMPLITUDE + 1, BOX_ACCELERATION};
 
 /* Numbers of the memory for so many impacts. */
 EXPORT size_t exponent_size(size_t count) { return TABLES + (ROW + 2 * STATES * STATES + 4) * count + 2 * (GROWTHS + 64); }

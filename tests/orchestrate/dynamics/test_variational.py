@@ -9,9 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from orchestrate.dynamics.closed_form import ClosedForm, contact_durations
+from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.dynamics.following import follow_impacts
-from orchestrate.dynamics.variational import deviations, monodromy, period_in_tau
+from orchestrate.dynamics.variational import (
+    contact_durations,
+    deviations,
+    monodromy,
+    period_in_tau,
+)
 from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
