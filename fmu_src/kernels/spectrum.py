@@ -27,28 +27,27 @@ def amplitudes(m, time):
     """
     count = int(m[COUNT])
     length = transform_length(count)
-    chirp = HEAD + count
-    one, other = chirp + 2 * count, chirp + 2 * count + 2 * length
-    mean = 0.0
+    one = HEAD + count
+    other = one + 2 * length
+    mean, whole, part = 0.0, 0.0, 0
     for k in range(count):
         mean += m[HEAD + k] / count
-    write_chirp(m, chirp, count)
     for k in range(2 * length):
         m[one + k] = 0.0
         m[other + k] = 0.0
-    whole = 0.0
     for k in range(count):
-        sine, cosine = sincos_turns(k / count)
-        weight = 0.5 - 0.5 * cosine
+        _, turn = sincos_turns(k / count)
+        weight = 0.5 - 0.5 * turn
         whole += weight * m[HEAD + k]
         value = weight * (m[HEAD + k] - mean)
-        m[one + 2 * k] = value * m[chirp + 2 * k]
-        m[one + 2 * k + 1] = 0.0 - value * m[chirp + 2 * k + 1]
-        m[other + 2 * k] = m[chirp + 2 * k]
-        m[other + 2 * k + 1] = m[chirp + 2 * k + 1]
+        sine, cosine = sincos_turns(0.5 * part / count)
+        m[one + 2 * k], m[one + 2 * k + 1] = value * cosine, 0.0 - value * sine
+        m[other + 2 * k], m[other + 2 * k + 1] = cosine, sine
         if k > 0:
-            m[other + 2 * (length - k)] = m[chirp + 2 * k]
-            m[other + 2 * (length - k) + 1] = m[chirp + 2 * k + 1]
+            m[other + 2 * (length - k)], m[other + 2 * (length - k) + 1] = cosine, sine
+        part += 2 * k + 1  # k^2, without whole turns of the chirp
+        if part >= 2 * count:
+            part -= 2 * count
     turns = other + 2 * length
     for k in range(int(length / 2)):
         m[turns + 2 * k + 1], m[turns + 2 * k] = sincos_turns(0.0 - k / length)
@@ -68,16 +67,6 @@ def amplitudes(m, time):
         m[HEAD + int(count / 2)] *= 0.5
     m[HEAD] = abs(2.0 * whole / count)
     return 0
-
-
-def write_chirp(m, chirp, count):
-    """Write cosine and sine of half a turn times k^2/count for each k."""
-    part = 0  # k^2, without whole turns
-    for k in range(count):
-        m[chirp + 2 * k + 1], m[chirp + 2 * k] = sincos_turns(0.5 * part / count)
-        part += 2 * k + 1
-        if part >= 2 * count:
-            part -= 2 * count
 
 
 def transform(m, first, turns, length):

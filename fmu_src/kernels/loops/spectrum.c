@@ -3,7 +3,7 @@
 #include "lines.h"
 
 /* Numbers of the memory for so many samples. */
-EXPORT size_t spectrum_size(size_t count) { return HEAD + 3 * count + 5 * (size_t)transform_length((int)count); }
+EXPORT size_t spectrum_size(size_t count) { return HEAD + count + 5 * (size_t)transform_length((int)count); }
 
 static void transform_signal(double *memory, size_t count) {
     memory[COUNT] = (double)count;
