@@ -180,17 +180,6 @@ export class Oscillator {
     if (!begun) throw new Error(this.library.message());
   }
 
-  /** States at equal parts of a span, the last at its end. @param {number} time @param {number} target @param {number} count */
-  sampled(time, target, count) {
-    const rooms = new Rooms(this.library);
-    const room = rooms.array("f64", 4 * count);
-    const done = this.library.calls.sample_evenly(this.own, time, target, count, room);
-    const states = new Float64Array(this.library.view("f64", room, 4 * count));
-    rooms.free();
-    if (!done) throw new Error(this.library.message());
-    return states;
-  }
-
   /**
    * Amplitudes of mass 1's absolute acceleration, impulses included, of the motion that goes on from where the instance stands.
    * @param {Point} point

@@ -161,7 +161,9 @@ def test_a_response_that_settles_slowly_repeats_after_no_invented_period(chromiu
     found = chromium.run(f"return [{response}.multiplicity, {response}.decided]")
     (row,) = zip(data.multiplicity.values, data.multiplicity_decided.values, strict=True)
     assert found == list(row) == [1, 2]
+    chromium.until("return explorer.inspector.exponent")
     assert chromium.text("sentence").startswith("Undecided whether it repeats, perhaps after 1 p")
+    assert "repeats afterundecided" in chromium.text("numbers")
     chromium.until("return explorer.basin.tried")
     assert not chromium.run("return explorer.basin.others")
     assert chromium.console() == []
