@@ -30,11 +30,7 @@ KERNELS = {  # headers that a source may include, translated from Python
         "describe": linear_response.describe,
     },
     "lines.h": {"amplitudes": spectrum.amplitudes},
-    "growth.h": {
-        "deviate": deviations.deviate,
-        "grow": deviations.grow,
-        "average": deviations.average,
-    },
+    "deviations.h": {"deviate": deviations.deviate},
 }
 
 

@@ -8,8 +8,6 @@ In the subset of Python that :mod:`fmu_src.export.translation` translates, over 
 memory, for its constants and certified roots; tables follow.
 """
 
-import math
-
 from .numerics.elementary import fraction, sincos_turns
 from .oscillator import memory as at
 from .oscillator.excitation import begin_segment
@@ -25,11 +23,6 @@ IMPACTS, SPAN_END, TABLES = at.SIZE, at.SIZE + 1, at.SIZE + 2
 ROW, STATES = 7, 4
 SMALLEST = 1e-300  # closing speed: a grazing impact has none, its matrix is very large instead
 WORK = 1e7  # evaluations until a release is given up
-# of growth: matrices, their rows, how many make a block, whether a vector becomes zero; the vector
-COUNT, ROWS, BLOCK_SIZE, VANISHES, VECTOR = range(5)
-# of averages: blocks, groups of them, the mean and its standard error; then growth and durations
-BATCHES, MEAN, ERROR, GROWTHS = 1, 2, 3, 4
-LN2 = 0.6931471805599453
 
 
 def deviate(m, time):
@@ -134,86 +127,3 @@ def flow(m, matrix, one, other, time):
             x, v = m[matrix + STATES * mass + k], m[matrix + STATES * (mass + 2) + k]
             m[matrix + STATES * mass + k] = (c + damping * s) * x + s * v
             m[matrix + STATES * (mass + 2) + k] = (c - damping * s) * v - square * s * x
-
-
-def grow(m, time):
-    """Write the logarithm of a vector's growth over each block of successive matrices."""
-    count, rows, size = int(m[COUNT]), int(m[ROWS]), int(m[BLOCK_SIZE])
-    other, total, done = VECTOR + rows, 0.0, 0
-    matrix = other + rows
-    found = matrix + rows * rows * count
-    m[VANISHES] = 0.0
-    for k in range(rows):
-        m[VECTOR + k] = 1.0 / (1.0 + 0.7 * k)  # in no special direction
-    for i in range(count):
-        largest, square = 0.0, 0.0
-        for k in range(rows):
-            value = 0.0
-            for j in range(rows):
-                value += m[matrix + rows * k + j] * m[VECTOR + j]
-            m[other + k] = value
-            largest = max(largest, abs(value))
-        if largest == 0.0:
-            m[VANISHES] = 1.0
-            return 0
-        for k in range(rows):
-            square += (m[other + k] / largest) * (m[other + k] / largest)
-        norm = math.sqrt(square)
-        for k in range(rows):
-            m[VECTOR + k] = m[other + k] / largest / norm
-        total += logarithm(largest) + logarithm(norm)
-        matrix += rows * rows
-        done += 1
-        if done == size or i == count - 1:
-            m[found] = total
-            found += 1
-            total, done = 0.0, 0
-    return 0
-
-
-def average(m, time):
-    """Write the mean growth per unit of tau, and its standard error by batch means; the first group
-    of blocks is left out.
-    """
-    count, batches = int(m[COUNT]), int(m[BATCHES])
-    first, groups = int(count / batches), batches - 1
-    each = int((count - first) / groups)
-    more = count - first - groups * each  # the first groups have one block more
-    growth, time_done, means, squares, block = 0.0, 0.0, 0.0, 0.0, first
-    for passes in range(2):
-        block = first
-        squares = 0.0
-        for group in range(groups):
-            size = each
-            if group < more:
-                size = each + 1
-            own, duration = 0.0, 0.0
-            for _ in range(size):
-                own += m[GROWTHS + block]
-                duration += m[GROWTHS + count + block]
-                block += 1
-            if passes == 0:
-                growth += own
-                time_done += duration
-                means += own / duration / groups
-            squares += (own / duration - means) * (own / duration - means)
-    m[MEAN] = growth / time_done
-    m[ERROR] = math.sqrt(squares / (groups - 1) / groups)
-    return 0
-
-
-def logarithm(x):
-    """Return the natural logarithm of a number above zero."""
-    k = 0
-    while x > 1.5:
-        x *= 0.5
-        k += 1
-    while x < 0.75:
-        x *= 2.0
-        k -= 1
-    s = (x - 1.0) / (x + 1.0)
-    y = s * s
-    total = 0.0
-    for n in range(23, 0, -2):
-        total = total * y + 1.0 / n
-    return k * LN2 + 2.0 * s * total

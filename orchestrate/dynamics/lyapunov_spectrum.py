@@ -42,21 +42,17 @@ def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> Bl
     given = np.ascontiguousarray(matrices)
     count, rows = given.shape[:2]
     size = max(1, count // blocks)
-    growth, room = np.empty(-(-count // size)), count + count * rows * rows // (STATES * STATES)
-    memory = np.empty(library().exponent_size(room))
-    sizes, places = (count, rows, size), (memory.ctypes.data, growth.ctypes.data)
-    if not library().find_growth(given.ctypes.data, *sizes, *places):
+    growth = np.empty(-(-count // size))
+    if not library().find_growth(given.ctypes.data, count, rows, size, growth.ctypes.data):
         return None
     return BlockGrowth(growth, np.diff(np.append(times[::size], end)))
 
 
 def growth_by_batch_means(blocks: BlockGrowth, batches: int) -> tuple[float, float]:
     """Return the mean growth per unit of tau, and its standard error by batch means."""
-    growth, durations = map(np.ascontiguousarray, blocks)
-    memory, mean = np.empty(library().exponent_size(len(growth))), np.empty(2)
-    columns, places = (growth, durations), (memory.ctypes.data, mean.ctypes.data)
-    addresses = (column.ctypes.data for column in columns)
-    library().find_average(*addresses, len(growth), batches, *places)
+    growth, durations = (np.ascontiguousarray(column) for column in blocks)
+    mean, columns = np.empty(2), (growth.ctypes.data, durations.ctypes.data)
+    library().find_average(*columns, len(growth), batches, mean.ctypes.data)
     return float(mean[0]), float(mean[1])
 
 

@@ -26,12 +26,11 @@ def library() -> Any:
     loaded, table = loaded_loop("exponent"), [c_void_p, c_size_t]
     loaded.exponent_size.argtypes, loaded.exponent_size.restype = [c_size_t], c_size_t
     span = [c_void_p, *table, c_double]
-    loaded.find_deviations.argtypes = [*span, *[c_void_p] * 3]
-    loaded.find_growth.argtypes = [*table, c_size_t, c_size_t, c_void_p, c_void_p]
-    loaded.find_average.argtypes = [c_void_p, *table, c_size_t, c_void_p, c_void_p]
+    loaded.find_deviations.argtypes, loaded.find_deviations.restype = [*span, c_void_p], c_size_t
+    loaded.find_growth.argtypes = [*table, c_size_t, c_size_t, c_void_p]
+    loaded.find_average.argtypes = [c_void_p, *table, c_size_t, c_void_p]
     loaded.largest_exponent.argtypes = [*span, c_size_t, c_size_t, c_void_p, c_void_p]
-    for name in ("find_deviations", "find_average", "largest_exponent"):
-        getattr(loaded, name).restype = None
+    loaded.find_average.restype = loaded.largest_exponent.restype = None
     loaded.find_growth.restype, loaded.wander_floor.restype = c_bool, c_double
     loaded.wander_floor.argtypes = [c_double, c_double]
     loaded.classify_exponent.argtypes, loaded.classify_exponent.restype = [c_double] * 4, c_int
@@ -69,11 +68,10 @@ def deviations(impacts: Impacts, end: float, point: Point) -> tuple[Floats, Floa
     """Return matrices (n, 4, 4) that map a deviation from each impact to the next, just before
     both, and how long permanent contact lasts after each, in tau; 0 without.
     """
-    matrices, durations = np.empty((len(impacts.time), 4, 4)), np.empty(len(impacts.time))
-    call = call_of(impacts, end, point)
-    places = (part.ctypes.data for part in (call.memory, matrices, durations))
-    library().find_deviations(*call.span, *places)
-    return matrices, durations
+    call, count = call_of(impacts, end, point), len(impacts.time)
+    first = library().find_deviations(*call.span, call.memory.ctypes.data)
+    last = first + 16 * count
+    return call.memory[first:last].reshape(count, 4, 4), call.memory[last : last + count]
 
 
 def contact_durations(
@@ -84,25 +82,12 @@ def contact_durations(
     dampers = 2.0 * form.damping[0], 2.0 * form.damping[1] * mu
     half = 1.0, mu, 1.0, mu * form.stiffness[1], *dampers, form.e, 1.0, 0.0
     numbers = np.array([*half, form.gap_offset, 0.0, eta**-2.0, eta, push])
-    durations, matrix = np.empty(len(spans)), np.empty((4, 4))
-    memory = np.empty(library().exponent_size(1))
-    places = numbers.ctypes.data, memory.ctypes.data, matrix.ctypes.data
+    durations, memory = np.empty(len(spans)), np.empty(library().exponent_size(1))
     columns = phase / eta, position, position, velocity, velocity, 0.0 * phase, 1.0 + 0.0 * phase
     for i, row in enumerate(np.column_stack(columns)):
-        given = places[0], row.ctypes.data, 1, row[0] + 1.5 * spans[i]
-        library().find_deviations(*given, *places[1:], durations[i:].ctypes.data)
+        given = numbers.ctypes.data, row.ctypes.data, 1, row[0] + 1.5 * spans[i]
+        durations[i] = memory[library().find_deviations(*given, memory.ctypes.data) + 16]
     return np.where(durations <= spans, durations, np.inf)
-
-
-def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:
-    """Return the monodromy matrix (4, 4) over some periods from phase 0, impacts included."""
-    form = ClosedForm.from_structure(*point)
-    end = periods * period_in_tau(form.eta)
-    first = impacts.time[0] if len(impacts.time) else end
-    matrix: Floats = form.flight(np.array([first]))[0]
-    for each in deviations(impacts, end, point)[0]:
-        matrix = each @ matrix
-    return matrix
 
 
 def nondimensional_impacts(impacts: Impacts, point: Point) -> Impacts:

@@ -14,7 +14,6 @@ from orchestrate.dynamics.following import follow_impacts
 from orchestrate.dynamics.variational import (
     contact_durations,
     deviations,
-    monodromy,
     period_in_tau,
 )
 from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
@@ -58,6 +57,17 @@ def differences(instance, point, start, periods):
         for d in step * np.diag(point.scale)
     ]
     return np.array(columns).T / point.scale[:, None] / (2.0 * step)
+
+
+def monodromy(impacts, point, periods=1):
+    """Monodromy matrix over some periods from phase 0, impacts included."""
+    form = ClosedForm.from_structure(*point)
+    end = periods * period_in_tau(form.eta)
+    first = impacts.time[0] if len(impacts.time) else end
+    matrix = form.flight(np.array([first]))[0]
+    for each in deviations(impacts, end, point)[0]:
+        matrix = each @ matrix
+    return matrix
 
 
 @pytest.mark.parametrize(
