@@ -58,13 +58,12 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
     "kernels.oscillator": {"kernels.numerics"},
     "kernels.shaker": {"kernels.numerics"},
     "kernels.electrodynamic_shaker": {"kernels.numerics"},
-    "kernels.spectrum": {"kernels.numerics"},
     "kernels.deviations": {"kernels.numerics", "kernels.oscillator"},
     "runtime": set(),
     "models": {"kernels.oscillator", "kernels.shaker", "runtime", "version"}
     | {"kernels.electrodynamic_shaker"},
     "export": {"runtime", "kernels.repetition", "kernels.linear_response"}
-    | {"kernels.spectrum", "kernels.deviations"},
+    | {"kernels.numerics", "kernels.deviations"},
 }
 DYNAMIC = {"orchestrate/__init__.py", "orchestrate/reader_child.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them

@@ -10,7 +10,8 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from ..kernels import deviations, linear_response, repetition, spectrum
+from ..kernels import deviations, linear_response, repetition
+from ..kernels.numerics import turn
 from .archive import guid_of
 from .compiler import link
 from .errors import CannotExport
@@ -29,7 +30,7 @@ KERNELS = {  # headers that a source may include, translated from Python
         "nearest": repetition.nearest,
         "describe": linear_response.describe,
     },
-    "lines.h": {"amplitudes": spectrum.amplitudes},
+    "turn.h": {"turn": turn.turn},
     "deviations.h": {"deviate": deviations.deviate},
 }
 
