@@ -94,12 +94,9 @@ def library() -> Any:
     loaded.find_gaps.restype = loaded.find_accelerations.restype = None
     loaded.to_rest.restype = None
     loaded.sample_evenly.restype = loaded.sample_periods.restype = c_bool
-    for name in (
-        "decide_multiplicity",
-        "find_repetition",
-        "nearest_state",
-        "describe_linear_response",
-    ):
+    loaded.nearest_state.argtypes = [c_void_p, c_size_t, c_double, c_double, c_void_p, c_void_p]
+    loaded.nearest_state.restype = c_double
+    for name in ("decide_multiplicity", "find_repetition", "describe_linear_response"):
         getattr(loaded, name).argtypes = [c_void_p]
     return loaded
 
