@@ -71,6 +71,7 @@ EXPORT void find_accelerations(const double *states, size_t count, const double 
         accelerations[1] = -(s[K2] / s[M2] * states[X2] + s[D2] / s[M2] * states[V2]);
         if (!touching[i]) continue;
         for (int j = 0; j < 2; j++) accelerations[j] = -(stiffness * states[X1 + j] + damping * states[V1 + j]);
+        if (offset == 0.0) continue;
         accelerations[0] += s[K2] / mass * offset;  /* each is loaded by the other one's spring where it is at 0 itself */
         accelerations[1] += -s[K1] / mass * offset;
     }
