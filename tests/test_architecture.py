@@ -47,7 +47,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "paper": BELOW_ANSWERS | {"__init__", "response", "dynamics", "weak_drive", "show"},
     "__init__": BELOW_ANSWERS
     | {"response", "dynamics", "laboratory", "diagnosis", "weak_drive", "show"},
-    "explorer": BELOW_ANSWERS,
+    "explorer": BELOW_ANSWERS | {"response", "dynamics", "laboratory"},
     "cli": BELOW_ANSWERS
     | {"__init__", "laboratory", "weak_drive", "diagnosis", "show", "paper"}
     | {"explorer"},
@@ -58,10 +58,12 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
     "kernels.oscillator": {"kernels.numerics"},
     "kernels.shaker": {"kernels.numerics"},
     "kernels.electrodynamic_shaker": {"kernels.numerics"},
+    "kernels.deviations": {"kernels.numerics", "kernels.oscillator"},
     "runtime": set(),
     "models": {"kernels.oscillator", "kernels.shaker", "runtime", "version"}
     | {"kernels.electrodynamic_shaker"},
-    "export": {"runtime", "kernels.repetition", "kernels.linear_response"},
+    "export": {"runtime", "kernels.repetition", "kernels.linear_response"}
+    | {"kernels.numerics", "kernels.deviations"},
 }
 DYNAMIC = {"orchestrate/__init__.py", "orchestrate/reader_child.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them
@@ -213,23 +215,75 @@ def test_the_sources_of_the_fmus_are_known_in_six_places():
     assert found == {*access, rule, "orchestrate/model/ranges.py", "orchestrate/version.py"}
 
 
-DRAWING = {
-    "animation",
-    "diagram",
-    "diagram_view",
-    "scale",
-    "waveform",
-}  # angles, logarithmic axes, clicks
-UNITS = {"structure", "opening"}  # frequencies and damping ratios of a structure that is entered
-OWN = {"lyapunov", "spectrum", "record"}  # still computed by the page itself
+PAGE = {  # modules of the explorer's page by what they are for; a new one needs a decision
+    "drawing and sound": {
+        *("animation", "audio", "basin_view", "chart", "diagram_view", "motion_view", "overlay"),
+        *("pen", "picture", "scale", "theme", "waveform"),
+    },
+    "units of a structure that is entered": {"excitation", "structure", "units"},
+    "calls of the compiled loops": {"kernel", "model"},
+    "what is asked, in which order": {
+        *("basin", "diagram", "motion", "payload", "regions", "requests", "response", "tasks"),
+        *("worker", "worker_pool"),
+    },
+    "input, words and files": {
+        *("app", "basin_part", "caption", "command", "controls", "diagram_input", "drive_part"),
+        *("field", "files", "inspector", "link", "main", "opening", "player", "saving", "shaking"),
+        *("tables", "tour_part", "words_of"),
+    },
+    "computed by the page itself": {"coupled"},
+}
+FUNCTIONS_OF_PAGE = {  # of Math: axes, dots, swinging box, clicks, natural frequencies
+    **{"scale": {"log", "log10"}, "diagram": {"log10"}, "animation": {"sin"}},
+    **{"waveform": {"sqrt", "exp", "sin"}, "structure": {"sqrt"}},
+    "diagram_view": {"sqrt"},
+}
+COMMENT_OR_TEXT = re.compile(r"/\*[\s\S]*?\*/|//[^\n]*|\"[^\"\n]*\"")
+MATHEMATICS = re.compile(r"\bMath\.(?!abs|ceil|floor|max|min|PI|round|sign)(\w+)")
+PARAMETERS = re.compile(r"\b(?:m1|m2|k1|k2|d1|d2|gamma|e_slope)\b|\.clearance\b")
+OF_STATES = re.compile(r"\bstates?\[[^\]]*\]\s*[-+*/]|[-+*/]\s*(?:\w+\.)?states?\[")
+EXPORTS = re.compile(r"\bcalls\b|\.exports\b")
 
 
-def test_what_the_page_computes_by_itself():
-    """Motions and decisions come from the compiled loops."""
+def model_arithmetic(name: str, source: str) -> set[str]:
+    """What a module of the page may not have: arithmetic of the model.
+
+    - Functions of Math beyond rounding and comparison, but for axes, sound and units.
+    - Parameters of the structure, but where units are: no equation of motion does without.
+    - Sums and products of states, but where they are drawn.
+    - Functions of the compiled loops, but where they are called for all others.
+    """
+    code = COMMENT_OR_TEXT.sub("", source)
+    drawing, units, calls = list(PAGE.values())[:3]
+    found = set(MATHEMATICS.findall(code)) - FUNCTIONS_OF_PAGE.get(name, set())
+    for rule, allowed in ((PARAMETERS, units), (OF_STATES, drawing), (EXPORTS, calls)):
+        found |= set() if name in allowed else set(rule.findall(code))
+    return found
+
+
+def test_the_page_computes_nothing_of_the_model():
     folder = ROOT / "orchestrate/explorer/page"
-    functions = re.compile(r"Math\.(?:sin|cos|tan|sqrt|exp|log\d*|hypot|pow)\b")
     texts = {file.stem: file.read_text(encoding="utf-8") for file in folder.glob("*.js")}
-    assert {name for name, text in texts.items() if functions.search(text)} <= DRAWING | UNITS | OWN
+    named = [name for names in PAGE.values() for name in names]
+    assert sorted(named) == sorted(texts)
+    found = {name: model_arithmetic(name, text) for name, text in texts.items()}
+    assert {name: wrong for name, wrong in found.items() if wrong} == {}
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "const swing = Math.hypot(stiffness - mass * square, damping * frequency);",
+        "const force = -(s.k1 * x1 + s.d1 * v1) / s.m1;",
+        "const { k1, m1 } = structure;",
+        "const gap = states[4 * i + 1] - states[4 * i];",
+        "const preload = Math.max(0, -structure.clearance);",
+        "instance.library.calls.begin(instance.own, task, 0);",
+    ],
+)
+def test_arithmetic_of_the_model_is_seen(line):
+    assert model_arithmetic("tables", line)
+    assert not model_arithmetic("tables", f'/** {line} */ const text = "Math.hypot(s.k1)";')
 
 
 def test_imports_can_be_read():

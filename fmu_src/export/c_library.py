@@ -10,7 +10,8 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from ..kernels import linear_response, repetition
+from ..kernels import deviations, linear_response, repetition
+from ..kernels.numerics import turn
 from .archive import guid_of
 from .compiler import link
 from .errors import CannotExport
@@ -26,8 +27,11 @@ KERNELS = {  # headers that a source may include, translated from Python
         "decide": repetition.decide,
         "repeat": repetition.repeat,
         "confirm": repetition.confirm,
+        "nearest": repetition.nearest,
         "describe": linear_response.describe,
     },
+    "turn.h": {"turn": turn.turn},
+    "deviations.h": {"deviate": deviations.deviate},
 }
 
 

@@ -25,10 +25,13 @@ TARGET = ("-target", "wasm32-wasi", "-mcpu=mvp+bulk_memory+nontrapping_fptoint")
 LINK_FLAGS = ("-mexec-model=reactor", "-Wl,--no-entry", "-Wl,--strip-all")
 SECTION = "guid"  # name of the custom section that bears the GUID
 WEB = ROOT / "runtime" / "web"
-IN_PAGES = ("respond.c", "play.c")  # loops
+IN_PAGES = ("respond.c", "play.c", "spectrum.c", "exponent.c")  # loops
 EXPORTED = (
     *("malloc", "free", "open_fmu", "close_fmu", "memory_of", "message"),
     *("begin", "respond", "sample_evenly", "memory_size", "describe_linear_response", "play"),
+    *("find_gaps", "find_accelerations", "carry_state", "nearest_state", "spectrum_size"),
+    *("acceleration_spectrum", "exponent_size", "largest_exponent", "wander_floor"),
+    "classify_exponent",
 )
 
 

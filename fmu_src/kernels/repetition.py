@@ -9,7 +9,9 @@ co-ordinate, and room for deviations.
 COUNT, FREQUENCY, GAP, TOLERANCE, MULTIPLICITY, DECIDED, DEVIATION, LATER, AWAY = range(9)
 # of :func:`confirm`: impacts over the samples, over as many periods as it repeats after, and
 # whether no motion without impacts exists
-IMPACTS, OWN_IMPACTS, MUST, HEAD = range(9, 13)
+IMPACTS, OWN_IMPACTS, MUST = range(9, 12)
+# sizes of displacements, gap and its rate; of :func:`nearest` the state whose neighbour is found
+SIZE, SIZE_OF_GAP, SIZE_OF_RATE, GIVEN, HEAD = 12, 13, 14, 15, 19
 STATE, COLUMNS = 4, 6  # numbers of a state, and of a scaled one: the gap and its rate come last
 IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
 MIN_RELATIVE_GAP = 1.0 / 1048576.0  # of the motion's size: smaller gaps are as large
@@ -121,6 +123,28 @@ def confirm(m, time):
     return 0
 
 
+def nearest(m, time):
+    """Write the number of the state that is nearest to a given one, in place of a multiplicity, and
+    its distance, in place of a deviation: the largest difference as a part of the motion's size.
+    """
+    scale(m, 0)
+    count, rows = int(m[LATER]), scaled_rows(m)
+    x1, x2 = m[GIVEN] / m[SIZE], m[GIVEN + 1] / m[SIZE]
+    v1, v2 = m[GIVEN + 2] / m[FREQUENCY], m[GIVEN + 3] / m[FREQUENCY]
+    gap, rate = (m[GIVEN + 1] - m[GIVEN]) / m[SIZE_OF_GAP], (v2 - v1) / m[SIZE_OF_RATE]
+    v1, v2 = v1 / m[SIZE], v2 / m[SIZE]
+    m[DEVIATION] = INFINITE
+    for k in range(count):
+        at = rows + k
+        away = max(abs(m[at] - x1), abs(m[at + count] - x2), abs(m[at + 2 * count] - v1))
+        away = max(away, abs(m[at + 3 * count] - v2), abs(m[at + 4 * count] - gap))
+        away = max(away, abs(m[at + 5 * count] - rate))
+        if away < m[DEVIATION]:
+            m[DEVIATION] = away
+            m[MULTIPLICITY] = k
+    return 0
+
+
 def lacks_impacts(impacts, n, must):
     """Return whether so many impacts, namely none, are too few for n periods to last."""
     return impacts == 0.0 and (must != 0.0 or n > 1)
@@ -164,6 +188,7 @@ def scale(m, first):
         size = 1.0
     of_gap = max(m[GAP], MIN_RELATIVE_GAP * size)
     of_rate = max(of_gap, rate)
+    m[SIZE], m[SIZE_OF_GAP], m[SIZE_OF_RATE] = size, of_gap, of_rate
     for k in range(later):
         at = states + STATE * k
         x1, x2 = m[at], m[at + 1]

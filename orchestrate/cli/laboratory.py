@@ -24,6 +24,7 @@ from .options import (
     structure_group,
 )
 from .output import (
+    COLUMNS,
     FORMAT,
     OUTPUT,
     READING,
@@ -256,10 +257,6 @@ ANALYSES = {
     "shock": Analysis("shock_spectrum", ("damping",), "shock response spectrum"),
     "density": Analysis("probability_density", ("bins",), "probability density, skewness"),
 }
-COLUMNS = f"""
---columns A=X,B=Y  columns by name or number from 0: CHANNEL=COLUMN,... with the channels time,
-    {", ".join(MASSES)}
-"""
 SETTINGS = """
 --resolution HZ  distance of the lines, Hz, of frf, psd and spectrogram
 --window WORD  hann (default), flattop, boxcar and others

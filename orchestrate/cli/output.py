@@ -32,6 +32,10 @@ OWN_NAME = re.compile(rf"[a-z-]+_(.+)_[0-9a-f]{{{DIGITS}}}")  # of a result's fi
 
 # -- options --------------------------------------------------------------------------------------
 
+COLUMNS = """
+--columns A=X,B=Y  columns by name or number from 0: CHANNEL=COLUMN,... with the channels time,
+    box_acceleration, acceleration1, acceleration2
+"""
 READING = """
 --unit UNIT  g, mm/s ..., or by channel: base=V,face1=mm/s,time=us (default: what the file says)
 --sensitivity VALUE  of voltages: "100 mV/g", or by channel "base=100 mV/g,face1=50 mV/(mm/s)"

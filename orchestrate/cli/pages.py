@@ -13,6 +13,8 @@ from .answer import read_earlier_result
 from .grammar import parse_changes
 from .options import read_structure_options, structure_group
 from .output import (
+    COLUMNS,
+    READING,
     UNITS,
     check_output,
     read_running_options,
@@ -21,7 +23,7 @@ from .output import (
     running_group,
 )
 from .stored import print_difference, structure_of
-from .table import Command, Group
+from .table import Command, Group, values_of
 
 
 def run_build(arguments: argparse.Namespace) -> None:
@@ -93,16 +95,29 @@ def read_diagram(arguments: argparse.Namespace, branches: xr.Dataset | None) -> 
     return data
 
 
+def read_record_option(arguments: argparse.Namespace) -> xr.Dataset | None:
+    """Read the file of ``--record``; None without one."""
+    from .. import read_record
+
+    reading = values_of(arguments, (COLUMNS, READING))
+    given = [name for name, value in reading.items() if value]
+    if arguments.record is None and given:
+        raise InputError(f"--{given[0].replace('_', '-')}: expected with --record alone")
+    return None if arguments.record is None else read_record(arguments.record, **reading)
+
+
 def run_explore(arguments: argparse.Namespace) -> None:
     """Run ``explore``: write the explorer's HTML page and open it in the browser."""
     from ..explorer.page import explore
 
+    record = read_record_option(arguments)
     branches = arguments.branches and read_earlier_result("--branches", arguments.branches)
     data = read_diagram(arguments, branches)
     page = explore(
         data,
         output=arguments.output,
         branches=branches,
+        record=record,
         units=read_units(arguments),
         build_folder=arguments.build_folder,
     )
@@ -118,7 +133,8 @@ EXPLORE = Command(
     "open a page that shows orbit diagrams and motions, computed in the browser",
     """  {program} explore                              the paper's Figure 6
   {program} explore results/sweep_paper_7e3015.nc   an own sweep: a click replays its responses
-  {program} explore --set e=0.3 --no-open --output page.html""",
+  {program} explore --set e=0.3 --no-open --output page.html
+  {program} explore --structure beam --record run.csv --unit g    a measurement beside the model""",
     (
         Group(
             options="result RESULT ?  NetCDF file of a sweep along the frequency (default: the "
@@ -129,11 +145,14 @@ EXPLORE = Command(
             "page",
             """
             --branches FILE  NetCDF file of branches over eta, drawn over the diagram
+            --record FILE  measured record, drawn over the spectrum of a beam in Hz: of a swept sine
+                its orders at the frequency that is shown
             --output FILE = explorer.html  the page
             --no-open  only write it
             --build-folder FOLDER  where the compiled kernel is looked for and put
             """,
         ),
+        Group("how to read the record", (COLUMNS, READING)),
         UNITS,
     ),
     run_explore,

@@ -179,8 +179,8 @@ class MotionDecider:
         begin(self.plain, *self.point, state)
         if motion.free_phase > 0.0:
             self.plain.step(0.0, motion.free_phase / excitation.frequency)
-        there, states = self.plain.get(*STATE), motion.free_states
-        before = states.nearest(there)[1]
+        there = self.plain.get(*STATE)
+        before = motion.nearest_free(there)[1]
         if before < self.settings.same or not before < self.settings.near:
             return before < self.settings.same
         rate = max(motion.multiplier, 1e-3)
@@ -189,7 +189,7 @@ class MotionDecider:
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)
-        after = states.nearest(self.plain.get(*STATE))[1]
+        after = motion.nearest_free(self.plain.get(*STATE))[1]
         return after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
 
     # -- orbits -----------------------------------------------------------------------------------
@@ -249,16 +249,16 @@ class MotionDecider:
         excitation = self.point.excitation
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         try:
-            begin(self.plain, self.point.structure, shifted, motion.free_states.states[0])
+            begin(self.plain, self.point.structure, shifted, motion.free_states[0])
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
         self.plain.step(0.0, motion.multiplicity * excitation.period)
-        return motion.free_states.nearest(self.plain.get(*STATE))[1] < self.settings.same
+        return motion.nearest_free(self.plain.get(*STATE))[1] < self.settings.same
 
     def repeats_in_fmu(self, motion: SettledMotion) -> bool:
         """Return whether the FMU, started on an orbit, has its impacts and comes back to it."""
         # by `gamma` chattering may have an impact more or less: a root that is no motion of the FMU
-        instance, orbit, states = self.eventful, motion.orbit, motion.free_states
+        instance, orbit, nearest = self.eventful, motion.orbit, motion.nearest_free
         assert instance is not None and orbit is not None, "no orbit"
         begun = motion.free_phase / self.point.excitation.frequency
         end = begun + motion.multiplicity * self.point.excitation.period
@@ -268,9 +268,9 @@ class MotionDecider:
             return False
         if begun > 0.0:
             instance.impacts(0.0, begun)
-        first = states.nearest(instance.read(*STATE))[0]
+        first = nearest(instance.read(*STATE))[0]
         impacts = len(instance.impacts(begun, end).time)
-        last, away = states.nearest(instance.read(*STATE))
+        last, away = nearest(instance.read(*STATE))
         return impacts == orbit.sequence.impacts and last == first and away < self.settings.returns
 
 

@@ -19,7 +19,7 @@ from ..running.job import Table
 from ..running.options import Running
 from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov import exponent_of
-from .variational import contact_durations_after, period_in_tau
+from .variational import deviations, period_in_tau
 
 FIELDS = {
     "impacts": "impacts per excitation period",
@@ -94,8 +94,7 @@ def contact_time(impacts: Impacts, item: FollowedResponse, end: float) -> float:
             np.append(0.0, impacts.closing),
             np.append(True, impacts.sticks),
         )
-    ends = np.append(impacts.time[1:], end)
-    return float(contact_durations_after(impacts, ends, item.point).sum())
+    return float(deviations(impacts, end, item.point)[1].sum())
 
 
 def impact_statistics(

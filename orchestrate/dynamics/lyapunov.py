@@ -28,13 +28,11 @@ from ..running.options import Running
 from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov_spectrum import (
     STATES,
-    block_growth,
-    growth_by_batch_means,
     kaplan_yorke_dimension,
     lyapunov_spectrum,
     spectrum_without_impacts,
 )
-from .variational import impact_matrices, period_in_tau
+from .variational import call_of, library, period_in_tau
 
 PERIODIC, NEUTRAL, CHAOTIC = -1, 0, 1
 WORDS = {PERIODIC: "periodic", NEUTRAL: "neutral", CHAOTIC: "chaotic"}
@@ -62,10 +60,10 @@ def largest_exponent(
     """Return the largest Lyapunov exponent and its error, from a response's impacts in a span."""
     if len(impacts.time) < min_impacts(batches):
         return Exponent(math.nan, math.nan)
-    growth = block_growth(impact_matrices(impacts, end, point), impacts.time, end, blocks)
-    if growth is None:
-        return Exponent(-math.inf, math.nan)
-    return Exponent(*growth_by_batch_means(growth, batches))
+    call, found = call_of(impacts, end, point), np.empty(2)
+    places = call.memory.ctypes.data, found.ctypes.data
+    library().largest_exponent(*call.span, blocks, batches, *places)
+    return Exponent(float(found[0]), float(found[1]))
 
 
 def exponent_of(
@@ -100,17 +98,18 @@ def decay_rate(damping: float, square: float) -> float:
 
 def wander_floor(etas: Iterable[float], periods: int, wander: float = WANDER) -> Floats:
     """Return what a deviation that only wanders, by this factor, makes of exponents at most."""
-    return math.log(wander) / (periods * np.array([period_in_tau(eta) for eta in etas]))
+    spans = [periods * period_in_tau(eta) for eta in etas]
+    return np.array([library().wander_floor(wander, span) for span in spans])
 
 
 def classify_exponents(
     exponent: ArrayLike, error: ArrayLike, floor: ArrayLike, sigmas: float = SIGMAS
 ) -> NDArray[np.int8]:
     """Classify: 1 chaotic, -1 periodic, 0 neutral (within `sigmas` errors or `floor`, or NaN)."""
-    value = np.asarray(exponent, dtype=float)
-    distance = np.fmax(sigmas * np.asarray(error, dtype=float), floor)
-    verdicts = np.where(value > distance, CHAOTIC, np.where(value < -distance, PERIODIC, NEUTRAL))
-    return verdicts.astype(np.int8)
+    given = np.broadcast_arrays(exponent, error, floor)
+    rows = zip(*(each.ravel().tolist() for each in given), strict=True)
+    verdicts = [library().classify_exponent(*map(float, row), sigmas) for row in rows]
+    return np.array(verdicts, dtype=np.int8).reshape(given[0].shape)
 
 
 @dataclass(frozen=True, kw_only=True)

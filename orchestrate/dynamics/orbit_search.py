@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..fmu import EventInstance, Impacts, begin
 from ..response.questions import Point
-from .closed_form import ClosedForm, Floats, contact_durations
+from .closed_form import ClosedForm, Floats
 from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
 from .families import ACCELERATION, Family, Setting
 from .periodic_orbit import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
@@ -21,6 +21,7 @@ from .turning_points import (
     turning_points,
     weakest_force,
 )
+from .variational import contact_durations
 
 Guess = tuple[ImpactSequence, Floats]
 

@@ -22,7 +22,7 @@ from ..response.simulate import IN_TIME
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .following import FollowedResponse, state_after_transient
-from .variational import contact_durations_after, nondimensional_impacts
+from .variational import deviations, nondimensional_impacts
 
 COLUMNS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel")
 SECTIONS = {  # what a section is, by its name
@@ -105,7 +105,7 @@ def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
     omega = point.structure.omega
     scaled = nondimensional_impacts(impacts, point)
     ends = np.append(scaled.time[1:], omega * end)
-    lasting = contact_durations_after(scaled, ends, point)
+    _, lasting = deviations(scaled, omega * end, point)
     released = scaled.sticks & (lasting < ends - scaled.time)
     times: Floats = (scaled.time + lasting)[released] / omega
     return times

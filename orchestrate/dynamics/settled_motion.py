@@ -11,15 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..constants import TURN
 from ..fmu import gap_between
 from ..model.outcomes import ORBIT
-from ..response.multiplicity import MIN_RELATIVE_GAP
+from ..response.multiplicity import nearest_state
 from ..response.questions import Point
 from .periodic_orbit import PHASE, PeriodicOrbit
 from .turning_points import Amplitudes, stroboscopic_states, turning_points
 
 Floats = NDArray[np.float64]
-LENGTHS = np.array(  # displacements, velocities, the gap and its rate, from a state
-    [[1, 0, 0, 0, -1, 0], [0, 1, 0, 0, 1, 0], [0, 0, 1, 0, 0, -1], [0, 0, 0, 1, 0, 1]], dtype=float
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,51 +75,23 @@ class SettledMotion:
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
         """Return the period whose state at phase 0 is nearest to a state, and its distance."""
-        return self.scaled_states.nearest(state)
+        return nearest_state(self.states, self.point.excitation.frequency, self.gap, state)
+
+    def nearest_free(self, state: ArrayLike) -> tuple[int, float]:
+        """Return the same at the orbit's impact-free phase."""
+        return nearest_state(self.free_states, self.point.excitation.frequency, self.gap, state)
 
     @cached_property
-    def scaled_states(self) -> ScaledStates:
-        """Return the states at phase 0, scaled for comparison with others."""
-        return ScaledStates.from_states(self.states, self.point.excitation.frequency, self.gap)
-
-    @cached_property
-    def free_states(self) -> ScaledStates:
-        """Return the orbit's states at its impact-free phase, scaled for comparison."""
+    def free_states(self) -> Floats:
+        """Return the orbit's states at its impact-free phase."""
         assert self.orbit is not None, "no orbit"
-        states = self.point.from_faces(stroboscopic_states(self.orbit, self.free_phase))
-        return ScaledStates.from_states(states, self.point.excitation.frequency, self.gap)
+        return self.point.from_faces(stroboscopic_states(self.orbit, self.free_phase))
 
     def is_same_orbit_as(self, other: SettledMotion, within: float) -> bool:
         """Return whether both motions are the same orbit: same nodes, or states that are close."""
         if self.orbit is None or other.orbit is None or self.multiplicity != other.multiplicity:
             return False
         return same_nodes(self.orbit, other.orbit) or self.nearest(other.states[0])[1] < within
-
-
-@dataclass(frozen=True)
-class ScaledStates:
-    """Stroboscopic states of a motion, scaled by its size to find the nearest to a given state."""
-
-    states: Floats  # SI
-    scaled: Floats  # displacements, velocities, gap and its rate over their sizes
-    matrix: Floats  # from a state to these
-
-    @classmethod
-    def from_states(cls, states: Floats, frequency: float, gap: float) -> ScaledStates:
-        """Return scaled states from SI states, with frequency and largest gap as scales."""
-        matrix = LENGTHS / np.array([1.0, 1.0, frequency, frequency])[:, np.newaxis]
-        values = states @ matrix
-        size = float(np.abs(values[:, :4]).max()) or 1.0
-        of_gap = max(gap, MIN_RELATIVE_GAP * size)
-        of_rate = max(of_gap, float(np.abs(values[:, 5]).max()))
-        sizes = np.array([size, size, size, size, of_gap, of_rate])
-        return cls(states, values / sizes, matrix / sizes)
-
-    def nearest(self, state: ArrayLike) -> tuple[int, float]:
-        """Return the index of the nearest state, and its distance over the motion's size."""
-        distances = np.abs(self.scaled - np.asarray(state) @ self.matrix).max(axis=1)
-        period = int(distances.argmin())
-        return period, float(distances[period])
 
 
 def same_nodes(first: PeriodicOrbit, second: PeriodicOrbit) -> bool:

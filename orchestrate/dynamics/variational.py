@@ -1,19 +1,62 @@
-"""Linearised motion (variational equations): saltation matrices at impacts, flow matrices between.
+"""Linearised motion (variational equations): how deviations of a motion grow through impacts.
 
-Non-dimensional, as in :mod:`.closed_form`. The saltation matrix includes that the deviated motion
-impacts earlier or later (di Bernardo et al., Piecewise-smooth Dynamical Systems, 2008, 2.5). Where
-chattering ends in permanent contact the deviation of the gap dies; at a release nothing jumps (19).
+Non-dimensional, as in :mod:`.closed_form`. The rules are :mod:`fmu_src.kernels.deviations`,
+compiled for Python and the explorer alike.
 """
 
 from __future__ import annotations
 
+import functools
 import math
+from ctypes import c_bool, c_double, c_int, c_size_t, c_void_p
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..fmu import Impacts
+from ..fmu.c_library import loaded_loop
+from ..fmu.oscillator import DEVIATING
 from ..response.questions import Point
-from .closed_form import ClosedForm, Floats, contact_durations
+from .closed_form import ClosedForm, Floats
+
+
+@functools.cache
+def library() -> Any:
+    """Return the library of deviations, as ctypes has it, types set."""
+    loaded, table = loaded_loop("exponent"), [c_void_p, c_size_t]
+    loaded.exponent_size.argtypes, loaded.exponent_size.restype = [c_size_t], c_size_t
+    span = [c_void_p, *table, c_double]
+    loaded.find_deviations.argtypes, loaded.find_deviations.restype = [*span, c_void_p], c_size_t
+    loaded.find_growth.argtypes = [*table, c_size_t, c_size_t, c_void_p]
+    loaded.find_average.argtypes = [c_void_p, *table, c_size_t, c_void_p]
+    loaded.largest_exponent.argtypes = [*span, c_size_t, c_size_t, c_void_p, c_void_p]
+    loaded.find_average.restype = loaded.largest_exponent.restype = None
+    loaded.find_growth.restype, loaded.wander_floor.restype = c_bool, c_double
+    loaded.wander_floor.argtypes = [c_double, c_double]
+    loaded.classify_exponent.argtypes, loaded.classify_exponent.restype = [c_double] * 4, c_int
+    return loaded
+
+
+class Call(NamedTuple):
+    """Addresses of what the library takes of impacts, and the arrays that have to stay."""
+
+    span: tuple[Any, ...]  # structure and excitation, impacts, how many, their end
+    memory: Floats
+    kept: tuple[Any, ...]
+
+
+def call_of(impacts: Impacts, end: float, point: Point) -> Call:
+    """Return a call about non-dimensional impacts up to an end in tau."""
+    structure, excitation = point
+    values = [float(getattr(structure, name)) for name in DEVIATING]
+    numbers = np.array([*values, excitation.amplitude, excitation.frequency, 0.0])
+    states, omega = point.from_faces(impacts.state), structure.omega
+    columns = impacts.time / omega, states, impacts.closing * point.speed, impacts.sticks
+    rows, count = np.column_stack(columns).astype(float), len(impacts.time)
+    memory = np.empty(library().exponent_size(count))
+    return Call(
+        (numbers.ctypes.data, rows.ctypes.data, count, end / omega), memory, (numbers, rows)
+    )
 
 
 def period_in_tau(eta: float) -> float:
@@ -21,64 +64,30 @@ def period_in_tau(eta: float) -> float:
     return 2.0 * math.pi / eta
 
 
-def saltation_matrices(impacts: Impacts, point: Point) -> Floats:
-    """Return the saltation matrix ``R + (F+ - R F-) n^T/(n F-)`` of each impact, (n, 4, 4)."""
-    form = ClosedForm.from_structure(*point)
-    part = (1.0 + form.e) / (1.0 + form.mu)
-    restitution = np.eye(4)
-    restitution[2, 2:] += np.array([-part, part]) * form.mu
-    restitution[3, 2:] += np.array([part, -part])
-    exchange = np.zeros((4, 4))  # R is linear in the coefficient: its derivative by that
-    exchange[2:, 2:] = np.array([[-form.mu, form.mu], [1.0, -1.0]]) / (1.0 + form.mu)
-    phase = form.eta * impacts.time
-    after = form.field(impacts.state, phase)
-    before = form.field(impacts.before(point.structure), phase)
-    jump = after - before @ restitution.T
-    matrices: Floats = np.broadcast_to(restitution, (len(jump), 4, 4)).copy()
-    if form.e_slope:
-        slower = (form.parting_rate(impacts.closing) - form.e)[:, None]
-        jump -= slower * (before @ exchange.T)
-        matrices += slower[:, :, None] * exchange
-    # a grazing impact has no closing speed: its matrix is very large instead
-    jump /= np.maximum(impacts.closing, 1e-300)[:, None]
-    matrices[:, :, 0] += jump  # times the normal (-1, 1, 0, 0)
-    matrices[:, :, 1] -= jump
-    matrices[impacts.sticks] = form.centre()
-    return matrices
+def deviations(impacts: Impacts, end: float, point: Point) -> tuple[Floats, Floats]:
+    """Return matrices (n, 4, 4) that map a deviation from each impact to the next, just before
+    both, and how long permanent contact lasts after each, in tau; 0 without.
+    """
+    call, count = call_of(impacts, end, point), len(impacts.time)
+    first = library().find_deviations(*call.span, call.memory.ctypes.data)
+    last = first + 16 * count
+    return call.memory[first:last].reshape(count, 4, 4), call.memory[last : last + count]
 
 
-def contact_durations_after(impacts: Impacts, ends: Floats, point: Point) -> Floats:
-    """Return how long permanent contact lasts after each impact, in tau; 0 without."""
-    times = np.zeros(len(impacts.time))
-    sticks, form = impacts.sticks, ClosedForm.from_structure(*point)
-    begins, states = impacts.time[sticks], impacts.state[sticks]
-    spans = ends[sticks] - begins
-    durations = contact_durations(form, form.eta * begins, states[:, 0], states[:, 2], spans)
-    times[sticks] = np.minimum(durations, spans)
-    return times
-
-
-def impact_matrices(impacts: Impacts, end: float, point: Point) -> Floats:
-    """Return matrices that map a deviation from each impact to the next, just before both."""
-    form = ClosedForm.from_structure(*point)
-    ends = np.append(impacts.time[1:], end)
-    touching = contact_durations_after(impacts, ends, point)
-    matrices = saltation_matrices(impacts, point)
-    sticks = touching > 0.0
-    matrices[sticks] = form.contact(touching[sticks]) @ form.centre()
-    products: Floats = form.flight(ends - impacts.time - touching) @ matrices
-    return products
-
-
-def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:
-    """Return the monodromy matrix (4, 4) over some periods from phase 0, impacts included."""
-    form = ClosedForm.from_structure(*point)
-    end = periods * period_in_tau(form.eta)
-    first = impacts.time[0] if len(impacts.time) else end
-    matrix: Floats = form.flight(np.array([first]))[0]
-    for each in impact_matrices(impacts, end, point):
-        matrix = each @ matrix
-    return matrix
+def contact_durations(
+    form: ClosedForm, phase: Floats, position: Floats, velocity: Floats, spans: Floats
+) -> Floats:
+    """Return how long permanent contacts last, in tau; infinite if not released in the span."""
+    mu, eta, push = form.mu, form.eta, -form.offset[0] * form.stiffness[0]
+    dampers = 2.0 * form.damping[0], 2.0 * form.damping[1] * mu
+    half = 1.0, mu, 1.0, mu * form.stiffness[1], *dampers, form.e, 1.0, 0.0
+    numbers = np.array([*half, form.gap_offset, 0.0, eta**-2.0, eta, push])
+    durations, memory = np.empty(len(spans)), np.empty(library().exponent_size(1))
+    columns = phase / eta, position, position, velocity, velocity, 0.0 * phase, 1.0 + 0.0 * phase
+    for i, row in enumerate(np.column_stack(columns)):
+        given = numbers.ctypes.data, row.ctypes.data, 1, row[0] + 1.5 * spans[i]
+        durations[i] = memory[library().find_deviations(*given, memory.ctypes.data) + 16]
+    return np.where(durations <= spans, durations, np.inf)
 
 
 def nondimensional_impacts(impacts: Impacts, point: Point) -> Impacts:

@@ -13,6 +13,8 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
+from ..dynamics.clusters import AttractorSettings
+from ..dynamics.lyapunov import BATCHES, BLOCKS, SIGMAS, WANDER
 from ..errors import InputError
 from ..files import open_folder, write_whole
 from ..fmu import OSCILLATOR, SHAKER
@@ -24,12 +26,17 @@ from ..units import Units, units_of
 from ..version import __version__
 from .branches import branch_json
 from .bundle import bundle
+from .measured import record_json
 from .sweep_data import SweepData, check_units, first_diagram, read_sweep, shown_in
 from .tour import TOUR, tour_in
 from .words import WORDS
 
 SOURCES = Path(__file__).parent / "page"
 HEAD = b"<title>Explorer of a vibro-impacting structure</title>"  # by which a page is known
+EXPONENT = {  # the usual rule of exponents; periods at first, periods and impacts at most
+    **{"blocks": BLOCKS, "batches": BATCHES, "sigmas": SIGMAS, "wander": WANDER},
+    **{"periods": 400, "longest": 12_800, "most": 100_000},
+}
 FLAG = {"bonded": [0.0, 1.0]}  # a range too
 
 
@@ -38,10 +45,14 @@ def explore(
     *,
     output: str | PathLike[str] = "explorer.html",
     branches: xr.Dataset | None = None,
+    record: xr.Dataset | None = None,
     units: str | Units = "",
     build_folder: str | PathLike[str] | None = None,
 ) -> Path:
-    """Write the explorer, one HTML file that needs no other file and no network."""
+    """Write the explorer, one HTML file that needs no other file and no network.
+
+    A ``record``, as :func:`orchestrate.read_record` returns it, is drawn over the spectrum.
+    """
     asked = units if isinstance(units, Units) else Units.from_text(units)
     if data is None or isinstance(data, Structure):
         chosen = first_diagram(data or Structure(), asked)
@@ -62,7 +73,9 @@ def explore(
         "oscillator": web_kernel(OSCILLATOR, build_folder),
         "shaker": web_kernel(SHAKER, build_folder),
     }
-    text = render_page(chosen, shown_in(asked, chosen.level), branch_json(branches), kernels)
+    text = render_page(
+        chosen, shown_in(asked, chosen.level), branch_json(branches) | record_json(record), kernels
+    )
     return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
@@ -96,6 +109,7 @@ def render_page(
             tour=tour_in(shown),
             words=WORDS,
             branches=drawn["branches"],
+            record=drawn["record"],
             source=made_by,
             swept=f"sweep by {chosen.source}" if chosen.source else "",
             table={
@@ -103,7 +117,7 @@ def render_page(
                 "shown": shown,
                 **drawn,
                 **tables,
-                "loops": loop_tables(),
+                "loops": {**loop_tables(), "exponent": EXPONENT},
                 "drive": drive_data(),
             },
             data=compress(chosen.numbers.astype("<f8").tobytes()),
@@ -154,6 +168,7 @@ def page_data(chosen: SweepData) -> dict[str, Any]:
             for name, quantity in STRUCTURE.items()
             if quantity.unit != "1"
         },
+        "alike": AttractorSettings().alike,
         "settings": chosen.settings,
         "directions": chosen.directions,
         "count": chosen.count,

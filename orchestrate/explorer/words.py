@@ -66,9 +66,9 @@ WORDS = {
     "exponent": Term(
         "exponent",
         "The largest Lyapunov exponent: how fast two motions that begin almost alike come apart, "
-        "per unit of τ, with its error. Above zero by more than the error: chaos, as a rule. Below "
-        "by more: the motion repeats as a rule, or comes to it. Within its error of zero: it "
-        "nearly repeats, or is still settling: undecided here.",
+        "per unit of τ, with its standard error. Above zero by three of them: chaos. Below by as "
+        "much: the motion repeats, or comes to it. Else it nearly repeats, or is still settling: "
+        "undecided here.",
     ),
     "spectrum": Term(
         "spectrum",

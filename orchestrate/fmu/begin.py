@@ -8,10 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 from ..model import Excitation, Structure
 from .instance import Instance
-from .oscillator import START_PARAMETERS, to_rest
+from .oscillator import START_PARAMETERS, library, to_rest
 
 REST = (0.0, 0.0, 0.0, 0.0)
-TOUCHING = 2.0**-50  # relative: a gap that is no more than the rounding of displacements
 
 
 def begin(
@@ -35,14 +34,11 @@ def begin(
 
 def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDArray[np.float64]:
     """Return the gap x2 - x1 + offset of states (..., 4); rounding beside an offset is 0."""
-    x1, x2 = states[..., 0], states[..., 1]
-    gap: NDArray[np.float64] = x2 - x1
-    if not np.any(gap_offset):
-        return gap
-    offset = np.asarray(gap_offset, dtype=float)
-    gap = gap + offset
-    size = np.abs(x1) + np.abs(x2) + np.abs(offset)
-    return np.where((np.abs(gap) <= TOUCHING * size) & (offset != 0.0), 0.0, gap)
+    rows, offsets = (np.ascontiguousarray(part, dtype=float) for part in (states, gap_offset))
+    gaps = np.empty(rows.shape[:-1])
+    places = rows.ctypes.data, gaps.size, offsets.ctypes.data, offsets.size == 1
+    library().find_gaps(*places, gaps.ctypes.data)
+    return gaps
 
 
 def four_numbers(start: ArrayLike) -> list[float]:

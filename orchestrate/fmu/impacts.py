@@ -28,14 +28,6 @@ class Impacts:
         table = table.reshape(-1, len(EVENT_OUTPUTS) + 2)
         return cls(table[:, 0], table[:, 1:5], table[:, 5], table[:, 6] != 0.0)
 
-    def before(self, structure: Structure) -> NDArray[np.float64]:
-        """Return the states just before the impacts, shape (n, 4), by (15) read backwards."""
-        mu = structure.mu
-        state, part = self.state.copy(), self.closing / (1.0 + mu)
-        common = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
-        state[:, 2], state[:, 3] = common + mu * part, common - part
-        return state
-
     def impulse(self, structure: Structure, speed: float = 1.0) -> NDArray[np.float64]:
         """Return each impact's impulse on each mass, N s, (n,) (15); plastic if contact begins."""
         m1, m2 = structure.m1, structure.m2

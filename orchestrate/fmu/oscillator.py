@@ -30,7 +30,9 @@ READ = (
 )
 PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max")
 TRAITS = ("m1", "m2", "k1", "k2", "d1", "d2", "clearance", "bonded")  # of a structure, for loops
-TRAIT_COUNT = 16  # with its frequency and excitation, and what follows from them
+FOUND = ("gap_offset", "rest_1", "rest_2", "threshold", "must_impact")  # what follows from them
+TRAIT_NAMES = (*TRAITS, "omega", "frequency", "amplitude", *FOUND)
+DEVIATING = (*TRAITS[:6], "e", "gamma", "bonded", "clearance", "e_slope")  # of deviations' growth
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
 COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
 SET = {  # before each start, with first values
@@ -87,8 +89,13 @@ def library() -> Any:
     periods = [c_double, c_size_t, c_size_t]
     loaded.sample_periods.argtypes = [c_void_p, *periods, c_void_p, c_void_p]
     loaded.to_rest.argtypes = [c_void_p, c_void_p, c_void_p]
+    loaded.find_gaps.argtypes = [c_void_p, c_size_t, c_void_p, c_bool, c_void_p]
+    loaded.find_accelerations.argtypes = [c_void_p, c_size_t, *[c_void_p] * 3]
+    loaded.find_gaps.restype = loaded.find_accelerations.restype = None
     loaded.to_rest.restype = None
     loaded.sample_evenly.restype = loaded.sample_periods.restype = c_bool
+    loaded.nearest_state.argtypes = [c_void_p, c_size_t, c_double, c_double, c_void_p, c_void_p]
+    loaded.nearest_state.restype = c_double
     for name in ("decide_multiplicity", "find_repetition", "describe_linear_response"):
         getattr(loaded, name).argtypes = [c_void_p]
     return loaded
@@ -174,7 +181,7 @@ def traits(structure: Structure, frequency: float = 1.0, amplitude: float = 0.0)
     which the linear response opens or touches, and whether it does: then every motion impacts.
     """
     numbers = (getattr(structure, name) for name in TRAITS)
-    memory = (c_double * TRAIT_COUNT)(*numbers, structure.omega, frequency, amplitude)
+    memory = (c_double * len(TRAIT_NAMES))(*numbers, structure.omega, frequency, amplitude)
     library().describe_linear_response(memory)
     return memory
 

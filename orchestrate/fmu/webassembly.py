@@ -23,11 +23,11 @@ from .exported import SHIPPED, check, default_folder
 from .models import OSCILLATOR, SHAKER
 from .oscillator import (
     COUNTS,
+    DEVIATING,
     READ,
     SAMPLE_SERIES,
     SET,
-    TRAIT_COUNT,
-    TRAITS,
+    TRAIT_NAMES,
     OscillatorCalls,
     ResponseProgress,
     ResponseTask,
@@ -110,8 +110,8 @@ def loop_tables() -> dict[str, Any]:
         "series": SAMPLE_SERIES,
         "capacity": sources.array_sizes(MODELS[OSCILLATOR])[SAMPLE_SERIES[0]],
         "counts": COUNTS,
-        "traits": TRAITS,
-        "trait_count": TRAIT_COUNT,
+        "traits": TRAIT_NAMES,
+        "deviating": DEVIATING,
     }
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..fmu import gap_between
+from ..fmu import gap_between, library, traits
 from ..model import Structure
 
 Floats = NDArray[np.float64]
@@ -28,16 +28,8 @@ def absolute_accelerations(
 ) -> Floats:
     """Return both masses' absolute accelerations, as accelerometers read between impacts."""
     together = in_touch(states, structure.gap_offset) if touching is None else touching
-    s, both = structure, structure.m1 + structure.m2
-    x1, x2, v1, v2 = np.moveaxis(states, -1, 0)
-    felt = np.empty((len(states), 2))
-    felt[:, 0] = -(s.k1 / s.m1 * x1 + s.d1 / s.m1 * v1)
-    felt[:, 1] = -(s.k2 / s.m2 * x2 + s.d2 / s.m2 * v2)
-    if len(rows := np.flatnonzero(together)):
-        joined = -(
-            (s.k1 + s.k2) / both * states[rows, :2] + (s.d1 + s.d2) / both * states[rows, 2:]
-        )
-        if s.gap_offset:  # each is loaded by the other one's spring where it is at 0 itself
-            joined += np.array([s.k2 / both, -s.k1 / both]) * s.gap_offset
-        felt[rows] = joined
+    rows, flags = np.ascontiguousarray(states, dtype=float), np.ascontiguousarray(together)
+    felt, numbers = np.empty((len(rows), 2)), traits(structure)
+    places = (part.ctypes.data for part in (flags, felt))
+    library().find_accelerations(rows.ctypes.data, len(rows), numbers, *places)
     return felt

@@ -61,6 +61,17 @@ def decide_multiplicity(
     return Decision(int(memory[repetition.MULTIPLICITY]), int(memory[repetition.DECIDED]))
 
 
+def nearest_state(
+    samples: ArrayLike, frequency: float, gap: float, state: ArrayLike
+) -> tuple[int, float]:
+    """Return the number of the sample nearest to a state, and its distance over their size."""
+    states, near = (np.ascontiguousarray(part, dtype=float) for part in (samples, state))
+    memory = np.empty(memory_size(len(states)))
+    sizes, places = (frequency, gap), (near.ctypes.data, memory.ctypes.data)
+    distance = library().nearest_state(states.ctypes.data, len(states), *sizes, *places)
+    return int(memory[repetition.MULTIPLICITY]), float(distance)
+
+
 def apply_rule(
     name: str, samples: ArrayLike, settings: tuple[float, float, float]
 ) -> NDArray[np.float64]:

@@ -7,18 +7,21 @@ of the frequency times that of the displacement.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
+from ctypes import c_double, c_size_t, c_void_p
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, REST, Instance, begin, sampled
+from ..fmu.c_library import loaded_loop
 from ..lazy import Unpack, xr
-from ..model import Structure
+from ..model import Excitation, Structure
 from ..model.arguments import positive, whole
 from ..running.job import Table
 from ..running.options import Running
@@ -30,27 +33,42 @@ KINDS = ("bonded", "delaminated", "sampled")
 Floats = NDArray[np.float64]
 
 
+@functools.cache
+def library() -> Any:
+    """Return the library of spectra, as ctypes has it, types set."""
+    loaded = loaded_loop("spectrum")
+    loaded.spectrum_size.restype, loaded.spectrum_size.argtypes = c_size_t, [c_size_t]
+    loaded.amplitude_spectrum.argtypes = [c_void_p, c_size_t, c_void_p, c_void_p]
+    loaded.acceleration_spectrum.argtypes = [
+        *(c_void_p, c_size_t, c_size_t, c_size_t),
+        *(c_double, c_double, c_void_p, c_void_p),
+    ]
+    loaded.amplitude_spectrum.restype = loaded.acceleration_spectrum.restype = None
+    return loaded
+
+
 def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floats]:
     """Return frequencies, rad/s, and amplitudes of a sampled signal (Hann window)."""
-    signal = np.asarray(signal, dtype=float)
-    turns, amplitude = hann_spectrum(signal, interval)
-    # Of a constant the window makes one line more. Taken away only there: other lines keep their
-    # bits. Over displacements times the frequency squared it would look like a slow motion.
-    moving = signal - signal.mean(axis=-1, keepdims=True)
-    amplitude[..., 1] = hann_spectrum(moving, interval)[1][..., 1]
-    return 2.0 * np.pi * turns, amplitude
+    rows = np.ascontiguousarray(signal, dtype=float)
+    count = rows.shape[-1]
+    memory, lines = np.empty(library().spectrum_size(count)), np.arange(count // 2 + 1)
+    amplitudes = np.empty((*rows.shape[:-1], len(lines)))
+    for place in np.ndindex(rows.shape[:-1]):
+        places = memory.ctypes.data, amplitudes[place].ctypes.data
+        library().amplitude_spectrum(rows[place].ctypes.data, count, *places)
+    return 2.0 * np.pi * lines / (count * interval), amplitudes
 
 
-def hann_spectrum(signal: Floats, interval: float) -> tuple[Floats, Floats]:
-    """Return frequencies, Hz, and amplitudes of a signal (Hann window), its mean not removed."""
-    from scipy.signal import periodogram
-
-    turns, power = periodogram(
-        signal, fs=1.0 / interval, window="hann", detrend=False, scaling="spectrum"
-    )
-    both_sides = np.full(len(turns), 2.0)  # a line stands for two of the two-sided spectrum,
-    both_sides[0] = 1.0  # but for the mean
-    return turns, np.sqrt(both_sides * power)
+def acceleration_spectrum(states: Floats, periods: int, excitation: Excitation) -> Floats:
+    """Return both masses' spectra, impulses included, from states at equal parts of periods."""
+    rows, count = np.ascontiguousarray(states, dtype=float), len(states)
+    memory, amplitudes = np.empty(library().spectrum_size(count)), np.empty((2, count // 2 + 1))
+    for column, row in enumerate(amplitudes):
+        library().acceleration_spectrum(
+            *(rows[:, column:].ctypes.data, rows.shape[1], count, periods),
+            *(excitation.frequency, excitation.amplitude, memory.ctypes.data, row.ctypes.data),
+        )
+    return amplitudes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,13 +113,11 @@ class SpectraJob(SeriesQuestion):
         if self.transient:
             instance.step(0.0, first)
         states = sampled(instance, first, last, count)
-        turns = np.arange(1, count + 1) / self.points
-        box = point.excitation.amplitude * np.sin(2.0 * np.pi * turns)
         accelerations = absolute_accelerations(states, point.structure)
         shown, interval = len(self.orders()), span / self.points
-        frequency, displaced = amplitude_spectrum(states[:, :2].T + box, interval)
+        with_impulses = acceleration_spectrum(states, self.periods, point.excitation)
         _, between = amplitude_spectrum(accelerations.T, interval)
-        return (frequency**2 * displaced)[:, :shown], between[:, :shown]
+        return with_impulses[:, :shown], between[:, :shown]
 
     def dataset(self, table: Table) -> xr.Dataset:
         along, orders = self.series.name, self.orders()

@@ -58,6 +58,25 @@ static double gap_between(const double *state, double offset) {
     return __builtin_fabs(gap) <= TOUCHING * (__builtin_fabs(state[X1]) + __builtin_fabs(state[X2]) + __builtin_fabs(offset)) ? 0.0 : gap;
 }
 
+/* Gaps of states, each with its gap between unloaded springs, or all with the same. */
+EXPORT void find_gaps(const double *states, size_t count, const double *offsets, bool is_one, double *gaps) {
+    for (size_t i = 0; i < count; i++) gaps[i] = gap_between(states + STATES * i, offsets[is_one ? 0 : i]);
+}
+
+/* Absolute accelerations of both masses, by springs, dampers and the other mass, (6), in contact (18): a1 and a2 of each state. */
+EXPORT void find_accelerations(const double *states, size_t count, const double *s, const bool *touching, double *accelerations) {
+    double mass = s[M1] + s[M2], offset = s[GAP_OFFSET], stiffness = (s[K1] + s[K2]) / mass, damping = (s[D1] + s[D2]) / mass;
+    for (size_t i = 0; i < count; i++, states += STATES, accelerations += 2) {
+        accelerations[0] = -(s[K1] / s[M1] * states[X1] + s[D1] / s[M1] * states[V1]);
+        accelerations[1] = -(s[K2] / s[M2] * states[X2] + s[D2] / s[M2] * states[V2]);
+        if (!touching[i]) continue;
+        for (int j = 0; j < 2; j++) accelerations[j] = -(stiffness * states[X1 + j] + damping * states[V1 + j]);
+        if (offset == 0.0) continue;
+        accelerations[0] += s[K2] / mass * offset;  /* each is loaded by the other one's spring where it is at 0 itself */
+        accelerations[1] += -s[K1] / mass * offset;
+    }
+}
+
 static bool is_any(const double *state) {
     return state[X1] != 0.0 || state[X2] != 0.0 || state[V1] != 0.0 || state[V2] != 0.0;
 }
@@ -68,6 +87,14 @@ EXPORT void to_rest(const double *state, const double *traits, double *start) {
     if (traits[GAP_OFFSET] >= 0.0 || !is_any(state)) return;
     start[X1] = state[X1] - traits[REST_1];
     start[X2] = gap_between(state, traits[GAP_OFFSET]) == 0.0 ? start[X1] : state[X2] - traits[REST_2];
+}
+
+/* A state at one point as the like one at another: displacements from rest and velocities times a factor each; faces that touch go on touching, none overlap. */
+EXPORT void carry_state(const double *state, const double *from, const double *to, double length, double speed, double *like) {
+    for (int j = 0; j < STATES; j++) like[j] = state[j];
+    if (!is_any(state) || (length == 1.0 && speed == 1.0 && from[GAP_OFFSET] == to[GAP_OFFSET])) return;
+    for (int j = 0; j < 2; j++) like[X1 + j] = to[REST_1 + j] + length * (state[X1 + j] - from[REST_1 + j]), like[V1 + j] = state[V1 + j] * speed;
+    if (gap_between(state, from[GAP_OFFSET]) == 0.0 || gap_between(like, to[GAP_OFFSET]) < 0.0) like[X2] = like[X1] - to[GAP_OFFSET];
 }
 
 static double power_of_two(int exponent) {
@@ -267,5 +294,16 @@ EXPORT size_t memory_size(size_t samples) { return HEAD + (STATE + COLUMNS + 1) 
 EXPORT int decide_multiplicity(double *memory) { return kernel_decide(memory, 0.0); }
 
 EXPORT int find_repetition(double *memory) { return kernel_repeat(memory, 0.0); }
+
+/* How near states of a motion come to a state, over the motion's size; the memory has the number of that state. */
+EXPORT double nearest_state(const double *states, size_t count, double frequency, double gap, const double *state, double *memory) {
+    memory[COUNT] = (double)count;
+    memory[FREQUENCY] = frequency;
+    memory[GAP] = gap;
+    for (size_t k = 0; k < STATES; k++) memory[GIVEN + k] = state[k];
+    for (size_t k = 0; k < STATES * count; k++) memory[HEAD + k] = states[k];
+    kernel_nearest(memory, 0.0);
+    return memory[DEVIATION];
+}
 
 EXPORT int describe_linear_response(double *memory) { return kernel_describe(memory, 0.0); }

@@ -1,7 +1,7 @@
 /** The box, both masses and their springs in motion; impacts flash. */
 
 import { Picture } from "./picture.js";
-import { gapOffset } from "./clearance.js";
+import { traitsOf } from "./model.js";
 
 const FLASH = 0.04; // of a period
 
@@ -11,7 +11,7 @@ export class Animation {
     /** @type {Motion | null} */
     this.motion = null;
     this.turn = 0; // periods since the motion's beginning
-    this.clearance = 0; // m
+    this.offset = 0; // m: the gap of unloaded springs
     this.speed = 2 ** -1.5; // periods a second
     this.running = false;
     this.last = 0;
@@ -20,7 +20,7 @@ export class Animation {
 
   /** @param {Motion} motion @param {Point} point */
   load(motion, point) {
-    Object.assign(this, { motion, turn: 0, clearance: gapOffset(point.structure) });
+    Object.assign(this, { motion, turn: 0, offset: traitsOf(point).gap_offset });
     this.largest = motion.states.reduce((most, value, i) => (i % 4 < 2 ? Math.max(most, Math.abs(value)) : most), 0);
     this.picture.redraw();
   }
@@ -83,7 +83,7 @@ export class Animation {
     pen.box(middle - half, top, 2 * half, tall, { stroke: theme.ink, width: 3 });
     const scale = (half * 0.33) / (this.largest || 1);
     const [first, second] = this.now(motion);
-    const [x1, x2] = [first, second + this.clearance].map((x) => middle + scale * x);
+    const [x1, x2] = [first, second + this.offset].map((x) => middle + scale * x);
     const [wide, high] = [half * 0.3, tall * 0.42];
     const level = top + tall / 2;
     spring(pen, middle - half, x1 - wide, level, theme.soft);

@@ -4,15 +4,17 @@ import { BasinPart } from "./basin_part.js";
 import { diagramCommand, motionCommand } from "./command.js";
 import { Controls } from "./controls.js";
 import { WorkerPool } from "./worker_pool.js";
-import { lanesDiffer, nearest, scaled, startAt } from "./diagram.js";
+import { nearest, startAt } from "./diagram.js";
 import { listen } from "./diagram_input.js";
 import { DrivePart } from "./drive_part.js";
 import { inHertz, PAPER, pointAt, sameLevel } from "./excitation.js";
 import { toDefault } from "./field.js";
 import { Inspector } from "./inspector.js";
+import { Library } from "./kernel.js";
 import { ETAS, fragmentOf, viewOf } from "./link.js";
 import { openingOf } from "./opening.js";
 import { overlayOf } from "./overlay.js";
+import { carried, useLibrary } from "./model.js";
 import { load } from "./payload.js";
 import { Player } from "./player.js";
 import { Regions } from "./regions.js";
@@ -37,6 +39,7 @@ export class App {
   constructor({ table, compiled, worker, diagram }) {
     this.table = table;
     showIn(table.shown);
+    useLibrary(new Library(compiled.oscillator));
     const [unit, value] = table.level;
     /** @type {View} */
     this.usual = {
@@ -53,12 +56,12 @@ export class App {
     this.pool = new WorkerPool(worker, compiled, size);
     this.pool.onerror = (text, task) => (task === "motion" ? this.inspector.fail(text) : this.tell(text));
     this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.pool, diagram, table, () => this.refreshDiagram());
-    this.inspector = new Inspector(at, this.pool, () => this.refreshMotion());
+    this.inspector = new Inspector(at, this.pool, table.record, () => this.refreshMotion());
     this.player = new Player(at, this.inspector, {
       tell: (text) => this.tell(text),
       changed: () => this.refreshMotion(),
     });
-    this.basin = new BasinPart(at, this.pool, {
+    this.basin = new BasinPart(at, this.pool, table.alike, {
       choose: (start) => this.inspect(this.eta, start),
       seen: () => this.computeBasin(),
       others: () => this.hint(),
@@ -203,7 +206,7 @@ export class App {
     if (!Number.isFinite(this.eta)) return;
     const point = pointAt(this.structure, this.eta, this.level);
     this.mark(point.eta);
-    this.inspect(point.eta, choice ? scaled(found?.response.end ?? choice.start, choice.point, point) : REST);
+    this.inspect(point.eta, choice ? carried(found?.response.end ?? choice.start, choice.point, point) : REST);
   }
 
   /** Choose a response: the nearest of the diagram, or exactly `eta`. @param {number} eta @param {boolean} [exactly] @param {number[] | null} [start] */
@@ -215,7 +218,7 @@ export class App {
     const near = diagram.points[index];
     const point = exactly && Math.abs(near.eta - eta) > 1e-9 * eta ? pointAt(this.structure, eta, this.level) : near;
     const there = startAt(diagram.lanes[0], index);
-    const known = start ?? (there && scaled(there, near, point));
+    const known = start ?? (there && carried(there, near, point));
     this.tour.leave();
     this.mark(point.eta);
     this.waiting = !known;
@@ -302,11 +305,7 @@ export class App {
 
   /** Say so where other motions are known at this frequency. */
   hint() {
-    const { diagram } = this.regions;
-    if (!diagram) return;
-    const index = nearest(diagram, this.eta);
-    const known = Math.abs(diagram.points[index].eta - this.eta) < 1e-3 * this.eta && lanesDiffer(diagram, index);
-    const words = this.basin.hint(known);
+    const words = this.basin.hint();
     if (words) at("hint").textContent = words;
     at("hint").classList.toggle("absent", !words);
   }

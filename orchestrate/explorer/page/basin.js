@@ -1,13 +1,13 @@
 /** Basins of attraction: where starts on a plane of gap and gap velocity lead to. */
 
+import { distanceOf, traitsOf } from "./model.js";
 import { periodsOf, REPEATED, respond, UNDECIDED } from "./response.js";
-import { gapOffset } from "./clearance.js";
 import { lengthOf, omegaOf } from "./structure.js";
 
 /**
  * @typedef {{side: number, gap: number, speed: number, mean: [number, number]}} Plane
  *   gap from 0 and gap velocity to both sides, over a eta^2; means of displacements, velocities
- * @typedef {{multiplicity: number, decided: number, samples: Float64Array, impacts: number}} Attractor
+ * @typedef {{multiplicity: number, decided: number, samples: Float64Array, impacts: number, frequency: number, gap: number}} Attractor
  */
 
 export const SETTLING = { transient: 300, samples: 64, tolerance: 1e-2 };
@@ -16,7 +16,7 @@ const LONGEST = 6000; // periods after which what is undecided stays so
 /** The start at a cell of a plane. @param {Point} point @param {Plane} plane @param {number} column @param {number} row */
 export function startAt(point, plane, column, row) {
   const length = lengthOf(point);
-  const gap = ((column + 0.5) / plane.side) * plane.gap * length - gapOffset(point.structure);
+  const gap = ((column + 0.5) / plane.side) * plane.gap * length - traitsOf(point).gap_offset;
   const speed = ((2 * (row + 0.5)) / plane.side - 1) * plane.speed * length * omegaOf(point.structure);
   const [x, v] = plane.mean;
   return [x - gap / 2, x + gap / 2, v - speed / 2, v + speed / 2];
@@ -35,7 +35,7 @@ export function* destination(instance, point, start) {
     found = yield* respond(instance, point, found.end, { ...SETTLING, transient: done });
     done += done + SETTLING.samples;
   }
-  return attractorOf(found);
+  return attractorOf(found, point);
 }
 
 /**
@@ -57,7 +57,7 @@ export function placeOf(known, one, tolerance) {
     (other) =>
       other.decided === one.decided &&
       periodsOf(other) === periodsOf(one) &&
-      (one.decided !== REPEATED || distance(other.samples, one.samples) <= tolerance),
+      (one.decided !== REPEATED || distanceOf(other.samples, other.frequency, other.gap, one.samples.slice(-4)) < tolerance),
   );
 }
 
@@ -66,20 +66,8 @@ export function isOther(shown, one, tolerance) {
   return [shown, one].every(({ decided }) => decided !== UNDECIDED) && placeOf([shown], one, tolerance) < 0;
 }
 
-/** What a response is to the picture. @param {import("./response.js").Response} response @returns {Attractor} */
-export function attractorOf({ states, multiplicity, decided, impacts }) {
-  return { multiplicity, decided, samples: states.slice(-4 * SETTLING.samples), impacts };
-}
-
-/** Least distance of the last state of `one` from states of `other`, relative. @param {Float64Array} other @param {Float64Array} one */
-function distance(other, one) {
-  const last = one.subarray(one.length - 4);
-  const scale = [0, 0, 0, 0];
-  other.forEach((value, i) => (scale[i % 4] = Math.max(scale[i % 4], Math.abs(value))));
-  let least = Infinity;
-  for (let i = 0; i < other.length; i += 4) {
-    const parts = [0, 1, 2, 3].map((k) => Math.abs(other[i + k] - last[k]) / (scale[k] || 1));
-    least = Math.min(least, Math.max(...parts));
-  }
-  return least;
+/** What a response is to the picture. @param {import("./response.js").Response} response @param {Point} point @returns {Attractor} */
+export function attractorOf({ states, multiplicity, decided, impacts, peak }, point) {
+  const samples = states.slice(-4 * SETTLING.samples);
+  return { multiplicity, decided, samples, impacts, frequency: point.frequency, gap: peak * lengthOf(point) };
 }

@@ -1,7 +1,7 @@
 /** Other motions at the chosen frequency: where a plane of starts leads to, asked of all workers. */
 
 import { attractorOf, isOther, label } from "./basin.js";
-import { BasinView, coarseFirst, SAME } from "./basin_view.js";
+import { BasinView, coarseFirst } from "./basin_view.js";
 import { shares } from "./requests.js";
 
 const SIDE = 64; // cells
@@ -11,14 +11,16 @@ export class BasinPart {
   /**
    * @param {(id: string) => HTMLElement} at
    * @param {WorkerPool} pool
+   * @param {number} alike distance within which two motions are one
    * @param {{choose: (start: number[]) => void, seen: () => void, others: () => void}} acts
    *   `others`: it is known by now whether there are other motions
    */
-  constructor(at, pool, { choose, seen, others }) {
+  constructor(at, pool, alike, { choose, seen, others }) {
+    this.alike = alike;
     this.at = at;
     this.pool = pool;
     this.choose = choose;
-    this.view = new BasinView(/** @type {HTMLCanvasElement} */ (at("basin")), choose);
+    this.view = new BasinView(/** @type {HTMLCanvasElement} */ (at("basin")), alike, choose);
     /** @type {Order | null} */
     this.order = null;
     this.told = others;
@@ -67,26 +69,25 @@ export class BasinPart {
   /** Whether a motion is known to which the one that is shown is another. */
   get others() {
     const { shown } = this;
-    return shown !== null && [...this.view.attractors, ...this.few].some((one) => isOther(shown, one, SAME));
+    return shown !== null && [...this.view.attractors, ...this.few].some((one) => isOther(shown, one, this.alike));
   }
 
-  /** What is known of other motions. @param {boolean} [differ] whether sweeps up and down do */
-  hint(differ = false) {
+  /** What is known of other motions. */
+  hint() {
     const complete = Boolean(this.point) && this.at("basins").dataset.complete === "true";
     if (this.others) return complete ? "Other motions: see the coloured map." : "There is another motion at this frequency.";
-    if (complete) return `No other motion from ${SIDE * SIDE} starts.`;
-    return differ && !this.tried ? "There may be another motion at this frequency." : "";
+    return complete ? `No other motion from ${SIDE * SIDE} starts.` : "";
   }
 
   /** A motion is shown: mark it, and try a few starts. @param {Choice} choice @param {import("./response.js").Response} response */
   meet({ point }, response) {
-    this.shown = attractorOf(response);
+    this.shown = attractorOf(response, point);
     if (this.point) this.tell(this.at("basins").dataset.complete === "true");
     this.told();
     if (this.point || this.few.length) return;
     const cells = FEW.flatMap((column) => FEW.map((row) => [column, row]));
     const trial = this.pool.ask("basin", { point, plane: planeOf(point, response), cells }, (parts) => {
-      for (const part of parts) label(this.few, part, SAME);
+      for (const part of parts) label(this.few, part, this.alike);
       this.told();
     });
     this.trial = trial;

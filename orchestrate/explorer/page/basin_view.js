@@ -10,7 +10,6 @@ import { omegaOf } from "./structure.js";
 import { channels } from "./theme.js";
 import { gapUnit, wordsOf } from "./units.js";
 
-export const SAME = 0.03; // relative distance up to which two motions are one
 const COLOURS = ["#5b8ff9", "#e8a33d", "#5ad8a6", "#d9468f", "#9270ca", "#7a7a7a"];
 
 /** Cells of a square, coarse ones first. @param {number} side @returns {[number, number][]} */
@@ -29,8 +28,9 @@ export function coarseFirst(side) {
 }
 
 export class BasinView {
-  /** @param {HTMLCanvasElement} canvas @param {(start: number[]) => void} choose */
-  constructor(canvas, choose) {
+  /** @param {HTMLCanvasElement} canvas @param {number} alike distance within which two motions are one @param {(start: number[]) => void} choose */
+  constructor(canvas, alike, choose) {
+    this.alike = alike;
     /** @type {Plane | null} */
     this.plane = null;
     /** @type {Point | null} */
@@ -91,7 +91,7 @@ export class BasinView {
   /** @param {{column: number, row: number} & Attractor} part */
   take({ column, row, ...found }) {
     if (!this.plane) return;
-    const number = label(this.attractors, found, SAME);
+    const number = label(this.attractors, found, this.alike);
     this.labels[row * this.plane.side + column] = number;
     this.examples[number] ??= [column, row];
     this.picture.redraw();
@@ -102,7 +102,7 @@ export class BasinView {
     const { point, plane } = this;
     if (!point || !plane) return [];
     const total = this.labels.reduce((sum, one) => sum + (one >= 0 ? 1 : 0), 0) || 1;
-    const now = shown ? placeOf(this.attractors, shown, SAME) : -1;
+    const now = shown ? placeOf(this.attractors, shown, this.alike) : -1;
     return this.attractors.map((one, number) => {
       const { impacts } = one;
       const periods = periodsOf(one);

@@ -1,10 +1,8 @@
 /** An orbit diagram: responses along the frequency, some of them still to come. */
 
-import { atRest, gapBetween, gapOffset } from "./clearance.js";
 import { hertzOf, inHertz, pointAt, pointAtHertz } from "./excitation.js";
-import { periodsOf, UNDECIDED } from "./response.js";
+import { carried } from "./model.js";
 import { niceStep } from "./scale.js";
-import { lengthOf, omegaOf } from "./structure.js";
 
 /**
  * @typedef {"up" | "down" | "both"} Direction
@@ -94,27 +92,5 @@ export function startFrom(other, point, direction) {
     if (sign * (point.eta - eta) < -1e-12 || !startAt(lane, i)) return;
     if (best < 0 || sign * (eta - other.points[best].eta) > 0) best = i;
   });
-  return best < 0 ? rest : scaled(startAt(lane, best) ?? rest, other.points[best], point);
-}
-
-/** A state at one point as the like one at another: displacements from rest go with a eta^2; faces that touch go on touching, and none overlap. @param {number[]} start @param {Point} from @param {Point} to */
-export function scaled(start, from, to) {
-  if (start.every((value) => value === 0)) return start; // at rest, with a preload too
-  const length = lengthOf(to) / lengthOf(from);
-  const speed = (length * omegaOf(to.structure)) / omegaOf(from.structure);
-  const offset = gapOffset(to.structure);
-  if (length === 1 && speed === 1 && offset === gapOffset(from.structure)) return start;
-  const [rest, newRest] = [atRest(from.structure), atRest(to.structure)];
-  const [x1, x2] = [0, 1].map((i) => newRest[i] + length * (start[i] - rest[i]));
-  const touching = gapBetween(start[0], start[1], gapOffset(from.structure)) === 0;
-  const overlapping = gapBetween(x1, x2, offset) < 0;
-  return [x1, touching || overlapping ? x1 - offset : x2, start[2] * speed, start[3] * speed];
-}
-
-/** Whether up and down lead to different motions at an index, by how often they repeat and how far they part. @param {Diagram} diagram @param {number} index */
-export function lanesDiffer({ lanes }, index) {
-  const [up, down] = lanes.map(({ found }) => found[index]);
-  if (!up || !down || [up, down].some(({ decided }) => decided === UNDECIDED)) return false;
-  const periods = [up, down].map(periodsOf);
-  return periods[0] !== periods[1] || (periods[0] > 0 && Math.abs(up.peak - down.peak) > 0.03 * Math.max(up.peak, down.peak));
+  return best < 0 ? rest : carried(startAt(lane, best) ?? rest, other.points[best], point);
 }

@@ -25,8 +25,9 @@ const POINTS = 200; // a period
 const LONG = 20000; // periods of a section that runs on
 
 export class Inspector {
-  /** @param {(id: string) => HTMLElement} at @param {WorkerPool} pool @param {() => void} told */
-  constructor(at, pool, told) {
+  /** @param {(id: string) => HTMLElement} at @param {WorkerPool} pool @param {Measured | null} record @param {() => void} told */
+  constructor(at, pool, record, told) {
+    this.record = record;
     this.at = at;
     this.pool = pool;
     this.told = told;
@@ -43,7 +44,7 @@ export class Inspector {
     this.found = null;
     /** @type {any} */
     this.spectra = null;
-    /** @type {Exponent | undefined} */
+    /** @type {Exponent | null | undefined} */
     this.exponent = undefined;
     /** @type {Motion | null} */
     this.bonded = null;
@@ -127,7 +128,7 @@ export class Inspector {
     this.at("sentence").textContent = sentenceOf(response, this.exponent, motion.contact.some(Boolean), opensFrom(point, level));
     this.at("average").textContent = averageWords(response.gaps.length);
     this.at("average").classList.toggle("absent", periodsOf(response) > 0 || !response.impacts);
-    this.listNumbers(numbersOf(response, point, level));
+    this.listNumbers(numbersOf(response, point, level, this.exponent));
   }
 
   /** Show numbers by name in place of those before. @param {Record<string, string>} numbers */
@@ -202,7 +203,7 @@ export class Inspector {
 
   drawSpectrum() {
     if (!this.spectra || !this.choice) return;
-    const chart = spectrumChart(this.spectra, this.choice.point, this.choice.level);
+    const chart = spectrumChart(this.spectra, this.choice.point, this.choice.level, this.record);
     const words = chart.series.map(({ label }) => label).join(", ");
     this.pictures.show("spectrum", chart, `Amplitude spectrum of the acceleration of half 1: ${words}`);
   }

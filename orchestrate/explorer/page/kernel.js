@@ -7,16 +7,20 @@ import { omegaOf } from "./structure.js";
  *   [name: string]: number}} Slots
  * @typedef {{structures: Record<string, [string, string][]>, set: Record<string, number>,
  *   reals: string[], booleans: string[], read: string[], series: string[], counts: string[],
- *   capacity: number, traits: string[], trait_count: number}} Loops capacity: states that a step keeps
+ *   capacity: number, traits: string[], deviating: string[], exponent: Record<string, number>}} Loops capacity: states that a step keeps
  * @typedef {{module: WebAssembly.Module, slots: Slots, starts: Record<string, number>,
  *   variables: Record<string, number>, loops: Loops}} Compiled
  * @typedef {"u32" | "i32" | "f64" | "u8"} Kind
+ * @typedef {{value: number, error: number, verdict: number}} Exponent per unit of tau, with its standard error; 1 chaotic, −1 converging, 0 undecided
+ * @typedef {{order: Float64Array, amplitude: Float64Array}} Spectrum lines over the excitation's
  */
 
 const WIDTH = { u32: 4, i32: 4, f64: 8, u8: 1 };
 const [PAUSED, BROKEN] = [1, 2]; // what a loop answers
 const WORK = 10000; // periods, steps and impacts between two pauses: a few milliseconds
 const PIECE = 100; // periods of one step of a transient, at most
+const DEVIATED = ["x1", "x2", "v1", "v2", "impact_velocity"];
+const SAMPLED = 4; // periods of a spectrum's states between two pauses
 const IMPACTS = 4096; // that a loop keeps until it pauses
 
 /** A compiled model: its functions, and memory for any number of instances. */
@@ -89,6 +93,16 @@ export class Rooms {
     return address;
   }
 
+  /** A row of what a structure under an excitation is for the loops. @param {Point} point */
+  traits({ structure, frequency, amplitude }) {
+    const { loops, calls } = this.library;
+    /** @type {Record<string, number>} */
+    const known = { ...structure, omega: omegaOf(structure), frequency, amplitude };
+    const row = this.array("f64", loops.traits.map((name) => known[name] ?? 0));
+    calls.describe_linear_response(row);
+    return row;
+  }
+
   free() {
     this.taken.forEach((address) => this.library.calls.free(address));
     this.taken = [];
@@ -144,15 +158,13 @@ export class Oscillator {
   }
 
   /** What there is to compute: one response. @param {Rooms} rooms @param {Point} point @param {Iterable<number>} start @param {Record<string, number>} more */
-  task(rooms, { structure, frequency, amplitude }, start, more) {
-    const { set, reals, booleans, traits, trait_count } = this.library.loops;
+  task(rooms, point, start, more) {
+    const { set, reals, booleans } = this.library.loops;
+    const { structure, frequency, amplitude } = point;
     /** @type {Record<string, number>} */
     const values = { ...set, ...structure, box_frequency: frequency, box_amplitude: amplitude };
-    const known = [...traits.map((name) => values[name]), omegaOf(structure), frequency, amplitude];
-    const row = rooms.array("f64", [...known, ...new Array(trait_count - known.length).fill(0)]);
-    this.library.calls.describe_linear_response(row);
     return rooms.structure("ResponseTask", {
-      ...{ count: 1, piece: PIECE, traits: row, starts: rooms.array("f64", Array.from(start)) },
+      ...{ count: 1, piece: PIECE, traits: rooms.traits(point), starts: rooms.array("f64", Array.from(start)) },
       reals: rooms.array("f64", reals.map((name) => values[name])),
       booleans: rooms.array("u8", booleans.map((name) => values[name])),
       periods: rooms.array("f64", [(2 * Math.PI) / frequency]),
@@ -168,15 +180,31 @@ export class Oscillator {
     if (!begun) throw new Error(this.library.message());
   }
 
-  /** States at equal parts of a span, the last at its end. @param {number} time @param {number} target @param {number} count */
-  sampled(time, target, count) {
-    const rooms = new Rooms(this.library);
-    const room = rooms.array("f64", 4 * count);
-    const done = this.library.calls.sample_evenly(this.own, time, target, count, room);
-    const states = new Float64Array(this.library.view("f64", room, 4 * count));
-    rooms.free();
-    if (!done) throw new Error(this.library.message());
-    return states;
+  /**
+   * Amplitudes of mass 1's absolute acceleration, impulses included, of the motion that goes on from where the instance stands.
+   * @param {Point} point
+   * @param {number} first periods since the start
+   * @param {{periods: number, points: number, highest: number}} span
+   * @returns {Generator<undefined, Spectrum>} it pauses
+   */
+  *spectrum(point, first, { periods, points, highest }) {
+    const { library } = this;
+    const rooms = new Rooms(library);
+    const [period, count] = [(2 * Math.PI) / point.frequency, periods * points];
+    try {
+      const states = rooms.array("f64", 4 * count);
+      for (let done = 0; done < periods; done += SAMPLED) {
+        const [time, target] = [first + done, first + done + SAMPLED].map((periods) => periods * period);
+        if (!library.calls.sample_evenly(this.own, time, target, points * SAMPLED, states + 32 * points * done)) throw new Error(library.message());
+        yield;
+      }
+      const [memory, amplitudes] = [library.calls.spectrum_size(count), count / 2 + 1].map((size) => rooms.array("f64", size));
+      library.calls.acceleration_spectrum(states, 4, count, periods, point.frequency, point.amplitude, memory, amplitudes);
+      const amplitude = new Float64Array(library.view("f64", amplitudes, highest * periods + 1));
+      return { order: Float64Array.from(amplitude, (_, line) => line / periods), amplitude };
+    } finally {
+      rooms.free();
+    }
   }
 
   /**
@@ -220,7 +248,7 @@ export class Oscillator {
    * @param {Float64Array} times
    * @param {string[]} outputs read at the times
    * @param {string[]} told read at impacts
-   * @returns {Generator<undefined, {rows: Float64Array, contact: Uint8Array, impacts: number[][]}>} of each impact its time and what is told
+   * @returns {Generator<undefined, {rows: Float64Array, contact: Uint8Array, impacts: number[][]}>} of each impact its time, what is told, and whether contact begins
    */
   *play(from, times, outputs, told) {
     const rooms = new Rooms(this.library);
@@ -248,7 +276,7 @@ export class Oscillator {
       const take = () => {
         const count = this.library.view("u32", progress, kept + 1)[kept];
         const rows = this.library.view("f64", places.impacts, width * count);
-        for (let i = 0; i < count; i++) impacts.push(Array.from(rows.subarray(width * i, width * (i + 1) - 1)));
+        for (let i = 0; i < count; i++) impacts.push(Array.from(rows.subarray(width * i, width * (i + 1))));
       };
       for (const _ of this.loop("play", player, task, progress)) {
         take();
@@ -263,6 +291,45 @@ export class Oscillator {
     } finally {
       rooms.free();
     }
+  }
+
+  /**
+   * The largest Lyapunov exponent per unit of tau, of an instance that stops: over so many periods, or twice as many
+   * again and again while it is undecided.
+   * @param {Point} point
+   * @param {number[]} start on the attractor, at phase 0
+   * @returns {Generator<undefined, Exponent | null>} nothing of too few impacts; it pauses
+   */
+  *exponent(point, start) {
+    const { periods, longest, most, batches } = this.library.loops.exponent;
+    const period = (2 * Math.PI) / point.frequency;
+    /** @type {number[][]} */
+    const impacts = [];
+    this.begin(point, start);
+    for (let done = 0, end = periods; ; done = end, end *= 2) {
+      const span = yield* this.play(done * period, Float64Array.of(end * period), [], DEVIATED);
+      for (const impact of span.impacts) impacts.push(impact);
+      if (impacts.length < 2 * batches) return null;
+      const found = this.exponentOf(point, impacts, end * period);
+      if (found.verdict || 2 * end > longest || impacts.length > most) return found;
+    }
+  }
+
+  /** @param {Point} point @param {number[][]} impacts @param {number} end s @returns {Exponent} */
+  exponentOf(point, impacts, end) {
+    const { calls, loops } = this.library;
+    const { blocks, batches, sigmas, wander } = loops.exponent;
+    const rooms = new Rooms(this.library);
+    /** @type {Record<string, number>} */
+    const known = { ...point.structure };
+    const numbers = rooms.array("f64", [...loops.deviating.map((name) => known[name]), point.amplitude, point.frequency, 0]);
+    const rows = rooms.array("f64", impacts.flat());
+    const [memory, found] = [calls.exponent_size(impacts.length), 2].map((size) => rooms.array("f64", size));
+    calls.largest_exponent(numbers, rows, impacts.length, end, blocks, batches, memory, found);
+    const [value, error] = this.library.view("f64", found, 2);
+    rooms.free();
+    const floor = calls.wander_floor(wander, omegaOf(point.structure) * end);
+    return { value, error, verdict: calls.classify_exponent(value, error, floor, sigmas) };
   }
 }
 

@@ -1,4 +1,4 @@
-/** A motion in time with its impacts, and what an accelerometer on mass 1 would read. */
+/** A motion in time with its impacts. */
 
 import { periodOf } from "./structure.js";
 
@@ -31,19 +31,4 @@ export function* record(stopping, point, start, first, periods, points) {
   const lostBefore = before.impacts[before.impacts.length - 1]?.[3] ?? 0;
   const impactEnergy = lost.map((energy, i) => energy - (i ? lost[i - 1] : lostBefore));
   return { time, states: rows, contact, impactTime, impactSpeed, impactPlace, impactEnergy, period, first, points };
-}
-
-/**
- * Absolute accelerations of both masses between impacts, by (6), in contact with its force (18).
- * @param {Float64Array | number[]} state
- * @param {boolean} touching
- * @param {Point} point
- * @returns {[number, number]}
- */
-export function accelerations([x1, x2, v1, v2], touching, { structure: s }) {
-  if (touching) {
-    const both = -((s.k1 + s.k2) * x1 + s.k2 * (x2 - x1) + (s.d1 + s.d2) * v1) / (s.m1 + s.m2);
-    return [both, both];
-  }
-  return [-(s.k1 * x1 + s.d1 * v1) / s.m1, -(s.k2 * x2 + s.d2 * v2) / s.m2];
 }

@@ -1,11 +1,16 @@
 /** The motion at the chosen frequency in four pictures, and in words. */
 
 import { axisAround, drawChart } from "./chart.js";
-import { atRest, gapBetween, gapOffset } from "./clearance.js";
+import { hertzOf, inHertz } from "./excitation.js";
+import { gapsOf, traitsOf } from "./model.js";
 import { Picture } from "./picture.js";
 import { scaleAt, wordsOf } from "./units.js";
 
-/** @typedef {"history" | "phase" | "section" | "spectrum"} Name */
+/**
+ * @typedef {"history" | "phase" | "section" | "spectrum"} Name
+ * @typedef {{title: string, orders?: {frequency: number[], amplitude: number[][]},
+ *   lines?: {frequency: number[], amplitude: number[]}}} Measured in Hz and m/s²; a row for each order
+ */
 
 const FEW = 24; // places of a section that are drawn as larger dots
 
@@ -32,7 +37,8 @@ export function motionPictures(at) {
 /** Columns of a motion as the axes have them: time from its beginning, displacements from rest, where pressed halves touch. @param {Motion} motion @param {Point} point @param {Level} level */
 export function columnsOf(motion, point, level) {
   const { length, speed, time } = scaleAt(point, level);
-  const rest = [...atRest(point.structure), 0, 0];
+  const { rest_1, rest_2 } = traitsOf(point);
+  const rest = [rest_1, rest_2, 0, 0];
   /** @param {number} part @param {number} unit */
   const column = (part, unit) =>
     Float64Array.from({ length: motion.time.length }, (_, i) => (motion.states[4 * i + part] - rest[part]) / unit);
@@ -61,9 +67,9 @@ export function contactSpans({ contact }, turns) {
 }
 
 /** What a displacement is counted from is said where it is not the springs' own length. @param {Point} point @param {Level} level */
-function placeWords({ structure }, level) {
+function placeWords(point, level) {
   const { place } = wordsOf(level);
-  return gapOffset(structure) < 0 ? place.replace("displacement", "displacement from rest") : place;
+  return traitsOf(point).gap_offset < 0 ? place.replace("displacement", "displacement from rest") : place;
 }
 
 /** Time histories with impacts and contact. @param {Motion} motion @param {Point} point @param {Level} level @returns {Chart} */
@@ -71,7 +77,7 @@ export function historyChart(motion, point, level) {
   const { turns, x1, x2 } = columnsOf(motion, point, level);
   const { length, time } = scaleAt(point, level);
   const words = wordsOf(level);
-  const [rest] = atRest(point.structure);
+  const { rest_1 } = traitsOf(point);
   const hits = motion.impactTime.map((t) => (t - motion.time[0]) / time);
   return {
     x: { low: 0, high: turns[turns.length - 1], label: words.time },
@@ -80,7 +86,7 @@ export function historyChart(motion, point, level) {
     series: [
       { x: turns, y: x1, colour: "one", label: "half 1" },
       { x: turns, y: x2, colour: "two", label: "half 2" },
-      { x: hits, y: motion.impactPlace.map((x) => (x - rest) / length), colour: "hit", dots: 2.5, label: "impact" },
+      { x: hits, y: motion.impactPlace.map((x) => (x - rest_1) / length), colour: "hit", dots: 2.5, label: "impact" },
     ],
   };
 }
@@ -106,9 +112,8 @@ const cell = (value, { low, high }) => Math.round((200 * (value - low)) / (high 
 export function sectionChart(states, point, level) {
   const { length, speed } = scaleAt(point, level);
   const words = wordsOf(level);
-  const offset = gapOffset(point.structure);
   const count = states.length / 4;
-  const x = Float64Array.from({ length: count }, (_, i) => gapBetween(states[4 * i], states[4 * i + 1], offset) / length);
+  const x = gapsOf(states, point).map((gap) => gap / length);
   const y = Float64Array.from({ length: count }, (_, i) => (states[4 * i + 3] - states[4 * i + 2]) / speed);
   const axes = { x: axisAround([x], words.gap), y: axisAround([y], words.gapSpeed) };
   const places = new Set(x.map((value, i) => 1000 * cell(value, axes.x) + cell(y[i], axes.y)));
@@ -116,22 +121,37 @@ export function sectionChart(states, point, level) {
   return { ...axes, series: [{ x, y, colour: "ink", dots, alpha: 0.8 }] };
 }
 
-/** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @returns {Chart} */
-export function spectrumChart({ delaminated, bonded }, point, level) {
+/** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @param {Measured | null} record @returns {Chart} */
+export function spectrumChart({ delaminated, bonded }, point, level, record) {
   const { line, acceleration } = scaleAt(point, level);
   const words = wordsOf(level);
-  const ends = [delaminated, bonded].map(({ amplitude }) => amplitude.reduce((most, value) => Math.max(most, value), 0));
+  const measured = record && inHertz(level) ? seriesOf(record, hertzOf(point.eta, point.structure)) : null;
+  const heights = [delaminated.amplitude, bonded.amplitude, Float64Array.from(measured?.y ?? [])];
+  const ends = heights.map((amplitude) => amplitude.reduce((most, value) => Math.max(most, value), 0));
   const high = Math.max(...ends) / acceleration || 1;
   const low = high * 1e-7;
   /** @param {Float64Array} amplitude */
   const kept = (amplitude) => amplitude.map((value) => Math.max(value / acceleration, low / 10));
   const x = delaminated.order.map((order) => order * line);
+  /** @type {Series[]} */
+  const series = [
+    { x, y: kept(heights[0]), colour: "one", label: "delaminated", width: 1 },
+    { x, y: kept(heights[1]), colour: "two", label: "undamaged" },
+  ];
+  if (measured) series.push({ x: measured.x.map((order) => order * line), y: kept(heights[2]), colour: "ink", label: "measured", dots: measured.dots });
   return {
     x: { low: 0, high: x[x.length - 1], label: words.line },
     y: { low, high: high * 2, log: true, label: words.acceleration },
-    series: [
-      { x, y: kept(delaminated.amplitude), colour: "one", label: "delaminated", width: 1 },
-      { x, y: kept(bonded.amplitude), colour: "two", label: "undamaged" },
-    ],
+    series,
   };
+}
+
+/** What is measured at a frequency: orders of a swept sine, or a spectrum, over the excitation's frequency. @param {Measured} record @param {number} hertz @returns {{x: number[], y: number[], dots?: number} | null} nothing beside the sweep */
+function seriesOf({ orders, lines }, hertz) {
+  if (lines) return { x: lines.frequency.map((value) => value / hertz), y: lines.amplitude };
+  const { frequency, amplitude } = /** @type {NonNullable<Measured["orders"]>} */ (orders);
+  if (hertz < frequency[0] || hertz > frequency[frequency.length - 1]) return null;
+  const after = frequency.findIndex((value) => value >= hertz);
+  const near = after > 0 && hertz - frequency[after - 1] < frequency[after] - hertz ? after - 1 : after;
+  return { x: amplitude.map((_, i) => i + 1), y: amplitude.map((row) => row[near]), dots: 4 };
 }

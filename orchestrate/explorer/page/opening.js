@@ -1,41 +1,24 @@
 /** When the halves of a pressed beam open: from which level on, and at which frequencies of a diagram. */
 
-import { gapOffset } from "./clearance.js";
 import { GRAVITY, inHertz } from "./excitation.js";
+import { traitsOf } from "./model.js";
 import { shown } from "./scale.js";
 import { frequencyName, frequencyUnit, levelShown } from "./units.js";
 
 const MOST = 3; // ranges that are named
 
-/**
- * The level at which the contact force of the linear motion first falls to zero, for a preload; as
- * `orchestrate.contact_threshold` computes it.
- * @param {Point} point
- * @param {Level} level whose unit the answer has
- * @returns {Level}
- */
-export function thresholdOf({ structure: s, frequency }, { unit }) {
-  const [mass, stiffness, damping] = [s.m1 + s.m2, s.k1 + s.k2, s.d1 + s.d2];
-  const square = frequency * frequency;
-  const preload = (-gapOffset(s) * s.k1 * s.k2) / stiffness;
-  // force on half 2 in phase and a quarter of a period off, each over (stiffness - mass square) + i damping frequency
-  const inPhase = (s.k2 - s.m2 * square) * mass - s.m2 * (stiffness - mass * square);
-  const ahead = (s.d2 * mass - s.m2 * damping) * frequency;
-  const swing = Math.hypot(stiffness - mass * square, damping * frequency);
-  const acceleration = (preload * swing) / Math.hypot(inPhase, ahead);
-  return { unit, value: unit === "g" ? acceleration / GRAVITY : (1e3 * acceleration) / square };
-}
-
 /** From which level on a beam that stays closed opens; nothing of one whose halves are not pressed. @param {Point} point @param {Level} level */
 export function opensFrom(point, level) {
-  if (!inHertz(level) || gapOffset(point.structure) >= 0) return "";
-  const threshold = thresholdOf(point, level);
-  return Number.isFinite(threshold.value) ? ` At this frequency they open from ${levelShown(threshold).text} on.` : "";
+  const { gap_offset, threshold: amplitude } = traitsOf(point);
+  if (!inHertz(level) || gap_offset >= 0) return "";
+  const value = level.unit === "g" ? (amplitude * point.frequency * point.frequency) / GRAVITY : 1e3 * amplitude;
+  const threshold = { unit: level.unit, value };
+  return Number.isFinite(value) ? ` At this frequency they open from ${levelShown(threshold).text} on.` : "";
 }
 
 /** Where a complete diagram's beam opens, or that it does so unseen. @param {Diagram} diagram */
 export function openingOf(diagram) {
-  const ranges = gapOffset(diagram.structure) < 0 ? `. The halves open ${rangesOf(diagram)}` : "";
+  const ranges = traitsOf(diagram.points[0]).gap_offset < 0 ? `. The halves open ${rangesOf(diagram)}` : "";
   return ranges + (opensUnseen(diagram) ? ". A dot at 0 where there are impacts: they open at other moments of the period" : "");
 }
 

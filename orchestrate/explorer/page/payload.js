@@ -4,10 +4,10 @@
  * @typedef {{slots: Slots, starts: Record<string, number>, variables: Record<string, number>}} Kernel
  * @typedef {{oscillator: Kernel, shaker: Kernel, loops: Loops, drive: Start,
  *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>, units: Units,
- *   settings: Settings, directions: ("up" | "down")[], count: number,
+ *   alike: number, settings: Settings, directions: ("up" | "down")[], count: number,
  *   low: number, high: number, level: ["paper" | "g" | "mm", number],
  *   shown: Asked, tour: Record<string, string>,
- *   branches: {x: number[], y: number[], stable: boolean}[],
+ *   record: Measured | null, branches: {x: number[], y: number[], stable: boolean}[],
  *   bifurcations: {eta: number, gap: number, kind: string}[]}} Table
  */
 

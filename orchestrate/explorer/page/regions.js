@@ -35,9 +35,6 @@ export class Regions {
     /** @type {Diagram | null} */
     this.coarse = null; // to be refined once it is complete
     this.quick = false; // whether the present diagram is one of low resolution
-    /** @type {number | undefined} */
-    this.first = undefined; // ms until a response came,
-    this.took = { first: 0, all: 0 }; // and until all had
   }
 
   get diagram() {
@@ -93,20 +90,14 @@ export class Regions {
     this.order?.cancel();
     this.complete = false;
     this.view.show(diagram, parent && parent !== diagram ? parent : null);
-    const began = performance.now();
     /** @type {Take} */
-    const take = (lane, found) => {
-      this.view.add(lane.direction, found.index, found);
-      this.first ??= performance.now() - began;
-    };
-    this.first = undefined;
+    const take = (lane, found) => this.view.add(lane.direction, found.index, found);
     const replayed = diagram.lanes.every((lane) => lane.starts);
     const order = replayed ? replay(this.pool, diagram, take) : chain(this.pool, diagram, parent, take);
     this.order = order;
     void order.done.then(() => {
       if (this.order !== order) return;
       this.complete = true;
-      this.took = { first: this.first ?? 0, all: performance.now() - began };
       this.view.complete();
       this.told(true);
       if (this.coarse === diagram) this.refine(diagram);

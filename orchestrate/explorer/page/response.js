@@ -1,6 +1,6 @@
 /** One settled response: stroboscopic samples, impacts, the largest gap, how often it repeats, and where it ends. */
 
-import { gapBetween, gapOffset } from "./clearance.js";
+import { gapsOf } from "./model.js";
 import { lengthOf } from "./structure.js";
 
 /**
@@ -29,7 +29,7 @@ export function* respond(oscillator, point, start, settings, decides = true) {
   const length = lengthOf(point);
   return {
     states,
-    gaps: gapsOf(states, length, gapOffset(point.structure)),
+    gaps: gapsOf(states, point).map((gap) => gap / length),
     peak: largest / length,
     impacts,
     contact: counts.touching !== 0 || counts.contacts_after > counts.contacts_before,
@@ -42,10 +42,3 @@ export function* respond(oscillator, point, start, settings, decides = true) {
 
 /** Periods after which a response is known to repeat; 0 where it is not. @param {{multiplicity: number, decided: number}} response */
 export const periodsOf = ({ multiplicity, decided }) => (decided === REPEATED ? multiplicity : 0);
-
-/** @param {Float64Array} states @param {number} length @param {number} offset */
-function gapsOf(states, length, offset) {
-  const gaps = new Float64Array(states.length / 4);
-  for (let i = 0; i < gaps.length; i++) gaps[i] = gapBetween(states[4 * i], states[4 * i + 1], offset) / length;
-  return gaps;
-}

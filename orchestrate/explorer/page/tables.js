@@ -1,6 +1,6 @@
 /** What is shown as tables: the diagram, of the motion, of a spectrum. */
 
-import { accelerations } from "./motion.js";
+import { accelerationsOf } from "./model.js";
 import { DECIDED } from "./response.js";
 
 /** Samples of all responses that have come. @param {Diagram} diagram */
@@ -19,11 +19,10 @@ export function diagramCsv({ points, lanes, settings }) {
 }
 
 /** The motion in time. @param {Motion} motion @param {Point} point */
-export function motionCsv({ time, states, contact }, point) {
-  const rows = Array.from(time, (t, i) => {
-    const state = states.subarray(4 * i, 4 * i + 4);
-    return [t, ...state, ...accelerations(state, contact[i] !== 0, point), contact[i]];
-  });
+export function motionCsv(motion, point) {
+  const { time, states, contact } = motion;
+  const accelerations = accelerationsOf(motion, point);
+  const rows = Array.from(time, (t, i) => [t, ...states.subarray(4 * i, 4 * i + 4), ...accelerations.subarray(2 * i, 2 * i + 2), contact[i]]);
   return { head: ["time", "x1", "x2", "v1", "v2", "a1_abs", "a2_abs", "in_contact"], rows };
 }
 

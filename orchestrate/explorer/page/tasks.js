@@ -3,17 +3,14 @@
 import { destination, startAt } from "./basin.js";
 import { Coupled } from "./coupled.js";
 import { Instance, Oscillator } from "./kernel.js";
-import { exponentOf } from "./lyapunov.js";
 import { record } from "./motion.js";
 import { respond } from "./response.js";
-import { spectrumOf } from "./spectrum.js";
 import { periodOf, pointOf } from "./structure.js";
 import { waveform } from "./waveform.js";
 
 /** @typedef {import("./response.js").Response} Response */
 
 const REST = [0, 0, 0, 0];
-const EXPONENT = { periods: 400, most: 12800, distance: 1e-7 };
 const SPAN = { periods: 64, points: 1024, highest: 20 };
 
 /**
@@ -93,12 +90,12 @@ function* section(instance, { point, start, periods }) {
  */
 function* spectra(instance, { point, start }) {
   instance.begin(point, start);
-  const delaminated = yield* spectrumOf(instance, point, 0, SPAN);
+  const delaminated = yield* instance.spectrum(point, 0, SPAN);
   const glued = { ...point, structure: { ...point.structure, bonded: 1 } };
   const settled = yield* respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 }, false);
-  const bonded = yield* spectrumOf(instance, glued, 2001, SPAN);
+  const bonded = yield* instance.spectrum(glued, 2001, SPAN);
   yield { delaminated, bonded, bondedState: settled.end };
-  yield { exponent: yield* exponentOf(instance, point, start, EXPONENT) };
+  yield { exponent: yield* stopping(instance, (own) => own.exponent(point, start)) };
 }
 
 /**

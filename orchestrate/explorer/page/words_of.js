@@ -13,14 +13,12 @@ import { scaleAt, wordsOf } from "./units.js";
 const DIGITS = 3; // of a mean number of impacts, wherever it is shown
 const UNDECIDED_MOTION = "Nearly repeats, or is still settling: undecided here";
 
-/** What the sign of an exponent says; nothing where it is within its error. @param {Exponent} exponent @returns {Kind} */
-export function kindOf({ value, error }) {
-  if (value > error) return "chaotic";
-  return value < -error ? "converging" : "undecided";
-}
+/** What an exponent says. @param {Exponent} exponent @returns {Kind} */
+export const kindOf = ({ verdict }) => (verdict > 0 ? "chaotic" : verdict < 0 ? "converging" : "undecided");
 
-/** What the exponent says. @param {Exponent} exponent @param {number} repeats after so many periods, 0 if not */
+/** The same in words, with its standard error. @param {Exponent | null} exponent @param {number} repeats after so many periods, 0 if not */
 export function exponentWords(exponent, repeats) {
+  if (!exponent) return "none of so few impacts";
   const { value, error } = exponent;
   const within = error > 0 ? ` ± ${shown(error, 2)}` : "";
   const converging = `below 0: ${repeats ? "regular" : "it converges, but has not repeated yet"}`;
@@ -31,11 +29,12 @@ export function exponentWords(exponent, repeats) {
 /** @param {number} count */
 const countedPeriods = (count) => `${count} period${count > 1 ? "s" : ""}`;
 
-/** After how many periods a motion repeats, or how it does not. @param {{multiplicity: number, decided: number}} motion */
-export function repeatWords(motion) {
+/** After how many periods a motion repeats, or how it does not: where there is an exponent, it decides. @param {{multiplicity: number, decided: number}} motion @param {Exponent | null} [exponent] */
+export function repeatWords(motion, exponent) {
   const periods = periodsOf(motion);
   if (periods) return countedPeriods(periods);
-  return motion.decided === UNDECIDED ? "undecided" : "irregular";
+  const undecided = exponent ? kindOf(exponent) !== "chaotic" : motion.decided === UNDECIDED;
+  return undecided ? "undecided" : "irregular";
 }
 
 /** How a beam of one's own is shaken, and how far it opens. @param {number} peak @param {Point} point @param {Level} level @returns {Record<string, string>} */
@@ -50,8 +49,8 @@ function ownNumbers(peak, point, level) {
   };
 }
 
-/** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @returns {Record<string, string>} */
-export function numbersOf(response, point, level) {
+/** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @param {Exponent | null} [exponent] @returns {Record<string, string>} */
+export function numbersOf(response, point, level, exponent) {
   const { peak, impacts, contact } = response;
   /** @type {Record<string, string>} */
   const first = inHertz(level) ? ownNumbers(peak, point, level) : { "frequency ratio η": shown(point.eta, 6), "largest gap ξ": shown(peak, 6) };
@@ -59,7 +58,7 @@ export function numbersOf(response, point, level) {
   return {
     ...first,
     "impacts a period": periodsOf(response) === 1 ? count : `${count} on average`,
-    "repeats after": repeatWords(response),
+    "repeats after": repeatWords(response, exponent),
     "stick together": !contact ? "no" : peak > 0 ? "for a while" : "always",
   };
 }
@@ -76,7 +75,7 @@ export function countOf(impacts, each = "a period") {
 /** The same of a motion: of periods that differ it is the mean. @param {number} impacts @param {number} multiplicity */
 export const meanCountOf = (impacts, multiplicity) => `${multiplicity === 1 ? "" : "on average "}${countOf(impacts)}`;
 
-/** A response in a sentence. @param {Response} response @param {Exponent | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown @param {string} opening what is said of halves that stay closed */
+/** A response in a sentence. @param {Response} response @param {Exponent | null | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown @param {string} opening what is said of halves that stay closed */
 export function sentenceOf(response, exponent, seen, opening) {
   const { impacts, contact, peak } = response;
   const periods = periodsOf(response);
@@ -90,10 +89,10 @@ export function sentenceOf(response, exponent, seen, opening) {
   return `${withoutRepeating(response, exponent)}, ${count}${contact ? sticks : ""}.`;
 }
 
-/** @param {Response} response @param {Exponent | undefined} exponent */
+/** Where there is an exponent, it decides. @param {Response} response @param {Exponent | null | undefined} exponent */
 function withoutRepeating({ decided, multiplicity, gaps }, exponent) {
   const guess = multiplicity ? `, perhaps after ${countedPeriods(multiplicity)}` : "";
-  const so = decided === UNDECIDED ? `Undecided whether it repeats${guess}` : `Irregular: does not repeat in ${gaps.length} periods`;
-  if (!exponent) return so;
-  return { chaotic: "Chaos: never repeats", converging: `${so}, but converges`, undecided: UNDECIDED_MOTION }[kindOf(exponent)];
+  const undecided = `Undecided whether it repeats${guess}`;
+  if (!exponent) return decided === UNDECIDED ? undecided : `Irregular: does not repeat in ${gaps.length} periods`;
+  return { chaotic: "Chaos: never repeats", converging: `${undecided}: it converges`, undecided: UNDECIDED_MOTION }[kindOf(exponent)];
 }

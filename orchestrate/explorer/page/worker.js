@@ -1,6 +1,7 @@
 /** A worker: computes tasks in short slices, an urgent one first, else the newest and the one before in turn. */
 
 import { Library } from "./kernel.js";
+import { useLibrary } from "./model.js";
 import { perform } from "./tasks.js";
 
 const SLICE = 8; // ms
@@ -20,6 +21,7 @@ scope.onmessage = (/** @type {MessageEvent} */ { data }) => {
   if (data.compiled) {
     const { oscillator, shaker } = data.compiled;
     libraries = { oscillator: new Library(oscillator), shaker: new Library(shaker) };
+    useLibrary(libraries.oscillator);
   }
   if (data.task) tasks.push({ id: data.id, urgent: data.urgent, run: perform(data.task, data.asked, libraries) });
   if (data.cancel !== undefined) drop(data.cancel);

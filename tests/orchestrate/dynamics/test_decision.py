@@ -12,10 +12,11 @@ from orchestrate.dynamics.decision import (
     middle_of_longest_run,
 )
 from orchestrate.dynamics.orbit_search import least_periods
-from orchestrate.dynamics.settled_motion import ScaledStates, same_nodes
+from orchestrate.dynamics.settled_motion import same_nodes
 from orchestrate.fmu import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
+from orchestrate.response.multiplicity import nearest_state
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
 
@@ -163,9 +164,9 @@ def test_orbits_are_one_whatever_period_they_begin_with():
 
 def test_distances_compare_gaps_with_the_gap():
     """A gap may be a hundredth of the displacements."""
-    known = ScaledStates.from_states(np.array([[1.0, 1.01, 0.0, 0.0]]), 1.0, 0.01)
-    assert known.nearest([1.0, 1.011, 0.0, 0.0]) == (0, pytest.approx(0.1))
-    assert known.nearest([1.001, 1.011, 0.0, 0.0]) == (0, pytest.approx(1e-3, rel=0.02))
+    known = [[1.0, 1.01, 0.0, 0.0]], 1.0, 0.01
+    assert nearest_state(*known, [1.0, 1.011, 0.0, 0.0]) == (0, pytest.approx(0.1))
+    assert nearest_state(*known, [1.001, 1.011, 0.0, 0.0]) == (0, pytest.approx(1e-3, rel=0.02))
 
 
 @pytest.mark.parametrize(

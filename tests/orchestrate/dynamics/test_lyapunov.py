@@ -15,12 +15,14 @@ from orchestrate.dynamics.lyapunov import (
     lyapunov,
     min_impacts,
 )
-from orchestrate.dynamics.variational import monodromy, period_in_tau
+from orchestrate.dynamics.variational import period_in_tau
 from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
+
+from .test_variational import monodromy
 
 make = Structure.nondimensional
 PAPER = make()

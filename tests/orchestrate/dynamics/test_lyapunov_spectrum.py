@@ -14,7 +14,7 @@ from orchestrate.dynamics.lyapunov_spectrum import (
     kaplan_yorke_dimension,
     lyapunov_spectrum,
 )
-from orchestrate.dynamics.variational import impact_matrices, period_in_tau
+from orchestrate.dynamics.variational import deviations, period_in_tau
 from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
@@ -67,7 +67,7 @@ def test_a_qr_method_gives_the_same(followed):
     end = 600 * period_in_tau(0.8)
     found = lyapunov_spectrum(impacts, end, point, 40, 8)
     frame, sums = np.eye(4), np.zeros(4)
-    for matrix in impact_matrices(impacts, end, point):
+    for matrix in deviations(impacts, end, point)[0]:
         frame, upper = np.linalg.qr(matrix @ frame)
         sums += np.log(np.abs(np.diag(upper)))
     np.testing.assert_allclose(found.exponents, sums / end, atol=4e-3)

@@ -9,9 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from orchestrate.dynamics.closed_form import ClosedForm, contact_durations
+from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.dynamics.following import follow_impacts
-from orchestrate.dynamics.variational import contact_durations_after, monodromy, period_in_tau
+from orchestrate.dynamics.variational import (
+    contact_durations,
+    deviations,
+    period_in_tau,
+)
 from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
@@ -55,6 +59,17 @@ def differences(instance, point, start, periods):
     return np.array(columns).T / point.scale[:, None] / (2.0 * step)
 
 
+def monodromy(impacts, point, periods=1):
+    """Monodromy matrix over some periods from phase 0, impacts included."""
+    form = ClosedForm.from_structure(*point)
+    end = periods * period_in_tau(form.eta)
+    first = impacts.time[0] if len(impacts.time) else end
+    matrix = form.flight(np.array([first]))[0]
+    for each in deviations(impacts, end, point)[0]:
+        matrix = each @ matrix
+    return matrix
+
+
 @pytest.mark.parametrize(
     ("structure", "eta"), list(itertools.product((*ALIKE, *UNLIKE), (0.3, 0.6, 1.047, 2.0)))
 )
@@ -78,7 +93,7 @@ def test_releases_are_those_of_the_fmu(instances, structure, eta):
     span = period_in_tau(eta)
     impacts = follow_impacts(eventful, point, REST, 4)
     ends = np.append(impacts.time[1:], 4 * span)
-    found = contact_durations_after(impacts, ends, point)
+    _, found = deviations(impacts, 4 * span, point)
     for stick in np.flatnonzero(impacts.sticks):
         release = impacts.time[stick] + found[stick]
         touching = []
@@ -96,7 +111,7 @@ def test_contacts_shorter_than_a_look_are_seen(instances, eta):
     structure, start = ALIKE[0], (0.01, 0.01, -0.5, -0.5)
     point = Point(structure, Excitation.nondimensional(eta, structure))
     one = Impacts(np.zeros(1), np.array([start]), np.zeros(1), np.ones(1, dtype=bool))
-    found = contact_durations_after(one, np.array([20.0]), point).item()
+    found = deviations(one, 20.0, point)[1].item()
     assert 0.01 < found < 20.0 / 64.0
     touching = []
     for tau in (found - 1e-9, found + 1e-9):

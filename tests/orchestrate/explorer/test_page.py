@@ -10,6 +10,11 @@ import xarray as xr
 import orchestrate
 from orchestrate import cli
 from orchestrate.explorer.page import explore
+from orchestrate.fmu import OSCILLATOR, Instance, begin, find, sampled
+from orchestrate.model import Excitation
+from orchestrate.response.equations import absolute_accelerations
+from orchestrate.response.questions import Point
+from orchestrate.response.spectra import acceleration_spectrum
 
 from ...sparing import ordinary
 from .test_own_beam import pasted
@@ -104,6 +109,49 @@ def test_the_numbers_are_those_of_python(shown, count):
     assert len({int(data.multiplicity_decided[0]) for data in found}) >= 2
 
 
+MOTIONS = {  # a structure and frequency ratio: chaos, regular, with contact, preloaded
+    "chaos": (orchestrate.Structure(), 2.86),
+    "regular": (orchestrate.Structure.nondimensional(mu=2.0, kappa=0.7, D=0.02, e=0.6), 1.2),
+    "contact": (orchestrate.Structure.nondimensional(e=0.3, D=0.05), 0.6),
+    "preload": (orchestrate.Structure.nondimensional(mu=1.5).replace(clearance=-0.5), 0.8),
+}
+SPECTRA = """
+const [structure, eta, start] = arguments;
+const frequency = eta * Math.sqrt(structure.k1 / structure.m1);
+const point = { structure, eta, frequency, amplitude: 1 / (eta * eta) };
+explorer.parts = [];
+explorer.pool.ask("spectra", { point, start }, (parts) => explorer.parts.push(...parts));
+"""
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_spectra_and_exponents_are_those_of_python(shown, name):
+    structure, eta = MOTIONS[name]
+    swept = orchestrate.sweep(structure, eta=[eta], transient=400, samples=50, progress=False)
+    start = swept.end_state.values[0].tolist()
+    numbers = {key: float(value) for key, value in structure.parameters().items()}
+    shown.run(SPECTRA, numbers, eta, start)
+    shown.until("return explorer.parts.length === 2")
+    point = Point(structure, Excitation.nondimensional(eta, structure))
+    with Instance(find(OSCILLATOR).path) as instance:
+        begin(instance, *point, start)
+        states = sampled(instance, 0.0, 64 * point.excitation.period, 65536)
+    expected = acceleration_spectrum(states, 64, point.excitation)[0, :1281]
+    amplitude = shown.numbers("explorer.parts[0].delaminated.amplitude")
+    np.testing.assert_allclose(amplitude, expected, atol=1e-9 * expected.max())
+    assert len(amplitude) == 1281 and amplitude.max() > 0.1
+    bonded = orchestrate.spectra(structure, eta=eta, transient=2001, highest=20.0, progress=False)
+    bonded = bonded.acceleration.sel(kind="bonded", mass=1).values.ravel()
+    mine = shown.numbers("explorer.parts[0].bonded.amplitude")
+    np.testing.assert_allclose(mine, bonded, atol=1e-9 * bonded.max())
+    found = shown.run("return explorer.parts[1].exponent")
+    asked = {"eta": eta, "start": start, "transient": 0, "progress": False}
+    expected = orchestrate.lyapunov(structure, periods=400, **asked)
+    assert found["verdict"] == int(expected.verdict[0]) == (1 if name == "chaos" else -1)
+    assert found["value"] == pytest.approx(float(expected.exponent[0]), rel=1e-6)
+    assert found["error"] == pytest.approx(float(expected.standard_error[0]), rel=1e-3)
+
+
 def test_a_response_that_settles_slowly_repeats_after_no_invented_period(chromium, page):
     chromium.open(page, "#e=0.5&eta=2.5929473397488296&start=0,0,0,0", whole=False)
     chromium.chosen()
@@ -113,7 +161,9 @@ def test_a_response_that_settles_slowly_repeats_after_no_invented_period(chromiu
     found = chromium.run(f"return [{response}.multiplicity, {response}.decided]")
     (row,) = zip(data.multiplicity.values, data.multiplicity_decided.values, strict=True)
     assert found == list(row) == [1, 2]
+    chromium.until("return explorer.inspector.exponent")
     assert chromium.text("sentence").startswith("Undecided whether it repeats, perhaps after 1 p")
+    assert "repeats afterundecided" in chromium.text("numbers")
     chromium.until("return explorer.basin.tried")
     assert not chromium.run("return explorer.basin.others")
     assert chromium.console() == []
@@ -213,6 +263,8 @@ def test_what_is_shown_can_be_taken_home(browser):
     table = np.genfromtxt(browser.download("history*.csv"), delimiter=",", names=True)
     states = browser.numbers(f"{MOTION}.states").reshape(-1, 4)
     assert np.array_equal(table["x1"], states[:, 0])
+    felt = absolute_accelerations(states, orchestrate.Structure(), table["in_contact"] != 0.0)
+    assert np.array_equal(np.stack([table["a1_abs"], table["a2_abs"]], axis=1), felt)
     assert browser.download("diagram*.csv").read_text().count("\n") == 1 + len(etas(browser))
 
 

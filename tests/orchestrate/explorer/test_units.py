@@ -60,7 +60,8 @@ def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
     assert value(browser, "level") == 5.0
     assert value(browser, "f1") == pytest.approx(42.0 * TURN / turn, rel=1e-6)
     assert browser.run(LABEL, "hertz") == f"in {turns}"
-    assert browser.run(LABEL, "level") == f"level, {pushes}"
+    of = " (of gravity)" if pushes == "g" else ""
+    assert browser.run(LABEL, "level") == f"level, {pushes}{of}"
     assert browser.run(LABEL, "f2") == f"natural frequency 2, {turns}"
     assert browser.text("own") == f"your own: {turns}, {lengths}, {pushes}"
     diagram, history, phase, section, spectrum, last, highest = browser.run(SHOWN)

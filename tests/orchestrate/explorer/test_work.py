@@ -12,10 +12,12 @@ from ...sparing import ordinary
 
 PROBE = """
 import { Library } from "./kernel.js";
+import { useLibrary } from "./model.js";
 import { load } from "./payload.js";
 import { perform } from "./tasks.js";
 load().then(({ compiled: { oscillator, shaker } }) => {
   const libraries = { oscillator: new Library(oscillator), shaker: new Library(shaker) };
+  useLibrary(libraries.oscillator);
   window.probe = { libraries, perform: (task, asked) => perform(task, asked, libraries) };
 });
 """
@@ -55,7 +57,7 @@ TASKS = {  # what a worker is asked, and how often it hands over at the least
     "motion": ({"periods": 200, "points": 200}, 3),
     "basin": ({"plane": PLANE, "cells": [[32, 32], [5, 60]]}, 2),
     "section": ({"periods": 2000}, 10),
-    "spectra": ({}, 40),
+    "spectra": ({}, 30),
 }
 MOST = 25_000  # impacts and steps: 5 to 15 ms on a core of today
 

@@ -1,0 +1,129 @@
+"""How small deviations of a motion grow from impact to impact, written once for Python and C.
+
+The saltation matrix of an impact includes that the deviated motion impacts earlier or later (di
+Bernardo et al., Piecewise-smooth Dynamical Systems, 2008, 2.5). Where chattering ends in permanent
+contact the deviation of the gap dies; at a release nothing jumps (19).
+
+In the subset of Python that :mod:`fmu_src.export.translation` translates, over the oscillator's
+memory, for its constants and certified roots; tables follow.
+"""
+
+from .numerics.elementary import fraction, sincos_turns
+from .oscillator import memory as at
+from .oscillator.excitation import begin_segment
+from .oscillator.impact import common_velocity
+from .oscillator.motion import begin_state, set_phase
+from .oscillator.parameters import derive
+from .oscillator.response import fundamental_solutions
+from .oscillator.roots import walk
+
+# impacts, the end of the span in s; then a row for each impact (time, state after it, closing
+# speed, whether contact follows), a matrix, and the duration of contact in tau
+IMPACTS, SPAN_END, TABLES = at.SIZE, at.SIZE + 1, at.SIZE + 2
+ROW, STATES = 7, 4
+SMALLEST = 1e-300  # closing speed: a grazing impact has none, its matrix is very large instead
+WORK = 1e7  # evaluations until a release is given up
+
+
+def deviate(m, time):
+    """Write a matrix for each impact that maps a deviation before it to that before the next one,
+    displacements in m, velocities in m per unit of tau; and how long contact lasts.
+    """
+    derive(m)
+    m[at.CUBIC_SET] = 1.0
+    begin_segment(m)
+    count = int(m[IMPACTS])
+    for i in range(count):
+        row, matrix = TABLES + ROW * i, TABLES + ROW * count + STATES * STATES * i
+        end = m[SPAN_END]
+        if i + 1 < count:
+            end = m[row + ROW]
+        left, touching = m[at.OMEGA] * (end - m[row]), 0.0
+        write_saltation(m, row, matrix)
+        if m[row + 6] != 0.0:
+            touching = contact_duration(m, row, left)
+            flow(m, matrix, at.OSCILLATOR_3, at.OSCILLATOR_3, touching)
+        flow(m, matrix, at.OSCILLATOR_1, at.OSCILLATOR_2, left - touching)
+        m[TABLES + (ROW + STATES * STATES) * count + i] = touching
+    return 0
+
+
+def write_saltation(m, row, matrix):
+    """Write ``R + (F+ - R F-) n^T/(n F-)`` of an impact; where contact follows, that both masses
+    move to their centre.
+    """
+    mu, share = m[at.MU], m[at.SHARE]
+    for i in range(STATES):
+        for k in range(STATES):
+            m[matrix + STATES * i + k] = 0.0
+            if i == k:
+                m[matrix + STATES * i + k] = 1.0
+    if m[row + 6] != 0.0:
+        for i in range(STATES):
+            first = 2 * int(i / 2)
+            m[matrix + STATES * i + first] = share
+            m[matrix + STATES * i + first + 1] = mu * share
+        return
+    closing, slope = m[row + 5] / m[at.OMEGA], m[at.E_SLOPE] * m[at.OMEGA]
+    part = (1.0 + m[at.E]) * share
+    slower = 1.0 / (1.0 + slope * closing)
+    slower = m[at.E] * slower * slower - m[at.E]  # derivative of the separation speed, less e
+    m[matrix + 10] = 1.0 - mu * (part + slower * share)
+    m[matrix + 11] = mu * (part + slower * share)
+    m[matrix + 14] = part + slower * share
+    m[matrix + 15] = 1.0 - (part + slower * share)
+    v1, v2 = m[row + 3] / m[at.OMEGA], m[row + 4] / m[at.OMEGA]
+    common = common_velocity(m, v1, v2)
+    b1, b2 = common + mu * closing * share, common - closing * share
+    sine, _ = sincos_turns(fraction(m[at.ETA_TURNS] * m[at.OMEGA] * m[row]))
+    drive = m[at.FORCING] * sine + m[at.CUBIC]
+    after_1 = acceleration(m, at.OSCILLATOR_1, drive, m[row + 1], v1)
+    after_2 = acceleration(m, at.OSCILLATOR_2, drive, m[row + 2], v2)
+    before_1 = acceleration(m, at.OSCILLATOR_1, drive, m[row + 1], b1)
+    before_2 = acceleration(m, at.OSCILLATOR_2, drive, m[row + 2], b2)
+    scale = 1.0 / max(closing, SMALLEST)
+    add_jump(m, matrix, (v1 - b1) * scale)
+    add_jump(m, matrix + 4, (v2 - b2) * scale)
+    jump_1 = after_1 - m[matrix + 10] * before_1 - m[matrix + 11] * before_2
+    jump_2 = after_2 - m[matrix + 14] * before_1 - m[matrix + 15] * before_2
+    add_jump(m, matrix + 8, jump_1 * scale)
+    add_jump(m, matrix + 12, jump_2 * scale)
+
+
+def acceleration(m, b, drive, x, v):
+    """Return the right-hand side of (6), displacements from the unloaded spring."""
+    return drive - 2.0 * m[b + at.DAMPING] * v - m[b + at.OMEGA_SQUARED] * x
+
+
+def add_jump(m, place, jump):
+    """Add what a row of the matrix jumps by, times the normal (-1, 1, 0, 0)."""
+    m[place] += jump
+    m[place + 1] -= jump
+
+
+def contact_duration(m, row, span):
+    """Return how long permanent contact after an impact lasts, in tau, at most a span."""
+    set_phase(m, m[at.ETA_TURNS] * m[at.OMEGA] * m[row])
+    x, v = m[row + 1] - m[at.REST_1], m[row + 3] / m[at.OMEGA]
+    m[at.MODE] = at.FLIGHT
+    m[at.WORK] = 0.0
+    m[at.WORK_LIMIT] = WORK
+    begin_state(m, x, v, x, v, 0.0, 0)
+    if m[at.MODE] != at.CONTACT:
+        return 0.0
+    walk(m, span)
+    return min(m[at.END], span)
+
+
+def flow(m, matrix, one, other, time):
+    """Multiply a matrix by the free flow of both masses over a time, (10)."""
+    for mass in range(2):
+        b = other
+        if mass == 0:
+            b = one
+        c, s, _ = fundamental_solutions(m, b, time)
+        damping, square = m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
+        for k in range(STATES):
+            x, v = m[matrix + STATES * mass + k], m[matrix + STATES * (mass + 2) + k]
+            m[matrix + STATES * mass + k] = (c + damping * s) * x + s * v
+            m[matrix + STATES * (mass + 2) + k] = (c - damping * s) * v - square * s * x

@@ -1,0 +1,75 @@
+/** What the compiled loops say of a structure and of states of it, at once. */
+
+import { Rooms } from "./kernel.js";
+import { lengthOf, omegaOf } from "./structure.js";
+
+/** @type {Library} of the oscillator, of this thread */
+let library;
+
+/** Say, once, whom to ask. @param {Library} compiled */
+export const useLibrary = (compiled) => (library = compiled);
+
+/**
+ * Call a function of the library with arrays in its memory.
+ * @template T
+ * @param {(rooms: Rooms, calls: Library["calls"]) => T} run
+ * @returns {T}
+ */
+function inRooms(run) {
+  const rooms = new Rooms(library);
+  try {
+    return run(rooms, library.calls);
+  } finally {
+    rooms.free();
+  }
+}
+
+/** Numbers that have come. @param {number} address @param {number} count */
+const taken = (address, count) => new Float64Array(library.view("f64", address, count));
+
+/** A structure under an excitation: its numbers, and by name what follows from them. @param {Point} point @returns {Record<string, number>} */
+export function traitsOf(point) {
+  const { traits } = library.loops;
+  const row = inRooms((rooms) => taken(rooms.traits(point), traits.length));
+  return Object.fromEntries(traits.map((name, i) => [name, row[i]]));
+}
+
+/** Gaps of states, m. @param {ArrayLike<number>} states four numbers each @param {Point} point */
+export function gapsOf(states, point) {
+  const count = states.length / 4;
+  const { gap_offset } = traitsOf(point);
+  return inRooms((rooms, calls) => {
+    const gaps = rooms.array("f64", count);
+    calls.find_gaps(rooms.array("f64", states), count, rooms.array("f64", [gap_offset]), 1, gaps);
+    return taken(gaps, count);
+  });
+}
+
+/** Absolute accelerations of both masses. @param {Motion} motion @param {Point} point */
+export function accelerationsOf({ states, contact }, point) {
+  return inRooms((rooms, calls) => {
+    const found = rooms.array("f64", 2 * contact.length);
+    calls.find_accelerations(rooms.array("f64", states), contact.length, rooms.traits(point), rooms.array("u8", contact), found);
+    return taken(found, 2 * contact.length);
+  });
+}
+
+/** A state at one point as the like one at another. @param {number[]} state @param {Point} from @param {Point} to */
+export function carried(state, from, to) {
+  const length = lengthOf(to) / lengthOf(from);
+  const speed = (length * omegaOf(to.structure)) / omegaOf(from.structure);
+  return inRooms((rooms, calls) => {
+    const like = rooms.array("f64", 4);
+    calls.carry_state(rooms.array("f64", state), rooms.traits(from), rooms.traits(to), length, speed, like);
+    return Array.from(taken(like, 4));
+  });
+}
+
+/** How near states of a motion come to a state, over the motion's size. @param {Float64Array} states @param {number} frequency @param {number} gap its largest, m @param {ArrayLike<number>} state */
+export function distanceOf(states, frequency, gap, state) {
+  const count = states.length / 4;
+  return inRooms((rooms, calls) => {
+    const [one, other] = [states, state].map((numbers) => rooms.array("f64", numbers));
+    return calls.nearest_state(one, count, frequency, gap, other, rooms.array("f64", calls.memory_size(count)));
+  });
+}

@@ -1,0 +1,111 @@
+"""A measured record over the page's spectrum: read by the package's reader alone."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate import cli
+from orchestrate.errors import InputError
+from orchestrate.explorer.measured import record_json
+from orchestrate.explorer.page import explore
+
+RECORDS = Path(__file__).parents[3] / "docs" / "records"
+SERIES = """
+const kept = {};
+const { inspector } = explorer;
+const old = inspector.pictures.show;
+inspector.pictures.show = (name, chart) => (kept[name] = chart);
+inspector.drawSpectrum();
+inspector.pictures.show = old;
+const { series } = kept.spectrum;
+const found = series.find(({ label }) => label === "measured");
+return found ? [Array.from(found.x), Array.from(found.y)] : null;
+"""
+
+
+def sines(last):
+    """A record of a sine that is swept from 20 Hz, with a second order on face 1."""
+    sweep = orchestrate.SweptSine(first=20.0, last=last, duration=30.0, acceleration=4.0)
+    time = np.arange(30_000) / 1000.0
+    phase = sweep.phase(time)
+    face = 6.0 * np.sin(phase) + 0.5 * np.sin(2.0 * phase)
+    return orchestrate.record(
+        time=time, box_acceleration=4.0 * np.sin(phase), acceleration1=face, source="simulated"
+    )
+
+
+def test_a_swept_sine_is_its_orders_and_no_spectrum():
+    drawn = record_json(sines(40.0))["record"]
+    assert set(drawn) == {"title", "orders"}
+    frequency, rows = (np.array(drawn["orders"][name]) for name in ("frequency", "amplitude"))
+    assert (np.diff(frequency) > 0.0).all() and 20.0 < frequency[0] < 22.0
+    assert rows.shape == (5, len(frequency))
+    assert np.median(rows, axis=1)[:2] == pytest.approx([6.0, 0.5], rel=1e-3)
+
+
+def test_all_else_is_a_spectrum_whose_peaks_are_kept():
+    lines = record_json(sines(20.0001))["record"]["lines"]
+    frequency, amplitude = (np.array(lines[name]) for name in ("frequency", "amplitude"))
+    assert len(frequency) <= 4000 and frequency[amplitude.argmax()] == pytest.approx(20.0, abs=0.05)
+    assert amplitude.max() == pytest.approx(6.0, rel=0.02)
+    assert amplitude[np.abs(frequency - 40.0) < 0.2].max() == pytest.approx(0.5, rel=0.02)
+
+
+def test_without_a_base_a_sweep_cannot_be_known_and_the_record_is_refused():
+    with pytest.raises(InputError, match="record: no box_acceleration; expected box_acc"):
+        record_json(sines(40.0).drop_vars("box_acceleration"))
+
+
+def test_the_page_draws_the_orders_at_the_frequency_that_is_shown(chromium, tmp_path, capsys):
+    page, beam = tmp_path / "page.html", str(RECORDS / "beam.toml")
+    file = RECORDS / "beam_a.csv"
+    asked = ["explore", "--structure", beam, "--no-open", "--output", str(page)]
+    assert cli.main([*asked, "--record", str(file)]) == 0
+    tracked = orchestrate.track_orders(orchestrate.read_record(file), orders=5)
+    row = tracked.swap_dims(time="frequency").sortby("frequency")
+    row = row.sel(channel="acceleration1").sel(frequency=35.0, method="nearest").amplitude
+    chromium.open(page, whole=False)
+    assert "the orders of its swept sine" in chromium.text("record")
+    for hertz, is_drawn in ((35.0, True), (150.0, False)):
+        chromium.run(CHOOSE, hertz)
+        chromium.until("return explorer.inspector.spectra")
+        found = chromium.run(SERIES)
+        assert (found is not None) == is_drawn
+        if is_drawn:
+            assert found[0] == pytest.approx([35.0 * n for n in range(1, 6)])
+            assert np.array(found[1]) * 9.80665 == pytest.approx(row.values, rel=1e-6)
+    assert chromium.console() == []
+
+
+CHOOSE = """
+const { k1, m1 } = explorer.structure;
+explorer.choose((2 * Math.PI * arguments[0]) / Math.sqrt(k1 / m1), true, [0, 0, 0, 0]);
+"""
+WRONG = {
+    "a text": ("notes.txt", "nothing\n", [], "notes.txt"),
+    "no file": ("none.csv", None, [], "none.csv"),
+    "an option alone": (None, None, ["--unit", "g"], "--unit: expected with --record alone"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_anything_else_is_refused_in_one_line(tmp_path, capsys, name):
+    file, text, options, words = WRONG[name]
+    if file is not None:
+        options = ["--record", str(tmp_path / file)]
+    if text is not None:
+        (tmp_path / file).write_text(text)
+    asked = ["explore", "--no-open", "--output", str(tmp_path / "page.html")]
+    assert cli.main([*asked, *options]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line and "expected" in line
+
+
+def test_what_write_record_wrote_is_read_by_the_same_gate(tmp_path, capsys):
+    page, file = tmp_path / "page.html", tmp_path / "kept.csv"
+    orchestrate.write_record(sines(40.0), file)
+    assert cli.main(["explore", "--no-open", "--output", str(page), "--record", str(file)]) == 0
+    assert '"orders"' in page.read_text(encoding="utf-8")
+    assert explore(record=sines(40.0), output=page) == page
