@@ -257,7 +257,7 @@ class Drive(Described):
 
     def parameters(self) -> dict[str, float]:
         """Return the drive's SI values by name, as start values of the ``MotorShaker`` FMU."""
-        return dataclasses.asdict(self)
+        return dict(vars(self))
 
 
 def torque_line(

@@ -1,7 +1,8 @@
 """Compute how fast disturbances of a held motion grow, by its Floquet multipliers.
 
 Newton's method begins at the state of the run and keeps its voltage, so that it finds the motion
-that is held, if that repeats after one of `TURNS` revolutions, or none.
+that is held, if that repeats after one of `TURNS` revolutions, or none. A settled state is so close
+to the motion that the Jacobian there usually is the motion's own.
 """
 
 from __future__ import annotations
@@ -11,7 +12,8 @@ import math
 import numpy as np
 
 from ..constants import TURN
-from ..dynamics.continuation import SOLVER_ERRORS, newton_correct, unit_vector
+from ..dynamics.closed_form import Floats
+from ..dynamics.continuation import SOLVER_ERRORS, NoConvergenceError, newton_step, unit_vector
 from . import averaged
 from .run import Run
 from .shooting import Shooter
@@ -19,6 +21,8 @@ from .shooting import Shooter
 TURNS = (1, 2, 3, 4)  # revolutions after which a motion may repeat
 STEPS = 24  # of a revolution
 NEAR = 0.2  # of the amplitude, of the voltage and of the speed: largest distance of the motion
+CLOSE = 1e-3  # the same from where the Jacobian is made
+ITERATIONS = 4  # of Newton's method
 CLEAR = 0.3  # of the widest gap: a period begins where it is wider, far from impacts
 
 
@@ -44,10 +48,20 @@ def growth_rate(run: Run, voltage: float, speed: float) -> float:
         for turns in TURNS:
             shooter.repeat_after(turns)
             if np.abs(shooter.residual(unknowns)).max() < NEAR:
-                normal = unit_vector(len(unknowns), -2)
-                newton_correct(shooter, unknowns, normal, max_iterations=12, max_distance=NEAR)
-                largest = abs(shooter.multipliers()[0])
-                return math.log(largest) * speed / (turns * TURN)
+                return math.log(largest_multiplier(shooter, unknowns)) * speed / (turns * TURN)
     except SOLVER_ERRORS:
         pass
     return math.nan
+
+
+def largest_multiplier(shooter: Shooter, guess: Floats) -> float:
+    """Return the largest absolute value of the multipliers of the motion near a guess."""
+    normal, offset = unit_vector(len(guess), -2), np.zeros_like(guess)
+    for _ in range(ITERATIONS):
+        jacobian = shooter.renew_jacobian(guess + offset)
+        offset, step = newton_step(shooter, guess, offset, normal, jacobian)
+        if not np.abs(offset).max() < NEAR:
+            break
+        if np.abs(step).max() < CLOSE:
+            return float(abs(shooter.multipliers()[0]))
+    raise NoConvergenceError("Newton's method went too far")

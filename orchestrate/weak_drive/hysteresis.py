@@ -13,11 +13,13 @@ loses the first. A steep but continuous branch is not a jump. The rule, for each
   known to grow (:mod:`.growth`), after `growths` growth times, and where these are longer than
   `patience` holds it is left out; where nothing is known, when it is held `again` times.
 - It is *lost* over that step where the speed, taken back over it, is `clear` away and stays within
-  `same` when it is held `again` times. There is *no* jump where no such step is left, and on a way
-  back over all of the ramp the speed is nowhere `clear` away.
+  `same` when it is held `again` times. There is *no* jump where no such step is left but of
+  `finest`, over which the speed comes back, and on a way back over all of the ramp the speed is
+  nowhere `clear` away.
 - All else is *undecided*: a ramp's beginning or end, or a way back, that does not settle, two
-  motions nearer than `clear`, a step still large at `finest` or after `max_rounds` of this, another
-  motion on the way back, and what comes after a loss at which the speed moves against the voltage.
+  motions nearer than `clear`, a step within which nothing settles or after `max_rounds` of this,
+  another motion on the way back, and what comes after these or a loss if the speed moves against
+  the voltage.
 
 From differences the `errors` of irregular motions' speeds are taken off, but not on the last way
 back. Non-dimensional: voltages over K omega, speeds over omega, times in 1/omega, in the mirror
@@ -223,10 +225,10 @@ class HysteresisLoop(VoltageHolder):
                 jumps[low.voltage, points[i + 1].voltage] = jump
         else:
             del points[(self.largest_step(points, jumps) or 0) + 1 :]
-        if not jumps and not self.comes_back(points):
-            return [Jump(UNDECIDED, first.voltage, last)]
         steps = {(low.voltage, high.voltage) for low, high in pairwise(points)}
-        known = [jump for step, jump in jumps.items() if step in steps]
+        known = [jump for step, jump in jumps.items() if step in steps and jump.outcome != NONE]
+        if not known and not self.comes_back(points):
+            return [Jump(UNDECIDED, first.voltage, last)]
         beyond = [(first.voltage, points[0].voltage), (points[-1].voltage, last)]
         unsettled = [Jump(UNDECIDED, *ends) for ends in beyond if ends[0] != ends[1]]
         return merge_overlapping([*known, *unsettled], sign)
@@ -237,12 +239,13 @@ class HysteresisLoop(VoltageHolder):
         landed = self.hold_beside(low, high.voltage, high.speed)
         outcome = self.way_back(low, landed)
         points[i + 1] = high = landed if math.isfinite(landed.speed) else high
-        may_be_none = outcome == NONE and abs(high.voltage - low.voltage) > self.settings.finest
-        if may_be_none and (self.excess(points, i, {}) <= 0.0 or self.insert_between(points, i)):
-            return None
-        if sign * (high.speed - low.speed) < 0.0:  # what a ramp comes to there is chance
-            del points[i + 2 :]
-        return Jump(outcome or UNDECIDED, low.voltage, high.voltage, low.speed, high.speed)
+        if outcome == NONE and abs(high.voltage - low.voltage) > self.settings.finest:
+            if self.excess(points, i, {}) <= 0.0 or self.insert_between(points, i):
+                return None
+            outcome = UNDECIDED
+        if outcome != NONE and sign * (high.speed - low.speed) < 0.0:
+            del points[i + 2 :]  # what a ramp comes to there is chance
+        return Jump(outcome, low.voltage, high.voltage, low.speed, high.speed)
 
     def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:
         """Step the voltage over the grid; return the points at which the speed settled."""
@@ -280,12 +283,11 @@ class HysteresisLoop(VoltageHolder):
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
         """Return whether two motions exist at a step's lower voltage and the first is lost."""
         back = self.hold_from(landed, low.voltage)
-        distance = self.distance(back, low)
-        if distance <= self.settings.same:
+        later = back if self.is_same(back, low) else self.hold_again(back)
+        if self.is_same(later, low):
             return NONE
-        if math.isnan(back.speed) or distance < self.settings.clear:
-            return UNDECIDED
-        return LOST if self.hold_again(back) is back else UNDECIDED
+        is_clear = self.distance(back, low) >= self.settings.clear
+        return LOST if later is back and is_clear else UNDECIDED
 
     def hold_beside(
         self, low: HeldPoint, voltage: float, other: float, limit: float | None = None
@@ -353,6 +355,11 @@ class HysteresisLoop(VoltageHolder):
             else:
                 return False
         return True
+
+    def is_same(self, point: HeldPoint, other: HeldPoint) -> bool:
+        """Return whether two settled speeds may be of one motion, and are not `clear` away."""
+        is_near = abs(point.speed - other.speed) < self.settings.clear
+        return is_near and self.distance(point, other) <= self.settings.same
 
     def distance(self, point: HeldPoint, other: HeldPoint) -> float:
         """Return how far two settled speeds are apart at least, by their errors."""

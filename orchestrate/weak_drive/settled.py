@@ -6,9 +6,10 @@
 - If they go one way, it has converged where the limits extrapolated from them as an exponential
   approach (Aitken's process) agree within `agreement` of the tolerance; an approach slower than
   `slowest` a block, as by a fold, has not converged.
-- What has not settled by these, as an irregular motion, has where three long means, each a third of
-  `blocks`, differ by less than the tolerance, or `scatter` of the standard deviation of changes
-  between blocks; its speed has an error then, at least `deviation` of that of the blocks' means.
+- What has not settled by these, as an irregular motion, has where three long means, each a sixth of
+  the record and a third of `blocks` or more, differ by less than the tolerance, or `scatter` of the
+  standard deviation of the blocks' means there; its speed has an error then, at least `deviation`
+  of that.
 - All else has not settled.
 """
 
@@ -25,7 +26,7 @@ class SettledSettings:
     """Set block, tolerance and pace of the test for a settled speed."""
 
     block: int = 12  # revolutions of a mean; a multiple of the periods of most motions
-    blocks: int = 48  # of the three long means of an irregular motion, together
+    blocks: int = 48  # of the three long means of an irregular motion, together, at least
     tolerance: float = 1e-4  # of the settled speed, over omega
     piece: float = 50.0  # simulated between two tests, in 1/omega
     seen: int = 4  # changes between blocks
@@ -33,7 +34,7 @@ class SettledSettings:
     to_and_fro: float = 0.3  # of the tolerance
     slowest: float = 0.95  # of a change, what the next one is at most
     agreement: float = 0.5  # of the tolerance
-    scatter: float = 0.5  # of the standard deviation of changes between blocks
+    scatter: float = 0.5  # of the standard deviation of the blocks' means
     deviation: float = 0.35  # of the standard deviation of the blocks' means
 
 
@@ -59,9 +60,9 @@ def settled_speed(speeds: np.ndarray, settings: SettledSettings) -> tuple[float,
                 return float(limits[-1]), 0.0
     if len(means) < settings.blocks:
         return math.nan, 0.0
-    late = means[-settings.blocks :]
-    thirds = late.reshape(3, -1).mean(axis=1)
-    if np.ptp(thirds) < max(settings.tolerance, settings.scatter * float(np.std(np.diff(late)))):
-        error = max(float(np.ptp(thirds)), settings.deviation * float(np.std(late)))
-        return float(thirds.mean()), error
+    late = means[-max(settings.blocks, len(means) // 2) :]
+    late = late[len(late) % 3 :]
+    thirds, scatter = late.reshape(3, -1).mean(axis=1), float(np.std(late))
+    if np.ptp(thirds) < max(settings.tolerance, settings.scatter * scatter):
+        return float(thirds.mean()), max(float(np.ptp(thirds)), settings.deviation * scatter)
     return math.nan, 0.0

@@ -41,7 +41,8 @@ SAME = 4e-3  # of omega: speeds at one voltage that differ by more are of two mo
 GRID = 4e-3  # of eta0
 AROUND = (0.06, 0.04)  # of eta0: of the grid, below the lowest fold and above the highest
 RATE, SLOW_RATE = 5e-5, 5e-6  # of eta0 in a time 1/omega, between holds
-LONG, LONG_OF_ROTOR, SHORT = 4000.0, 200.0, 0.25  # holds: 1/omega, 1/b; part of it on the grid
+LONG, LONG_OF_ROTOR = 4000.0, 200.0  # holds: 1/omega, 1/b
+SHORT, PATIENT = 0.25, 10.0  # of a hold: on the grid, and at a bracket wider than `TOLERANCE`
 SETTLED = 1e-3  # of omega: mean speeds of the last two quarters of a hold
 
 
@@ -82,8 +83,8 @@ def held_speeds(
     """
     structure, drive = system
     omega, volts = structure.omega, drive.volts(structure)
-    first = ramp_ends(system)[list(WAYS).index(way)]
-    ramp = schedule_from_arguments(structure, drive, (first * volts, voltages[0] * volts))
+    first, last = ramp_ends(system)[:: int(WAYS[way])]
+    ramp = schedule_from_arguments(structure, drive, (first * volts, last * volts))
     assert isinstance(ramp, Ramp)
     times, course = [0.0], [first]
     if ramp.spin_up:
@@ -112,7 +113,9 @@ def bracket_problem(system: System, way: str, jump: Jump, rate: float) -> str:
     stays, lost = sorted((jump.low, jump.high), reverse=sign < 0.0)
     far, past = stays - sign * EARLY, lost + sign * TOLERANCE
     course = (far - sign * EARLY, far, stays, past, stays)
-    first, before, there, beyond, back = held_speeds(system, way, course, rate)
+    is_slow = jump.high - jump.low > TOLERANCE  # it is as wide as growth takes to be seen
+    part = PATIENT if is_slow else 1.0
+    first, before, there, beyond, back = held_speeds(system, way, course, rate, part)
     steep = abs(before - first) < CHANGE  # else a motion was lost between the two
     expected = before + (before - first) * steep
     if abs(beyond - there) < SAME and abs(beyond - expected) < SAME:

@@ -148,6 +148,20 @@ def test_what_comes_after_a_speed_against_the_voltage_is_undecided():
     assert rest == (UNDECIDED, lost.high, 1.56, *rest[3:])
 
 
+@pytest.mark.parametrize("change", [0.02, -0.02])
+def test_a_step_without_hysteresis_is_no_jump(change):
+    """As where halves begin to touch, at 1.52: with the voltage or against it; 1.54 is a jump."""
+
+    def higher(motion, before, voltage):
+        if voltage > 1.54 or (motion == 0.1 and voltage > 1.53):
+            return 0.1
+        return change if voltage > 1.52 else 0.0
+
+    (jump,) = Scripted(higher).course()
+    assert jump.outcome == LOST and jump.low - 1e-9 <= 1.54 <= jump.high + 1e-9
+    assert Scripted(lambda *now: change if now[2] > 1.52 else 0.0).course() == []
+
+
 @pytest.mark.parametrize("early", [0.0, 1e-4, 2e-3])
 def test_a_motion_that_leaves_while_it_is_held_again(early):
     """It outlives one hold up to 1.52, more of them up to that less `early`: there it is lost."""
@@ -180,13 +194,47 @@ def test_a_motion_in_a_narrow_range_is_not_stepped_over():
     assert rest.outcome == UNDECIDED and rest.high == 1.56
 
 
-def test_motions_of_nearly_one_speed_are_undecided():
-    def higher(motion, before, voltage):
-        return 0.0045 if voltage > 1.52 or (motion and voltage > 1.51) else 0.0
+@pytest.mark.parametrize(
+    ("change", "outcomes"),
+    [(3.9e-3, []), (4.1e-3, [UNDECIDED]), (4.9e-3, [UNDECIDED]), (5.1e-3, [LOST])],
+)
+def test_motions_of_nearly_one_speed_are_undecided(change, outcomes):
+    """Between `smallest`, of what is looked into, and `clear`, of what is a jump."""
 
-    loop = Scripted(higher)
-    loop.settings = hysteresis.HysteresisSettings(smallest=2e-3)
-    assert [jump.outcome for jump in loop.course()] == [UNDECIDED]
+    def higher(motion, before, voltage):
+        return change if voltage > 1.52 or (motion and voltage > 1.51) else 0.0
+
+    assert [jump.outcome for jump in Scripted(higher).course()] == outcomes
+
+
+@pytest.mark.parametrize(("disturbance", "lasts"), [(1e-15, False), (1e-16, True)])
+def test_growth_is_seen_from_rounding_errors_on(disturbance, lasts):
+    """After `growths` growth times, that are e^30 = 1e13."""
+
+    class Growing(Scripted):
+        def hold(self, state, first, voltage, ends=None, least=0.0):
+            return self.at(voltage, disturbance * np.exp(self.growth_rate(None) * least))
+
+        def growth_rate(self, point):
+            return 1.0
+
+    loop = Growing(None)
+    loop.longest = 100.0
+    assert loop.lasting(loop.at(1.52)).lasts == lasts
+
+
+@pytest.mark.parametrize(("rate", "held"), [(3.1e-4, True), (2.9e-4, False)])
+def test_growth_that_takes_more_than_ten_holds_is_left_out(rate, held):
+    class Slow(Scripted):
+        def hold(self, state, first, voltage, ends=None, least=0.0):
+            return self.at(voltage)
+
+        def growth_rate(self, point):
+            return rate
+
+    loop = Slow(None)
+    loop.longest = 1e4
+    assert np.isfinite(loop.lasting(loop.at(1.52)).speed) == held
 
 
 def test_a_jump_in_the_tail_of_a_larger_one():
@@ -278,6 +326,14 @@ def test_an_irregular_motion_has_settled_but_not_one_that_drifts():
     assert speed == pytest.approx(1.3, abs=2.0 * error) and 2e-4 < error < 1e-3
     drifts = 1.3 + scatter + 5e-4 * np.arange(96)
     assert np.isnan(settled_speed(record(drifts), SETTLED)[0])
+
+
+def test_a_slow_modulation_has_settled_after_some_of_its_periods():
+    """A period is four times as long as the shortest means take together."""
+    means = 1.3 + 3e-3 * np.sin(2.0 * np.pi * np.arange(1200) / 200.0)
+    means += 3e-4 * np.random.default_rng(3).normal(size=1200)
+    speed, error = settled_speed(record(means), SETTLED)
+    assert speed == pytest.approx(1.3, abs=error) and error < 2e-3
 
 
 CLOSE = system_of(  # its folds, by its branch, at 1.13468 and 1.13041
