@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..lazy import xr
-from ..model.arguments import CHECK
+from ..model.arguments import checks_of
 
 Fmus = Mapping[str, Path]  # FMU files by model
 Table = dict[str, np.ndarray]  # arrays by name, their rows along the first axis
@@ -53,11 +53,9 @@ class Job(ABC):
     item: ClassVar[str] = "item"  # what the progress bar counts
 
     def check_fields(self) -> None:
-        """Check the fields that have a check, and set them to what it returns."""
-        for each in fields(self):
-            if CHECK in each.metadata:
-                value = each.metadata[CHECK](each.name, getattr(self, each.name))
-                object.__setattr__(self, each.name, value)
+        """Check the fields whose types have a check, and set them to what it returns."""
+        for name, check in checks_of(type(self)).items():
+            object.__setattr__(self, name, check(name, getattr(self, name)))
 
     def count(self) -> int:
         """Return the number of items."""
