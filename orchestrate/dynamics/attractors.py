@@ -16,14 +16,8 @@ from ..model import Structure
 from ..model.arguments import Numbers, Positive, checked_numbers, whole
 from ..model.outcomes import ABSENT, WORDS
 from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
-from ..response.questions import (
-    Point,
-    SeriesQuestion,
-    Values,
-    as_given,
-    question,
-    require_delaminated,
-)
+from ..response.questions import Point, SeriesQuestion, Values, require_delaminated
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .clusters import (

@@ -31,12 +31,11 @@ from ..response.questions import (
     Point,
     Question,
     State,
-    as_given,
     checked_point,
     checked_state,
-    question,
     require_delaminated,
 )
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .attractors import (

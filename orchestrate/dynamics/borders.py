@@ -14,14 +14,8 @@ from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Number
 from ..response.labels import variable
-from ..response.questions import (
-    EXCITATION_PARAMETERS,
-    OF_EXCITATION,
-    Question,
-    as_given,
-    question,
-    require_delaminated,
-)
+from ..response.questions import EXCITATION_PARAMETERS, OF_EXCITATION, Question, require_delaminated
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer

@@ -17,14 +17,8 @@ from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Number, checked_integer, checked_number
 from ..model.ranges import OF_LENGTH
-from ..response.questions import (
-    OF_EXCITATION,
-    Question,
-    as_given,
-    excitation_numbers,
-    question,
-    require_delaminated,
-)
+from ..response.questions import OF_EXCITATION, Question, excitation_numbers, require_delaminated
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .bifurcations import KINDS

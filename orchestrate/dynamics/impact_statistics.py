@@ -14,7 +14,8 @@ from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Transient
 from ..response.labels import column_variables, make_dataset
-from ..response.questions import Values, as_given, question
+from ..response.questions import Values
+from ..response.signatures import as_given, question
 from ..running.job import Table
 from ..running.options import Running
 from .following import FollowedResponse, ImpactsQuestion

@@ -19,7 +19,8 @@ from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Positive, Transient, whole
 from ..response.labels import Variable, flags, make_dataset, variable
-from ..response.questions import Point, Values, as_given, question
+from ..response.questions import Point, Values
+from ..response.signatures import as_given, question
 from ..response.threshold import exceeds_threshold
 from ..running.job import Table
 from ..running.options import Running

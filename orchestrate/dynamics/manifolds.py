@@ -16,7 +16,8 @@ from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Positive, checked_number, whole
 from ..response.labels import flags, make_dataset, nondimensional_state_coordinate, variable
-from ..response.questions import as_given, question, require_delaminated
+from ..response.questions import require_delaminated
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .branches import acceleration_at_start, complete_excitation, orbit_at, require_orbit_dataset

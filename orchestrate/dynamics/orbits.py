@@ -21,12 +21,11 @@ from ..response.labels import make_dataset
 from ..response.questions import (
     OF_EXCITATION,
     Question,
-    as_given,
     checked_point,
     checked_state,
-    question,
     require_delaminated,
 )
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .closed_form import Floats

@@ -28,16 +28,15 @@ from ..response.questions import (
     EXCITATION_PARAMETERS,
     Point,
     Question,
-    as_given,
     check_excitation_form,
     checked_state,
     checked_structure,
     excitation_numbers,
     make_point,
-    question,
 )
 from ..response.respond import DecidedResponse, Response, decisions_from, responses_from
 from ..response.response_loop import LoopSettings, response_loop
+from ..response.signatures import as_given, question
 from ..response.sweep import HOW_DECIDED
 from ..running.job import Fmus, Table, plain
 from ..running.options import RunOptions

@@ -15,14 +15,8 @@ from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Transient, checked_number
 from ..response.labels import make_dataset, variable, yes_or_no
-from ..response.questions import (
-    OneMotionQuestion,
-    Point,
-    as_given,
-    checked_point,
-    checked_state,
-    question,
-)
+from ..response.questions import OneMotionQuestion, Point, checked_point, checked_state
+from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME
 from ..running.job import Fmus, Table
 from ..running.options import Running

@@ -18,7 +18,8 @@ from ..model import Shaker, Structure
 from ..model.arguments import checked_positive
 from ..response.equations import absolute_accelerations
 from ..response.labels import make_dataset, variable, yes_or_no
-from ..response.questions import Question, as_given, checked_state, checked_structure, question
+from ..response.questions import Question, checked_state, checked_structure
+from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Table
 from ..running.options import Running

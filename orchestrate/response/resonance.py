@@ -18,15 +18,8 @@ from ..model.outcomes import IRREGULAR
 from ..running.job import Table
 from ..running.options import Running
 from .labels import Variable, make_dataset, parameter_variable, variable, yes_or_no
-from .questions import (
-    Point,
-    Series,
-    Values,
-    as_given,
-    excitation_numbers,
-    make_series,
-    question,
-)
+from .questions import Point, Series, Values, excitation_numbers, make_series
+from .signatures import as_given, question
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, response_variables
 from .threshold import threshold_variables
 from .turns_and_jumps import inside_irregular, jump_indices, prominent_maxima

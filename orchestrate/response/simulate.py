@@ -17,15 +17,8 @@ from ..running.job import Table
 from ..running.options import Running
 from .equations import absolute_accelerations
 from .labels import Variable, make_dataset, variable, yes_or_no
-from .questions import (
-    OF_EXCITATION,
-    OneMotionQuestion,
-    Point,
-    as_given,
-    checked_point,
-    checked_state,
-    question,
-)
+from .questions import OF_EXCITATION, OneMotionQuestion, Point, checked_point, checked_state
+from .signatures import as_given, question
 
 OUTPUTS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force", "phase")
 AS_MEASURED = "as an accelerometer on it reads it between impacts"

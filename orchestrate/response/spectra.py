@@ -23,7 +23,8 @@ from ..running.job import Table
 from ..running.options import Running
 from .equations import absolute_accelerations
 from .labels import make_dataset, variable
-from .questions import Point, SeriesQuestion, Values, as_given, question
+from .questions import Point, SeriesQuestion, Values
+from .signatures import as_given, question
 
 KINDS = ("bonded", "delaminated", "sampled")
 Floats = NDArray[np.float64]

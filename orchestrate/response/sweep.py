@@ -29,9 +29,10 @@ from .labels import (
     yes_or_no,
 )
 from .multiplicity import DECIDED
-from .questions import Point, StartedSeriesQuestion, Values, as_given, question
+from .questions import Point, StartedSeriesQuestion, Values
 from .respond import DecidedResponse, decisions_from, responses_from
 from .response_loop import PEAKS, LoopSettings, response_loop
+from .signatures import as_given, question
 
 Direction = Literal["up", "down", "both", "given"]
 DISTANCE = "largest distance of mass {} from the box's middle, its rest under a preload included"
