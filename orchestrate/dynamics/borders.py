@@ -57,6 +57,7 @@ class BorderJob(Question):
 
     setting: Setting  # the two parameters and their limits
     start: FirstGuess  # nodes of the orbit at the bifurcation
+    period: int
     kind: int
     values: tuple[float, float]  # of the parameters there
     replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *OF_SETTING, "bifurcation")

@@ -50,11 +50,13 @@ def question(kind: type[Question]) -> Callable[[Function], Function]:
                 return changes
             call = signature.bind(*positional, **keywords)
             call.apply_defaults()
-            label = checked_structure(call.arguments["structure"]).label()
-            name = f"{kind.result or kind.asked}_{label}{changes.label}"
-            given = {"name": name, "running": {}, **call.arguments, **changes.fields}
-            own = {field.name: given[field.name] for field in fields(kind) if field.name in given}
-            return answer_question(kind(**own).to_answer(), given["running"])
+            of = checked_structure(call.arguments["structure"]).label()
+            label = f"{kind.result or kind.asked}_{of}{changes.label}"
+            running = changes.fields.pop("running", call.arguments.get("running", {}))
+            names = {field.name for field in fields(kind)}.intersection(call.arguments)
+            given = {name: call.arguments[name] for name in names}
+            job = kind(**{"name": label, **given, **changes.fields})
+            return answer_question(job.to_answer(), running)
 
         return cast(Function, ask)
 

@@ -3,6 +3,7 @@
 import ast
 import dataclasses
 import inspect
+import textwrap
 import typing
 from pathlib import Path
 
@@ -74,6 +75,19 @@ def test_every_public_signature_is_known_at_run_time_and_is_its_job(name):
             assert (key in fields) != (key in kind.replaced), key
     assert set(checks_of(kind)) <= set(fields)
     assert kind.asked == function.__name__ == name
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_what_a_job_reads_of_itself_is_there(name):
+    """As a type checker would find where the class said its fields."""
+    kind = KINDS[name]
+    known = {*dir(kind), *(field.name for field in dataclasses.fields(kind))}
+    for parent in kind.__mro__:
+        if parent.__module__.startswith("orchestrate."):
+            tree = ast.parse(textwrap.dedent(inspect.getsource(parent)))
+            for node in ast.walk(tree):
+                if isinstance(node, ast.Attribute) and ast.unparse(node.value) == "self":
+                    assert node.attr in known, f"{parent.__name__}: self.{node.attr}"
 
 
 def test_no_function_passes_its_local_variables_on():
