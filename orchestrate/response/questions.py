@@ -357,7 +357,6 @@ class Question(Job, ABC):
     """
 
     structure: Structure
-    asked: ClassVar[str] = ""  # name of the function
     result: ClassVar[str] = ""  # first word of the result's name, where that is another
     replaced: ClassVar[tuple[str, ...]] = ()  # arguments of which fields are made, no fields
 

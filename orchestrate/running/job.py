@@ -39,6 +39,7 @@ class Job(ABC):
     """Base of a computation with a stored result; subclasses define its items and the work."""
 
     name: str  # of the result; it decides no number
+    asked: ClassVar[str] = ""  # name of the public function: the kind of the result
     models: ClassVar[tuple[str, ...]] = ("TwoMassImpactOscillator",)
     chunk_size: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
@@ -107,9 +108,9 @@ class Job(ABC):
         }
 
     def call_text(self) -> str:
-        """Return class name and parameters in one line; of a long list, its ends and count."""
+        """Return question and parameters in one line; of a long list, its ends and count."""
         parts = [f"{name}={brief(value)}" for name, value in self.parameters().items()]
-        return f"{type(self).__name__}({', '.join(parts)})"
+        return f"{self.asked or type(self).__name__}({', '.join(parts)})"
 
     def chunks(self) -> list[Chunk]:
         """Split the items into chunks of ``chunk_size``; return them in order."""
