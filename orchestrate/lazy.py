@@ -1,7 +1,8 @@
-"""xarray, imported when it is first used, and ``Unpack`` for type checkers alone."""
+"""xarray, imported when it is first used, and ``Unpack`` of older Pythons."""
 
 from __future__ import annotations
 
+import typing
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ else:
         def __getattr__(self, name: str) -> Any:
             return getattr(import_module("xarray"), name)
 
-    xr, Unpack = Lazy(), None
+    xr = Lazy()
+    Unpack = getattr(typing, "Unpack", typing.Optional)  # before 3.11 any generic type will do
 
 __all__ = ["Unpack", "xr"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -145,6 +146,8 @@ def detect(
 @dataclass(frozen=True, kw_only=True)
 class DetectJob(SearchJob):
     """Fit all hypotheses to a record and decide which verdict they give."""
+
+    asked: ClassVar[str] = "detect"
 
     def dataset(self, table: Table) -> xr.Dataset:
         results = Results.from_table(self, table)

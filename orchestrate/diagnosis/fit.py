@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -216,6 +216,7 @@ def delaminated_guess(guess: Structure) -> Structure:
 class FitJob(SearchJob):
     """Fit one hypothesis to a record."""
 
+    asked: ClassVar[str] = "fit"
     kind: str
 
     def dataset(self, table: Table) -> xr.Dataset:

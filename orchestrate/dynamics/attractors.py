@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,19 +13,21 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, REST, EventInstance, Instance, begin, sampled
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import (
-    Numbers,
-    checked,
-    checked_numbers,
-    positive,
-    whole,
-)
+from ..model.arguments import Numbers, Positive, checked_numbers, whole
 from ..model.outcomes import ABSENT, WORDS
 from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
-from ..response.questions import Point, SeriesQuestion, ask, require_delaminated
+from ..response.questions import Point, SeriesQuestion, Values, require_delaminated
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
-from .clusters import ABOUT, FEATURES, AttractorSettings, SettlingRun, run_until_settled
+from .clusters import (
+    ABOUT,
+    FEATURES,
+    RUN_LENGTHS,
+    AttractorSettings,
+    SettlingRun,
+    run_until_settled,
+)
 from .decision import MotionDecider
 from .global_continuation import MatchedAttractors, continue_attractors, instance_pair
 
@@ -55,16 +56,11 @@ def half_widths(name: str, value: ArrayLike | None) -> Numbers | None:
     return scale
 
 
-@dataclass(frozen=True, kw_only=True)
 class AttractorsJob(SeriesQuestion):
     """Job of :func:`orchestrate.attractors`: random starts at each value of a parameter."""
 
-    starts: int = whole(1)
-    seed: int = whole(0, 2**32 - 1)
-    scale: Numbers | None = checked(half_widths)
-    width: float = positive()
     settings: SettlingRun
-    asked: ClassVar[str] = "attractors"
+    replaced: ClassVar[tuple[str, ...]] = RUN_LENGTHS
     chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"
@@ -259,18 +255,19 @@ def starts_in_both_boxes(
     return states
 
 
+@question(AttractorsJob)
 def attractors(
     structure: Structure,
     *,
-    eta: ArrayLike | None = None,
-    frequency: ArrayLike | None = None,
-    amplitude: ArrayLike | None = None,
+    eta: Values = None,
+    frequency: Values = None,
+    amplitude: Values = None,
     over: str | None = None,
     values: ArrayLike | None = None,
-    starts: int | None = None,
-    seed: int = 0,
-    scale: ArrayLike | None = None,
-    width: float = 3.0,
+    starts: Annotated[int | None, whole(1)] = None,
+    seed: Annotated[int, whole(0, 2**32 - 1)] = 0,
+    scale: Annotated[ArrayLike | None, half_widths] = None,
+    width: Positive = 3.0,
     transient: int = 400,
     settle: float = 300.0,
     samples: int = 48,
@@ -358,4 +355,7 @@ def attractors(
     if starts is None:
         several = any(x is not None and np.size(x) > 1 for x in (eta, frequency, amplitude, values))
         starts = 60 if several else 600
-    return ask(AttractorsJob, locals(), settings=SettlingRun.from_call(locals()))
+    return as_given(
+        starts=starts,
+        settings=SettlingRun.by(settings, transient=transient, settle=settle, samples=samples),
+    )

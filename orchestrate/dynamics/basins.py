@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -28,14 +27,15 @@ from ..model.arguments import checked_integer
 from ..model.outcomes import ABSENT
 from ..response.labels import make_dataset, si_state_coordinate, variable
 from ..response.questions import (
+    OF_EXCITATION,
     Point,
     Question,
     State,
-    ask,
     checked_point,
     checked_state,
     require_delaminated,
 )
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .attractors import (
@@ -120,17 +120,15 @@ def masses_from_gap(
     return middle - half, middle + half
 
 
-@dataclass(frozen=True, kw_only=True)
 class BasinJob(Question):
     """Job of :func:`orchestrate.basin`: all starts on a plane, run until they settle."""
 
     excitation: Excitation  # its phase is that of all starts where `phase` is not a coordinate
     x: PlaneAxis
     y: PlaneAxis
-    at: tuple[float, ...]
     known: tuple[tuple[float, ...], ...]  # states on attractors that are known, at phase 0
     settings: SettlingRun
-    asked: ClassVar[str] = "basin"
+    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, "phase", *RUN_LENGTHS)
     chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"
@@ -228,6 +226,7 @@ def checked_axis(name: str, argument: Any) -> PlaneAxis:
     return PlaneAxis(axis, low, high, checked_integer(f"{name}: count", count, 2, 100_000))
 
 
+@question(BasinJob)
 def basin(
     structure: Structure,
     *,
@@ -297,10 +296,10 @@ def basin(
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
     point = checked_point(structure, eta, frequency, amplitude)
-    settings = SettlingRun.from_call(locals())
+    run = SettlingRun.by(settings, transient=transient, settle=settle, samples=samples)
     known: KnownAttractors | None = None
     if x is None or y is None:
-        known = find_known_attractors(point, settings, running)
+        known = find_known_attractors(point, run, running)
         if x is None and y is None and at is None:
             at = known.samples.mean(axis=0)
     sides = (
@@ -309,9 +308,14 @@ def basin(
     )
     if sides[0].name == sides[1].name:
         raise InputError(f"x and y: {sides[0].name} twice; expected two coordinates")
-    own = {"excitation": point.excitation.replace(phase=phase), "x": sides[0], "y": sides[1]}
-    at, states = checked_state("at", at, structure), known.states if known else ()
-    return ask(BasinJob, locals(), known=states, **own)
+    return as_given(
+        excitation=point.excitation.replace(phase=phase),
+        x=sides[0],
+        y=sides[1],
+        at=checked_state("at", at, structure),
+        known=known.states if known else (),
+        settings=run,
+    )
 
 
 class KnownAttractors(NamedTuple):

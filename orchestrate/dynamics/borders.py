@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,15 +12,17 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import checked, checked_number, whole
+from ..model.arguments import Count, Number
 from ..response.labels import variable
-from ..response.questions import EXCITATION_PARAMETERS, Question, ask, require_delaminated
+from ..response.questions import EXCITATION_PARAMETERS, OF_EXCITATION, Question, require_delaminated
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, Kind
 from .branches import (
     NODES,
+    OF_SETTING,
     acceleration_at_start,
     checked_limits,
     complete_excitation,
@@ -51,7 +52,6 @@ LEFT = "what is left of both conditions, of the multipliers' polynomial over its
 KEPT = ("state", "xi", "multipliers", *NODES)  # variables of orbits that those points have, too
 
 
-@dataclass(frozen=True, kw_only=True)
 class BorderJob(Question):
     """Job of :func:`orchestrate.border`: one bifurcation followed over two parameters."""
 
@@ -60,9 +60,7 @@ class BorderJob(Question):
     period: int
     kind: int
     values: tuple[float, float]  # of the parameters there
-    longest: float = checked(checked_number)
-    most: int = whole(1)
-    asked: ClassVar[str] = "border"
+    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *OF_SETTING, "bifurcation")
     item_columns: ClassVar[tuple[str, ...]] = ()  # points of the curve
 
     def call_text(self) -> str:
@@ -130,6 +128,7 @@ def row_at(
     return orbit_row(instance, curve.family, unknowns[: curve.family.size + 2], residual)
 
 
+@question(BorderJob)
 def border(
     structure: Structure,
     *,
@@ -141,8 +140,8 @@ def border(
     frequency: ArrayLike | None = None,
     amplitude: ArrayLike | None = None,
     box_acceleration: float | None = None,
-    longest: float = 0.03,
-    most: int = 500,
+    longest: Number = 0.03,
+    most: Count = 500,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Follow a bifurcation of a branch over two parameters.
@@ -219,7 +218,7 @@ def border(
         require_inside_limits(name, number, pair)
     setting = varied_setting(structure, given, names, pairs, acceleration)
     own = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "kind": kind}
-    return ask(BorderJob, locals(), f"_{'_'.join(names)}", values=(value, second), **own)
+    return as_given(f"_{'_'.join(names)}", values=(value, second), **own)
 
 
 def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,9 +15,10 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import checked, checked_integer, checked_number, whole
+from ..model.arguments import Count, Number, checked_integer, checked_number
 from ..model.ranges import OF_LENGTH
-from ..response.questions import Question, ask, excitation_numbers, require_delaminated
+from ..response.questions import OF_EXCITATION, Question, excitation_numbers, require_delaminated
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .bifurcations import KINDS
@@ -52,19 +53,16 @@ OF_OMEGA = {"m1", "k1", "omega", "f1"}  # what changes eta at one frequency
 OrbitSegment = BranchSegment[OrbitPoint]
 
 
-@dataclass(frozen=True, kw_only=True)
+OF_SETTING = ("over", "limits", "box_acceleration")  # with an excitation
+
+
 class BranchJob(Question):
     """Job of :func:`orchestrate.branch`: a branch of orbits continued over one parameter."""
 
     setting: Setting  # the parameter that varies and its limits
     start: FirstGuess  # nodes of the orbit that it begins with
-    period: int
     value: float  # of the parameter there
-    # kind of the bifurcation at which the branch leaves; -1: that through the start, both ways
-    switch: int
-    longest: float = checked(checked_number)  # longest step
-    most: int = whole(1)  # most points in one direction
-    asked: ClassVar[str] = "branch"
+    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *OF_SETTING)
     item_columns: ClassVar[tuple[str, ...]] = ()  # orbits and bifurcations
 
     def call_text(self) -> str:
@@ -123,6 +121,7 @@ def join_segments(
     return [*reversed(back.points[1:]), *forth.points], bifurcations
 
 
+@question(BranchJob)
 def branch(
     structure: Structure,
     *,
@@ -135,8 +134,8 @@ def branch(
     amplitude: ArrayLike | None = None,
     period: int = 1,
     box_acceleration: float | None = None,
-    longest: float = 0.03,
-    most: int = 1000,
+    longest: Number = 0.03,
+    most: Count = 1000,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Follow the branch of periodic orbits through one of them, along a parameter.
@@ -217,7 +216,7 @@ def branch(
     nodes, kind = start_nodes(start, "switch", switch)
     setting = varied_setting(structure, given, (over,), (low_high,), acceleration)
     own = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "switch": kind}
-    return ask(BranchJob, locals(), f"_{over}", **own)
+    return as_given(f"_{over}", value=value, **own)
 
 
 def varied_setting(

@@ -5,7 +5,7 @@ What a periodic response settles to is decided by its orbit: see :mod:`.decision
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
@@ -76,13 +76,13 @@ class SettlingRun(AttractorSettings):
         checked_integer("samples", self.samples, 4)
 
     @classmethod
-    def from_call(cls, call: Mapping[str, Any]) -> SettlingRun:
-        """Return the run that a public function's keywords ask for."""
-        given = AttractorSettings() if call["settings"] is None else call["settings"]
+    def by(cls, settings: AttractorSettings | None, **lengths: Any) -> SettlingRun:
+        """Return the run by thresholds, or the usual ones, and by its lengths."""
+        given = AttractorSettings() if settings is None else settings
         if not isinstance(given, AttractorSettings):
             raise InputError(f"settings = {given!r}: expected AttractorSettings(longest=..., ...)")
         thresholds = {each.name: getattr(given, each.name) for each in fields(AttractorSettings)}
-        return cls(**thresholds, **{name: call[name] for name in RUN_LENGTHS})
+        return cls(**thresholds, **lengths)
 
 
 RUN_LENGTHS = ("transient", "settle", "samples")

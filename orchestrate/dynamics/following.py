@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..fmu import OSCILLATOR, STATE, EventInstance, Impacts, Instance, begin
-from ..model.arguments import whole
-from ..response.questions import Point, SeriesQuestion, State
+from ..response.questions import Point, StartedSeriesQuestion, State
 from ..running.job import Fmus, Table
 from .variational import nondimensional_impacts
 
@@ -27,16 +25,8 @@ class FollowedResponse(NamedTuple):
     touching: tuple[bool, bool] = (False, False)
 
 
-@dataclass(frozen=True, kw_only=True)
-class ImpactsQuestion(SeriesQuestion, ABC):
+class ImpactsQuestion(StartedSeriesQuestion, ABC):
     """Base of questions along a parameter about the impacts of responses after a transient."""
-
-    # one state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
-    # parameter, or one for each
-    start: tuple[float, ...]
-    # periods dropped, and followed after them
-    transient: int = whole(0)
-    periods: int = whole(1)
 
     def items(self) -> Sequence[FollowedResponse]:
         points = self.series.points

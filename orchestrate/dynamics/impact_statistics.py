@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -13,8 +12,10 @@ from numpy.typing import ArrayLike
 from ..fmu import Impacts
 from ..lazy import Unpack, xr
 from ..model import Structure
+from ..model.arguments import Count, Transient
 from ..response.labels import column_variables, make_dataset
-from ..response.questions import ask
+from ..response.questions import Values
+from ..response.signatures import as_given, question
 from ..running.job import Table
 from ..running.options import Running
 from .following import FollowedResponse, ImpactsQuestion
@@ -37,11 +38,9 @@ FIELDS = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
 class ImpactStatisticsJob(ImpactsQuestion):
     """Job of :func:`orchestrate.impact_statistics`: impact statistics along a parameter."""
 
-    asked: ClassVar[str] = "impact_statistics"
     result: ClassVar[str] = "impacts"
     chunk_size: ClassVar[int] = 40
 
@@ -97,16 +96,17 @@ def contact_time(impacts: Impacts, item: FollowedResponse, end: float) -> float:
     return float(deviations(impacts, end, item.point)[1].sum())
 
 
+@question(ImpactStatisticsJob)
 def impact_statistics(
     structure: Structure,
     *,
-    eta: ArrayLike | None = None,
-    frequency: ArrayLike | None = None,
-    amplitude: ArrayLike | None = None,
+    eta: Values = None,
+    frequency: Values = None,
+    amplitude: Values = None,
     over: str | None = None,
     values: ArrayLike | None = None,
-    transient: int = 500,
-    periods: int = 100,
+    transient: Transient = 500,
+    periods: Count = 100,
     start: ArrayLike | xr.Dataset | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
@@ -150,4 +150,4 @@ def impact_statistics(
     >>> found.impacts.values.tolist(), found.contacts.values.tolist()
     ([30.0, 2.0], [1.0, 0.0])
     """
-    return ask(ImpactStatisticsJob, locals())
+    return as_given()

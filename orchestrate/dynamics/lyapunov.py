@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,10 +17,10 @@ from ..errors import InputError
 from ..fmu import Impacts
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import checked, positive, whole
-from ..model.ranges import checked_flag
+from ..model.arguments import Count, Positive, Transient, whole
 from ..response.labels import Variable, flags, make_dataset, variable
-from ..response.questions import Point, ask
+from ..response.questions import Point, Values
+from ..response.signatures import as_given, question
 from ..response.threshold import exceeds_threshold
 from ..running.job import Table
 from ..running.options import Running
@@ -112,18 +111,9 @@ def classify_exponents(
     return np.array(verdicts, dtype=np.int8).reshape(given[0].shape)
 
 
-@dataclass(frozen=True, kw_only=True)
 class LyapunovJob(ImpactsQuestion):
     """Job of :func:`orchestrate.lyapunov`: largest Lyapunov exponents along a parameter."""
 
-    spectrum: bool = checked(checked_flag)  # whether all four exponents are wanted
-    # as in largest_exponent
-    blocks: int = whole(1)
-    batches: int = whole(3)
-    # as in lyapunov
-    sigmas: float = positive()
-    wander: float = positive()
-    asked: ClassVar[str] = "lyapunov"
     result: ClassVar[str] = "exponent"
     chunk_size: ClassVar[int] = 5
 
@@ -198,22 +188,23 @@ def spectrum_variables(along: str, rows: NDArray[np.float64]) -> dict[str, Varia
     }
 
 
+@question(LyapunovJob)
 def lyapunov(
     structure: Structure,
     *,
-    eta: ArrayLike | None = None,
-    frequency: ArrayLike | None = None,
-    amplitude: ArrayLike | None = None,
+    eta: Values = None,
+    frequency: Values = None,
+    amplitude: Values = None,
     over: str | None = None,
     values: ArrayLike | None = None,
-    transient: int = 500,
-    periods: int = 2500,
+    transient: Transient = 500,
+    periods: Count = 2500,
     start: ArrayLike | xr.Dataset | None = None,
     spectrum: bool = False,
-    blocks: int = BLOCKS,
-    batches: int = BATCHES,
-    sigmas: float = SIGMAS,
-    wander: float = WANDER,
+    blocks: Count = BLOCKS,
+    batches: Annotated[int, whole(3)] = BATCHES,
+    sigmas: Positive = SIGMAS,
+    wander: Positive = WANDER,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Compute largest Lyapunov exponents along a parameter, with verdicts periodic to chaotic.
@@ -280,4 +271,4 @@ def lyapunov(
     >>> float(found.kaplan_yorke_dimension[0].round(1))
     3.1
     """
-    return ask(LyapunovJob, locals())
+    return as_given()

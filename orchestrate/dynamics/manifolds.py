@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,9 +14,10 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, Instance, begin
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import positive, whole
+from ..model.arguments import Positive, checked_number, whole
 from ..response.labels import flags, make_dataset, nondimensional_state_coordinate, variable
-from ..response.questions import ask, require_delaminated
+from ..response.questions import require_delaminated
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .branches import acceleration_at_start, complete_excitation, orbit_at, require_orbit_dataset
@@ -125,18 +126,10 @@ def unstable_direction(orbit: PeriodicOrbit) -> Floats:
     return -vector if gap < 0.0 else vector
 
 
-@dataclass(frozen=True, kw_only=True)
 class ManifoldJob(SingleOrbitQuestion):
     """Job of :func:`orchestrate.manifold`: the unstable manifold of one saddle, both sides."""
 
     start: FirstGuess  # nodes of the saddle
-    period: int
-    length: float = positive()
-    spacing: float = positive()
-    angle: float = positive()
-    distance: float = positive()
-    most: int = whole(2)
-    asked: ClassVar[str] = "manifold"
     item_columns: ClassVar[tuple[str, ...]] = ()  # points of the curves
 
     def __post_init__(self) -> None:
@@ -288,6 +281,7 @@ def break_variables(table: Table) -> dict[str, Any]:
     return {"break_side": sides, **others}
 
 
+@question(ManifoldJob)
 def manifold(
     structure: Structure,
     *,
@@ -296,12 +290,12 @@ def manifold(
     frequency: ArrayLike | None = None,
     amplitude: ArrayLike | None = None,
     period: int = 1,
-    box_acceleration: float | None = None,
-    length: float = 5.0,
-    spacing: float = 0.005,
-    angle: float = 0.2,
-    distance: float = 1e-5,
-    most: int = 10000,
+    box_acceleration: Annotated[float | None, checked_number] = None,
+    length: Positive = 5.0,
+    spacing: Positive = 0.005,
+    angle: Positive = 0.2,
+    distance: Positive = 1e-5,
+    most: Annotated[int, whole(2)] = 10000,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Compute the unstable manifold of a saddle of the stroboscopic map, as two curves.
@@ -377,4 +371,4 @@ def manifold(
         start = orbit_at(structure, dict(arguments), period, acceleration, running)
     excitation = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure)
     own = {"box_acceleration": acceleration, "period": start.sizes["sample"]}
-    return ask(ManifoldJob, locals(), start=guess_from_result(start), **own)
+    return as_given(excitation=excitation, start=guess_from_result(start), **own)

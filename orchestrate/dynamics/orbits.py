@@ -6,7 +6,7 @@ from abc import ABC
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,9 +16,16 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import checked, checked_integer, checked_number, checked_numbers, whole
+from ..model.arguments import Count, Number, Transient, checked_integer, checked_numbers, whole
 from ..response.labels import make_dataset
-from ..response.questions import Question, ask, checked_point, checked_state, require_delaminated
+from ..response.questions import (
+    OF_EXCITATION,
+    Question,
+    checked_point,
+    checked_state,
+    require_delaminated,
+)
+from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .closed_form import Floats
@@ -75,9 +82,7 @@ class SingleOrbitQuestion(Question, ABC):
     """Base of questions about one orbit at a fixed excitation."""
 
     excitation: tuple[tuple[str, float], ...]  # as the user gave it
-    box_acceleration: float = checked(
-        checked_number
-    )  # constant acceleration of the box beside the harmonic one, m/s2
+    replaced: ClassVar[tuple[str, ...]] = OF_EXCITATION
 
     @property
     def setting(self) -> Setting:
@@ -90,16 +95,10 @@ class SingleOrbitQuestion(Question, ABC):
         return np.array([self.excitation[0][1]])
 
 
-@dataclass(frozen=True, kw_only=True)
 class OrbitJob(SingleOrbitQuestion):
     """Job of :func:`orchestrate.orbit`: one periodic orbit, checked by the FMU."""
 
-    period: int = whole(1, MAX_PERIODS)
     guess: FirstGuess | None
-    transient: int = whole(0)
-    search: int
-    tries: int = whole(1)
-    asked: ClassVar[str] = "orbit"
 
     def call_text(self) -> str:
         frequency = self.setting.point(self.values).excitation.frequency
@@ -205,18 +204,19 @@ def excitation_arguments(
     return tuple((name, float(np.asarray(v))) for name, v in arguments.items() if v is not None)
 
 
+@question(OrbitJob)
 def orbit(
     structure: Structure,
     *,
     eta: ArrayLike | None = None,
     frequency: ArrayLike | None = None,
     amplitude: ArrayLike | None = None,
-    period: int = 1,
+    period: Annotated[int, whole(1, MAX_PERIODS)] = 1,
     guess: ArrayLike | Mapping[Any, Any] | None = None,
-    box_acceleration: float = 0.0,
-    transient: int = 500,
+    box_acceleration: Number = 0.0,
+    transient: Transient = 500,
     search: int = 200,
-    tries: int = 20,
+    tries: Count = 20,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Compute a periodic orbit by Newton's method, stable or unstable, and its multipliers.
@@ -282,4 +282,4 @@ def orbit(
     excitation = excitation_arguments(eta, frequency, amplitude)
     first = checked_guess(guess, structure, point.excitation.frequency, count)
     search = checked_integer("search", search, count + 1)
-    return ask(OrbitJob, locals(), f"_{count}T", guess=first)
+    return as_given(f"_{count}T", excitation=excitation, guess=first, search=search)

@@ -8,28 +8,26 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance, Instance
-from ..lazy import Unpack, xr
+from ..lazy import xr
 from ..model import PARAMETERS, Structure
-from ..model.arguments import Numbers, checked, positive, whole
+from ..model.arguments import Count, Numbers, Positive, Transient, whole
 from ..model.outcomes import UNDECIDED
-from ..model.ranges import checked_flag, expected_one_of
-from ..model.structure import ValueListKeywords
+from ..model.ranges import expected_one_of
 from ..response.labels import column_variables, flags, make_dataset, parameter_variable
 from ..response.multiplicity import DECIDED, Decision
 from ..response.questions import (
     EXCITATION_PARAMETERS,
     Point,
     Question,
-    answer_question,
     check_excitation_form,
     checked_state,
     checked_structure,
@@ -38,9 +36,10 @@ from ..response.questions import (
 )
 from ..response.respond import DecidedResponse, Response, decisions_from, responses_from
 from ..response.response_loop import LoopSettings, response_loop
+from ..response.signatures import as_given, question
 from ..response.sweep import HOW_DECIDED
 from ..running.job import Fmus, Table, plain
-from ..running.options import Running, RunOptions
+from ..running.options import RunOptions
 from .clusters import transient_periods
 from .following import follow_impacts
 from .lyapunov import SAYS, WORDS, classify_exponents, exponent_of, wander_floor
@@ -58,25 +57,12 @@ EXPONENT = {
 }
 
 
-class MapKeywords(Running, ValueListKeywords, total=False):
-    """Keywords of :func:`map` beside its own: structure parameters and running options."""
-
-
-@dataclass(frozen=True, kw_only=True)
 class MapJob(Question):
     """Job of :func:`orchestrate.map`: responses over two parameters, each from the same start."""
 
     # parameters of the excitation and the structure; two of them are lists
     given: tuple[tuple[str, Numbers], ...]
-    transient: int = whole(0)
-    settle: float = positive()
-    samples: int = whole(4)
-    tolerance: float = positive()
-    longest: int = whole(0)
-    start: tuple[float, ...]
-    exponent: bool = checked(checked_flag)
-    periods: int = whole(1)
-    asked: ClassVar[str] = "map"
+    replaced: ClassVar[tuple[str, ...]] = tuple(EXCITATION_PARAMETERS)
     chunk_size: ClassVar[int] = 120
 
     def __post_init__(self) -> None:
@@ -188,6 +174,7 @@ def map_points(
     return tuple(make_point(structure, {**values, **row}) for row in rows)
 
 
+@question(MapJob)
 def map(
     structure: Structure,
     *,
@@ -195,15 +182,15 @@ def map(
     frequency: ArrayLike | None = None,
     amplitude: ArrayLike | None = None,
     level: ArrayLike | None = None,
-    transient: int = 300,
-    settle: float = 300.0,
-    samples: int = 60,
-    tolerance: float = 1e-2,
-    longest: int = 20_000,
+    transient: Transient = 300,
+    settle: Positive = 300.0,
+    samples: Annotated[int, whole(4)] = 60,
+    tolerance: Positive = 1e-2,
+    longest: Annotated[int, whole(0)] = 20_000,
     start: ArrayLike | None = None,
     exponent: bool = False,
-    periods: int = 500,
-    **others: Unpack[MapKeywords],
+    periods: Count = 500,
+    **others: Any,
 ) -> xr.Dataset:
     """Compute responses over a grid of two parameters, each from the same start state.
 
@@ -274,4 +261,4 @@ def map(
     numbers = {n: excitation_numbers(n, value) for n, value in asked.items() if n not in running}
     given = tuple((name, value) for name, value in numbers.items() if value is not None)
     start = checked_state("start", start, checked_structure(structure))
-    return answer_question(MapJob.from_call(locals()), running)
+    return as_given(given=given, start=start, running=running)

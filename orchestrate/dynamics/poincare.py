@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import partial
-from typing import ClassVar
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,9 +13,10 @@ from ..constants import TURN
 from ..fmu import OSCILLATOR, EventInstance, Impacts, Instance, begin
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import checked, checked_number, checked_word, whole
+from ..model.arguments import Count, Transient, checked_number
 from ..response.labels import make_dataset, variable, yes_or_no
-from ..response.questions import OneMotionQuestion, Point, ask, checked_point, checked_state
+from ..response.questions import OneMotionQuestion, Point, checked_point, checked_state
+from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME
 from ..running.job import Fmus, Table
 from ..running.options import Running
@@ -33,17 +32,8 @@ SECTIONS = {  # what a section is, by its name
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, kw_only=True)
 class PoincareJob(OneMotionQuestion):
     """Job of :func:`orchestrate.poincare`: the Poincaré section of one motion."""
-
-    at: str = checked(partial(checked_word, known=SECTIONS))
-    phase: float  # of the box, in [0, 2 pi), where `at` is `"phase"`
-    # periods dropped, and followed after them
-    transient: int = whole(0)
-    periods: int = whole(1)
-    start: tuple[float, ...]  # x1, x2 in m, v1, v2 in m/s at phase 0
-    asked: ClassVar[str] = "poincare"
 
     def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
         """Simulate the motion after its transient; return states and times of the section."""
@@ -111,16 +101,17 @@ def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
     return times
 
 
+@question(PoincareJob)
 def poincare(
     structure: Structure,
     *,
     eta: float | None = None,
     frequency: float | None = None,
     amplitude: float | None = None,
-    at: str = "phase",
+    at: Literal["phase", "impacts", "releases"] = "phase",
     phase: float = 0.0,
-    transient: int = 500,
-    periods: int = 1000,
+    transient: Transient = 500,
+    periods: Count = 1000,
     start: ArrayLike | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
@@ -176,4 +167,4 @@ def poincare(
     _, excitation = checked_point(structure, eta, frequency, amplitude)
     phase = math.fmod(checked_number("phase", phase, "a number, rad"), TURN) % TURN
     start = checked_state("start", start, structure)
-    return ask(PoincareJob, locals())
+    return as_given(excitation=excitation, phase=phase, start=start)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,15 +18,14 @@ from ..model import Shaker, Structure
 from ..model.arguments import checked_positive
 from ..response.equations import absolute_accelerations
 from ..response.labels import make_dataset, variable, yes_or_no
-from ..response.questions import Question, ask, checked_state, checked_structure
+from ..response.questions import Question, checked_state, checked_structure
+from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Table
+from ..running.options import Running
 from .level_control import LevelControl, shake_on
 from .pieces import Pieces
 from .signals import ExcitationSignal
-
-if TYPE_CHECKING:
-    from ..running.options import Running
 
 MOST_SAMPLES = 100_000_000
 DECAYED = 1e-3  # what is left of the free vibration from the start where it counts as over
@@ -39,15 +37,17 @@ def pieces_of(excitation: ExcitationSignal, accuracy: float) -> Pieces:
     return excitation.pieces(accuracy)
 
 
-@dataclass(frozen=True, kw_only=True)
+def checked_accuracy(name: str, value: Any) -> float:
+    """Return an accuracy of the pieces, relative to the peak; raise unless 1e-10 to 1e-2."""
+    accuracy = checked_positive(name, value)
+    if not 1e-10 <= accuracy <= 1e-2:
+        raise InputError(f"{name} = {accuracy!r}: expected 1e-10 <= {name} <= 0.01")
+    return accuracy
+
+
 class ShakeJob(Question):
     """Job that computes a motion under any excitation, each part from the end of the one before."""
 
-    excitation: ExcitationSignal
-    sample_rate: float  # hz
-    accuracy: float  # of the cubic pieces, relative to the excitation's peak
-    start: tuple[float, ...]  # x1, x2 in m, v1, v2 in m/s
-    asked: ClassVar[str] = "shake"
     chunk_size: ClassVar[int] = 20_000
     sequential: ClassVar[bool] = True
     item_columns: ClassVar[tuple[str, ...]] = ()  # samples, impacts, and a state
@@ -128,6 +128,7 @@ def transient_time(structure: Structure) -> float:
     return -math.log(DECAYED) / slowest if slowest > 0.0 else math.inf
 
 
+@question(ShakeJob)
 def shake(
     structure: Structure,
     excitation: ExcitationSignal | LevelControl,
@@ -135,7 +136,7 @@ def shake(
     sample_rate: float | None = None,
     shaker: Shaker | None = None,
     start: ArrayLike | None = None,
-    accuracy: float = 1e-6,
+    accuracy: Annotated[float, checked_accuracy] = 1e-6,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Shake a structure and record its motion.
@@ -204,9 +205,6 @@ def shake(
         raise InputError(
             f"sample_rate = {rate!r} Hz: expected at most {most:.3g} for that duration"
         )
-    accuracy = checked_positive("accuracy", accuracy)
-    if not 1e-10 <= accuracy <= 1e-2:
-        raise InputError(f"accuracy = {accuracy!r}: expected 1e-10 <= accuracy <= 0.01")
     start = checked_state("start", start, checked_structure(structure))
     name = f"shake_{type(excitation).__name__}_{structure.label()}"
-    return ask(ShakeJob, locals(), name=name, sample_rate=rate, start=start)
+    return as_given(name=name, sample_rate=rate, start=start)

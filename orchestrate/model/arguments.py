@@ -1,7 +1,7 @@
 """Checks of arguments, for all packages: an error names the argument, its value, what is expected.
 
-Fields of jobs made by :func:`whole`, :func:`positive` and :func:`checked` check what they are
-given, see :meth:`orchestrate.running.job.Job.check_fields`.
+The type of a public function's keyword carries its check, as ``Annotated[int, whole(1)]``: see
+:func:`checks_of`.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterable
-from dataclasses import field
-from functools import partial
+from dataclasses import fields
+from functools import cache, partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,8 +21,8 @@ from ..errors import InputError
 
 MAX_COUNT = 1_000_000  # periods, samples, values: more is a typing error
 MAX_NAME = 255  # bytes of a file's name, the limit of most systems
-CHECK = "check"  # key of a field's check in its metadata
 Numbers = float | tuple[float, ...]
+Check = Callable[[str, Any], Any]  # takes an argument's name and value, returns the value to use
 
 
 def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUNT) -> int:
@@ -113,17 +113,33 @@ def checked_positive(name: str, value: Any) -> float:
     return number
 
 
-def checked(check: Callable[[str, Any], Any], *default: Any) -> Any:
-    """Return a job's field, with a default or without, that a check takes by name and value."""
-    metadata = {CHECK: check}
-    return field(metadata=metadata, default=default[0]) if default else field(metadata=metadata)
+def whole(minimum: int, maximum: int = MAX_COUNT) -> Check:
+    """Return a check for a whole number from minimum to maximum."""
+    return partial(checked_integer, minimum=minimum, maximum=maximum)
 
 
-def whole(minimum: int, maximum: int = MAX_COUNT) -> Any:
-    """Return a job's field that takes a whole number from minimum to maximum."""
-    return checked(partial(checked_integer, minimum=minimum, maximum=maximum))
+@cache
+def checks_of(kind: type) -> dict[str, Check]:
+    """Return the checks of a dataclass's fields by name, from the types of the fields."""
+    types = get_type_hints(kind, include_extras=True)
+    checks = {field.name: check_of(types[field.name]) for field in fields(kind)}
+    return {name: check for name, check in checks.items() if check is not None}
 
 
-def positive() -> Any:
-    """Return a job's field that takes a finite number above zero."""
-    return checked(checked_positive)
+def check_of(kind: Any) -> Check | None:
+    """Return the check that a type carries, or that is known of it; None if there is none."""
+    if hasattr(kind, "__metadata__"):
+        found: Check = kind.__metadata__[0]
+        return found
+    if get_origin(kind) is Literal:
+        return partial(checked_word, known=get_args(kind))
+    return checked_flag if kind is bool else None
+
+
+# Types of keywords that several public functions have, each with its check: `Annotated` is a type
+# for editors and type checkers, and `checks_of` finds the check. Those of words (`Literal`) and
+# flags (`bool`) need no more.
+Transient = Annotated[int, whole(0)]  # periods dropped
+Count = Annotated[int, whole(1)]  # periods, samples, points: at least one
+Positive = Annotated[float, checked_positive]
+Number = Annotated[float, checked_number]

@@ -8,10 +8,9 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..errors import InputError
-from ..lazy import Unpack
 from .described import Described
 from .ranges import (
     ADDED,
@@ -26,7 +25,7 @@ from .ranges import (
 
 if TYPE_CHECKING:
     import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
 Values = TypeVar("Values", float, "NDArray[np.float64]")
 SI = tuple(STRUCTURE)
@@ -100,39 +99,22 @@ def format_short(value: float) -> str:
     return repr(value).removesuffix(".0")
 
 
-class LaterKeywords(TypedDict, total=False):
-    """Types of the constructors' further keywords: clearance, e_slope and others."""
-
-    clearance: float
-    e_slope: float
-
-
-class ValueListKeywords(TypedDict, total=False):
-    """Types of ``PARAMETERS`` as keywords that take a list of values each."""
-
-    m1: ArrayLike
-    m2: ArrayLike
-    k1: ArrayLike
-    k2: ArrayLike
-    d1: ArrayLike
-    d2: ArrayLike
-    e: ArrayLike
-    gamma: ArrayLike
-    clearance: ArrayLike
-    e_slope: ArrayLike
-    mu: ArrayLike
-    kappa: ArrayLike
-    D: ArrayLike
-    D1: ArrayLike
-    D2: ArrayLike
-    omega: ArrayLike
-    f1: ArrayLike
-    f2: ArrayLike
-    zeta1: ArrayLike
-    zeta2: ArrayLike
+def with_table(kind: type[Described]) -> type[Described]:
+    """Give a class fields for the parameters of the variable table that it does not write out."""
+    types, text, before = kind.__annotations__, kind.__doc__ or "", "    bonded : bool"
+    last = {"bonded": types.pop("bonded")}
+    for name in [name for name in STRUCTURE if name not in types]:
+        quantity = STRUCTURE[name]
+        types[name] = "float"
+        setattr(kind, name, quantity.default)
+        meaning = f"    {name} : float\n        {quantity.description}, {quantity.unit}.\n"
+        text = text.replace(before, meaning + before, 1)
+    kind.__annotations__, kind.__doc__ = types | last, text
+    return kind
 
 
 @dataclass(frozen=True, kw_only=True)
+@with_table
 class Structure(Described):
     """Two masses on springs and dampers that touch without being glued (Figure 1 of the paper).
 
@@ -213,7 +195,7 @@ class Structure(Described):
         *,
         m1: float = 1.0,
         omega: float = 1.0,
-        **added: Unpack[LaterKeywords],
+        **added: float,
     ) -> Structure:
         """Make a structure from mu, kappa, D and omega of the paper, (2) and (8).
 
@@ -271,7 +253,7 @@ class Structure(Described):
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
         bonded: bool = False,
-        **added: Unpack[LaterKeywords],
+        **added: float,
     ) -> Structure:
         """Make a structure from mass, natural frequency and damping ratio of each half alone.
 
@@ -330,7 +312,7 @@ class Structure(Described):
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
         bonded: bool = False,
-        **added: Unpack[LaterKeywords],
+        **added: float,
     ) -> Structure:
         """Make a structure by splitting the undamaged beam's mode between two layers by thickness.
 

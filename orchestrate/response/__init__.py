@@ -4,6 +4,7 @@
 module                      idea
 ==========================  ==================================================================
 :mod:`.questions`           checks of the user's arguments; base classes of jobs
+:mod:`.signatures`          a public function as a question: its signature has the fields of its job
 :mod:`.labels`              dataset variables with units and long names
 :mod:`.equations`           accelerations from the state: (6) and (18)
 :mod:`.multiplicity`        period of a response in excitation periods

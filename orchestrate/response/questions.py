@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from abc import ABC
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, ClassVar, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,20 +20,20 @@ from ..errors import InputError
 from ..fmu import REST, finder, gap_between
 from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
-from ..model.arguments import Numbers, checked, checked_numbers, unmasked
+from ..model.arguments import Numbers, checked_numbers, unmasked
 from ..model.ranges import COMPLETE, EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from ..running.job import Job, brief
 from ..running.runner import answer
 from .labels import Variable, parameter_variable, variable
 
 State = tuple[float, ...]
-Kind = TypeVar("Kind", bound="Question")
 EXCITATION_PARAMETERS = {
     "eta": RATIO_QUANTITIES["eta"],
     **{name: EXCITATION[name] for name in ("frequency", "amplitude")},
     "level": LEVEL,
 }
 KEPT_POINTS = 2**14  # of a series, from one use to the next
+OF_EXCITATION = ("eta", "frequency", "amplitude")
 FORMS = "expected eta=, or frequency= with amplitude="
 
 
@@ -284,6 +284,10 @@ def excitation_numbers(name: str, value: ArrayLike | None) -> Numbers | None:
     return checked_numbers(name, value, quantity.check, " > 0")
 
 
+# the type of `eta`, `frequency`, `amplitude` as one number or a list; units as in `Quantity`
+Values = Annotated[ArrayLike | None, excitation_numbers]
+
+
 def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[np.float64]:
     """Return start states (n, 4), from unloaded springs, rest by default; raise on overlap."""
     expected = "expected x1, x2 in m, v1, v2 in m/s with x2 >= x1"
@@ -346,23 +350,28 @@ def start_states(
 
 @dataclass(frozen=True, kw_only=True)
 class Question(Job, ABC):
-    """Job of a public function about a structure: its fields are the function's arguments."""
+    """Job of a public function about a structure: its fields are the function's arguments.
+
+    They are taken from the function's signature, see :mod:`.signatures`. A class declares what a
+    field is that the function makes of its arguments.
+    """
 
     structure: Structure
-    asked: ClassVar[str] = ""  # name of the function
     result: ClassVar[str] = ""  # first word of the result's name, where that is another
+    replaced: ClassVar[tuple[str, ...]] = ()  # arguments of which fields are made, no fields
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Return an argument of the function."""
 
     def __post_init__(self) -> None:
         checked_structure(self.structure)
         self.check_fields()
 
-    @classmethod
-    def from_call(cls: type[Kind], call: Mapping[str, Any], more: str = "", /, **own: Any) -> Kind:
-        """Return the job of a function's call: its arguments by name, but for its ``own``."""
-        label = checked_structure(call["structure"]).label()
-        values = {f.name: call[f.name] for f in fields(cls) if f.name in call}
-        values["name"] = f"{cls.result or cls.asked}_{label}{more}"
-        return cls(**values | own)
+    def to_answer(self) -> Question:
+        """Return the job that answers the question: another one where its arguments make it so."""
+        return self
 
     def call_text(self) -> str:
         arguments: dict[str, Any] = {}
@@ -377,11 +386,6 @@ class Question(Job, ABC):
         return f"{self.asked}({', '.join(texts)})"
 
 
-def ask(kind: type[Question], call: Mapping[str, Any], more: str = "", /, **own: Any) -> xr.Dataset:
-    """Answer a public function's call, given by its local variables, see `Question.from_call`."""
-    return answer_question(kind.from_call(call, more, **own), call["running"])
-
-
 def answer_question(job: Question, running: Mapping[str, Any]) -> xr.Dataset:
     """Answer a question by the FMU that the running options choose."""
     return answer(job, running, finder(running))
@@ -392,6 +396,7 @@ class OneMotionQuestion(Question, ABC):
     """Base of questions about one motion, under one excitation."""
 
     excitation: Excitation
+    replaced: ClassVar[tuple[str, ...]] = OF_EXCITATION
     item_columns: ClassVar[tuple[str, ...]] = ()  # times, crossings
 
     def items(self) -> Sequence[Point]:
@@ -402,10 +407,6 @@ class OneMotionQuestion(Question, ABC):
 class SeriesQuestion(Question, ABC):
     """Base of questions about responses along one parameter."""
 
-    # the excitation
-    eta: Numbers | None = checked(excitation_numbers, None)
-    frequency: Numbers | None = checked(excitation_numbers, None)
-    amplitude: Numbers | None = checked(excitation_numbers, None)
     over: str | None = None  # parameter that takes `values`
     values: Numbers | None = None
 
@@ -413,10 +414,7 @@ class SeriesQuestion(Question, ABC):
         super().__post_init__()
         name = self.over if self.over in EXCITATION_PARAMETERS else "values"
         object.__setattr__(self, "values", excitation_numbers(str(name), self.values))
-        series = self.series  # what is wrong is said before any work
-        if hasattr(self, "start"):
-            states = start_states(self.start, self.structure, series)
-            object.__setattr__(self, "start", states)
+        _ = self.series  # what is wrong is said before any work
 
     @property
     def series(self) -> Series:
@@ -430,3 +428,11 @@ class SeriesQuestion(Question, ABC):
 
     def items(self) -> Sequence[Any]:
         return self.series.points
+
+
+class StartedSeriesQuestion(SeriesQuestion, ABC):
+    """Base of those whose responses start from given states, see :func:`start_states`."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "start", start_states(self.start, self.structure, self.series))

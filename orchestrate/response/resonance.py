@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
-from ..fmu import REST
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import checked, positive
+from ..model.arguments import Count, Positive, Transient
 from ..model.outcomes import IRREGULAR
 from ..running.job import Table
 from ..running.options import Running
 from .labels import Variable, make_dataset, parameter_variable, variable, yes_or_no
-from .questions import Point, Series, ask, excitation_numbers, make_series
+from .questions import Point, Series, Values, excitation_numbers, make_series
+from .signatures import as_given, question
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, response_variables
 from .threshold import threshold_variables
 from .turns_and_jumps import inside_irregular, jump_indices, prominent_maxima
@@ -31,13 +31,9 @@ PEAK_QUANTITIES = ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max", "impacts
 RAGGED = ("peak", "jump")  # of each level as many as it has
 
 
-@dataclass(frozen=True, kw_only=True)
 class ResonanceJob(SweepJob):
     """Job of :func:`orchestrate.resonance`: up and down sweeps, bonded and delaminated."""
 
-    prominence: float = positive()
-    jump: float = positive()
-    asked: ClassVar[str] = "resonance"
     bulk: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
@@ -169,13 +165,11 @@ def distinct_numbers(name: str, value: Any) -> tuple[float, ...]:
     return tuple(float(number) for number in listed if number is not None)
 
 
-@dataclass(frozen=True, kw_only=True)
+DistinctNumbers = Annotated[ArrayLike, distinct_numbers]
+
+
 class ResonanceLevelsJob(ResonanceJob):
     """Job of :func:`orchestrate.resonance_levels`: resonance curves at several levels."""
-
-    frequency: tuple[float, ...] = checked(distinct_numbers)
-    level: tuple[float, ...] = checked(distinct_numbers)  # peak accelerations, m/s2
-    asked: ClassVar[str] = "resonance_levels"
 
     @property
     def series(self) -> Series:
@@ -230,19 +224,20 @@ class ResonanceLevelsJob(ResonanceJob):
         return part.assign({f"{name}_level": variable(name, level, "m/s2", text)})
 
 
+@question(ResonanceJob)
 def resonance(
     structure: Structure,
     *,
-    eta: ArrayLike | None = None,
-    frequency: ArrayLike | None = None,
-    amplitude: ArrayLike | None = None,
+    eta: Values = None,
+    frequency: Values = None,
+    amplitude: Values = None,
     direction: Direction = "both",
-    transient: int = 500,
-    samples: int = 60,
-    tolerance: float = 1e-2,
-    peak_periods: int = 8,
-    prominence: float = 0.1,
-    jump: float = 0.15,
+    transient: Transient = 500,
+    samples: Count = 60,
+    tolerance: Positive = 1e-2,
+    peak_periods: Count = 8,
+    prominence: Positive = 0.1,
+    jump: Positive = 0.15,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Compute resonance curves, bonded and delaminated, with their peaks and jumps.
@@ -301,21 +296,22 @@ def resonance(
     >>> found.peak_structure.values[0].item(), float(found.peak_eta[0].round(3))
     ('bonded', 1.05)
     """
-    return ask(ResonanceJob, locals(), start=REST)
+    return as_given()
 
 
+@question(ResonanceLevelsJob)
 def resonance_levels(
     structure: Structure,
     *,
-    frequency: ArrayLike,
-    level: ArrayLike,
+    frequency: DistinctNumbers,
+    level: DistinctNumbers,
     direction: Direction = "both",
-    transient: int = 500,
-    samples: int = 60,
-    tolerance: float = 1e-2,
-    peak_periods: int = 8,
-    prominence: float = 0.1,
-    jump: float = 0.15,
+    transient: Transient = 500,
+    samples: Count = 60,
+    tolerance: Positive = 1e-2,
+    peak_periods: Count = 8,
+    prominence: Positive = 0.1,
+    jump: Positive = 0.15,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Compute resonance curves at several excitation levels, bonded and delaminated.
@@ -357,4 +353,4 @@ def resonance_levels(
     >>> found.x_rel_max.sel(structure="delaminated", direction="up").values.max(axis=1) > 0.0
     array([False,  True])
     """
-    return ask(ResonanceLevelsJob, locals(), start=REST)
+    return as_given()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
@@ -13,12 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from ..fmu import NO_INPUT, OSCILLATOR, EventInstance, Impacts, begin
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import whole
+from ..model.arguments import Count, Transient
 from ..running.job import Table
 from ..running.options import Running
 from .equations import absolute_accelerations
 from .labels import Variable, make_dataset, variable, yes_or_no
-from .questions import OneMotionQuestion, Point, ask, checked_point, checked_state
+from .questions import OF_EXCITATION, OneMotionQuestion, Point, checked_point, checked_state
+from .signatures import as_given, question
 
 OUTPUTS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force", "phase")
 AS_MEASURED = "as an accelerometer on it reads it between impacts"
@@ -38,16 +38,11 @@ IN_TIME = {  # units, long name
 }
 
 
-@dataclass(frozen=True, kw_only=True)
 class SimulateJob(OneMotionQuestion):
     """Job of :func:`orchestrate.simulate`: one motion in time."""
 
-    periods: int = whole(1)
-    transient: int = whole(0)
-    points: int = whole(1)
-    start: tuple[float, ...]
-    asked: ClassVar[str] = "simulate"
     result: ClassVar[str] = "motion"
+    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, "phase")
 
     def grid(self) -> NDArray[np.float64]:
         """Return the equally spaced times, s, at which the motion is sampled."""
@@ -123,15 +118,16 @@ def impact_columns(impacts: Impacts, structure: Structure) -> Table:
     return dict(zip(names, columns, strict=True))
 
 
+@question(SimulateJob)
 def simulate(
     structure: Structure,
     *,
     eta: float | None = None,
     frequency: float | None = None,
     amplitude: float | None = None,
-    periods: int = 20,
-    transient: int = 0,
-    points: int = 200,
+    periods: Count = 20,
+    transient: Transient = 0,
+    points: Count = 200,
     start: ArrayLike | None = None,
     phase: float = 0.0,
     **running: Unpack[Running],
@@ -191,4 +187,4 @@ def simulate(
     """
     _, excitation = checked_point(structure, eta, frequency, amplitude)
     start = checked_state("start", start, structure)
-    return ask(SimulateJob, locals(), excitation=excitation.replace(phase=phase), start=start)
+    return as_given(excitation=excitation.replace(phase=phase), start=start)

@@ -10,9 +10,8 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping, Sequence
 from ctypes import c_double, c_size_t, c_void_p
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,12 +21,13 @@ from ..fmu import OSCILLATOR, REST, Instance, begin, sampled
 from ..fmu.c_library import loaded_loop
 from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
-from ..model.arguments import positive, whole
+from ..model.arguments import Count, Positive, Transient, whole
 from ..running.job import Table
 from ..running.options import Running
 from .equations import absolute_accelerations
 from .labels import make_dataset, variable
-from .questions import Point, SeriesQuestion, ask
+from .questions import Point, SeriesQuestion, Values
+from .signatures import as_given, question
 
 KINDS = ("bonded", "delaminated", "sampled")
 Floats = NDArray[np.float64]
@@ -71,15 +71,8 @@ def acceleration_spectrum(states: Floats, periods: int, excitation: Excitation) 
     return amplitudes
 
 
-@dataclass(frozen=True, kw_only=True)
 class SpectraJob(SeriesQuestion):
     """Job of :func:`orchestrate.spectra`: spectra of responses, bonded and delaminated."""
-
-    periods: int = whole(1)
-    points: int = whole(2)
-    transient: int = whole(0)
-    highest: float = positive()
-    asked: ClassVar[str] = "spectra"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -139,16 +132,17 @@ class SpectraJob(SeriesQuestion):
         return make_dataset(variables, coordinates, title)
 
 
+@question(SpectraJob)
 def spectra(
     structure: Structure,
     *,
-    eta: ArrayLike | None = None,
-    frequency: ArrayLike | None = None,
-    amplitude: ArrayLike | None = None,
-    periods: int = 64,
-    points: int = 1024,
-    transient: int = 2000,
-    highest: float = 40.0,
+    eta: Values = None,
+    frequency: Values = None,
+    amplitude: Values = None,
+    periods: Count = 64,
+    points: Annotated[int, whole(2)] = 1024,
+    transient: Transient = 2000,
+    highest: Positive = 40.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Compute amplitude spectra of the masses' absolute accelerations, bonded and delaminated.
@@ -198,4 +192,4 @@ def spectra(
     >>> found.acceleration.sel(mass=1, order=20.0)[0].values.round(1)
     array([0. , 9.3, 0. ])
     """
-    return ask(SpectraJob, locals())
+    return as_given()

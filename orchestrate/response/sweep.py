@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
@@ -15,7 +13,7 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, Instance
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import checked, checked_word, positive, whole
+from ..model.arguments import Count, Positive, Transient
 from ..running.blocks import lazy_rows
 from ..running.job import Table
 from ..running.options import Running
@@ -31,12 +29,12 @@ from .labels import (
     yes_or_no,
 )
 from .multiplicity import DECIDED
-from .questions import Point, SeriesQuestion, answer_question
+from .questions import Point, StartedSeriesQuestion, Values
 from .respond import DecidedResponse, decisions_from, responses_from
 from .response_loop import PEAKS, LoopSettings, response_loop
+from .signatures import as_given, question
 
 Direction = Literal["up", "down", "both", "given"]
-DIRECTIONS = ("up", "down", "both", "given")
 DISTANCE = "largest distance of mass {} from the box's middle, its rest under a preload included"
 RESPONSE_QUANTITIES = {  # one a response: units, long name
     "xi_rel_max": ("1", "largest gap over the sampled periods, between samples too"),
@@ -56,17 +54,9 @@ MULTIPLICITY = "least n such that the state repeats after n periods; 0: none"
 HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a guess"
 
 
-@dataclass(frozen=True, kw_only=True)
-class SweepJob(SeriesQuestion):
+class SweepJob(StartedSeriesQuestion):
     """Job of :func:`orchestrate.sweep`: responses along one parameter, up, down or both."""
 
-    direction: Direction = checked(partial(checked_word, known=DIRECTIONS))
-    transient: int = whole(0)
-    samples: int = whole(1)
-    tolerance: float = positive()
-    start: tuple[float, ...]
-    peak_periods: int = whole(1)
-    asked: ClassVar[str] = "sweep"
     chunk_size: ClassVar[int] = 100
     in_threads: ClassVar[bool] = True
     bulk: ClassVar[tuple[str, ...]] = ("gap",)
@@ -81,6 +71,13 @@ class SweepJob(SeriesQuestion):
             raise InputError(
                 f"{name}: {twice!r} twice; expected each value once, or direction='given'"
             )
+
+    def to_answer(self) -> SweepJob:
+        """Return the job; that of values that do not depend on another if each has its start."""
+        if len(self.start) == len(COORDINATES):
+            return self
+        starts = np.reshape(self.start, (-1, len(COORDINATES)))
+        return RunOnJob(**vars(self) | {"direction": "given", "start": starts})
 
     def orders(self) -> list[NDArray[np.intp]]:
         """Return the indices of the values in computing order, an array per direction."""
@@ -198,7 +195,6 @@ class SweepJob(SeriesQuestion):
         return coordinates
 
 
-@dataclass(frozen=True, kw_only=True)
 class RunOnJob(SweepJob):
     """Job of :func:`orchestrate.sweep` from another sweep: each value has a start of its own."""
 
@@ -231,20 +227,21 @@ def response_variables(
     }
 
 
+@question(SweepJob)
 def sweep(
     structure: Structure,
     *,
-    eta: ArrayLike | None = None,
-    frequency: ArrayLike | None = None,
-    amplitude: ArrayLike | None = None,
+    eta: Values = None,
+    frequency: Values = None,
+    amplitude: Values = None,
     over: str | None = None,
     values: ArrayLike | None = None,
     direction: Direction = "up",
-    transient: int = 500,
-    samples: int = 200,
-    tolerance: float = 1e-2,
+    transient: Transient = 500,
+    samples: Count = 200,
+    tolerance: Positive = 1e-2,
     start: ArrayLike | xr.Dataset | None = None,
-    peak_periods: int = 8,
+    peak_periods: Count = 8,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Compute responses along a parameter, each started from the end state of the one before.
@@ -334,8 +331,4 @@ def sweep(
     >>> found.impacts_per_period.values
     array([ 9., 30.])
     """
-    job = SweepJob.from_call(locals(), f"_{direction}")
-    if len(job.start) > len(COORDINATES):
-        starts = np.reshape(job.start, (-1, len(COORDINATES)))
-        job = RunOnJob(**vars(job) | {"direction": "given", "start": starts})
-    return answer_question(job, running)
+    return as_given(f"_{direction}")

@@ -167,6 +167,7 @@ def contact_threshold(
         },
         f"Level at which the structure {event}: {structure.label()}",
         event=event,
+        question="contact_threshold",
         call=f"contact_threshold({structure!r}, {name}={brief(values)})",
         **{key: float(value) for key, value in structure.parameters().items()},
     )

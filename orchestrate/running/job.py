@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..lazy import xr
-from ..model.arguments import CHECK
+from ..model.arguments import checks_of
 
 Fmus = Mapping[str, Path]  # FMU files by model
 Table = dict[str, np.ndarray]  # arrays by name, their rows along the first axis
@@ -39,6 +39,7 @@ class Job(ABC):
     """Base of a computation with a stored result; subclasses define its items and the work."""
 
     name: str  # of the result; it decides no number
+    asked: ClassVar[str] = ""  # name of the public function: the kind of the result
     models: ClassVar[tuple[str, ...]] = ("TwoMassImpactOscillator",)
     chunk_size: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
@@ -53,11 +54,9 @@ class Job(ABC):
     item: ClassVar[str] = "item"  # what the progress bar counts
 
     def check_fields(self) -> None:
-        """Check the fields that have a check, and set them to what it returns."""
-        for each in fields(self):
-            if CHECK in each.metadata:
-                value = each.metadata[CHECK](each.name, getattr(self, each.name))
-                object.__setattr__(self, each.name, value)
+        """Check the fields whose types have a check, and set them to what it returns."""
+        for name, check in checks_of(type(self)).items():
+            object.__setattr__(self, name, check(name, getattr(self, name)))
 
     def count(self) -> int:
         """Return the number of items."""
@@ -109,9 +108,9 @@ class Job(ABC):
         }
 
     def call_text(self) -> str:
-        """Return class name and parameters in one line; of a long list, its ends and count."""
+        """Return question and parameters in one line; of a long list, its ends and count."""
         parts = [f"{name}={brief(value)}" for name, value in self.parameters().items()]
-        return f"{type(self).__name__}({', '.join(parts)})"
+        return f"{self.asked or type(self).__name__}({', '.join(parts)})"
 
     def chunks(self) -> list[Chunk]:
         """Split the items into chunks of ``chunk_size``; return them in order."""

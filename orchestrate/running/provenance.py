@@ -22,6 +22,7 @@ def with_provenance(
         **fmu_attributes(fmus),
         "Conventions": "CF-1.11",
         "source": f"vibroimpact {__version__}",
+        "question": job.asked,
         "call": call,
         "history": f"{begun}: {call}",
         "identity": json.dumps(identity, sort_keys=True),

@@ -1,7 +1,7 @@
 """Draw datasets with Matplotlib, and write pages to read, print and sign; no FMU runs here.
 
 Pictures are five families, each a module of what its pictures share and of a function per kind of
-result; :mod:`.plot` has the table of which function draws what:
+result; :mod:`.kinds` knows which function draws what:
 
 - lines over a parameter: ``lines``, ``resonance``, ``weak_drive``; branches over them: ``overlay``
 - ``planes``: maps, basins, borders, sections, phase curves

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from ..units import as_shown
 from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STRUCTURES
+from .kinds import draws
 from .labels import in_shown_units, plain_title
 from .scales import label_with_unit, typeset_array_unit
 from .style import draw_line, make_panels, set_title, styled, use_plain_log
@@ -310,3 +311,4 @@ DRAW: dict[str, Callable[[Results], Figure]] = {
     "shock_spectrum": draw_shock_spectra,
     "probability_density": draw_densities,
 }
+draws(*DRAW)(draw)

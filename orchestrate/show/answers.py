@@ -11,9 +11,10 @@ from ..errors import InputError
 from ..lazy import xr
 from ..model.ranges import EXCITATION, STRUCTURE
 from ..units import OVER_OMEGA, as_shown, scale_of
+from .kinds import required_kind
 from .labels import plain_title
 from .page import Section, Table, format_number
-from .plot import function_name, plot
+from .plot import plot
 
 WORDS = {-1: "not in this record", 0: "no", 1: "yes"}
 MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
@@ -33,7 +34,7 @@ ORIGIN = {  # attributes, and what a reader calls them
 
 def title_of(answer: xr.Dataset) -> str:
     """Return a result's title as a heading; pictures and tables tell of its structure."""
-    return plain_title(str(answer.attrs.get("title") or function_name(answer)), structure=False)
+    return plain_title(str(answer.attrs.get("title") or required_kind(answer)), structure=False)
 
 
 def answer_section(answer: xr.Dataset) -> Section:

@@ -15,6 +15,7 @@ from matplotlib.patches import Rectangle
 from ..units import as_shown
 from .analysis import note_hidden
 from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
+from .kinds import draws
 from .labels import plain_title
 from .scales import label_with_unit, typeset_array_unit
 from .style import draw_line, legend_below, make_panels, styled, use_plain_log
@@ -26,6 +27,7 @@ PARTED, BONDED = "delaminated", "bonded"  # names of hypotheses begin so
 FEWEST_DECADES = (0.2, 10.0)  # of the signs' axis, at least
 
 
+@draws("signs")
 @styled
 def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     """Draw delamination signs as bars relative to noise and to a sound structure's values."""
@@ -71,6 +73,7 @@ def write_values(
         axes.annotate(text, (x, y), va="center", fontsize=7, color=colour, **offset)
 
 
+@draws("plan_test")
 @styled
 def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
     """Draw over frequency and level where a test would show a delamination; return the figure."""
@@ -132,6 +135,7 @@ def draw_distances(plane: Axes, data: xr.Dataset) -> None:
     plane.set_ylabel("difference in standard\ndeviations of the noise")
 
 
+@draws("detect", "fit")
 @styled
 def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
     """Draw a record's orders over frequency with those of the fits, one column per sensor."""

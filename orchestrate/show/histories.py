@@ -14,6 +14,7 @@ from ..constants import TURN
 from ..units import units_of, with_units
 from . import labels
 from .colours import BLACK, BLUE, GREY, RED
+from .kinds import BONDED, draws
 from .planes import gap_through_impacts, relative_motion
 from .scales import acceleration_scale, frequency_scale, in_unit, length_scale
 from .spectra import acceleration_spectrum, draw_stems
@@ -32,6 +33,7 @@ MIN_PERIODS = 4  # periods that a spectrum takes
 COLUMNS = 400  # of an envelope
 
 
+@draws("simulate", beside=BONDED)
 @styled
 def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
     """Draw a simulated motion: histories, phase planes and spectrum; return the figure."""
@@ -117,6 +119,7 @@ def draw_spectrum(
     return top
 
 
+@draws("shake", beside=BONDED)
 @styled
 def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
     """Draw a laboratory record: accelerations, gap and impulses over time; return the figure."""
@@ -139,6 +142,7 @@ def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = No
     return figure
 
 
+@draws("cosimulate")
 @styled
 def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
     """Draw a coupled run over time, a panel for each quantity of the drive; return the figure."""

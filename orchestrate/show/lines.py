@@ -19,6 +19,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, PercentFor
 from ..flags import flag_words
 from . import style
 from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, STRUCTURES, YELLOW
+from .kinds import BRANCHES, MORE, draws
 from .labels import branch_title, format_voltage, orbit_label, title_from_attributes
 from .overlay import Overlay, draw_bifurcations, draw_orbits, length_factors
 from .scales import axis_values, displayed_gaps, gap_scale, parameter_scale, varied_dimension
@@ -105,6 +106,7 @@ def draw_steps(
 MARKS = {"up": MarkStyle(BLUE, 2.0, filled=False), "down": MarkStyle(RED)}  # down lies on up
 
 
+@draws("sweep", beside=BRANCHES)
 @styled
 def draw_sweep(
     data: xr.Dataset, title: str = "", decades: int = 6, overlay: Sequence[xr.Dataset] = ()
@@ -178,6 +180,7 @@ def set_impact_scale(axes: Axes, impacts: np.ndarray) -> None:
         axes.set_yscale("log")
 
 
+@draws("branch", beside=MORE)
 @styled
 def draw_branch(*branches: xr.Dataset, title: str = "") -> Figure:
     """Draw branches of periodic orbits over their parameter; return the figure."""
@@ -203,6 +206,7 @@ def draw_branch(*branches: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
+@draws("lyapunov", beside=MORE)
 @styled
 def draw_lyapunov(
     *cases: xr.Dataset, title: str = "", titles: tuple[str, ...] = (), lowest: float = -0.1
@@ -240,6 +244,7 @@ def draw_exponents(axes: Axes, data: xr.Dataset, lowest: float) -> None:
         axes.plot(x[below], np.full(below.sum(), 0.02), "v", transform=edge, **marks)
 
 
+@draws("attractors")
 @styled
 def draw_attractors(data: xr.Dataset, title: str = "") -> Figure:
     """Draw attractors over a parameter: largest gap, share of starts and number."""
@@ -321,6 +326,7 @@ def draw_jumps_over(data: xr.Dataset, over: str, title: str) -> Figure:
     return figure
 
 
+@draws("jump_voltages")
 @styled
 def draw_jump_voltages(data: xr.Dataset, title: str = "") -> Figure:
     """Draw jump voltages over the ramp rate, or at rate 0 over a parameter; return the figure."""

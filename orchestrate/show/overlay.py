@@ -15,6 +15,7 @@ from ..flags import flag_words
 from ..model.ranges import OF_LENGTH, STRUCTURE
 from ..units import omega_of
 from .colours import BLUE, RED
+from .kinds import kind_of
 from .scales import ETA, acceleration_scale, axis_values, frequency_scale, parameter_scale
 from .style import draw_line
 
@@ -36,7 +37,7 @@ ALIKE = ({"eta", "frequency"}, {"level", "amplitude"})  # names of what is one a
 
 def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> str:
     """Return a text on why a dataset is no branch of this structure and parameter; else ""."""
-    question = str(branch.attrs.get("call", "")).partition("(")[0] or "nothing"
+    question = kind_of(branch) or "nothing"
     if question != "branch":
         return f"an answer of {question}; expected one of branch"
     name = str(branch.attrs["over"])
@@ -51,7 +52,7 @@ def explain_border_mismatch(
     curve: xr.Dataset, over: set[str], parameters: Mapping[str, Any]
 ) -> str:
     """Return a text on why a dataset is no border of a map over two parameters; else ""."""
-    question = str(curve.attrs.get("call", "")).partition("(")[0] or "nothing"
+    question = kind_of(curve) or "nothing"
     if question != "border":
         return f"an answer of {question}; expected one of border"
     names = set(map(str, curve.attrs["over"]))

@@ -18,6 +18,7 @@ from ..model import Structure
 from ..units import is_in_ratios, length_of_ratio, omega_of, scale_of, units_of
 from . import labels
 from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW
+from .kinds import MORE, draws
 from .labels import branch_title, has_frequency_unit, title_from_attributes
 from .scales import axis_values, in_unit, lengths, parameter_scale, varied_dimensions
 from .style import XI_REL, XI_REL_RATE, draw_line, legend_below, make_panels, styled
@@ -46,6 +47,7 @@ SHARES = {0.0: "0", 0.25: "π/2", 0.5: "π", 0.75: "3π/2", 1.0: "2π"}  # of a 
 STATES = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent contact
 
 
+@draws("map", beside=MORE)
 @styled
 def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
     """Draw maps over two parameters, one row per dataset, under borders; return the figure."""
@@ -135,6 +137,7 @@ def is_geometric(values: np.ndarray) -> bool:
     return bool(np.allclose(values, np.geomspace(values[0], values[-1], len(values))))
 
 
+@draws("basin")
 @styled
 def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -> Figure:
     """Draw basins: each start in the colour of the attractor it leads to; return the figure."""
@@ -237,6 +240,7 @@ def gap_text(data: xr.Dataset, gap: float) -> str:
     return f"gap = {labels.format_length(data, gap * float(data.attrs['amplitude']) * eta**2)}"
 
 
+@draws("border", beside=MORE)
 @styled
 def draw_border(*curves: xr.Dataset, title: str = "") -> Figure:
     """Draw bifurcation curves over two parameters, with codimension-two points."""
@@ -266,6 +270,7 @@ def mark_codimension_two(
         plane.plot(right, up, MARKERS[int(kind) % len(MARKERS)], linestyle="none", **style)
 
 
+@draws("poincare")
 @styled
 def draw_poincare(data: xr.Dataset, title: str = "") -> Figure:
     """Draw a Poincaré section at a phase of the box, at impacts or at releases."""
@@ -313,6 +318,7 @@ def widen_narrow_limits(plane: Axes) -> None:
         put(middle - half, middle + half)
 
 
+@draws("manifold")
 @styled
 def draw_manifold(data: xr.Dataset, title: str = "") -> Figure:
     """Draw both sides of a manifold, broken where it is discontinuous; return the figure."""

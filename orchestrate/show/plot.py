@@ -1,8 +1,7 @@
-"""Public ``plot``: choose the picture of any result by the function that made it."""
+"""Public ``plot``: choose the picture of any result by its kind."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -11,48 +10,19 @@ from matplotlib.figure import Figure
 
 from ..errors import InputError
 from ..units import Units, with_units
-from . import analysis, diagnosis, histories, lines, planes, resonance, spectra, weak_drive
+from . import (  # noqa: F401 -- what draws registers itself
+    analysis,
+    diagnosis,
+    histories,
+    lines,
+    planes,
+    resonance,
+    spectra,
+    weak_drive,
+)
 from .files import for_slides
+from .kinds import BONDED, BRANCHES, DRAW, MORE, OTHER, TOGETHER, required_kind
 
-DRAW: dict[str, Callable[..., Figure]] = {  # by the function that made the result
-    # lines over a parameter
-    "attractors": lines.draw_attractors,
-    "branch": lines.draw_branch,
-    "jump_voltages": lines.draw_jump_voltages,
-    "lyapunov": lines.draw_lyapunov,
-    "sweep": lines.draw_sweep,
-    "contact_threshold": resonance.draw_contact_threshold,
-    "resonance": resonance.draw_resonance,
-    "resonance_levels": resonance.draw_levels,
-    "couple": weak_drive.draw,
-    "drive_branch": weak_drive.draw_stationary,
-    # planes
-    "basin": planes.draw_basin,
-    "border": planes.draw_border,
-    "capture": weak_drive.draw_capture,
-    "manifold": planes.draw_manifold,
-    "map": planes.draw_map,
-    "poincare": planes.draw_poincare,
-    # time histories
-    "cosimulate": histories.draw_cosimulation,
-    "shake": histories.draw_shake,
-    "simulate": histories.draw_motion,
-    # spectra
-    "drive_spectra": spectra.draw_motor_spectra,
-    "spectra": spectra.draw_spectra,
-    **dict.fromkeys(analysis.DRAW, analysis.draw),
-    # special: a diagnosis
-    "detect": diagnosis.draw_detect,
-    "fit": diagnosis.draw_detect,
-    "plan_test": diagnosis.draw_plan,
-    "signs": diagnosis.draw_signs,
-}
-TOGETHER = {  # what belongs into one picture with a result of this function
-    **dict.fromkeys(("border", "branch", "lyapunov", "map"), "more of them"),
-    **dict.fromkeys(("resonance", "sweep"), "branches"),
-    **dict.fromkeys(("shake", "simulate"), "the bonded structure's"),
-    **dict.fromkeys(("capture", "couple"), "the other structure's"),
-}
 OVER_OTHERS = ("border", "branch", "drive_branch")
 EXPECTED = (
     f"expected results of one of {', '.join(sorted(DRAW))}; several of one of border, branch, "
@@ -110,7 +80,7 @@ def plot(
     ``orchestrate.show.style.STYLE``, as settings of Matplotlib: what is changed there holds for
     every picture from then on.
     """
-    kinds = [function_name(answer) for answer in answers]
+    kinds = [required_kind(answer) for answer in answers]
     shown: dict[str, list[xr.Dataset]] = {kind: [] for kind in kinds}
     for kind, answer in zip(kinds, answers, strict=True):
         shown[kind].append(with_units(answer, units))
@@ -144,20 +114,20 @@ def choose_picture(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] 
         return None
     (first, *others), beside = shown[kind], TOGETHER.get(kind)
     runs = by_structure(shown[kind])
-    if beside == "the other structure's":
+    if beside == OTHER:
         branches = shown.get("drive_branch", [])
         if len(runs) <= len(others) or more not in ([], ["drive_branch"]) or len(branches) > 1:
             return None
         if branches and kind != "couple":
             return None
         return partial(DRAW[kind], runs, **{"branches": branches[0]} if branches else {})
-    if not more and (not others or beside == "more of them"):
+    if not more and (not others or beside == MORE):
         return partial(DRAW[kind], first, *others)
     if more == ["border"] and not others and kind == "map":
         return partial(DRAW[kind], first, overlay=shown["border"])
-    if more == ["branch"] and not others and beside == "branches":
+    if more == ["branch"] and not others and beside == BRANCHES:
         return partial(DRAW[kind], first, overlay=shown["branch"])
-    if not more and len(others) == 1 and len(runs) == 2 and beside == "the bonded structure's":
+    if not more and len(others) == 1 and len(runs) == 2 and beside == BONDED:
         return partial(DRAW[kind], runs["delaminated"], bonded=runs["bonded"])
     return None
 
@@ -166,16 +136,3 @@ def by_structure(answers: Sequence[xr.Dataset]) -> dict[str, xr.Dataset]:
     """Return results by the structure that they are of, delaminated or bonded (undamaged)."""
     names = ["bonded" if answer.attrs.get("bonded", False) else "delaminated" for answer in answers]
     return dict(zip(names, answers, strict=True))
-
-
-def function_name(answer: object) -> str:
-    """Return the name of the public function that made a result."""
-    attributes = answer.attrs if isinstance(answer, xr.Dataset) else {}
-    if "analysis" in attributes:  # of a record
-        return str(attributes["analysis"])
-    call = attributes.get("call")
-    if not isinstance(call, str):
-        kind = type(answer).__name__
-        raise InputError(f"plot: cannot plot {kind}; {EXPECTED}")
-    name = call.partition("(")[0].removesuffix("Job")  # a job by its class: CoupleJob
-    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()

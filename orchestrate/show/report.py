@@ -10,8 +10,8 @@ from ..files import write_whole
 from ..lazy import xr
 from ..units import Units, with_units
 from .answers import answer_section, origin_section, signs_section, title_of
+from .kinds import required_kind
 from .page import Page, Section
-from .plot import function_name
 from .verdict import make_verdict, verdict_sections
 
 
@@ -66,8 +66,8 @@ def report(
     if not answers:
         raise InputError("report: no answer given; expected one at least")
     shown = [with_units(answer, units) for answer in answers]
-    first, *others = sorted(shown, key=lambda answer: function_name(answer) != "detect")
-    verdict = make_verdict(first) if function_name(first) == "detect" else None
+    first, *others = sorted(shown, key=lambda answer: required_kind(answer) != "detect")
+    verdict = make_verdict(first) if required_kind(first) == "detect" else None
     sections = [section for answer in (first, *others) for section in sections_of(answer)]
     heading, record = title or title_of(first), str(first.attrs.get("record_file", ""))
     about = notes or (record if record not in heading else "")
@@ -78,7 +78,7 @@ def report(
 
 def sections_of(answer: xr.Dataset) -> list[Section]:
     """Return all sections of a result."""
-    kind = function_name(answer)
+    kind = required_kind(answer)
     if kind == "detect":
         return verdict_sections(answer)
     return [signs_section(answer) if kind == "signs" else answer_section(answer)]

@@ -13,6 +13,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from .colours import BLACK, GREY, STRUCTURES
+from .kinds import BRANCHES, draws
 from .labels import title_from_attributes
 from .lines import MAX_DISTINCT, MarkStyle, marker_keywords
 from .overlay import Overlay
@@ -43,6 +44,7 @@ NAMES = {
 LENGTHS = {"x1_max": "xi1_max", "x2_max": "xi2_max", "x_rel_max": "xi_rel_max"}  # of an orbit
 
 
+@draws("resonance", beside=BRANCHES)
 @styled
 def draw_resonance(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
     """Draw resonance curves with their peaks and jumps; return the figure."""
@@ -186,6 +188,7 @@ def list_largest(
         axes.text(*corner, text, color=colour, transform=axes.transAxes, **style)
 
 
+@draws("resonance_levels")
 @styled
 def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
     """Draw acceleration over level, gap and threshold over frequency; return the figure."""
@@ -224,6 +227,7 @@ def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
+@draws("contact_threshold")
 @styled
 def draw_contact_threshold(data: xr.Dataset, title: str = "") -> Figure:
     """Draw the level at which a structure first opens or touches over frequency, in g and Hz."""

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from ..units import units_of, with_units
 from .colours import BLACK, BLUE, ORANGE, STRUCTURES
+from .kinds import draws
 from .labels import format_frequency, has_frequency_unit, title_from_attributes
 from .scales import acceleration_scale, frequency_scale, in_unit
 from .style import legend_below, make_panels, styled
@@ -45,6 +46,7 @@ def acceleration_spectrum(
     return frequency, (2.0 * np.pi * frequency) ** 2 * np.sqrt(2.0 * power)
 
 
+@draws("spectra")
 @styled
 def draw_spectra(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> Figure:
     """Draw spectra, one row per frequency, bonded left and delaminated right."""
@@ -90,6 +92,7 @@ def draw_side(
     axes.set_xlim(0.0, 1.02 * float(lines.max()))
 
 
+@draws("drive_spectra")
 @styled
 def draw_motor_spectra(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
     """Draw a mass' acceleration spectra on a motor, one structure below the other (Figure 3)."""

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from ..units import as_shown, omega_of
 from . import passage
 from .colours import BLACK, GREEN, GREY, ORANGE, STRUCTURES
+from .kinds import OTHER, draws
 from .labels import format_voltage, typeset_unit
 from .passage import HISTORIES, POWER_REVOLUTIONS, has_jump, jump_texts, undecided_directions
 from .scales import label_with_unit
@@ -40,6 +41,7 @@ FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, 
 DOUBT: Any = {"color": ORANGE, "alpha": 0.3, "linewidth": 0.0, "label": "undecided between"}
 
 
+@draws("couple", beside=OTHER)
 @styled
 def draw(
     runs: Mapping[str, xr.Dataset],
@@ -100,6 +102,7 @@ def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
     return figure
 
 
+@draws("drive_branch")
 @styled
 def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
     """Draw branches of stationary motions without runs; return the figure."""
@@ -244,6 +247,7 @@ def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:
 # -- starts from rest -----------------------------------------------------------------------------
 
 
+@draws("capture", beside=OTHER)
 @styled
 def draw_capture(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
     """Draw outcomes of starts from rest over voltage and parameter, or times; return the figure."""

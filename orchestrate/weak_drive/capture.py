@@ -50,6 +50,7 @@ class System(NamedTuple):
 class CaptureJob(Job):
     """Run starts from rest at several voltages for each value of a parameter."""
 
+    asked: ClassVar[str] = "capture"
     structure: Structure
     drive: Drive
     over: str  # empty for none

@@ -28,7 +28,7 @@ from ..fmu.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
 from ..fmu.play import PLAYED, Player
 from ..lazy import Unpack, xr
 from ..model import Excitation
-from ..model.arguments import checked, checked_integer, positive
+from ..model.arguments import Positive, checked_integer
 from ..model.drive import Drive
 from ..model.shaker import Shaker
 from ..model.structure import Structure
@@ -165,11 +165,11 @@ class CosimulateJob(Question):
     units: tuple[tuple[str, str], ...] = ()
     start_values: Values = ()
     inputs: tuple[tuple[str, Input], ...] = ()
-    duration: float = positive()
+    duration: Positive
     step: float
     record: tuple[str, ...] = ()
     start: tuple[float, ...] = REST
-    estimate: bool = checked(lambda _, value: bool(value), True)
+    estimate: bool = True
     asked: ClassVar[str] = "cosimulate"
     chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
@@ -455,9 +455,12 @@ def cosimulate(
         check(name, value, "s", low=0.0, exclusive=True)
     check_internal_step(duration, step, description, estimate)
     count = checked_step_count(duration, step, description)
-    job = CosimulateJob.from_call(
-        locals(),
-        f"_{path.stem}",
+    checked = checked_structure(structure)
+    job = CosimulateJob(
+        name=f"cosimulate_{checked.label()}_{path.stem}",
+        structure=checked,
+        duration=duration,
+        estimate=estimate,
         drive=str(path),
         drive_sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
         connect=tuple((connect or {}).items()),
@@ -466,7 +469,7 @@ def cosimulate(
         inputs=checked_inputs(inputs or {}, description, duration),
         step=float(duration) / count,
         record=checked_record(record or (), description),
-        start=checked_state("start", start, checked_structure(structure)),
+        start=checked_state("start", start, checked),
     )
     check_inputs(job.inputs, links)
     found = answer(job, running, finder(running), job.drive_sha256 if foreign else "")

@@ -45,6 +45,7 @@ MIRRORED = {  # where the motor turns backward
 class CoupleJob(CoupledRun):
     """Run the coupled FMUs in chunks of steps; then decide about jumps by a hysteresis loop."""
 
+    asked: ClassVar[str] = "couple"
     hysteresis: HysteresisSettings = field(default_factory=HysteresisSettings)
 
     chunk_size: ClassVar[int] = 4_000

@@ -63,6 +63,7 @@ Leg = BranchSegment[Motion]
 class DriveBranchJob(Job):
     """Trace the branches of the bonded and the delaminated structure."""
 
+    asked: ClassVar[str] = "drive_branch"
     structure: Structure
     drive: Drive
     speeds: tuple[float, float]

@@ -39,6 +39,7 @@ KINDS = ("bonded", "delaminated")
 class DriveSpectraJob(Job):
     """Compute the spectra of the bonded and the delaminated structure."""
 
+    asked: ClassVar[str] = "drive_spectra"
     structure: Structure
     drive: Drive
     approach: Ramp  # how the voltage gets where it is held

@@ -47,6 +47,7 @@ SHOWN = ("voltage", "speed")
 class JumpVoltagesJob(Job):
     """Run ramps at several rates for the bonded and the delaminated structure."""
 
+    asked: ClassVar[str] = "jump_voltages"
     structure: Structure
     drive: Drive
     schedules: tuple[Ramp, ...]  # one for each rate, slowest first

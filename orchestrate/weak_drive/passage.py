@@ -56,6 +56,7 @@ KEPT = "sampled "  # before the names of samples in a table that has revolutions
 class PassageJob(Job):
     """Run the coupled FMUs and keep the state after every communication step."""
 
+    asked: ClassVar[str] = "passage"
     run: couple.CoupleJob
     around: float | None  # time before and after each jump that is kept, s; all where there is none
 

@@ -66,7 +66,7 @@ def test_scale_is_three_times_the_largest_gap_from_rest():
 
 
 def test_one_value_alone_has_ten_times_the_starts():
-    with patch("orchestrate.dynamics.attractors.ask", lambda _, asked, **more: asked["starts"]):
+    with patch("orchestrate.response.signatures.answer_question", lambda job, _: job.starts):
         assert attractors(PAPER, eta=TWO) == attractors(PAPER, over="e", values=0.7, eta=TWO) == 600
         assert attractors(PAPER, over="e", values=[0.3, 0.7], eta=TWO) == 60
 

@@ -1,7 +1,6 @@
 """Parameters that the variable table has beside the paper's: what follows from the row of each."""
 
 import dataclasses
-import typing
 
 import numpy as np
 import pytest
@@ -9,9 +8,9 @@ import pytest
 import orchestrate
 from orchestrate import InputError, Structure
 from orchestrate.cli.grammar import parse_changes
-from orchestrate.model import PARAMETERS, write
-from orchestrate.model.ranges import ADDED, OF_LENGTH, STRUCTURE
-from orchestrate.model.structure import LaterKeywords, ValueListKeywords
+from orchestrate.model import write
+from orchestrate.model.ranges import ADDED, OF_LENGTH, STRUCTURE, Quantity
+from orchestrate.model.structure import with_table
 
 HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0}
 BONDED = {"mass": 2.0, "f": 50.0, "thicknesses": (3.0, 2.0)}
@@ -22,11 +21,27 @@ FORMS = [
 ]
 
 
-def test_what_a_type_checker_knows_is_what_the_table_has():
+def test_its_fields_are_the_rows_of_the_table(monkeypatch):
     fields = [field.name for field in dataclasses.fields(Structure)]
     assert fields == [*STRUCTURE, "bonded"]
-    assert typing.get_type_hints(LaterKeywords) == dict.fromkeys(ADDED, float)
-    assert sorted(ValueListKeywords.__annotations__) == sorted(PARAMETERS)
+    row = Quantity("drag", "N.s/m", "Drag of the air", 0.0, 1.0, 0.25)
+    monkeypatch.setitem(STRUCTURE, "drag", row)
+
+    @dataclasses.dataclass(frozen=True, kw_only=True)
+    @with_table
+    class Later(Structure):
+        """A structure of a table with one row more.
+
+        bonded : bool
+        """
+
+        bonded: bool = False
+
+    assert "drag : float\n        Drag of the air, N.s/m." in Later.__doc__
+    assert (Later().drag, Later.nondimensional(drag=0.5).drag) == (0.25, 0.5)
+    assert Later(drag=0.5).replace(e=0.3).parameters()["drag"] == 0.5
+    with pytest.raises(InputError, match="drag = 2.0 N.s/m: expected 0 <= drag <= 1"):
+        Later(drag=2.0)
 
 
 @pytest.mark.parametrize("name", ADDED)

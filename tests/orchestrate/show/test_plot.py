@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 import orchestrate
 from orchestrate import Drive, InputError, Structure, plot
-from orchestrate.show.plot import DRAW
+from orchestrate.show.kinds import DRAW, kind_of
 
 PAPER = Structure.nondimensional()
 QUIET = {"progress": False}
@@ -112,7 +112,7 @@ def test_all_public_questions_are_drawn_or_known_to_have_no_picture():
 )
 def test_what_has_no_picture(kinds, words):
     with pytest.raises(InputError) as error:
-        plot(*(xr.Dataset(attrs={"call": f"{kind}(eta=1)"}) for kind in kinds))
+        plot(*(xr.Dataset(attrs={"question": kind}) for kind in kinds))
     assert words in str(error.value) and "\n" not in str(error.value)
 
 
@@ -120,3 +120,9 @@ def test_what_has_no_picture(kinds, words):
 def test_what_is_no_answer(given):
     with pytest.raises(InputError, match="cannot plot"):
         plot(given)
+
+
+def test_a_result_says_its_kind_and_older_files_by_their_call(simulated, driven):
+    assert [kind_of(answer) for answer in (simulated[1], driven[0])] == ["simulate", "couple"]
+    assert driven[0].attrs["call"].startswith("couple(")
+    assert kind_of(xr.Dataset(attrs={"call": "sweep(eta=1)"})) == "sweep"

@@ -1,0 +1,77 @@
+"""Public functions as questions: a function's signature says what its job's fields are.
+
+Each argument is a field of the frozen dataclass that the job's class becomes, with its type and
+default; its type says how it is checked, see :func:`orchestrate.model.arguments.checks_of`. The
+function's own lines check what depends on several arguments and end in :func:`as_given`, or return
+a result. Keywords beyond those named are how to compute: jobs, store.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from functools import wraps
+from inspect import Parameter
+from typing import Any, NamedTuple, TypeVar, cast
+
+from ..lazy import xr
+from .questions import Question, answer_question, checked_structure
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class Changes(NamedTuple):
+    """What a public function makes of its arguments before they are its job's fields."""
+
+    label: str  # end of the result's name
+    fields: dict[str, Any]
+
+
+def as_given(label: str = "", /, **changed: Any) -> Any:
+    """Answer a public function by its arguments as they are given, but for those changed.
+
+    ``label`` ends the name of the result.
+    """
+    return Changes(label, changed)
+
+
+def question(kind: type[Question]) -> Callable[[Function], Function]:
+    """Make a function a public question whose job is of a kind, see above."""
+
+    def decorate(function: Function) -> Function:
+        signature = inspect.signature(function)
+        take_fields(kind, function.__name__, signature.parameters)
+
+        @wraps(function)
+        def ask(*positional: Any, **keywords: Any) -> xr.Dataset:
+            changes = function(*positional, **keywords)
+            if not isinstance(changes, Changes):
+                return changes
+            call = signature.bind(*positional, **keywords)
+            call.apply_defaults()
+            of = checked_structure(call.arguments["structure"]).label()
+            label = f"{kind.result or kind.asked}_{of}{changes.label}"
+            running = changes.fields.pop("running", call.arguments.get("running", {}))
+            names = {field.name for field in fields(kind)}.intersection(call.arguments)
+            given = {name: call.arguments[name] for name in names}
+            job = kind(**{"name": label, **given, **changes.fields})
+            return answer_question(job.to_answer(), running)
+
+        return cast(Function, ask)
+
+    return decorate
+
+
+def take_fields(kind: type[Question], asked: str, parameters: Mapping[str, Parameter]) -> None:
+    """Make a class a frozen dataclass whose fields are a function's arguments, and its own."""
+    own = inspect.get_annotations(kind)
+    for name, parameter in parameters.items():
+        variadic = parameter.kind is Parameter.VAR_KEYWORD
+        if variadic or name in kind.replaced or name in own or name == "structure":
+            continue
+        own[name] = parameter.annotation
+        if parameter.default is not Parameter.empty:
+            setattr(kind, name, parameter.default)
+    kind.__annotations__, kind.asked = own, asked
+    dataclass(frozen=True, kw_only=True)(kind)
