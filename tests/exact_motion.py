@@ -86,6 +86,26 @@ def box_acceleration(values: Mapping[str, float], phase: Any) -> Signal:
     return Signal([(mp.mpc(0, 1) * a * frequency**2 * mp.expj(phase), mp.mpc(0, frequency))], cubic)
 
 
+def force(values: Mapping[str, float], half: int, phase: Any) -> Signal:
+    """Return the force on a mass as a ``Signal``, from the FMU's inputs and a phase, rad."""
+    name = f"force{half}"
+    amplitude = mp.mpf(values.get(f"{name}_amplitude", 0.0))
+    cubic = [mp.mpf(values.get(one, 0.0)) for one in (name, *(f"{name}_{k}" for k in (1, 2, 3)))]
+    frequency = mp.mpc(0, mp.mpf(values.get("box_frequency", 0.0)))
+    return Signal([(mp.mpc(0, -1) * amplitude * mp.expj(phase), frequency)], cubic)
+
+
+def felt(values: Mapping[str, float], phase: Any, *halves: int) -> Signal:
+    """Return the acceleration of a box that would drive one mass, or both together, as the box and
+    the forces do.
+    """
+    felt = box_acceleration(values, phase)
+    mass = sum(mp.mpf(values[f"m{half}"]) for half in halves)
+    for half in halves:
+        felt = felt - 1 / mass * force(values, half, phase)
+    return felt
+
+
 def avoid_resonance(s: Any, damping: Any, stiffness: Any) -> Any:
     """Return an exponent, moved by 1e-24 if the oscillator has just this one."""
     at_resonance = abs(s * s + damping * s + stiffness) < BESIDE * stiffness
@@ -123,9 +143,11 @@ def free_motion(
 ) -> tuple[Signal, Signal]:
     """Return both masses' displacements in flight, from a state (x1, v1, x2, v2)."""
     x1, v1, x2, v2 = (mp.mpf(value) for value in state)
-    shaken = box_acceleration(values, phase)
-    first = oscillator_motion(values["m1"], values["d1"], values["k1"], x1, v1, shaken)
-    return first, oscillator_motion(values["m2"], values["d2"], values["k2"], x2, v2, shaken)
+    one, two = felt(values, phase, 1), felt(values, phase, 2)
+    first = oscillator_motion(values["m1"], values["d1"], values["k1"], x1, v1, one)
+    if values.get("wall"):
+        return first, Signal([], [mp.mpf(0)] * 4)
+    return first, oscillator_motion(values["m2"], values["d2"], values["k2"], x2, v2, two)
 
 
 def gap_signal(values: Mapping[str, float], first: Signal, second: Signal) -> Signal:
@@ -140,13 +162,18 @@ def contact_motion(
     """Return mass 1's motion in contact, and the force with which it pushes mass 2."""
     # with a clearance the spring of mass 2 is loaded: that moves the position both swing around
     m1, d1, k1 = (mp.mpf(values[name]) for name in ("m1", "d1", "k1"))
-    shaken = box_acceleration(values, phase)
     load = mp.mpf(values["k2"]) * mp.mpf(values.get("clearance", 0.0)) / (k1 + values["k2"])
-    common = oscillator_motion(
-        m1 + values["m2"], d1 + values["d2"], k1 + values["k2"], mp.mpf(x) - load, mp.mpf(v), shaken
-    ) + Signal([], [load, 0, 0, 0])
+    if values.get("wall"):
+        common = Signal([], [mp.mpf(values.get("clearance", 0.0)), 0, 0, 0])
+    else:
+        both = felt(values, phase, 1, 2)
+        common = oscillator_motion(
+            *(m1 + values["m2"], d1 + values["d2"], k1 + values["k2"], mp.mpf(x) - load),
+            *(mp.mpf(v), both),
+        ) + Signal([], [load, 0, 0, 0])
     speed = common.derivative()
-    return common, -1 * (m1 * (speed.derivative() + shaken) + d1 * speed + k1 * common)
+    inertia = m1 * (speed.derivative() + felt(values, phase, 1))
+    return common, -1 * (inertia + d1 * speed + k1 * common)
 
 
 def refine_root(signal: Signal, low: Any, high: Any) -> Any:

@@ -109,7 +109,7 @@ def slots(folder: str) -> dict[str, int]:
     """
     model = load_model(folder)
     found = {"SIZE": model.memory_size, "TIME": model.time_slot, "STOP": model.stop_slot}
-    cubic = model.set_flags
+    cubic = [slot for slot, flag in model.set_flags.items() if flag == model.set_slot]
     found |= {"SET": model.set_slot, "CUBIC": min(cubic), "CUBIC_END": max(cubic) + 1}
     for variable in model.variables:
         name, _, element = variable.name.partition("[")

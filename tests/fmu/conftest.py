@@ -11,7 +11,14 @@ from .driver import FMUS
 from .programs.driver import free_all
 
 FORMS = list(FMUS)
-OF_NUMBERS = ("test_motion", "test_guarantees", "test_energy", "test_outputs", "test_importers")
+OF_NUMBERS = (
+    "test_forces",
+    "test_motion",
+    "test_guarantees",
+    "test_energy",
+    "test_outputs",
+    "test_importers",
+)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -1,14 +1,20 @@
 """The motion with a clearance by an ODE solver with event location, written without the kernel.
 
-SI units, displacements from the unloaded springs. Phases of flight and of permanent contact are
-integrated one after the other (DOP853). Flights from no gap are begun without event location, which
-would find the start itself, and in short steps, so that their ends are not stepped over.
+SI units, displacements from the unloaded springs; inputs may change on the way. Phases of flight
+and of permanent contact are integrated one after the other (DOP853). Flights from no gap are begun
+without event location, which would find the start itself, and in short steps, so that their ends
+are not stepped over.
 """
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 FLIGHT, CONTACT = "flight", "contact"
+CUBICS = {
+    "box": ("box_acceleration", "box_jerk", "box_snap", "box_crackle"),
+    **{half: (f"force{half}", *(f"force{half}_{k}" for k in (1, 2, 3))) for half in (1, 2)},
+}
+INPUTS = (*(name for names in CUBICS.values() for name in names),)
 TOLERANCE = 1e-12
 
 
@@ -25,51 +31,97 @@ class Motion:
             "phase_start": 0.0,
             "v1_start": 0.0,
             "v2_start": 0.0,
+            "force1_amplitude": 0.0,
+            "force2_amplitude": 0.0,
+            "wall": False,
+            "stroke": 0.0,
+            **dict.fromkeys(INPUTS, 0.0),
             **values,
         }
+        self.since = dict.fromkeys(CUBICS, 0.0)  # when each cubic began
+        self.phase, self.begun = p["phase_start"], 0.0  # of the harmonics, at that time
+        self.share = (0.0, 1.0) if p["wall"] else (p["m1"], p["m2"])  # in what is common
         self.acceleration = acceleration or (lambda _: 0.0)  # of the box, beside the harmonic one
-        self.own = max(np.sqrt(p["k1"] / p["m1"]), np.sqrt(p["k2"] / p["m2"]))
-        self.total = p["m1"] + p["m2"]
-        preload = max(0.0, -p["clearance"]) * p["k1"] * p["k2"] / (p["k1"] + p["k2"])
-        x1, x2 = p["x1_start"] - preload / p["k1"], p["x2_start"] + preload / p["k2"]
+        other = 0.0 if p["wall"] else p["k2"] / p["m2"]
+        self.own = np.sqrt(max(p["k1"] / p["m1"], other))
+        self.total = sum(self.share)
+        softness = 1.0 / p["k1"], 0.0 if p["wall"] else 1.0 / p["k2"]
+        preload = max(0.0, -p["clearance"]) / sum(softness)
+        x1, x2 = p["x1_start"] - preload * softness[0], p["x2_start"] + preload * softness[1]
         self.state = np.array([x1, p["v1_start"], x2, p["v2_start"]])
+        pushes = p["force1_amplitude"], p["force2_amplitude"], p["force1"], p["force2"]
         self.size = np.abs(self.state).max() + p["box_amplitude"] + abs(p["clearance"])
+        self.size = self.size + max(map(abs, pushes)) / p["k1"] or 1.0
         fastest = max(p["box_frequency"], self.own)
         self.time, self.impacts, self.longest = 0.0, [], 0.2 / fastest
         self.releases, self.sticks = 0, []
         self.step = self.longest
-        closed = self.gap(0.0, self.state) <= 1e-14 * self.size
-        pressed = closed and p["v1_start"] == p["v2_start"] and self.opening(x1, p["v1_start"]) < 0
+        self.stroke = p["stroke"] or np.inf
+        gap, v1, v2 = self.gap(0.0, self.state), p["v1_start"], p["v2_start"]
+        self.side = 1 if gap < 0.5 * self.stroke else -1  # of the impact or contact, -1 outside
+        closed = min(gap, self.stroke - gap) <= 1e-14 * self.size
+        pressed = closed and v1 == v2 and self.opening(0.0, x1, v1) < 0.0
         self.mode, self.hop = (CONTACT, 0.0) if pressed else (FLIGHT, 0.0)
 
     def gap(self, _, y):
         return y[2] - y[0] + self.p["clearance"]
 
-    def accelerations(self, y):
-        """In space, of each mass alone."""
+    def set(self, **values):
+        """Change inputs now: a cubic begins; whether the masses stay together is decided anew."""
         p = self.p
-        return -(p["k1"] * y[0] + p["d1"] * y[1]) / p["m1"], -(p["k2"] * y[2] + p["d2"] * y[3]) / p[
-            "m2"
-        ]
+        self.phase += p["box_frequency"] * (self.time - self.begun)
+        self.begun = self.time
+        for kind, names in CUBICS.items():
+            if any(name in values for name in names):
+                self.since[kind] = self.time
+        p |= values
+        if self.mode == CONTACT and self.opening(self.time, self.state[0], self.state[1]) > 0.0:
+            self.mode, self.hop = FLIGHT, 0.02 * self.longest
+            self.releases += 1
+        return self
 
-    def opening(self, x1, v):
-        """Acceleration of the gap if the masses were free, together with mass 1 at x1."""
-        one, two = self.accelerations((x1, v, x1 - self.p["clearance"], v))
-        return two - one
+    def harmonic(self, t):
+        return np.sin(self.phase + self.p["box_frequency"] * (t - self.begun))
 
-    def drive(self, t):
+    def cubic(self, kind, t):
+        s = t - self.since[kind]
+        c0, c1, c2, c3 = (self.p[name] for name in CUBICS[kind])
+        return c0 + s * (c1 + s * (c2 / 2.0 + s * c3 / 6.0))
+
+    def box(self, t):
+        """Acceleration of the box."""
         p = self.p
-        phase = p["box_frequency"] * t + p["phase_start"]
-        harmonic = p["box_amplitude"] * p["box_frequency"] ** 2 * np.sin(phase)
-        return harmonic - self.acceleration(t)
+        harmonic = p["box_amplitude"] * p["box_frequency"] ** 2 * self.harmonic(t)
+        return self.acceleration(t) + self.cubic("box", t) - harmonic
+
+    def force(self, half, t):
+        return self.p[f"force{half}_amplitude"] * self.harmonic(t) + self.cubic(half, t)
+
+    def accelerations(self, t, y):
+        """Of each mass alone, relative to the box; a wall has none."""
+        p, box = self.p, self.box(t)
+        one = (self.force(1, t) - p["k1"] * y[0] - p["d1"] * y[1]) / p["m1"] - box
+        if p["wall"]:
+            return one, 0.0
+        return one, (self.force(2, t) - p["k2"] * y[2] - p["d2"] * y[3]) / p["m2"] - box
+
+    @property
+    def apart(self):
+        """Displacement of mass 2 less that of mass 1 where they touch."""
+        return (0.0 if self.side > 0 else self.stroke) - self.p["clearance"]
+
+    def opening(self, t, x1, v):
+        """Acceleration with which the masses would part if they were free, mass 1 at x1."""
+        one, two = self.accelerations(t, (x1, v, x1 + self.apart, v))
+        return self.side * (two - one)
 
     def flight(self, t, y):
-        one, two = self.accelerations(y)
-        return y[1], self.drive(t) + one, y[3], self.drive(t) + two
+        one, two = self.accelerations(t, y)
+        return y[1], one, y[3], two
 
     def contact(self, t, y):
-        one, two = self.accelerations((y[0], y[1], y[0] - self.p["clearance"], y[1]))
-        both = self.drive(t) + (self.p["m1"] * one + self.p["m2"] * two) / self.total
+        one, two = self.accelerations(t, (y[0], y[1], y[0] + self.apart, y[1]))
+        both = (self.share[0] * one + self.share[1] * two) / self.total
         return y[1], both, y[1], both
 
     def integrate(self, field, stop, **more):
@@ -96,7 +148,9 @@ class Motion:
                 self.hop = 0.0
                 continue
             leg = min(stop, self.time + 8.0 * self.step)
-            if self.integrate(self.flight, leg, events=self.touch, max_step=self.step):
+            ends = [self.touch, self.touch_outside][: 1 + (self.stroke < np.inf)]
+            if self.integrate(self.flight, leg, events=ends, max_step=self.step):
+                self.side = 1 if self.gap(0.0, self.state) < 0.5 * self.stroke else -1
                 self.strike()
             self.step = min(2.0 * self.step, self.longest)
         return self
@@ -106,17 +160,23 @@ class Motion:
 
     touch.terminal, touch.direction = True, -1
 
-    def release(self, _, y):
-        return self.opening(y[0], y[1])
+    def touch_outside(self, t, y):
+        return self.stroke - self.gap(t, y)
+
+    touch_outside.terminal, touch_outside.direction = True, -1
+
+    def release(self, t, y):
+        return self.opening(t, y[0], y[1])
 
     release.terminal, release.direction = True, 1
 
     def strike(self):
         """Newton's restitution, and the end of chattering."""
         p, (x1, v1, x2, v2) = self.p, self.state
-        face = (p["m1"] * x1 + p["m2"] * (x2 + p["clearance"])) / self.total
-        common = (p["m1"] * v1 + p["m2"] * v2) / self.total
-        closing, pull = v1 - v2, self.opening(face, common)
+        one, two = self.share
+        face = (one * x1 + two * (x2 - self.apart)) / self.total
+        common = (one * v1 + two * v2) / self.total
+        closing, pull = self.side * (v1 - v2), self.opening(self.time, face, common)
         parting = p["e"] * closing / (1.0 + p.get("e_slope", 0.0) * closing)
         self.impacts.append(self.time)
         self.sticks.append(False)
@@ -125,5 +185,7 @@ class Motion:
             self.mode, parting, self.sticks[-1] = CONTACT, 0.0, True
         else:
             self.hop = 2.0 * parting / -pull if pull < 0.0 else 4.0 * self.longest
-        after = common - p["m2"] / self.total * parting, common + p["m1"] / self.total * parting
-        self.state = np.array([face, after[0], face - p["clearance"], after[1]])
+            self.hop = min(self.hop, self.stroke / parting) if parting else self.hop
+        parting *= self.side
+        after = common - two / self.total * parting, common + one / self.total * parting
+        self.state = np.array([face, after[0], face + self.apart, after[1]])

@@ -17,11 +17,13 @@ PROMISED = {
         PARAMETERS: """
 m1 kg 1 | m2 kg 1 | k1 N/m 1 | k2 N/m 1.2 | d1 N.s/m 0.01 | d2 N.s/m 0.01 | e 1 0.7 | gamma 1 * |
 x1_start m 0 | x2_start m 0 | v1_start m/s 0 | v2_start m/s 0 | phase_start rad 0 |
-clearance m 0 | e_slope s/m 0
+clearance m 0 | e_slope s/m 0 | stroke m 0
 """,
         INPUTS: """
 box_amplitude m 1 | box_frequency rad/s 0.4 | box_acceleration m/s2 0 | box_jerk m/s3 0 |
-box_snap m/s4 0 | box_crackle m/s5 0
+box_snap m/s4 0 | box_crackle m/s5 0 | force1_amplitude N 0 | force2_amplitude N 0 |
+force1 N 0 | force1_1 N/s 0 | force1_2 N/s2 0 | force1_3 N/s3 0 |
+force2 N 0 | force2_1 N/s 0 | force2_2 N/s2 0 | force2_3 N/s3 0
 """,
         OUTPUTS: """
 x1 m | x2 m | v1 m/s | v2 m/s | x_rel m | v_rel m/s | xi1 1 | xi2 1 | xi_rel 1 | box_force N |
@@ -63,7 +65,8 @@ power W | energy J
 OF_OTHER_TYPES = {  # name: type, causality
     OSCILLATOR: {
         **{"bonded": ("Boolean", PARAMETERS), "in_contact": ("Boolean", OUTPUTS)},
-        "impact_count": ("Integer", OUTPUTS),
+        **{"impact_count": ("Integer", OUTPUTS), "impact_side": ("Integer", OUTPUTS)},
+        **{"contact_side": ("Integer", OUTPUTS), "wall": ("Boolean", PARAMETERS)},
     },
     "MotorShaker": {},
     "ElectrodynamicShaker": {
@@ -195,6 +198,12 @@ STARTS = {
         {"clearance": -0.5},
         {"d2": 0.03, "phase_start": -0.5},
         {"d2": 0.03, "box_amplitude": 0.0},
+        {"d2": 0.03, "box_amplitude": 0.0, "force1": 0.1, "force2": -0.2, "phase_start": 1.0},
+        {"d2": 0.03, "stroke": 0.5, "v1_start": -1.0, "x2_start": 0.5, "x1_start": 0.0},
+        {**TOUCHING, "v1_start": 1.0, "e": 0.05, "gamma": 0.9, "force1_amplitude": 0.5},
+        {"stroke": 0.5, "x2_start": 0.5, "v2_start": 1.0, "e": 0.05, "gamma": 0.9, "force2": 2.0},
+        {"wall": True, "clearance": -0.5},
+        {"wall": True, "v1_start": 1.0, "e": 0.05, "gamma": 0.9, "phase_start": 1.0},
     ],
     "MotorShaker": [MOTOR, {**MOTOR, "armature_inductance": 0.1, "current_start": 0.3}],
     "ElectrodynamicShaker": [  # of amplifier, and what limits it from the start

@@ -29,11 +29,14 @@ def energy(m1, m2, k1, k2, x1, x2, v1, v2):
         {"m1": 4.0, "m2": 1.5, "k1": 1.0, "k2": 2.0, "e": 0.0, "clearance": -0.3},
         {"m1": 1.0, "m2": 3.0, "k1": 2.0, "k2": 1.0, "e": 1.0, "clearance": -0.3},
         {"m1": 0.3, "m2": 2.5, "k1": 1.7, "k2": 4.0, "e": 0.98, "e_slope": 0.5},
+        {"m1": 0.3, "m2": 2.5, "k1": 1.7, "k2": 4.0, "e": 0.95, "wall": True},
     ],
-    ids=lambda values: ",".join(f"{n}={v}" for n, v in values.items() if n[0] in "ec"),
+    ids=lambda values: ",".join(f"{n}={v}" for n, v in values.items() if n[0] in "ecw"),
 )
 def test_energy_of_free_motion_is_lost_in_impacts_alone(fmu, values):
     starts = {"x1_start": -0.5, "x2_start": 0.25, "v1_start": 1.0, "v2_start": -2.0}
+    if "wall" in values:
+        starts["x2_start"] = starts["v2_start"] = 0.0
     f = open_fmu(fmu).start(box_amplitude=0.0, d1=0.0, d2=0.0, **starts, **values)
     names = ("x1", "x2", "v1", "v2", "impact_energy", "impact_count")
     found = np.array([f.get(*names), *(f.step(0.25 * k).get(*names) for k in range(1, 201))])
@@ -46,16 +49,21 @@ def test_energy_of_free_motion_is_lost_in_impacts_alone(fmu, values):
 
 
 @pytest.mark.parametrize(
-    ("clearance", "gamma", "e_slope"),
-    [(0.0, 1e-4, 0.0), (0.2, 1e-4, 0.0), (-0.2, 0.3, 0.0), (0.0, 1e-4, 0.2)],
+    ("clearance", "gamma", "e_slope", "more"),
+    [
+        *((0.0, 1e-4, 0.0, {}), (0.2, 1e-4, 0.0, {}), (-0.2, 0.3, 0.0, {}), (0.0, 1e-4, 0.2, {})),
+        (0.2, 1e-4, 0.0, {"force1_amplitude": 0.3, "force2_amplitude": -0.2, "force1": 0.1}),
+        (0.2, 1e-4, 0.0, {"force1_amplitude": 0.3, "force1": 0.1, "wall": True}),
+        (0.2, 1e-4, 0.0, {"force1_amplitude": 0.3, "stroke": 0.5}),
+    ],
 )
-def test_energy_balance_of_driven_motion_closes(fmu, clearance, gamma, e_slope):
+def test_energy_balance_of_driven_motion_closes(fmu, clearance, gamma, e_slope, more):
     """Work and damping losses by Gauss quadrature between impacts, through chaotic motion; its
     error is below 1e-12.
     """
     values = {"m1": 1.0, "m2": 1.5, "k1": 1.0, "k2": 1.4, "d1": 0.02, "d2": 0.03, "e": 0.7}
     values |= {"box_amplitude": 0.8, "box_frequency": 1.13}
-    values |= {"clearance": clearance, "gamma": gamma, "e_slope": e_slope}
+    values |= {"clearance": clearance, "gamma": gamma, "e_slope": e_slope, **more}
     end, instants = 100.0, {0.0, 100.0}
     f = open_fmu(fmu).start(**values)
     while f.time < end:  # where to split the quadrature
@@ -78,7 +86,12 @@ def test_energy_balance_of_driven_motion_closes(fmu, clearance, gamma, e_slope):
     masses = [values[name] for name in ("m1", "m2", "k1", "k2")]
     weight, v1, v2, phase = np.array(samples).T
     forcing = values["box_amplitude"] * values["box_frequency"] ** 2 * np.sin(phase)
+    forces = (
+        more.get(f"force{half}_amplitude", 0.0) * np.sin(phase) + more.get(f"force{half}", 0.0)
+        for half in (1, 2)
+    )
     work = np.sum(weight * (values["m1"] * v1 + values["m2"] * v2) * forcing)
+    work += sum(np.sum(weight * v * force) for v, force in zip((v1, v2), forces, strict=True))
     lost_in_dampers = np.sum(weight * (values["d1"] * v1**2 + values["d2"] * v2**2))
     assert lost_in_dampers > 0.1
     assert last[4] > 0.1

@@ -10,6 +10,10 @@ import pytest
 
 from .programs.driver import harmonic, open_fmu
 
+FORCES = {
+    **{"force1_amplitude": 0.4, "force2_amplitude": -0.3, "force1": 0.1, "force2": 0.05},
+    "force1_1": 1e-3,
+}
 CUBIC = {"box_acceleration": 0.1, "box_jerk": -0.03, "box_snap": 0.02, "box_crackle": -0.003}
 
 
@@ -38,6 +42,11 @@ def grids(end):
         (2.9, {}),
         (1.13, {"clearance": 0.25}),
         (1.13, {"clearance": -0.25, "e_slope": 0.3}),
+        (1.13, FORCES),
+        (1.13, {**FORCES, "wall": True, "clearance": 0.25}),
+        (2.9, {"wall": True, "clearance": -0.01}),
+        (1.13, {"stroke": 0.4}),
+        (0.4, {"stroke": 2.0, "clearance": 1.5, "wall": True, **FORCES}),
     ],
 )
 def test_communication_grid_does_not_matter(fmu, eta, more):
@@ -53,8 +62,10 @@ def test_communication_grid_does_not_matter(fmu, eta, more):
     assert [name for name, outputs in found.items() if outputs != reference] == []
 
 
-@pytest.mark.parametrize("clearance", [0.0, 0.25, -0.25])
-def test_communication_grid_does_not_matter_after_inputs_changed(fmu, clearance):
+@pytest.mark.parametrize(
+    ("clearance", "stroke"), [(0.0, 0.0), (0.25, 0.0), (-0.25, 0.0), (0.25, 0.75)]
+)
+def test_communication_grid_does_not_matter_after_inputs_changed(fmu, clearance, stroke):
     """The same with inputs that change at common points of time, a constant acceleration among
     them.
     """
@@ -62,12 +73,13 @@ def test_communication_grid_does_not_matter_after_inputs_changed(fmu, clearance)
         (0.0, {"box_frequency": 1.13}),
         (20.0, {"box_amplitude": 0.5}),
         (41.5, {"box_frequency": 2.9, "box_acceleration": 0.05}),
-        (60.25, {"box_acceleration": 0.0}),
+        (60.25, {"box_acceleration": 0.0, "force1": 0.02, "force1_2": 1e-4, "force2": -0.3}),
+        (76.0, {"force2": 0.3, "force2_amplitude": 0.1}),
         (96.0, {}),
     ]
     found = []
     for pieces in (1, 7, 256):
-        f = open_fmu(fmu).start(clearance=clearance)
+        f = open_fmu(fmu).start(clearance=clearance, stroke=stroke)
         for (begin, values), (end, _) in itertools.pairwise(changes):
             ticks = int((end - begin) * 2**20)
             f.set(**values)
@@ -98,22 +110,32 @@ def test_cubic_inputs_run_on_over_steps(fmu):
 
 
 @pytest.mark.parametrize(
-    ("clearance", "e_slope"), [(0.0, 0.0), (0.3, 0.0), (-0.3, 0.7), (0.0, 0.7)]
+    ("clearance", "e_slope", "forces", "wall"),
+    [
+        *((0.0, 0.0, {}, False), (0.3, 0.0, {}, False), (-0.3, 0.7, {}, False)),
+        *((0.0, 0.7, {}, False), (0.3, 0.0, FORCES, False), (-0.3, 0.1, FORCES, True)),
+        *((0.3, 0.0, {"stroke": 1.6}, False), (0.3, 0.1, {**FORCES, "stroke": 0.75}, True)),
+    ],
 )
-def test_amplitudes_scale_to_the_last_bit(fmu, clearance, e_slope):
+def test_amplitudes_scale_to_the_last_bit(fmu, clearance, e_slope, forces, wall):
     """Displacements, velocities and forces times 2^n, energies times 4^n, times over length times
     2^-n; times, counts and the paper's xi as they were.
     """
     lengths = {"x1_start": -0.375, "x2_start": 0.8125, "clearance": clearance}
-    lengths |= {"v1_start": 0.1, "v2_start": -0.3, "box_amplitude": 0.7}
+    lengths |= {"v1_start": 0.1, "v2_start": -0.3, "box_amplitude": 0.7, **forces}
+    if wall:
+        lengths |= {"x2_start": 0.0, "v2_start": 0.0}
     powers = dict.fromkeys(("xi1", "xi2", "xi_rel", "phase", "in_contact", "evaluations"), 0)
     powers |= dict.fromkeys(("impact_count", "impact_time", "contact_count"), 0)
+    powers |= {"impact_side": 0, "contact_side": 0}
     powers |= {"impact_energy": 2, "sticking_energy": 2}
     reference = {}
     for n in (0, -40, 7, 60):
         scale = 2.0**n
         scaled = {name: value * scale for name, value in lengths.items()}
-        f = open_fmu(fmu).start(box_frequency=1.13, m2=1.5, e_slope=e_slope / scale, **scaled)
+        f = open_fmu(fmu).start(
+            box_frequency=1.13, m2=1.5, e_slope=e_slope / scale, wall=wall, **scaled
+        )
         found = f.at(250.0, 256.0).outputs()
         reference = reference or found
         assert found == {
@@ -122,14 +144,16 @@ def test_amplitudes_scale_to_the_last_bit(fmu, clearance, e_slope):
     assert reference["impact_count"] > 40
 
 
-@pytest.mark.parametrize("clearance", [0.0, 0.3, -0.3])
-def test_masses_never_pass_through_each_other(fmu, clearance):
+@pytest.mark.parametrize(
+    ("clearance", "wall"), [(0.0, False), (0.3, False), (-0.3, False), (-0.3, True), (0.2, True)]
+)
+def test_masses_never_pass_through_each_other(fmu, clearance, wall):
     """x_rel >= 0 at dense and random points, and within a few roundings of every impact, where it
     is as small as it gets.
     """
     rng, gaps, near = random.Random(2), [], []
     for eta, more in ((0.4, {}), (1.13, {"m2": 3.0}), (2.9, {"e": 0.1}), (0.4, {"e": 0.0})):
-        values = {**harmonic(eta), **more, "clearance": clearance}
+        values = {**harmonic(eta), **more, "clearance": clearance, "wall": wall}
         first, second = (open_fmu(fmu).start(**values) for _ in range(2))
         count = 0
         while first.time < 40.0:
@@ -175,6 +199,7 @@ def impacts(fmu, values):
         ({"m2": 3.0, "box_frequency": 1.13, "clearance": 0.4}, False),
         ({"m2": 3.0, "e": 0.0, "box_frequency": 0.8, "clearance": -0.2}, True),
         ({"m2": 3.0, "e": 0.9, "box_frequency": 1.13, "e_slope": 0.8}, False),
+        ({"m2": 3.0, "e": 0.0, "box_frequency": 0.8, "clearance": -0.2, **FORCES}, True),
     ],
 )
 def test_momentum_is_kept_at_impacts_and_starts_of_contact(fmu, values, contacts):

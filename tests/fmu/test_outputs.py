@@ -59,6 +59,9 @@ STEPS = [
     {},
     {"box_acceleration": 0.1},
     {"box_frequency": 1.13, "box_acceleration": -0.2, "m2": 2.0},
+    {"force1_amplitude": 0.2, "force2_amplitude": -0.3, "force1": 0.1, "force2_1": 1e-3},
+    {"force1_amplitude": 0.2, "force1_2": 1e-4, "wall": True, "clearance": -0.05},
+    {"box_frequency": 1.13, "stroke": 0.4},
 ]
 
 
@@ -80,9 +83,10 @@ def test_what_belongs_to_a_step_is_exact(fmu, more):
         impulse, moment, largest, gap = whole.get(*names[1:3], "x_rel_max", "x_rel")
         assert impulse == pytest.approx(np.sum(impulses), abs=1e-11)
         assert moment == pytest.approx(np.sum(moments + since * impulses), abs=1e-9)
-        # the trapezoidal rule knows nothing of impacts; dampers make the force jump there by d *
-        # jump, for less than a step
-        assert impulse == pytest.approx(np.sum(0.5 * step * (before + after)), abs=2e-3)
+        # the trapezoidal rule knows nothing of impacts: a wall has their impulses too; dampers make
+        # the force jump there by d * jump, for less than a step
+        if "wall" not in more:
+            assert impulse == pytest.approx(np.sum(0.5 * step * (before + after)), abs=2e-3)
         assert largest == pytest.approx(np.max(largests), abs=1e-13)
         assert np.max(gaps) - 1e-14 <= largest <= np.max(gaps) + 1e-3
         assert largest >= gap - 1e-14

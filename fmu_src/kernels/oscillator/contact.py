@@ -6,44 +6,25 @@ pulled apart. Where f vanishes, the first of its derivatives that does not vanis
 """
 
 from . import memory as at
-from .excitation import cubic_at
+from .excitation import cubic_drive, drive_at
 
 ROUNDING = 1e-14
 # with a cubic forcing, from rest, some derivative of f up to the fifth does not vanish, or all do
 HIGHEST = 5
 
 
-def gap_acceleration(m, x, v):
+def gap_acceleration(m, x, v, cosine, sine, tau):
     """Return f of (18), the gap's acceleration at displacement ``x`` of both masses from where they
-    rest together, and common velocity ``v``; negative where they are pressed together.
+    rest together, common velocity ``v``, a phase and an age of the state; negative where they are
+    pressed together.
     """
     force = m[at.FORCE_V] * v + m[at.FORCE_X] * x
     if m[at.PRELOAD] != 0.0:  # rarely
         force += m[at.PRELOAD]
+    if m[at.UNEQUAL] != 0.0:  # rarely
+        drive, _ = drive_at(m, at.GAP, cosine, sine, tau)
+        force += drive
     return force
-
-
-def forcing_derivative(m, order, sine, cosine, cubic):
-    """Return a derivative of the right-hand side of (6), and the size of the terms it is made
-    of.
-    """
-    size = m[at.FORCING]
-    for _ in range(order):
-        size *= m[at.ETA]
-    value = size * (sine if order % 2 == 0 else cosine)
-    if order % 4 >= 2:
-        value = -value
-    if order == 0:
-        part = cubic[0]
-    elif order == 1:
-        part = cubic[1]
-    elif order == 2:
-        part = cubic[2]
-    elif order == 3:
-        part = cubic[3]
-    else:
-        part = 0.0
-    return value + part, abs(size) + abs(part)
 
 
 def first_nonzero_derivative(m, x, v, lowest):
@@ -58,8 +39,11 @@ def first_nonzero_derivative(m, x, v, lowest):
         The derivative, 0 where all vanish.
     """
     sine, cosine = m[at.SINE], m[at.COSINE]
-    cubic = cubic_at(m, m[at.CUBIC_AGE])
-    twice = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING]
+    d_cos, d_sin = m[at.OSCILLATOR_3 + at.DRIVE], m[at.OSCILLATOR_3 + at.DRIVE + 1]
+    c0, c1, c2, c3 = cubic_drive(m, at.OSCILLATOR_3, 0.0)
+    g_cos, g_sin = m[at.GAP + at.DRIVE], m[at.GAP + at.DRIVE + 1]
+    g0, g1, g2, g3 = cubic_drive(m, at.GAP, 0.0)
+    eta, twice = m[at.ETA], 2.0 * m[at.OSCILLATOR_3 + at.DAMPING]
     square = m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
     low, low_size, high, high_size = x, abs(x), v, abs(v)
     for order in range(HIGHEST + 1):
@@ -69,9 +53,16 @@ def first_nonzero_derivative(m, x, v, lowest):
             if order == 0 and m[at.PRELOAD] != 0.0:  # rarely
                 value += m[at.PRELOAD]
                 size += abs(m[at.PRELOAD])
+            if m[at.UNEQUAL] != 0.0:  # rarely
+                value += (g_cos * cosine + g_sin * sine) + g0
+                size += abs(g_cos) + abs(g_sin) + abs(g0)
             if abs(value) > ROUNDING * size:
                 return order, value
-        drive, drive_size = forcing_derivative(m, order, sine, cosine, cubic)
+        drive, drive_size = (d_cos * cosine + d_sin * sine) + c0, abs(d_cos) + abs(d_sin) + abs(c0)
+        d_cos, d_sin = eta * d_sin, -eta * d_cos
+        c0, c1, c2, c3 = c1, c2, c3, 0.0
+        g_cos, g_sin = eta * g_sin, -eta * g_cos
+        g0, g1, g2, g3 = g1, g2, g3, 0.0
         low, high = high, drive - twice * high - square * low
         low_size, high_size = high_size, drive_size + twice * high_size + square * low_size
     return -1, 0.0

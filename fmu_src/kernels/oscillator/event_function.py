@@ -8,6 +8,7 @@ form for all later times. A clearance adds a constant to the signal, none to its
 
 from ..numerics.first_root import INFINITE
 from . import memory as at
+from .excitation import cubic_drive
 from .nodes import higher_derivatives, max_nodes, oscillator_a, phasors_at, put_phasors, start_nodes
 from .parameters import are_nearly_equal
 from .secular import (
@@ -43,12 +44,18 @@ def set_contact_event_function(m):
     m[at.EVENT_OFFSET] = -m[at.PRELOAD]
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     h_cos, h_sin, eta = m[at.HARMONIC_3], m[at.HARMONIC_3 + 1], m[at.ETA]
-    m[at.EVENT_HARMONIC] = p * eta * h_sin + q * h_cos
-    m[at.EVENT_HARMONIC + 1] = q * h_sin - p * eta * h_cos
+    m[at.EVENT_HARMONIC] = (p * eta * h_sin + q * h_cos) - m[at.GAP + at.DRIVE]
+    m[at.EVENT_HARMONIC + 1] = (q * h_sin - p * eta * h_cos) - m[at.GAP + at.DRIVE + 1]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         for i in range(3):
             m[at.EVENT_CUBIC + i] = p * m[at.CUBIC_A + i + 1] + q * m[at.CUBIC_A + i]
         m[at.EVENT_CUBIC + 3] = q * m[at.CUBIC_A + 3]
+        if m[at.UNEQUAL] != 0.0:  # rarely
+            g0, g1, g2, g3 = cubic_drive(m, at.GAP, 0.0)
+            m[at.EVENT_CUBIC] -= g0
+            m[at.EVENT_CUBIC + 1] -= g1
+            m[at.EVENT_CUBIC + 2] -= g2
+            m[at.EVENT_CUBIC + 3] -= g3
     x, v = force_phasor(m, m[at.FREE_A], m[at.FREE_A + 1])
     m[at.EVENT_FREE_A] = x
     m[at.EVENT_FREE_A + 1] = v
@@ -170,8 +177,8 @@ def difference_bound(m, order, x, v, x_b, v_b, time):
     """Return a bound of a derivative of both free parts' difference, for a ``time`` from now on.
 
     Each derivative of ``xi_2 - xi_1`` moves as oscillator 2, driven by what differs, ``2 (D_1 -
-    D_2) xi_1' + (omega_1^2 - omega_2^2) xi_1``; where both move nearly as one, the sum of both
-    bounds is far above it.
+    D_2) xi_1' + (omega_1^2 - omega_2^2) xi_1`` and the drives; where both move nearly as one, the
+    sum of both bounds is far above it.
     """
     for _ in range(order):
         x, v = v, free_acceleration(m, at.OSCILLATOR_1, x, v)
@@ -186,6 +193,11 @@ def difference_bound(m, order, x, v, x_b, v_b, time):
         sine = m[at.OSCILLATOR_2 + at.ENVELOPE_SINE] * (event_drive_bound(m, order + 1) + damped)
         own += event_drive_bound(m, order) + sine
     drive = abs(m[at.FORCE_V]) * change + abs(m[at.FORCE_X]) * size
+    if m[at.SECULAR] != 0.0 and m[at.UNEQUAL] != 0.0:  # rarely
+        apart = abs(m[at.GAP + at.DRIVE]) + abs(m[at.GAP + at.DRIVE + 1])
+        for _ in range(order):
+            apart *= m[at.ETA]
+        drive += apart
     return own + m[at.OSCILLATOR_2 + at.ENVELOPE_SINE] * time * drive + 4e-15 * size
 
 
@@ -264,7 +276,7 @@ def evaluate(m, tau):  # inline
         h2 += event_drive(m, 2, cosine, sine)
         h3 += event_drive(m, 3, cosine, sine)
         h4 += event_drive(m, 4, cosine, sine)
-    if m[at.NODE_ETA] != 0.0:  # usually
+    if m[at.SHAKEN] != 0.0:  # usually
         eta = m[at.NODE_ETA]
         square = eta * eta
         h_cos, h_sin = m[at.EVENT_HARMONIC], m[at.EVENT_HARMONIC + 1]

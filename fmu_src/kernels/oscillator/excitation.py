@@ -1,55 +1,95 @@
-"""The box's motion over one segment: right-hand side of (6), a harmonic plus a cubic in time.
+"""What drives the masses over one segment: right-hand sides of (6), a harmonic plus cubics in time.
 
-A segment lasts as long as the inputs stay as they are. The cubic begins where one of its inputs was
+A segment lasts as long as the inputs stay as they are. A cubic begins where one of its inputs was
 set, and runs on over communication steps and segments until one is set again. Relative to the box a
-mass is driven by minus the box's acceleration: ``a Omega^2 sin(phase)`` minus the cubic.
+mass is driven by minus the box's acceleration, ``a Omega^2 sin(phase)`` minus the cubic, and by the
+force on it over its mass; each oscillator, and the gap, has its shares of these.
 """
 
 from ..numerics.elementary import TWO_PI
+from ..numerics.first_root import INFINITE
 from . import memory as at
 from .nodes import set_grid
+from .parameters import set_side
 from .secular import set_secular
 
 
 def inputs_changed(m):
     """Return whether the present inputs call for a new segment."""
-    if m[at.CUBIC_ON] != 0.0 and m[at.CUBIC_SET] != 0.0:
-        return True
+    for i in range(3):
+        if m[at.CUBIC + 6 * i + at.ON] != 0.0 and m[at.CUBIC_SET + i] != 0.0:
+            return True
     for i in range(6):
         if m[at.SEGMENT_INPUTS + i] != m[at.BOX_AMPLITUDE + i]:
             return True
-    return False
-
-
-def cubic_begins(m):
-    """Return whether the present inputs call for a new cubic: one was set, or has another value."""
-    if m[at.CUBIC_SET] != 0.0:
-        return True
-    for i in range(2, 6):
-        if m[at.SEGMENT_INPUTS + i] != m[at.BOX_AMPLITUDE + i]:
+    for i in range(10):
+        if m[at.SEGMENT_INPUTS + 6 + i] != m[at.FORCE1_AMPLITUDE + i]:
             return True
     return False
 
 
 def begin_segment(m):
-    """Set the excitation constants from the present inputs; the cubic goes on where its inputs were
+    """Set the excitation constants from the present inputs; a cubic goes on where its inputs were
     not set.
     """
-    if cubic_begins(m):
-        begin_cubic(m)
+    scale = 1.0 / m[at.OMEGA]
+    renew_cubic(m, 0, at.BOX_ACCELERATION, at.SEGMENT_INPUTS + 2, -scale * scale)
+    renew_cubic(m, 1, at.FORCE1, at.SEGMENT_INPUTS + 8, 1.0)
+    renew_cubic(m, 2, at.FORCE2, at.SEGMENT_INPUTS + 12, 1.0)
     for i in range(6):
         m[at.SEGMENT_INPUTS + i] = m[at.BOX_AMPLITUDE + i]
+    for i in range(10):
+        m[at.SEGMENT_INPUTS + 6 + i] = m[at.FORCE1_AMPLITUDE + i]
+    set_excitation(m)
+
+
+def renew_cubic(m, place, inputs, known, unit):
+    """Begin a cubic anew at the present state's start where one of its inputs was set, or has
+    another value than in the segment before, ``known``.
+
+    ``unit`` turns its value, in SI, into that of a forcing.
+    """
+    begins = m[at.CUBIC_SET + place] != 0.0
+    for i in range(4):
+        if m[known + i] != m[inputs + i]:
+            begins = True
+    if not begins:
+        return
+    cubic = at.CUBIC + 6 * place
+    m[cubic + at.AGE] = 0.0
+    m[cubic + at.ON] = 0.0
+    for i in range(4):
+        m[cubic + i] = m[inputs + i] * unit
+        unit *= 1.0 / m[at.OMEGA]
+        if i > 0 and m[inputs + i] != 0.0:
+            m[cubic + at.ON] = 1.0
+
+
+def mirror(m):
+    """Go over to the mirrored system, or back."""
+    m[at.SIDE] = -m[at.SIDE]
+    set_side(m)
     set_excitation(m)
 
 
 def set_excitation(m):
-    """Set the constants of the harmonic excitation from the segment's inputs."""
+    """Set the constants of the excitation from the segment's inputs."""
     amplitude, frequency = m[at.SEGMENT_INPUTS], m[at.SEGMENT_INPUTS + 1]
     scale = 1.0 / m[at.OMEGA]
     eta = frequency * scale
     m[at.ETA] = eta
     m[at.ETA_TURNS] = eta / TWO_PI
     m[at.FORCING] = amplitude * eta * eta
+    pushed = is_any(m, at.SEGMENT_INPUTS + 8, 8)
+    m[at.CUBIC_PRESENT] = 1.0 if pushed or is_any(m, at.SEGMENT_INPUTS + 2, 4) else 0.0
+    forced = is_any(m, at.SEGMENT_INPUTS + 6, 2)
+    m[at.SHAKEN] = 1.0 if forced or m[at.FORCING] != 0.0 else 0.0
+    m[at.UNEQUAL] = 1.0 if forced or pushed or m[at.WALL] != 0.0 or m[at.LIMIT] < INFINITE else 0.0
+    set_drive(m, at.BOX)
+    set_drive(m, at.GAP)
+    set_drive(m, at.OSCILLATOR_1)
+    set_drive(m, at.OSCILLATOR_2)
+    set_drive(m, at.OSCILLATOR_3)
     set_grid(m)
     set_secular(m)
     set_harmonic(m, at.OSCILLATOR_1, at.HARMONIC_1)
@@ -57,68 +97,115 @@ def set_excitation(m):
     set_harmonic(m, at.OSCILLATOR_3, at.HARMONIC_3)
 
 
-def begin_cubic(m):
-    """Begin the present inputs' cubic at the present state's start."""
-    scale = 1.0 / m[at.OMEGA]
-    unit = scale * scale
-    m[at.CUBIC_ON] = 0.0
-    m[at.CUBIC_PRESENT] = 0.0
-    for i in range(4):
-        derivative = m[at.BOX_ACCELERATION + i]
-        m[at.CUBIC + i] = -derivative * unit
-        unit *= scale
-        if derivative != 0.0:
-            m[at.CUBIC_PRESENT] = 1.0
-            if i > 0:
-                m[at.CUBIC_ON] = 1.0
-    m[at.CUBIC_AGE] = 0.0
+def is_any(m, first, count):
+    """Return whether any of some slots is not zero."""
+    for i in range(count):
+        if m[first + i] != 0.0:
+            return True
+    return False
+
+
+def set_drive(m, b):
+    """Set a harmonic forcing: of an oscillator, of the box or of the gap."""
+    shares, forces = b + at.SHARES, at.SEGMENT_INPUTS + 6
+    m[b + at.DRIVE] = 0.0
+    m[b + at.DRIVE + 1] = m[shares] * m[at.FORCING] + (
+        m[shares + 1] * m[forces] + m[shares + 2] * m[forces + 1]
+    )
+
+
+def harmonic_drive(m, b, cosine, sine):  # inline
+    """Return the harmonic forcing of one oscillator and its first derivative, at a phase."""
+    eta, d_cos, d_sin = m[at.ETA], m[b + at.DRIVE], m[b + at.DRIVE + 1]
+    value, rate = d_sin * sine, d_sin * eta * cosine
+    if d_cos != 0.0:  # rarely
+        value, rate = value + d_cos * cosine, rate - d_cos * eta * sine
+    return value, rate
 
 
 def set_harmonic(m, b, harmonic):
-    """Set the forced amplitudes a_i, b_i of (11), times ``a eta^2``; zeros where the amplitude
+    """Set the forced amplitudes a_i, b_i of (11), times the forcing; zeros where the amplitude
     grows.
     """
-    forcing, eta = m[at.FORCING], m[at.ETA]
+    d_cos, d_sin, eta = m[b + at.DRIVE], m[b + at.DRIVE + 1], m[at.ETA]
     m[harmonic] = 0.0
     m[harmonic + 1] = 0.0
-    if forcing == 0.0 or m[b + at.DRIVEN] != 0.0:
+    if (d_cos == 0.0 and d_sin == 0.0) or m[b + at.DRIVEN] != 0.0:
         return
     detuning = m[b + at.OMEGA_SQUARED] - eta * eta
     twice = 2.0 * m[b + at.DAMPING] * eta
     square = detuning * detuning + twice * twice
-    m[harmonic] = -forcing * twice / square
-    m[harmonic + 1] = forcing * detuning / square
+    m[harmonic] = (d_cos * detuning - d_sin * twice) / square
+    m[harmonic + 1] = (d_sin * detuning + d_cos * twice) / square
 
 
-def cubic_at(m, age):
-    """Return the value and three derivatives of the forcing's cubic, ``age`` after it began, in
-    tau.
+def drive_at(m, b, cosine, sine, tau):
+    """Return a forcing and its first derivative at a phase, ``tau`` after the present state's
+    start.
     """
-    p0, p1, p2, p3 = m[at.CUBIC], m[at.CUBIC + 1], m[at.CUBIC + 2], m[at.CUBIC + 3]
+    value, rate = harmonic_drive(m, b, cosine, sine)
+    if m[at.CUBIC_PRESENT] == 0.0:
+        return value, rate
+    q0, q1, _, _ = cubic_drive(m, b, tau)
+    return value + q0, rate + q1
+
+
+def cubic_drive(m, b, tau):
+    """Return value and three derivatives of a forcing's cubic part, ``tau`` after the present
+    state's start.
+    """
+    return cubic_by_ages(m, b, cubic_ages(m, tau))
+
+
+def cubic_ages(m, tau):  # inline
+    """Return how long ago the three cubics began, ``tau`` after the present state's start."""
+    return m[at.CUBIC + at.AGE] + tau, m[at.CUBIC_1 + at.AGE] + tau, m[at.CUBIC_2 + at.AGE] + tau
+
+
+def cubic_by_ages(m, b, ages):  # inline
+    """Return value and three derivatives of a forcing's cubic part, so long after the cubics
+    began.
+    """
+    age, age_1, age_2 = ages
+    q0, q1, q2, q3 = cubic_at(m, at.CUBIC, age)
+    if m[at.UNEQUAL] != 0.0:  # rarely
+        box, one, two = m[b + at.SHARES], m[b + at.SHARES + 1], m[b + at.SHARES + 2]
+        r0, r1, r2, r3 = cubic_at(m, at.CUBIC_1, age_1)
+        s0, s1, s2, s3 = cubic_at(m, at.CUBIC_2, age_2)
+        q0, q1 = box * q0 + (one * r0 + two * s0), box * q1 + (one * r1 + two * s1)
+        q2, q3 = box * q2 + (one * r2 + two * s2), box * q3 + (one * r3 + two * s3)
+    return q0, q1, q2, q3
+
+
+def cubic_at(m, cubic, age):
+    """Return value and three derivatives of a cubic, ``age`` after it began, in tau."""
+    p0, p1, p2, p3 = m[cubic], m[cubic + 1], m[cubic + 2], m[cubic + 3]
     q2 = p2 + p3 * age
     q1 = p1 + age * (p2 + 0.5 * age * p3)
     q0 = p0 + age * (p1 + 0.5 * age * (p2 + age * p3 / 3.0))
     return q0, q1, q2, p3
 
 
-def box_derivative(m, order, age):
-    """Return a derivative, in SI, of the box acceleration that the inputs' cubic gives, ``age`` (in
-    tau) after it began.
+def input_derivative(m, first, order, age):
+    """Return a derivative, in SI, of the cubic that the segment's inputs from slot ``first`` on
+    give, ``age`` (in tau) after it began.
 
     A constant keeps its bits.
     """
     time = age / m[at.OMEGA]
     value = 0.0
     for i in range(3, order - 1, -1):
-        value = m[at.SEGMENT_INPUTS + 2 + i] + value * time / (i - order + 1)
+        value = m[first + i] + value * time / (i - order + 1)
     return value
 
 
-def set_cubic_response(m, b, response, cubic):
-    """Set the cubic that solves (6) for a cubic forcing: value and three derivatives.
+def set_cubic_response(m, b, response):
+    """Set the cubic that solves (6) for a cubic forcing: value and three derivatives, at the
+    present state's start.
 
     By comparing coefficients.
     """
+    cubic = cubic_drive(m, b, 0.0)
     w, twice = m[b + at.OMEGA_SQUARED], 2.0 * m[b + at.DAMPING]
     q3 = cubic[3] / w
     q2 = (cubic[2] - twice * q3) / w

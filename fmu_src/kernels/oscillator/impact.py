@@ -28,6 +28,8 @@ def velocities_after_impact(m, v1, v2, e):
 
     With ``(1+e)/(1+mu)`` in its second line.
     """
+    if m[at.WALL] != 0.0:  # rarely
+        return -e * (v1 - v2), 0.0
     common = common_velocity(m, v1, v2)
     part = e * (v1 - v2) * m[at.SHARE]
     return common - m[at.MU] * part, common + part
@@ -63,8 +65,7 @@ def count_impact(m, time, closing, e, sticks):
     m[at.IMPACT_TIME] = time
     velocity = closing * m[at.OMEGA]
     m[at.IMPACT_VELOCITY] = velocity
-    reduced_mass = m[at.M2] * m[at.SHARE]
-    energy = 0.5 * reduced_mass * velocity * velocity
+    energy = 0.5 * m[at.REDUCED_MASS] * velocity * velocity
     m[at.IMPACT_ENERGY] += energy * (1.0 if sticks else (1.0 - e) * (1.0 + e))
     if sticks:  # rarely
         m[at.STICKING_ENERGY] += energy * e * e

@@ -10,7 +10,7 @@ from .event_function import AHEAD, envelope, evaluate
 from .hermite import has_summit, interval_is_below
 from .motion_signal import evaluate_motion
 from .nodes import seek_interval
-from .roots import clear_from_node, cross_clear_intervals, step_inside_interval
+from .roots import clear_from_node, cross_clear_intervals, step_inside_interval, walk
 from .series import taylor_value
 
 # least progress, of a spacing: a summit is flat, nothing is lost; it grows from step to step, so
@@ -22,6 +22,10 @@ def walk_with_largest_gap(m, start, target):
     """Walk to ``target`` and record the largest gap between ``start`` and there; the caller records
     the gap at ``start`` and at ``target``.
     """
+    if m[at.SIDE] < 0.0:  # rarely
+        walk(m, target)
+        record_least_gap(m, start, target if target < m[at.END] else m[at.END])
+        return
     if m[at.SERIES] != 0.0:
         stop = target if target < m[at.END] else m[at.END]
         # a concave gap stays below its tangents at both ends
@@ -38,6 +42,19 @@ def walk_with_largest_gap(m, start, target):
         elif m[at.CLEAR] != m[at.LEFT_AGE] or not clear_from_node(m):
             step_inside_interval(m)
     record_largest_gap(m, tau, target if target < m[at.END] else m[at.END])
+
+
+def record_least_gap(m, start, stop):
+    """Raise the recorded maximum to what the stroke leaves of the least gap of the mirrored system
+    in a part of the present state.
+    """
+    if m[at.X_REL_MAX] >= m[at.LIMIT]:
+        return
+    place = m[at.LEFT_AGE] + m[at.HALF_SPACING]
+    highest = largest_value(m, at.X_REL_MAX, -1.0, start, stop, m[at.X_REL_MAX] - m[at.LIMIT])
+    m[at.X_REL_MAX] = m[at.LIMIT] + highest
+    if m[at.SERIES] == 0.0:
+        seek_interval(m, place)
 
 
 def record_largest_gap(m, start, stop):
@@ -114,7 +131,8 @@ def evaluate_signal(m, slot, sign, tau):
     """Return value, four derivatives, a bound of the fifth, and the value's rounding error."""
     if slot == at.X_REL_MAX:
         h0, h1, h2, h3, h4, bound = evaluate(m, tau)
-        return h0, h1, h2, h3, h4, bound, gap_rounding(m, tau)
+        rounding = gap_rounding(m, tau)
+        return sign * h0, sign * h1, sign * h2, sign * h3, sign * h4, bound, rounding
     h0, h1, h2, h3, h4, bound = evaluate_motion(m, slot, sign, tau)
     return h0, h1, h2, h3, h4, bound, 4.0 * EPS * abs(h0)
 

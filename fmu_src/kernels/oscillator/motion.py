@@ -19,12 +19,13 @@ from .event_function import (
     begin_nodes,
     derivative_bounds,
     evaluate,
+    event_rounding,
     is_constant,
     set_contact_event_function,
     set_flight_event_function,
     set_node_values,
 )
-from .excitation import cubic_at, set_cubic_response
+from .excitation import cubic_drive, harmonic_drive, mirror, set_cubic_response
 from .impact import (
     chattering_ends,
     common_velocity,
@@ -34,10 +35,11 @@ from .impact import (
 )
 from .nodes import BLOCK, phasors_at
 from .response import displacement, set_free
-from .roots import clear_from_node, root_accuracy
+from .roots import clear_from_node, root_accuracy, take_step
 from .series import required_order, set_series, short_flight_duration, taylor_value
 
 BRIEF = 1e-6  # of a radian of the fastest change: four terms of a Taylor series are exact
+NARROWEST = 1e-6  # rounding of the gap, of the stroke: displacements of 1e8 strokes
 FAINTEST = 2e-292  # m, about 2 to the -969: the last digits of less are below the normal numbers
 
 
@@ -79,12 +81,12 @@ def brief_contact(m, tau):
     hangs on them.
     """
     twice, square = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING], m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
-    drive, eta = m[at.FORCING] * m[at.SINE], m[at.ETA]
-    cubic = cubic_at(m, m[at.CUBIC_AGE])
+    drive, rate = harmonic_drive(m, at.OSCILLATOR_3, m[at.COSINE], m[at.SINE])
+    cubic = cubic_drive(m, at.OSCILLATOR_3, 0.0)
     x, v = m[at.BEGIN], m[at.BEGIN + 1]
     x2 = (drive + cubic[0]) - (twice * v + square * x)
-    x3 = (m[at.FORCING] * eta * m[at.COSINE] + cubic[1]) - (twice * x2 + square * v)
-    x4 = (cubic[2] - eta * eta * drive) - (twice * x3 + square * x2)
+    x3 = (rate + cubic[1]) - (twice * x2 + square * v)
+    x4 = (cubic[2] - m[at.ETA] * m[at.ETA] * drive) - (twice * x3 + square * x2)
     way = tau * (v + tau * (0.5 * x2 + tau * (x3 * (1.0 / 6.0) + tau * x4 * (1.0 / 24.0))))
     return x + way, v + tau * (x2 + tau * (0.5 * x3 + tau * x4 * (1.0 / 6.0)))
 
@@ -117,6 +119,18 @@ def gap_between(m, tau, x1, x2):  # inline
     return gap
 
 
+def from_outside(m, x1, v1, x2, v2, gap):
+    """Convert a motion from unloaded positions, with its gap, to what an importer sees: back from
+    the mirrored system, and without what rounding leaves at a wall or beyond the gap's limit.
+    """
+    if m[at.WALL] != 0.0:
+        x2, v2 = 0.0, 0.0
+    gap = min(gap, m[at.LIMIT])
+    if m[at.SIDE] < 0.0:
+        return 0.0 - x1, 0.0 - v1, 0.0 - x2, 0.0 - v2, m[at.LIMIT] - gap
+    return x1, v1, x2, v2, gap
+
+
 def from_unloaded(m, x1, x2):  # inline
     """Convert the displacements of :func:`state_at` to those from the unloaded positions."""
     if m[at.GAP_OFFSET] != 0.0 and not is_from_unloaded(m):  # rarely
@@ -146,6 +160,16 @@ def state_and_phase_at(m, tau):  # inline
     return x1, v1, x2, v2, cosine, sine
 
 
+def beside_wall(m, x):
+    """Return the displacement of both masses where they touch: 0 beside a wall."""
+    return x if m[at.WALL] == 0.0 else 0.0
+
+
+def side_number(m):
+    """Return 1 in the system itself, 2 in the mirrored one."""
+    return 1.0 if m[at.SIDE] > 0.0 else 2.0
+
+
 def common_position(m, x1, x2):
     """Return the centre of mass, where both masses are put at an impact: they differ by rounding
     alone.
@@ -169,7 +193,10 @@ def advance_origin(m, tau):
     low = m[at.ORIGIN_LOW] + error
     m[at.ORIGIN] = total + low
     m[at.ORIGIN_LOW] = low - (m[at.ORIGIN] - total)
-    m[at.CUBIC_AGE] += tau
+    m[at.CUBIC + at.AGE] += tau
+    if m[at.UNEQUAL] != 0.0:  # rarely
+        m[at.CUBIC_1 + at.AGE] += tau
+        m[at.CUBIC_2 + at.AGE] += tau
 
 
 def move_origin_to_end(m):
@@ -219,7 +246,7 @@ def begin_state(m, x1, v1, x2, v2, gap, lowest):
     if gap > 0.0:
         begin_flight(m, x1, v1, x2, v2, gap)
         return
-    x = common_position(m, x1, x2) if x2 < x1 else x1
+    x = common_position(m, x1, x2) if x2 < x1 else beside_wall(m, x1)
     if v1 > v2:
         v1, v2 = collide(m, x, v1, v2)
     if v2 > v1:  # usually
@@ -241,12 +268,18 @@ def collide(m, x, v1, v2):
     permanent contact.
     """
     closing = v1 - v2
+    m[at.IMPACT_SIDE] = side_number(m)
     common = common_velocity(m, v1, v2)
     time = m[at.START_TIME] + (m[at.ORIGIN] + m[at.ORIGIN_LOW]) / m[at.OMEGA]
     e = restitution_coefficient(m, closing)
-    sticks = chattering_ends(m, e * closing, gap_acceleration(m, x, common))
+    sticks = chattering_ends(m, e * closing, gap_acceleration_at_start(m, x, common))
     count_impact(m, time, closing, e, sticks)
     return (common, common) if sticks else velocities_after_impact(m, v1, v2, e)
+
+
+def gap_acceleration_at_start(m, x, v):
+    """Return f of (18) at the present state's start."""
+    return gap_acceleration(m, x, v, m[at.COSINE], m[at.SINE], 0.0)
 
 
 def begin_touching_flight(m, x, v1, v2):
@@ -266,12 +299,13 @@ def begin_flight(m, x1, v1, x2, v2, gap):
     m[at.MODE] = at.FLIGHT
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        cubic = cubic_at(m, m[at.CUBIC_AGE])
-        set_cubic_response(m, at.OSCILLATOR_1, at.CUBIC_A, cubic)
-        set_cubic_response(m, at.OSCILLATOR_2, at.CUBIC_B, cubic)
+        set_cubic_response(m, at.OSCILLATOR_1, at.CUBIC_A)
+        set_cubic_response(m, at.OSCILLATOR_2, at.CUBIC_B)
     set_free(m, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
     set_free(m, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
     set_flight_event_function(m)
+    if m[at.LIMIT] < INFINITE and event_rounding(m, 0.0) > NARROWEST * m[at.LIMIT]:  # rarely
+        m[at.NARROW] = 1.0
     open_state(m, x1, v1, x2, v2, gap)
     begin_nodes(m)
     slope = v2 - v1
@@ -279,7 +313,7 @@ def begin_flight(m, x1, v1, x2, v2, gap):
     m[at.LEFT_VALUES + 1] = slope
     x = x1 if m[at.GAP_OFFSET] == 0.0 else x1 - m[at.REST_1]
     m[at.LEFT_VALUES + 2] = (
-        gap_acceleration(m, x, v1)
+        gap_acceleration_at_start(m, x, v1)
         - 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
         - m[at.OSCILLATOR_2 + at.OMEGA_SQUARED] * gap
     )
@@ -294,7 +328,7 @@ def begin_common(m, mode, x, v):
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        set_cubic_response(m, at.OSCILLATOR_3, at.CUBIC_A, cubic_at(m, m[at.CUBIC_AGE]))
+        set_cubic_response(m, at.OSCILLATOR_3, at.CUBIC_A)
     set_free(m, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
     set_contact_event_function(m)
     open_state(m, x, v, x, v, 0.0)
@@ -323,12 +357,13 @@ def begin_after_impact(m, x, v1, v2):
     flight's end is computed at once.
     """
     slope = v2 - v1
-    curvature = gap_acceleration(m, x, v1) - 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
+    curvature = gap_acceleration_at_start(m, x, v1)
+    curvature -= 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
     order = required_order(m, slope, curvature)
     if order > 4:
         set_series(m, x, v1, slope, order)
         duration = short_flight_duration(m, order)
-        if duration > 0.0:
+        if duration > 0.0 and slope * duration < m[at.LIMIT]:
             m[at.MODE] = at.FLIGHT
             open_state(m, x, v1, x, v2, 0.0)
             m[at.SERIES] = order
@@ -358,10 +393,7 @@ def certified_first_step(m, h1, h2, h3, h4):
     _, _, _, _, _, bound = evaluate(m, 0.0)
     reach = m[at.RIGHT_AGE]
     step, found = clear_step_or_root(0.0, h1, h2, h3, h4, bound, 0.0, reach, root_accuracy(m, 0.0))
-    m[at.CLEAR] = step
-    if found:
-        m[at.END] = step
-        m[at.END_KIND] = at.END_EVENT
+    take_step(m, 0.0, reach, step, found, (0.0, h1, h2, h3, h4, bound))
 
 
 def leave_boundary(m, order, value):
@@ -392,7 +424,20 @@ def leave_boundary(m, order, value):
     # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of
     # zero
     step = 0.5 * (order + 1) * value / bound if bound > 0.0 else INFINITE
-    m[at.CLEAR] = min(step, m[at.RIGHT_AGE])
+    step = min(step, m[at.RIGHT_AGE])
+    while m[at.MODE] == at.FLIGHT and grown_to(step, order, value) >= m[at.LIMIT]:  # rarely
+        step *= 0.5
+    m[at.CLEAR] = step
+
+
+def grown_to(step, order, value):
+    """Return a bound of what a function whose first derivative that does not vanish has a value is
+    after a step: as a bound of the next derivative adds half at most.
+    """
+    size = 1.5 * value
+    for k in range(order):
+        size *= step / (k + 1.0)
+    return size
 
 
 def derivative_bound(m, order):
@@ -405,9 +450,13 @@ def end_state(m):
     """Carry out the end of the present state and begin the next one."""
     m[at.WORK] += 1.0
     x1, v1, x2, v2 = state_at_end(m)
-    event = m[at.END_KIND] == at.END_EVENT
+    event, other = m[at.END_KIND] == at.END_EVENT, m[at.END_KIND] == at.END_OTHER
     gap = gap_between(m, m[at.END], x1, x2)
     flight = m[at.MODE] == at.FLIGHT
+    if other:  # rarely
+        mirror(m)
+        x1, v1, x2, v2 = -x1, -v1, -x2, -v2
+        event = True
     if has_died_away(m, x1, v1, x2, v2):  # rarely
         x1 = v1 = x2 = v2 = 0.0
         gap = max(m[at.GAP_OFFSET], 0.0)
@@ -427,7 +476,7 @@ def has_died_away(m, x1, v1, x2, v2):
     An undriven motion may decay for ever. Among the subnormal numbers no walk would end: what
     rounding takes there is as large as the motion.
     """
-    if m[at.FORCING] != 0.0 or m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.SHAKEN] != 0.0 or m[at.CUBIC_PRESENT] != 0.0:
         return False
     if m[at.GAP_OFFSET] > FAINTEST and not is_from_unloaded(m):
         return False  # together, but not at rest

@@ -3,12 +3,12 @@
 The derivatives follow from displacement and velocity by the equation of motion (6), whatever the
 state; the fifth is bounded by the free part's envelope and the forced amplitudes. The acceleration
 is the absolute one, as an accelerometer on the mass reads it between impacts: relative to the box
-less the forcing, ``-2 D xi' - omega^2 xi``.
+less the box's forcing, ``-2 D xi' - omega^2 xi`` and what a force adds.
 """
 
 from . import memory as at
 from .event_function import AHEAD, envelope
-from .excitation import cubic_at
+from .excitation import cubic_drive, harmonic_drive
 from .motion import from_unloaded, state_and_phase_at
 from .nodes import higher_derivatives
 from .response import displacement
@@ -38,7 +38,7 @@ def evaluate_motion(m, slot, sign, tau):
     if m[at.MODE] == at.FLIGHT:
         x = place
     twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
-    f0, f1, f2, f3 = forcing_at(m, tau, cosine, sine)
+    f0, f1, f2, f3 = forcing_at(m, b, tau, cosine, sine)
     h2 = f0 - (twice * v + square * x)
     h3 = f1 - (twice * h2 + square * v)
     h4 = f2 - (twice * h3 + square * h2)
@@ -47,6 +47,9 @@ def evaluate_motion(m, slot, sign, tau):
         return sign * place, sign * v, sign * h2, sign * h3, sign * h4, fifth
     h5 = f3 - (twice * h4 + square * h3)
     unit = -sign * m[at.OMEGA] * m[at.OMEGA]
+    if m[at.UNEQUAL] != 0.0:  # rarely
+        later = twice * sixth + square * fifth
+        return forced_acceleration(m, b, unit, tau, cosine, sine, (h2, h3, h4, h5), later)
     return (
         unit * (twice * v + square * x),
         unit * (twice * h2 + square * v),
@@ -57,13 +60,38 @@ def evaluate_motion(m, slot, sign, tau):
     )
 
 
-def forcing_at(m, tau, cosine, sine):
+def forced_acceleration(m, b, unit, tau, cosine, sine, derivatives, later):
+    """Return the absolute acceleration, ``-unit`` times the one relative to the box less the box's
+    forcing, with four derivatives and a bound of the fifth, from derivatives of the displacement
+    and the bound without forces.
+    """
+    h2, h3, h4, h5 = derivatives
+    twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
+    eta = m[at.ETA]
+    fourth = eta * eta * eta * eta
+    g0, g1, g2, g3 = forcing_at(m, at.BOX, tau, cosine, sine)
+    own, _ = harmonic_drive(m, b, cosine, sine)
+    box, _ = harmonic_drive(m, at.BOX, cosine, sine)
+    h6 = fourth * own - (twice * h5 + square * h4)
+    apart = abs(m[b + at.DRIVE] - m[at.BOX + at.DRIVE])
+    apart += abs(m[b + at.DRIVE + 1] - m[at.BOX + at.DRIVE + 1])
+    return (
+        -unit * (h2 - g0),
+        -unit * (h3 - g1),
+        -unit * (h4 - g2),
+        -unit * (h5 - g3),
+        -unit * (h6 - fourth * box),
+        abs(unit) * (later + fourth * eta * apart),
+    )
+
+
+def forcing_at(m, b, tau, cosine, sine):
     """Return the forcing of (6) and its first three derivatives at an age of the state."""
     eta = m[at.ETA]
-    f0, f1 = m[at.FORCING] * sine, m[at.FORCING] * eta * cosine
+    f0, f1 = harmonic_drive(m, b, cosine, sine)
     f2, f3 = -eta * eta * f0, -eta * eta * f1
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        q0, q1, q2, q3 = cubic_at(m, m[at.CUBIC_AGE] + tau)
+        q0, q1, q2, q3 = cubic_drive(m, b, tau)
         f0, f1, f2, f3 = f0 + q0, f1 + q1, f2 + q2, f3 + q3
     return f0, f1, f2, f3
 
@@ -76,7 +104,7 @@ def later_bounds(m, b, harmonic, cubic, tau, x, v, cosine, sine):
     """
     if m[at.SERIES] != 0.0:  # rarely
         rate, part = m[at.RATE], m[at.RATE_INVERSE]
-        f0, f1, f2, f3 = forcing_at(m, tau, cosine, sine)
+        f0, f1, f2, f3 = forcing_at(m, b, tau, cosine, sine)
         growth = abs(f0) + part * (abs(f1) + part * (abs(f2) + part * abs(f3)))
         size = abs(x) + part * (abs(v) + 1.35 * part * growth)
         fifth = 1.35 * 6.0 * rate * rate * rate * rate * rate * size

@@ -29,7 +29,7 @@ def set_grid(m):
     """Set the spacing and the constant rotations of a segment, unless they are the same as
     before.
     """
-    eta = m[at.ETA] if m[at.FORCING] != 0.0 else 0.0
+    eta = m[at.ETA] if m[at.SHAKEN] != 0.0 else 0.0
     if m[at.SPACING] != 0.0 and eta == m[at.NODE_ETA]:
         return
     m[at.NODE_ETA] = eta

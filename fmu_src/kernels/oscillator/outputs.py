@@ -3,8 +3,8 @@
 from ..numerics.elementary import TWO_PI, fraction, sincos_turns
 from . import memory as at
 from .contact import gap_acceleration
-from .excitation import box_derivative, cubic_at
-from .motion import from_unloaded, gap_between, state_and_phase_at
+from .excitation import cubic_ages, cubic_by_ages, drive_at, harmonic_drive, input_derivative
+from .motion import from_outside, from_unloaded, gap_between, side_number, state_and_phase_at
 
 LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the range of numbers
 # of a radian of the fastest change: over shorter steps the momenta at both ends agree in so many
@@ -18,7 +18,7 @@ def outputs_at(m, tau):  # inline
     Returns
     -------
     x1, x2, v1, v2, x_rel, v_rel, xi1, xi2, xi_rel, box_force : float
-    contact_force, in_contact, phase : float
+    contact_force, in_contact, phase, contact_side : float
     cosine, sine : float
         Of the excitation's phase; with harmonic forcing only.
     """
@@ -26,22 +26,36 @@ def outputs_at(m, tau):  # inline
     omega = m[at.OMEGA]
     flight = m[at.MODE] == at.FLIGHT
     gap, gap_speed = gap_between(m, tau, x1, x2), omega * (v2 - v1)
-    force = 0.0 if flight else -gap_acceleration(m, x1, v1)
+    force = 0.0 if flight else -gap_acceleration(m, x1, v1, cosine, sine, tau)
     pull_1, pull_2 = m[at.K1] * x1, m[at.K2] * x2  # at rest together, the springs balance
     x1, x2 = from_unloaded(m, x1, x2)
-    reduced_mass = m[at.M2] * m[at.SHARE]
-    contact = reduced_mass * omega * omega * force if force > 0.0 else 0.0
+    contact = m[at.REDUCED_MASS] * omega * omega * force if force > 0.0 else 0.0
     v1, v2 = omega * v1, omega * v2
     box_force = pull_1 + m[at.D1] * v1 + pull_2 + m[at.D2] * v2
+    if m[at.WALL] != 0.0:  # rarely
+        box_force = box_force_with_wall(m, x1, v1, cosine, sine, tau)
+    if m[at.UNEQUAL] != 0.0:  # rarely
+        gap_speed, box_force = m[at.SIDE] * gap_speed, m[at.SIDE] * box_force
+        x1, v1, x2, v2, gap = from_outside(m, x1, v1, x2, v2, gap)
     unit = unit_of_length(m)
     xi1 = x1 / unit if unit != 0.0 else 0.0  # (3)
     xi2 = x2 / unit if unit != 0.0 else 0.0
     xi_rel = gap / unit if unit != 0.0 else 0.0
     phase = TWO_PI * fraction(m[at.TURN] + m[at.ETA_TURNS] * tau)
     phase = phase if phase < TWO_PI else 0.0
-    touch = 0.0 if flight else 1.0
+    touch, side = (0.0, 0.0) if flight else (1.0, side_number(m))
     motion = x1, x2, v1, v2, gap, gap_speed, xi1, xi2, xi_rel, box_force
-    return motion, (contact, touch, phase), (cosine, sine)
+    return motion, (contact, touch, phase, side), (cosine, sine)
+
+
+def box_force_with_wall(m, x1, v1, cosine, sine, tau):
+    """Return the force on the box, of which the wall is a part: of the spring (from unloaded) and
+    the damper, or in contact, where mass 1 rests, what drives the mass.
+    """
+    if m[at.MODE] == at.FLIGHT:
+        return m[at.K1] * x1 + m[at.D1] * v1
+    drive, _ = drive_at(m, at.GAP, cosine, sine, tau)
+    return -m[at.K1] * drive
 
 
 def unit_of_length(m):  # inline
@@ -55,53 +69,71 @@ def write_outputs(m, seen):  # inline
     motion, boundary, rotation = seen
     m[at.X1], m[at.X2], m[at.V1], m[at.V2], m[at.X_REL], m[at.V_REL] = motion[:6]
     m[at.XI1], m[at.XI2], m[at.XI_REL], m[at.BOX_FORCE] = motion[6:]
-    m[at.CONTACT_FORCE], m[at.IN_CONTACT], m[at.PHASE] = boundary
+    m[at.CONTACT_FORCE], m[at.IN_CONTACT], m[at.PHASE], m[at.CONTACT_SIDE] = boundary
     m[at.PHASE_COSINE], m[at.PHASE_SINE] = rotation
 
 
 def finite_check_sum(seen):  # inline
     """Return the sum of these outputs: finite only where all are."""
     x1, x2, v1, v2, gap, gap_speed, xi1, xi2, xi_rel, box_force = seen[0]
-    contact, _, phase = seen[1]
+    contact, _, phase, _ = seen[1]
     sum_1, sum_2 = (x1 + v1) + (xi1 + box_force), (x2 + v2) + (xi2 + gap)
     return sum_1 + sum_2 + ((gap_speed + xi_rel) + (contact + phase))
 
 
-def last_written_point(m, age):  # inline
-    """Return the point that was written last, ``age`` after the cubic began, in tau: x1, x2, v1,
-    v2, force on the box, cosine and sine of the phase, and the age.
+def last_written_point(m, tau):  # inline
+    """Return the point that was written last, ``tau`` after the present state's start: x1, x2, v1,
+    v2, force on the box, cosine and sine of the phase, and the ages of the cubics, in tau.
     """
     motion = m[at.X1], m[at.X2], m[at.V1], m[at.V2]
-    return motion, m[at.BOX_FORCE], (m[at.PHASE_COSINE], m[at.PHASE_SINE]), age
+    return motion, m[at.BOX_FORCE], (m[at.PHASE_COSINE], m[at.PHASE_SINE]), cubic_ages(m, tau)
 
 
 def point_of(m, seen, tau):  # inline
     """Return the point, as :func:`last_written_point` does, of outputs ``tau`` after the present
     state's start.
     """
-    return seen[0][:4], seen[0][9], seen[2], m[at.CUBIC_AGE] + tau
+    return seen[0][:4], seen[0][9], seen[2], cubic_ages(m, tau)
+
+
+def drives(m, point):  # inline
+    """Return the forcings of masses 1 and 2 at a point, each with its first derivative by tau."""
+    _, _, rotation, ages = point
+    one, two = at.OSCILLATOR_1, at.OSCILLATOR_2
+    if m[at.MODE] != at.FLIGHT:
+        one, two = at.OSCILLATOR_3, at.OSCILLATOR_3
+    cosine, sine = rotation
+    first, second = harmonic_drive(m, one, cosine, sine), harmonic_drive(m, two, cosine, sine)
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
+        q0, q1, _, _ = cubic_by_ages(m, one, ages)
+        first = first[0] + q0, first[1] + q1
+        if m[at.UNEQUAL] != 0.0:  # rarely
+            q0, q1, _, _ = cubic_by_ages(m, two, ages)
+        second = second[0] + q0, second[1] + q1
+    return first, second
 
 
 def accelerations(m, point):  # inline
     """Return the accelerations of both masses relative to the box at a point, m/s2, by (6)."""
-    motion, _, rotation, age = point
-    drive = m[at.FORCING] * rotation[1]
-    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        drive += cubic_at(m, age)[0]
+    motion, _, _, _ = point
+    first, second = drives(m, point)
     x1, x2, v1, v2 = motion
+    if m[at.SIDE] < 0.0:  # rarely
+        x1, x2, v1, v2 = -x1, -x2, -v1, -v2
     if m[at.GAP_OFFSET] != 0.0 and m[at.MODE] != at.FLIGHT:  # rarely
         x1 -= m[at.REST_1]
-    return both_rates(m, drive, x1, v1, x2, v2)
+    a1, a2 = both_rates(m, first[0], second[0], x1, v1, x2, v2)
+    return m[at.SIDE] * a1, m[at.SIDE] * a2
 
 
-def both_rates(m, drive, x1, v1, x2, v2):  # inline
+def both_rates(m, drive_1, drive_2, x1, v1, x2, v2):  # inline
     """Return the accelerations of both masses, m/s2; or their rates, m/s3, from velocities,
-    accelerations and the drive's rate.
+    accelerations and the drives' rates.
     """
     if m[at.MODE] == at.FLIGHT:
-        a1 = acceleration(m, at.OSCILLATOR_1, drive, x1, v1)
-        return a1, acceleration(m, at.OSCILLATOR_2, drive, x2, v2)
-    both = acceleration(m, at.OSCILLATOR_3, drive, x1, v1)
+        a1 = acceleration(m, at.OSCILLATOR_1, drive_1, x1, v1)
+        return a1, acceleration(m, at.OSCILLATOR_2, drive_2, x2, v2)
+    both = acceleration(m, at.OSCILLATOR_3, drive_1, x1, v1)
     return both, both
 
 
@@ -116,16 +148,15 @@ def acceleration(m, b, drive, x, v):  # inline
 
 def force_rates(m, point):  # inline
     """Return the first and second time derivative of the force on the box at a point."""
-    motion, _, rotation, age = point
+    motion, _, _, _ = point
     _, _, v1, v2 = motion
+    first, second = drives(m, point)
     a1, a2 = accelerations(m, point)
-    drive = m[at.FORCING] * m[at.ETA] * rotation[0]
-    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        drive += cubic_at(m, age)[1]
-    j1, j2 = both_rates(m, drive * m[at.OMEGA], v1, a1, v2, a2)
+    unit = m[at.SIDE] * m[at.OMEGA]
+    j1, j2 = both_rates(m, first[1] * unit, second[1] * unit, v1, a1, v2, a2)
     k1, k2, d1, d2 = m[at.K1], m[at.K2], m[at.D1], m[at.D2]
-    first = k1 * v1 + d1 * a1 + k2 * v2 + d2 * a2
-    return first, k1 * a1 + d1 * j1 + k2 * a2 + d2 * j2
+    rate = k1 * v1 + d1 * a1 + k2 * v2 + d2 * a2
+    return rate, k1 * a1 + d1 * j1 + k2 * a2 + d2 * j2
 
 
 def momentum(m, motion):  # inline
@@ -138,14 +169,14 @@ def impulse(m, h, left, reached):  # inline
     """Return the impulse of the force on the box, and its moment, over a step of ``h`` seconds
     between two points, by momentum: impacts are internal and drop out.
 
-    ``box_force = -P' - (m1 + m2) y''`` with P the momentum relative to the box and y'' its
-    acceleration, so the integral is a difference of momenta, its moment a difference of
-    displacements, and what the box's motion adds is known in closed form.
+    ``box_force = -P' - (m1 + m2) y'' + force 1 + force 2`` with P the momentum relative to the box
+    and y'' its acceleration, so the integral is a difference of momenta, its moment a difference of
+    displacements, and what the box's motion and the forces add is known in closed form.
     """
     before, moment_before = momentum(m, left[0])
     after, moment_after = momentum(m, reached[0])
     cosine, sine = left[2]
-    mass = m[at.M1] + m[at.M2]
+    mass = m[at.M1] + m[at.M2] if m[at.WALL] == 0.0 else m[at.M1]
     drive, drive_moment = 0.0, 0.0
     if m[at.NODE_ETA] != 0.0:  # usually
         amplitude, speed = m[at.SEGMENT_INPUTS], m[at.SEGMENT_INPUTS + 1]
@@ -155,14 +186,59 @@ def impulse(m, h, left, reached):  # inline
         drive = 2.0 * amplitude * speed * sine_mid * sine_half
         drive_moment = amplitude * (2.0 * cosine_mid * sine_half - speed * h * reached[2][0])
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        power = h
-        for i in range(4):  # integrals of tau^i/i! and of tau^(i+1)/i!
-            derivative = box_derivative(m, i, left[3])
-            drive -= derivative * power / (i + 1)
-            drive_moment -= derivative * power * h / (i + 2)
-            power *= h / (i + 1)
+        drive, drive_moment = add_cubic(
+            m, at.SEGMENT_INPUTS + 2, left[3][0], -1.0, h, drive, drive_moment
+        )
     moment = (moment_after - moment_before) - h * after + mass * drive_moment
-    return before - after + mass * drive, moment
+    total = before - after + mass * drive
+    if m[at.UNEQUAL] != 0.0:  # rarely
+        pushed, pushed_moment = harmonic_impulse(m, h, left[2], reached[2])
+        pushed, pushed_moment = add_cubic(
+            m, at.SEGMENT_INPUTS + 8, left[3][1], 1.0, h, pushed, pushed_moment
+        )
+        if m[at.WALL] == 0.0:
+            pushed, pushed_moment = add_cubic(
+                m, at.SEGMENT_INPUTS + 12, left[3][2], 1.0, h, pushed, pushed_moment
+            )
+        total, moment = total + pushed, moment + pushed_moment
+    return total, moment
+
+
+def add_cubic(m, first, age, sign, h, total, moment):
+    """Return an integral over a step of ``h`` seconds, and its moment, with ``sign`` times that of
+    an input's cubic added: ``first`` is the slot of its value, ``age`` (in tau) its age where the
+    step begins.
+    """
+    power = h
+    for i in range(4):  # integrals of tau^i/i! and of tau^(i+1)/i!
+        derivative = sign * input_derivative(m, first, i, age)
+        total += derivative * power / (i + 1)
+        moment += derivative * power * h / (i + 2)
+        power *= h / (i + 1)
+    return total, moment
+
+
+def harmonic_impulse(m, h, left, reached):
+    """Return the impulse of both harmonic forces over a step of ``h`` seconds, and its moment, from
+    cosine and sine of the phase at both ends.
+    """
+    amplitude = m[at.SEGMENT_INPUTS + 6]
+    if m[at.WALL] == 0.0:
+        amplitude += m[at.SEGMENT_INPUTS + 7]
+    angle = 0.5 * m[at.SEGMENT_INPUTS + 1] * h  # half of what the phase moves by
+    sine_half, cosine_half = sincos_turns(angle * (1.0 / TWO_PI))
+    part = sine_half / angle if angle > 1e-8 else 1.0
+    sine_mid = left[1] * cosine_half + left[0] * sine_half
+    cosine_mid = left[0] * cosine_half - left[1] * sine_half
+    if angle > 0.1:
+        first = (part - cosine_half) / angle
+    else:
+        square = angle * angle
+        first = 1.0 / 30.0 - square * (1.0 / 840.0 - square * (1.0 / 45360.0))
+        first = angle * (1.0 / 3.0 - square * first)
+    half = 0.5 * h
+    total = amplitude * h * sine_mid * part
+    return total, half * total + amplitude * half * h * cosine_mid * first
 
 
 def short_impulse(m, h, left, reached):  # inline

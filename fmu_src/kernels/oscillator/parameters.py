@@ -8,6 +8,7 @@ together. Motions in contact count from there: their equation is the one without
 import math
 
 from ..numerics.elementary import TWO_PI
+from ..numerics.first_root import INFINITE
 from . import memory as at
 
 # relative difference below which two quotients of parameters are equal but for rounding
@@ -33,6 +34,7 @@ def derive(m):
     m[at.OMEGA] = omega
     m[at.MU] = mu
     m[at.SHARE] = 1.0 / (1.0 + mu)
+    m[at.REDUCED_MASS] = m[at.M2] * m[at.SHARE]
     m[at.FORCE_V] = 2.0 * (damping_1 - damping_2)  # (18)
     m[at.FORCE_X] = 1.0 - omega_2_squared
     set_oscillator(m, at.OSCILLATOR_1, damping_1, 1.0)
@@ -41,11 +43,60 @@ def derive(m):
     m[at.SPACING] = 0.0  # the nodes are to be set anew
     m[at.FASTEST] = max(1.0, math.sqrt(omega_2_squared))  # omega_3 lies between
     m[at.STICKING_TIME] = m[at.GAMMA] * (1.0 - m[at.E]) / m[at.FASTEST]
+    if m[at.WALL] != 0.0:  # rarely
+        set_wall(m)
+    m[at.LIMIT] = m[at.STROKE] if m[at.STROKE] > 0.0 and m[at.BONDED] == 0.0 else INFINITE
+    set_side(m)
+
+
+def set_wall(m):
+    """Make mass 2 a rigid wall: tuned like mass 1, and infinitely heavy."""
+    damping = m[at.OSCILLATOR_1 + at.DAMPING]
+    set_oscillator(m, at.OSCILLATOR_2, damping, 1.0)
+    set_oscillator(m, at.OSCILLATOR_3, damping, 1.0)
+    m[at.FORCE_V] = 0.0
+    m[at.FORCE_X] = 0.0
+    m[at.SHARE] = 0.0
+    m[at.REDUCED_MASS] = m[at.M1]
+    m[at.FASTEST] = 1.0
+    m[at.STICKING_TIME] = m[at.GAMMA] * (1.0 - m[at.E])
+
+
+def set_side(m):
+    """Set what has another sign or size in the mirrored system: where the masses rest together, and
+    what drives them. A wall is driven by nothing.
+    """
+    side, mu, kappa = m[at.SIDE], m[at.M2] / m[at.M1], m[at.K2] / m[at.K1]
     clearance = m[at.CLEARANCE] if m[at.BONDED] == 0.0 else 0.0
+    if side < 0.0:  # rarely
+        clearance = m[at.LIMIT] - clearance
     m[at.GAP_OFFSET] = clearance
+    one = side / m[at.K1]  # omega^2 m1 = k1
+    set_shares(m, at.BOX, side, 0.0, 0.0)
+    set_shares(m, at.OSCILLATOR_1, side, one, 0.0)
+    if m[at.WALL] != 0.0:  # rarely
+        m[at.REST_1] = clearance
+        m[at.REST_2] = 0.0
+        m[at.PRELOAD] = clearance
+        set_shares(m, at.OSCILLATOR_2, 0.0, 0.0, 0.0)
+        set_shares(m, at.OSCILLATOR_3, 0.0, 0.0, 0.0)
+        set_shares(m, at.GAP, -side, -one, 0.0)
+        return
     m[at.REST_1] = clearance * (kappa / (1.0 + kappa))
     m[at.REST_2] = -clearance / (1.0 + kappa)
-    m[at.PRELOAD] = clearance * omega_2_squared * ((1.0 + mu) / (1.0 + kappa))
+    square = m[at.OSCILLATOR_2 + at.OMEGA_SQUARED]
+    m[at.PRELOAD] = clearance * square * ((1.0 + mu) / (1.0 + kappa))
+    two, both = side / (m[at.K1] * mu), side / (m[at.K1] * (1.0 + mu))
+    set_shares(m, at.OSCILLATOR_2, side, 0.0, two)
+    set_shares(m, at.OSCILLATOR_3, side, both, both)
+    set_shares(m, at.GAP, 0.0, -one, two)
+
+
+def set_shares(m, b, box, force_1, force_2):
+    """Set the shares of the box's motion and of both forces in a forcing."""
+    m[b + at.SHARES] = box
+    m[b + at.SHARES + 1] = force_1
+    m[b + at.SHARES + 2] = force_2
 
 
 def are_nearly_equal(m):

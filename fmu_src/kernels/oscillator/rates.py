@@ -5,6 +5,7 @@ where an input jumps, to what comes before the jump of an input and after the im
 """
 
 from . import memory as at
+from .excitation import drive_at
 from .outputs import accelerations, last_written_point, unit_of_length
 from .stepper import local_time
 
@@ -17,15 +18,21 @@ def differentiate(m, time):
     int
         OK.
     """
-    a1, a2 = accelerations(m, last_written_point(m, m[at.CUBIC_AGE] + local_time(m, m[at.TIME])))
+    tau = local_time(m, m[at.TIME])
+    a1, a2 = accelerations(m, last_written_point(m, tau))
     omega = m[at.OMEGA]
     v1, v2, v_rel = m[at.V1], m[at.V2], m[at.V_REL]
     unit = unit_of_length(m)
     force = m[at.BOX_FORCE]
-    contact = 0.0
+    contact, box = 0.0, m[at.K1] * v1 + m[at.D1] * a1 + m[at.K2] * v2 + m[at.D2] * a2
+    drive = 0.0
+    if m[at.UNEQUAL] != 0.0:  # rarely
+        _, drive = drive_at(m, at.GAP, m[at.PHASE_COSINE], m[at.PHASE_SINE], tau)
+    if m[at.WALL] != 0.0 and m[at.MODE] != at.FLIGHT:  # rarely
+        box = -m[at.K1] * (m[at.SIDE] * omega * drive)
     if m[at.CONTACT_FORCE] > 0.0:
-        reduced_mass = m[at.M2] * m[at.SHARE]
-        contact = -reduced_mass * omega * (m[at.FORCE_V] * a1 + m[at.FORCE_X] * omega * v1)
+        contact = m[at.FORCE_V] * a1 + m[at.FORCE_X] * omega * v1
+        contact = -m[at.REDUCED_MASS] * omega * (m[at.SIDE] * contact + omega * omega * drive)
     largest = 0.0
     if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] == m[at.X_REL_MAX] and v_rel > 0.0:
         largest = v_rel
@@ -37,7 +44,7 @@ def differentiate(m, time):
     m[to + at.XI1] = v1 / unit if unit != 0.0 else 0.0
     m[to + at.XI2] = v2 / unit if unit != 0.0 else 0.0
     m[to + at.XI_REL] = v_rel / unit if unit != 0.0 else 0.0
-    m[to + at.BOX_FORCE] = m[at.K1] * v1 + m[at.D1] * a1 + m[at.K2] * v2 + m[at.D2] * a2
+    m[to + at.BOX_FORCE] = box
     m[to + at.BOX_IMPULSE] = force
     m[to + at.BOX_IMPULSE_MOMENT] = m[at.STEP] * force
     m[to + at.CONTACT_FORCE] = contact

@@ -33,14 +33,20 @@ def walk(m, target):
     """
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
         if m[at.CLEAR] >= m[at.RIGHT_AGE]:
-            cross_clear_intervals(m, target, INFINITE)
+            cross_clear_intervals(m, target, flight_limit(m))
         elif m[at.CLEAR] != m[at.LEFT_AGE] or not clear_from_node(m):
             step_inside_interval(m)
 
 
+def flight_limit(m):
+    """Return the limit of the gap; infinity but in flight."""
+    return m[at.LIMIT] if m[at.MODE] == at.FLIGHT else INFINITE
+
+
 def cross_clear_intervals(m, target, ceiling):
     """Go on from node to node, not beyond ``target``, while the intervals between have no root and
-    the event function stays below ``ceiling`` in them; after many nodes the state is written anew.
+    the event function stays below ``ceiling`` in them, which is at most the gap's limit; after many
+    nodes the state is written anew.
     """
     if not is_plain_flight(m):  # rarely
         cross_intervals_loop(m, target, ceiling, False, True)
@@ -65,7 +71,7 @@ def cross_intervals_loop(m, target, ceiling, plain, watched):  # inline
     floor, top = lowest_after(m, r0, r1, r2, low), 0.0
     if watched:
         top = lowest_after(m, -r0, -r1, -r2, low)
-    clear, below = True, True
+    limit, clear, below = flight_limit(m), True, True
     while clear and below and age <= target and node < last:
         node += 1.0
         old_x, old_v, old_x_b, old_v_b, old_cosine, old_sine = x, v, x_b, v_b, cosine, sine
@@ -81,7 +87,9 @@ def cross_intervals_loop(m, target, ceiling, plain, watched):  # inline
         clear = min(floor, lowest_before(m, r0, r1, r2, low)) >= 0.0 and r0 > 0.0
         floor = lowest_after(m, r0, r1, r2, low)
         if watched and ceiling < INFINITE:
-            below = min(top, lowest_before(m, -r0, -r1, -r2, low)) >= -ceiling and r0 <= ceiling
+            highest = -min(top, lowest_before(m, -r0, -r1, -r2, low), -r0)
+            below = highest <= ceiling
+            clear = clear and highest < limit
             top = lowest_after(m, -r0, -r1, -r2, low)
     m[at.WORK] += node - begun
     if node == begun:  # rarely
@@ -103,21 +111,38 @@ def cross_intervals_loop(m, target, ceiling, plain, watched):  # inline
 
 
 def clear_from_node(m):
-    """Move CLEAR to the end of that part of the present interval which certainly has no root, and
-    return whether there is one.
+    """Move CLEAR to the end of that part of the present interval which certainly has no root, at
+    neither end of the gap, and return whether there is one.
     """
-    b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
-    clear = has_no_root(b0, b1, b2, b3, b4, b5)
-    if not clear and b5 > 0.0:  # rarely
-        set_remainder(m)
-        b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
-        clear = has_no_root(b0, b1, b2, b3, b4, b5)
-    if clear:
-        m[at.CLEAR] = m[at.RIGHT_AGE]
-        return True
-    part = clear_part(b0, b1, b2, b3, b4, b5)
-    m[at.CLEAR] = m[at.LEFT_AGE] + part * m[at.SPACING]
+    part = part_without_root(m, False)
+    if m[at.LIMIT] < INFINITE and m[at.MODE] == at.FLIGHT:  # rarely
+        part = min(part, part_without_root(m, True))
+    m[at.CLEAR] = m[at.RIGHT_AGE] if part == 1.0 else m[at.LEFT_AGE] + part * m[at.SPACING]
     return m[at.CLEAR] > m[at.LEFT_AGE]
+
+
+def part_without_root(m, other):  # inline
+    """Return the part of the present interval, from its start, in which the event function, or what
+    the gap's limit leaves of it, certainly has no root.
+    """
+    b0, b1, b2, b3, b4, b5 = end_coefficients(m, other)
+    if not has_no_root(b0, b1, b2, b3, b4, b5) and b5 > 0.0:  # rarely
+        set_remainder(m)
+        b0, b1, b2, b3, b4, b5 = end_coefficients(m, other)
+    if has_no_root(b0, b1, b2, b3, b4, b5):
+        return 1.0
+    return clear_part(b0, b1, b2, b3, b4, b5)
+
+
+def end_coefficients(m, other):  # inline
+    """Return the Bernstein coefficients of a quintic below the event function in the present
+    interval, or below what the gap's limit leaves of it.
+    """
+    if not other:  # usually
+        return present_coefficients(m, m[at.REMAINDER])
+    b0, b1, b2, b3, b4, b5 = present_coefficients(m, -m[at.REMAINDER])
+    limit = m[at.LIMIT]
+    return limit - b0, limit - b1, limit - b2, limit - b3, limit - b4, limit - b5
 
 
 def step_inside_interval(m):
@@ -126,17 +151,32 @@ def step_inside_interval(m):
     Without a bound nothing is certain: CLEAR then is no number, and the step fails.
     """
     tau = m[at.CLEAR]
-    reach = m[at.RIGHT_AGE] - tau
     h0, h1, h2, h3, h4, bound = evaluate(m, tau)
     if not bound < INFINITE:  # rarely
         m[at.CLEAR] = NO_NUMBER
         return
     if h0 <= 0.0:  # rarely
         h0 = value_on_decided_side(m, tau, h0, h1)
-    step, found = next_step(h0, h1, h2, h3, h4, bound, tau, reach, root_accuracy(m, tau))
+    reach, accuracy = m[at.RIGHT_AGE] - tau, root_accuracy(m, tau)
+    step, found = next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy)
+    take_step(m, tau, reach, step, found, (h0, h1, h2, h3, h4, bound))
+
+
+def take_step(m, tau, reach, step, found, values):  # inline
+    """Take a step that the event function allows, or a shorter one, if the gap's limit is near.
+
+    ``values`` are the event function's value, four derivatives and bound at ``tau``.
+    """
+    kind = at.END_EVENT
+    if m[at.LIMIT] < INFINITE and m[at.MODE] == at.FLIGHT:  # rarely
+        h0, h1, h2, h3, h4, bound = values
+        accuracy = root_accuracy(m, tau)
+        other, ends = next_step(m[at.LIMIT] - h0, -h1, -h2, -h3, -h4, bound, tau, reach, accuracy)
+        if other < step:
+            step, found, kind = other, ends, at.END_OTHER
     if found:
         m[at.END] = tau + step
-        m[at.END_KIND] = at.END_EVENT
+        m[at.END_KIND] = kind
         if m[at.SERIES] == 0.0:
             set_phasors_at_end(m, m[at.END] - tau)
     m[at.CLEAR] = m[at.RIGHT_AGE] if step >= reach else tau + step

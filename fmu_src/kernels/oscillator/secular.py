@@ -27,7 +27,7 @@ def is_resonant(m, b):
     eta, square = m[at.ETA], m[b + at.OMEGA_SQUARED]
     detuning, twice = square - eta * eta, 2.0 * m[b + at.DAMPING] * eta
     near = detuning * detuning + twice * twice <= 4.0 * NEAR_RESONANCE * square * square
-    return m[at.FORCING] != 0.0 and near
+    return (m[b + at.DRIVE] != 0.0 or m[b + at.DRIVE + 1] != 0.0) and near
 
 
 def set_secular(m):
@@ -61,12 +61,13 @@ def clear_secular(m):
 def set_growth(m, b):
     """Set the constants by which the amplitude of one oscillator grows."""
     m[at.SECULAR] = 1.0
-    m[b + at.DRIVEN] = m[at.FORCING]
+    m[b + at.DRIVEN] = 1.0
     eta, damping, nu = m[at.ETA], m[b + at.DAMPING], m[b + at.NU]
     together = nu + eta
-    part = m[at.FORCING] / (damping * damping + together * together)
-    m[b + at.PUSH] = -part * together
-    m[b + at.PUSH + 1] = part * damping
+    square = damping * damping + together * together
+    d_cos, d_sin = m[b + at.DRIVE] / square, m[b + at.DRIVE + 1] / square
+    m[b + at.PUSH] = d_cos * damping - d_sin * together
+    m[b + at.PUSH + 1] = d_sin * damping + d_cos * together
     m[b + at.DRIFT] = (m[b + at.NU_SQUARED] - eta * eta) / together
     m[b + at.OWN_RATE] = max(eta, nu + 3.0 * damping)
     set_step_growth(m, b)
@@ -127,10 +128,10 @@ def forced_derivative(m, b, order):
     """Return what the forcing adds to a derivative of the displacement, beside what follows from
     displacement and velocity: parts by cosine and by sine.
     """
-    cosine, sine, next_cosine, next_sine = 0.0, 0.0, 0.0, m[b + at.DRIVEN]
-    drive_cosine, drive_sine = 0.0, m[b + at.DRIVEN]
-    if order < 2:
+    if order < 2 or m[b + at.DRIVEN] == 0.0:
         return 0.0, 0.0
+    drive_cosine, drive_sine = m[b + at.DRIVE], m[b + at.DRIVE + 1]
+    cosine, sine, next_cosine, next_sine = 0.0, 0.0, drive_cosine, drive_sine
     eta, twice, square = m[at.ETA], 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
     for _ in range(order - 2):
         drive_cosine, drive_sine = eta * drive_sine, -eta * drive_cosine
@@ -176,9 +177,9 @@ def driven_bound(m, b, order, time):
     rates, ``2 D/R + (omega/R)^2 <= 1``, the forcing's part of the k-th is at most ``(k - 1) F
     R^(k-2)`` at once; and it grows by ``F R^k`` times the envelope of the sine.
     """
-    power = abs(m[b + at.DRIVEN])
-    if power == 0.0:
+    if m[b + at.DRIVEN] == 0.0:
         return 0.0
+    power = abs(m[b + at.DRIVE]) + abs(m[b + at.DRIVE + 1])
     rate, envelope = m[b + at.OWN_RATE], m[b + at.ENVELOPE_SINE]
     for _ in range(order):
         power *= rate

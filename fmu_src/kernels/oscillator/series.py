@@ -8,7 +8,7 @@ where the masses rest together: with a clearance, the preload is a constant in b
 """
 
 from . import memory as at
-from .excitation import cubic_at
+from .excitation import cubic_drive, harmonic_drive
 
 # of a radian of the fastest change: from here on twelve terms leave more than the rounding
 SHORT = 0.2
@@ -39,13 +39,18 @@ def fifth_bound(m):
     1.35, 2.35, 4.1, 6.6 and 9.8 times ``R^k V``.
     """
     rate, part = m[at.RATE], m[at.RATE_INVERSE]
-    forcing = abs(m[at.FORCING]) + abs(m[at.REST_1])
+    b = at.OSCILLATOR_1 + at.DRIVE
+    forcing = abs(m[b]) + abs(m[b + 1]) + abs(m[at.REST_1])
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        cubic_0, cubic_1, cubic_2, cubic_3 = cubic_at(m, m[at.CUBIC_AGE])
+        cubic_0, cubic_1, cubic_2, cubic_3 = cubic_drive(m, at.OSCILLATOR_1, 0.0)
         growth = abs(cubic_1) + part * (abs(cubic_2) + part * abs(cubic_3))
         forcing += 1.35 * (abs(cubic_0) + part * growth)
     size = abs(m[at.SERIES_X]) + part * (abs(m[at.SERIES_X + 2]) + part * forcing)
     drive = (abs(m[at.FORCE_V]) * rate + abs(m[at.FORCE_X])) * size + abs(m[at.PRELOAD])
+    if m[at.UNEQUAL] != 0.0:  # rarely
+        gap_0, gap_1, gap_2, gap_3 = cubic_drive(m, at.GAP, 0.0)
+        drive += abs(m[at.GAP + at.DRIVE]) + abs(m[at.GAP + at.DRIVE + 1])
+        drive += abs(gap_0) + part * (abs(gap_1) + part * (abs(gap_2) + part * abs(gap_3)))
     square = rate * rate
     return 10.0 * square * square * (m[at.SERIES_GAP + 2] + 1.35 * part * drive)
 
@@ -58,21 +63,42 @@ def set_series(m, x, v, slope, order):
     m[at.SERIES_X + 2] = v
     m[at.SERIES_GAP] = 0.0
     m[at.SERIES_GAP + 2] = slope
+    if m[at.UNEQUAL] == 0.0:  # usually
+        set_terms(m, order, False)
+    else:
+        set_terms(m, order, True)
+
+
+def set_terms(m, order, unequal):  # inline
+    """Set the derivatives from the second on; ``unequal``, a constant where this is called, as the
+    flag of that name.
+    """
     square = -m[at.ETA] * m[at.ETA]
-    drive, drive_next = m[at.FORCING] * m[at.SINE], m[at.FORCING] * m[at.ETA] * m[at.COSINE]
-    cubic_0, cubic_1, cubic_2, cubic_3 = 0.0, 0.0, 0.0, 0.0
+    drive, drive_next = harmonic_drive(m, at.OSCILLATOR_1, m[at.COSINE], m[at.SINE])
+    c0, c1, c2, c3 = 0.0, 0.0, 0.0, 0.0
+    apart, apart_next, g0, g1, g2, g3 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        cubic_0, cubic_1, cubic_2, cubic_3 = cubic_at(m, m[at.CUBIC_AGE])
+        c0, c1, c2, c3 = cubic_drive(m, at.OSCILLATOR_1, 0.0)
+    if unequal:
+        apart, apart_next = harmonic_drive(m, at.GAP, m[at.COSINE], m[at.SINE])
+        g0, g1, g2, g3 = cubic_drive(m, at.GAP, 0.0)
     for k in range(7):
-        set_derivatives(m, k + 2, drive + cubic_0)
+        set_derivatives(m, k + 2, drive + c0)
+        if unequal:
+            m[at.SERIES_GAP + 2 * k + 4] += apart + g0
+            apart, apart_next = apart_next, square * apart
+            g0, g1, g2, g3 = g1, g2, g3, 0.0
         if k == 0 and m[at.PRELOAD] != 0.0:  # rarely
             m[at.SERIES_X + 4] -= m[at.REST_1]
             m[at.SERIES_GAP + 4] += m[at.PRELOAD]
         drive, drive_next = drive_next, square * drive
-        cubic_0, cubic_1, cubic_2, cubic_3 = cubic_1, cubic_2, cubic_3, 0.0
+        c0, c1, c2, c3 = c1, c2, c3, 0.0
     if order > 8:
         for k in range(7, 11):
             set_derivatives(m, k + 2, drive)
+            if unequal:
+                m[at.SERIES_GAP + 2 * k + 4] += apart
+                apart, apart_next = apart_next, square * apart
             drive, drive_next = drive_next, square * drive
     else:
         for k in range(9, at.SERIES_LONGEST + 1):

@@ -7,7 +7,7 @@ memory.
 from ..numerics.elementary import TWO_PI
 from . import memory as at
 from .event_function import evaluate
-from .excitation import begin_segment, inputs_changed, set_excitation
+from .excitation import begin_segment, drive_at, inputs_changed, mirror, set_excitation
 from .hermite import has_summit
 from .maximum import record_peaks, walk_with_largest_gap
 from .motion import (
@@ -15,6 +15,7 @@ from .motion import (
     begin_flight,
     begin_state,
     end_state,
+    from_outside,
     from_rest_together,
     from_unloaded,
     gap_between,
@@ -51,6 +52,7 @@ def initialize(m, time):
     int
         OK, or one of the codes of :mod:`.memory`.
     """
+    m[at.SIDE] = 1.0
     derive(m)
     m[at.START_TIME] = time
     m[at.TIME] = time
@@ -66,23 +68,41 @@ def initialize(m, time):
     m[at.BOX_IMPULSE] = 0.0
     m[at.BOX_IMPULSE_MOMENT] = 0.0
     m[at.STICKING_ENERGY] = 0.0
+    m[at.IMPACT_SIDE] = 0.0
     x1, x2, gap = starting_point(m)
     if gap < 0.0:
         m[at.REPORT] = m[at.X1_START] - m[at.GAP_OFFSET]
         return at.START_OVERLAP if m[at.GAP_OFFSET] <= 0.0 else at.START_BEYOND_CLEARANCE
+    rounding = TOUCHING * (abs(m[at.X1_START]) + abs(m[at.X2_START]) + m[at.STROKE])
+    if max(gap - rounding, m[at.CLEARANCE]) > m[at.LIMIT]:
+        m[at.REPORT] = gap
+        return at.START_BEYOND_STROKE
     if m[at.BONDED] != 0.0 and (
         m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]
     ):
         return at.START_BONDED
+    if m[at.WALL] != 0.0 and (
+        m[at.X2_START] != 0.0 or m[at.V2_START] != 0.0 or m[at.BONDED] != 0.0
+    ):
+        return at.START_WALL
     set_phase(m, m[at.PHASE_START] / TWO_PI)
-    m[at.CUBIC_SET] = 1.0
+    for i in range(3):
+        m[at.CUBIC_SET + i] = 1.0
     begin_segment(m)
-    m[at.CUBIC_SET] = 0.0
+    for i in range(3):
+        m[at.CUBIC_SET + i] = 0.0
     if is_too_fast(m):
         return at.TOO_FAST
     m[at.WORK_LIMIT] = WORK_BASE
     m[at.MODE] = at.GLUED if m[at.BONDED] != 0.0 else at.CONTACT
-    begin_state(m, x1, m[at.V1_START] / m[at.OMEGA], x2, m[at.V2_START] / m[at.OMEGA], gap, 0)
+    v1, v2 = m[at.V1_START] / m[at.OMEGA], m[at.V2_START] / m[at.OMEGA]
+    if gap + rounding >= m[at.LIMIT]:  # rarely
+        mirror(m)
+        x1 = x2 = -x1 - m[at.REST_1]
+        v1, v2, gap = -v1, -v2, 0.0
+    begin_state(m, x1, v1, x2, v2, gap, 0)
+    if m[at.NARROW] != 0.0:  # rarely
+        return at.TOO_NARROW
     seen = outputs_at(m, 0.0)
     write_outputs(m, seen)
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
@@ -101,6 +121,7 @@ def restore(m, time):
         OK, or TOO_FAST or BEYOND of a forged one.
     """
     m[at.START_TIME] = time
+    m[at.SIDE] = 1.0 if m[at.SIDE] >= 0.0 else -1.0
     derive(m)
     clear_secular(m)
     set_excitation(m)
@@ -177,13 +198,15 @@ def advance(m, time):
         now = 0.0
         m[at.PHASE_COSINE] = m[at.COSINE]
         m[at.PHASE_SINE] = m[at.SINE]
+        if m[at.WALL] != 0.0:  # rarely
+            m[at.BOX_FORCE] = outputs_at(m, 0.0)[0][9]
         if is_too_fast(m):
             return at.TOO_FAST
     if not is_countable(m, local_time(m, time)):  # rarely
         m[at.REPORT] = before
         return at.BEYOND
     left, mode, impacts = (
-        last_written_point(m, m[at.CUBIC_AGE] + now),
+        last_written_point(m, now),
         m[at.MODE],
         m[at.IMPACT_COUNT],
     )
@@ -196,6 +219,8 @@ def advance(m, time):
         return at.LIMITED if m[at.WORK_LIMIT] < allowed else at.UNFINISHED
     if m[at.CLEAR] != m[at.CLEAR]:  # rarely
         return at.NOT_FINITE
+    if m[at.NARROW] != 0.0:  # rarely
+        return at.TOO_NARROW
     if m[at.STOPPED] != 0.0:  # rarely
         time = min(time, m[at.IMPACT_TIME])
     same = m[at.MODE] == mode and m[at.IMPACT_COUNT] == impacts
@@ -224,7 +249,7 @@ def coast(m, time):
         if not is_without_summit(m, now, tau):
             return at.UNFINISHED
     m[at.WORK] = 0.0
-    return finish_step(m, time, tau, last_written_point(m, m[at.CUBIC_AGE] + now), highest, True)
+    return finish_step(m, time, tau, last_written_point(m, now), highest, True)
 
 
 def lasts_beyond(m, tau):
@@ -257,7 +282,8 @@ def finish_step(m, time, tau, left, highest, same):
     h = time - m[at.TIME]
     seen = outputs_at(m, tau)
     reached = point_of(m, seen, tau)
-    if same and h * m[at.OMEGA] * m[at.RATE] < SHORT:
+    at_wall = m[at.WALL] != 0.0 and m[at.MODE] != at.FLIGHT  # no momentum: nothing cancels
+    if same and not at_wall and h * m[at.OMEGA] * m[at.RATE] < SHORT:
         force, moment = short_impulse(m, h, left, reached)
     else:
         force, moment = impulse(m, h, left, reached)
@@ -270,7 +296,8 @@ def finish_step(m, time, tau, left, highest, same):
     if code == at.OK:
         m[at.TIME] = time
         m[at.STEP] = h
-        m[at.CUBIC_SET] = 0.0
+        for i in range(3):
+            m[at.CUBIC_SET + i] = 0.0
         write_outputs(m, seen)
         m[at.BOX_IMPULSE] = force
         m[at.BOX_IMPULSE_MOMENT] = moment
@@ -289,17 +316,21 @@ def check_finite(sum_of_outputs):
 def renew_segment(m, now):
     """Begin a segment with the present inputs, ``now`` after the present state's start.
 
-    Positions and phase are continuous; so is the cubic, where none of its inputs was set.
+    Positions and phase are continuous; so is a cubic, where none of its inputs was set. Where what
+    drives the gap jumps, the contact force does: whether the masses stay together is decided anew.
     """
     x1, v1, x2, v2 = state_at(m, now)
     gap = gap_between(m, now, x1, x2)
     goes_on = now > 0.0 and m[at.MODE] != at.GLUED and (gap > 0.0 or is_inside_state(m, now))
+    move_origin(m, now)
+    before = gap_drive(m)
+    begin_segment(m)
+    if gap <= 0.0 and gap_drive(m) != before:  # rarely
+        goes_on = False
     if gap > 0.0 or (goes_on and m[at.MODE] == at.FLIGHT):
         x1, x2 = from_unloaded(m, x1, x2)
     else:
         x1, x2 = from_rest_together(m, x1, x2)
-    move_origin(m, now)
-    begin_segment(m)
     if not goes_on:
         begin_state(m, x1, v1, x2, v2, gap, 0)
     elif m[at.MODE] == at.FLIGHT:
@@ -308,10 +339,17 @@ def renew_segment(m, now):
         begin_common(m, at.CONTACT, x1, v1)
 
 
-def is_inside_state(m, tau):
-    """Return whether the event function has not been crossed: positive, or zero but for rounding.
+def gap_drive(m):
+    """Return what drives the gap at the present state's start."""
+    drive = 0.0
+    if m[at.UNEQUAL] != 0.0:  # rarely
+        drive, _ = drive_at(m, at.GAP, m[at.COSINE], m[at.SINE], 0.0)
+    return drive
 
-    Gap and contact force do not jump with the inputs.
+
+def is_inside_state(m, tau):
+    """Return whether the event function has not been crossed: positive, or zero but for
+    rounding.
     """
     h0, h1, _, _, _, _ = evaluate(m, tau)
     return h0 > 0.0 or value_on_decided_side(m, tau, h0, h1) > 0.0
@@ -342,6 +380,8 @@ def keep_sample(m, i, tau):
     x1, v1, x2, v2 = state_at(m, tau)
     gap = gap_between(m, tau, x1, x2)
     x1, x2 = from_unloaded(m, x1, x2)
+    if m[at.UNEQUAL] != 0.0:  # rarely
+        x1, v1, x2, v2, gap = from_outside(m, x1, v1, x2, v2, gap)
     m[at.X1_SAMPLE + i] = x1
     m[at.X2_SAMPLE + i] = x2
     m[at.V1_SAMPLE + i] = m[at.OMEGA] * v1
@@ -365,6 +405,8 @@ def run_states(m, time, now):
             return tau
         impacts = m[at.IMPACT_COUNT]
         end_state(m)
+        if watching and m[at.SIDE] < 0.0 and m[at.BEGIN_GAP] == 0.0:  # rarely
+            m[at.X_REL_MAX] = m[at.LIMIT]
         now = 0.0
         if m[at.STOP_AT_IMPACT] != 0.0 and m[at.IMPACT_COUNT] > impacts:
             m[at.STOPPED] = 1.0

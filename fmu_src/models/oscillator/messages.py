@@ -24,11 +24,19 @@ MESSAGES = with_slots(
         "with k1 = {K1} N/m and m1 = {M1} kg",
         at.NOT_FINITE: "the motion leaves the range of floating-point numbers in the step to "
         "time = {TARGET} s: box_amplitude = {BOX_AMPLITUDE} m, "
-        "box_frequency = {BOX_FREQUENCY} rad/s, box_acceleration = {BOX_ACCELERATION} m/s2; "
+        "box_frequency = {BOX_FREQUENCY} rad/s, box_acceleration = {BOX_ACCELERATION} m/s2, "
+        "force1 = {FORCE1} N, force2 = {FORCE2} N; "
         "expected values that keep it finite",
         at.START_OVERLAP: "x2_start = {X2_START} m: expected x2_start >= x1_start = {X1_START} m",
         at.START_BEYOND_CLEARANCE: "x2_start = {X2_START} m: expected x2_start >= x1_start - "
         "clearance = {REPORT} m, with x1_start = {X1_START} m and clearance = {CLEARANCE} m",
+        at.START_WALL: "wall = true with x2_start = {X2_START} m, v2_start = {V2_START} m/s, "
+        "bonded = {BONDED}: expected x2_start = 0, v2_start = 0 and bonded = false",
+        at.START_BEYOND_STROKE: "stroke = {STROKE} m: expected at least clearance = {CLEARANCE} m "
+        "and x_rel = {REPORT} m at the start, with x1_start = {X1_START} m and "
+        "x2_start = {X2_START} m; or 0 for no limit",
+        at.TOO_NARROW: "stroke = {STROKE} m: expected a play that displacements do not exceed more "
+        "than 1e8 times, with box_amplitude = {BOX_AMPLITUDE} m in the step to time = {TARGET} s",
         at.START_BONDED: "bonded = true with x2_start = {X2_START} m, v2_start = {V2_START} m/s: "
         "expected x2_start = x1_start = {X1_START} m and "
         "v2_start = v1_start = {V1_START} m/s",

@@ -38,12 +38,16 @@ MODEL = Model(
         SlotRange(at.EVENT_DRIVE, 2 * at.EVENT_ORDERS),
         *(
             SlotRange(at.SEGMENT_INPUTS + i, 1, v.minimum, v.maximum)
-            for i, v in enumerate(VARIABLES[at.BOX_AMPLITUDE : at.BOX_CRACKLE + 1])
+            for i, v in enumerate(
+                VARIABLES[at.BOX_AMPLITUDE : at.BOX_CRACKLE + 1]
+                + VARIABLES[at.FORCE1_AMPLITUDE : at.FORCE2_3 + 1]
+            )
         ),
         SlotRange(at.MODE, 1, at.FLIGHT, at.GLUED),
+        SlotRange(at.SIDE, 1, -1.0, 1.0),
         SlotRange(at.TURN, 1, 0.0, 1.0),
         SlotRange(at.CLEAR, 2, 0.0, inf),  # and END
-        SlotRange(at.END_KIND, 1, at.END_OPEN, at.END_RENEWAL),
+        SlotRange(at.END_KIND, 1, at.END_OPEN, at.END_OTHER),
         SlotRange(at.NODE, 1, 0.0, FURTHEST),
         SlotRange(at.POINT, 6),  # may have overflowed, as the next ones, where nothing reads them
         SlotRange(at.REMAINDER, 1, 0.0, inf),

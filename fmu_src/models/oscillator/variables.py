@@ -50,12 +50,16 @@ ADDED = (
     ),
 )
 STRUCTURE = (*MECHANICS, "e", "gamma", *(added.name for added in ADDED))  # its numbers
+FAMILY = ("wall", "stroke")
 GAP = ("x1_start", "x2_start", "clearance", "bonded")
 # with a preload, displacements at the start count from the loaded springs
-LOADED = ("clearance", "bonded", "k1", "k2")
+LOADED = ("clearance", "bonded", "wall", "k1", "k2")
 UNIT = ("m1", "box_amplitude", "box_frequency")  # with k1, a eta^2
-CLOSING = (*STARTS, "clearance")  # bonded masses start at one velocity: no impact
-IMPACT = (*STRUCTURE, *STARTS)  # after an impact at the start
+CLOSING = (*STARTS, "clearance", "stroke")  # bonded masses start at one velocity: no impact
+PUSHES = ("phase_start", "force1_amplitude", "force2_amplitude", "force1", "force2")
+# after an impact at the start; whether the masses stick hangs on the forces, at a wall on the box
+IMPACT_2 = (*STRUCTURE, *FAMILY, *STARTS, *PUSHES)
+IMPACT = (*IMPACT_2, "box_amplitude", "box_frequency", "box_acceleration")
 
 
 def start(name: str, unit: str, description: str) -> Variable:
@@ -88,6 +92,65 @@ def peak(name: str, unit: str, signal: str) -> Variable:
     return Variable(name, text, "local", unit, initial="calculated", minimum=0.0)
 
 
+def force(half: int) -> tuple[Variable, ...]:
+    """Return the inputs that make the cubic of the force on a mass."""
+    name = f"force{half}"
+    orders = ("First", "Second", "Third")
+    return (
+        drive(
+            name,
+            "N",
+            0.0,
+            f"Force on mass {half}, positive as x{half}: value when it was set; runs on as the "
+            f"cubic with {name}_1, {name}_2 and {name}_3",
+            input_derivatives=3,
+        ),
+        *(
+            drive(
+                f"{name}_{k + 1}",
+                "N/s" if k == 0 else f"N/s{k + 1}",
+                0.0,
+                f"{order} time derivative of {name} when one of the four was set",
+            )
+            for k, order in enumerate(orders)
+        ),
+    )
+
+
+FORCES = (
+    *(
+        drive(
+            f"force{half}_amplitude",
+            "N",
+            0.0,
+            f"Amplitude F of a harmonic force F sin(phase) on mass {half}, positive as x{half}",
+        )
+        for half in (1, 2)
+    ),
+    *force(1),
+    *force(2),
+)
+IN_CONTACT = (
+    *(*IMPACT, "bonded", "box_jerk", "box_snap", "box_crackle"),
+    *(f"force{half}_{k}" for half in (1, 2) for k in (1, 2, 3)),
+)
+WALL = parameter(
+    "wall",
+    "",
+    0.0,
+    "true: mass 2 is a rigid wall fixed to the box, x2 = 0 and v2 = 0; m2, k2, d2 and forces on it "
+    "have no effect, and box_force has the force on it",
+    type=BOOLEAN,
+)
+STROKE = parameter(
+    "stroke",
+    "m",
+    0.0,
+    "Largest gap: at x_rel = stroke the faces strike on their other side, with the same e, and may "
+    "stay there; at least the clearance; 0: no limit; ignored where bonded",
+    minimum=0.0,
+    maximum=HUGE,
+)
 SCALARS = (
     parameter("m1", "kg", 1.0, "Mass 1", minimum=TINY, maximum=LARGE),
     parameter("m2", "kg", 1.0, "Mass 2", minimum=TINY, maximum=LARGE),
@@ -206,7 +269,7 @@ SCALARS = (
         ("x2_start", *LOADED),
     ),
     output("v1", "m/s", "Velocity of mass 1 relative to the box", IMPACT),
-    output("v2", "m/s", "Velocity of mass 2 relative to the box", IMPACT),
+    output("v2", "m/s", "Velocity of mass 2 relative to the box", IMPACT_2),
     output("x_rel", "m", "Gap x2 - x1 + clearance", GAP, minimum=0.0),
     output("v_rel", "m/s", "Velocity of the gap v2 - v1", IMPACT),
     output(
@@ -254,7 +317,7 @@ SCALARS = (
         "in_contact",
         "",
         "Permanent contact",
-        (*IMPACT, "bonded", *DRIVE, *EXTRA),
+        IN_CONTACT,
         type=BOOLEAN,
         **DISCRETE,
     ),
@@ -342,6 +405,25 @@ VARIABLES = numbered(
             **DISCRETE,
         ),
         *PEAKS,
+        *FORCES,
+        WALL,
+        STROKE,
+        output(
+            "impact_side",
+            "",
+            "Where the last impact was: 1 at x_rel = 0, 2 at x_rel = stroke; 0 before the first",
+            CLOSING,
+            maximum=2,
+            **COUNT,
+        ),
+        output(
+            "contact_side",
+            "",
+            "Where the masses are together: 1 at x_rel = 0, 2 at x_rel = stroke; 0 apart",
+            IN_CONTACT,
+            maximum=2,
+            **COUNT,
+        ),
         *ADDED[2:],  # value references follow the order of publication
     ),
     memory,

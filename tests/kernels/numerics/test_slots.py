@@ -24,7 +24,16 @@ PROMISED = {  # given out before: saved states and other people's scripts rely o
     **{"m1": 0, "e": 6, "box_amplitude": 15, "x1": 21, "x_rel_max": 40, "sample_count": 42},
     **{"x1_sample[1]": 43, "x2_sample[1]": 243, "v1_sample[1]": 443, "v2_sample[200]": 842},
     **{"evaluations": 843, "evaluation_limit": 844, "clearance": 845, "e_slope": 846},
-    "sticking_energy": 847,
+    **{"sticking_energy": 847, "a2_max": 852, "force1_amplitude": 853, "force2_amplitude": 854},
+    **{
+        "force1": 855,
+        "force1_3": 858,
+        "force2": 859,
+        "force2_3": 862,
+        "wall": 863,
+        "stroke": 864,
+        "impact_side": 865,
+    },
 }
 
 
@@ -72,6 +81,6 @@ def test_no_slot_lies_in_another():
     outputs = oscillator.X1_SAMPLE - oscillator.X1
     assert oscillator.RATES + outputs == oscillator.ADDED_RATES
     added = oscillator.TIME - oscillator.EVALUATIONS
-    assert oscillator.ADDED_RATES + added == oscillator.CUBIC_SET == oscillator.SIZE - 1
+    assert oscillator.ADDED_RATES + added == oscillator.CUBIC_SET == oscillator.SIZE - 3
     for drive in (shaker, coil):
         assert drive.OUTPUT_RATES + drive.TIME - drive.BOX_POSITION == drive.SIZE

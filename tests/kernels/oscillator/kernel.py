@@ -33,6 +33,10 @@ OUTPUTS = (
     + tuple(range(at.CONTACT_FORCE, at.X_REL_MAX))
     + (at.CONTACT_COUNT, at.TIME)
 )
+FORCES = (
+    *("force1_amplitude", "force2_amplitude", "force1", "force1_1", "force1_2", "force1_3"),
+    *("force2", "force2_1", "force2_2", "force2_3"),
+)
 least_work = patch.multiple(stepper, WORK_BASE=5000.0, WORK_RATE=0.0)  # steps that give up early
 CHAOTIC = {"box_frequency": 0.7}  # default structure: tens of impacts a period, no period
 
@@ -129,7 +133,7 @@ def unloaded(values, state):
 @st.composite
 def structures(draw, damping=2.0, clearance=False):
     """Structures with omega = 1, their excitation and phase: light and heavy masses, undamped to
-    overdamped, with a cubic, and with a gap or a preload where it is asked for.
+    overdamped, with cubics and forces, and with a gap or a preload where it is asked for.
 
     Not near critical damping, where the sums of exponentials that the kernel is compared with
     cancel in double precision.
@@ -145,6 +149,8 @@ def structures(draw, damping=2.0, clearance=False):
     values["phase_start"] = draw(rounded(0.0, 6.28))
     for name in ("acceleration", "jerk", "snap", "crackle"):
         values[f"box_{name}"] = draw(st.just(0.0) | rounded(-0.1, 0.1))
+    for name in draw(st.just(()) | st.lists(st.sampled_from(FORCES), max_size=4, unique=True)):
+        values[name] = draw(rounded(-0.3, 0.3))
     if clearance:
         values["clearance"] = draw(st.just(0.0) | rounded(-1.0, 1.0) | sizes(1e-9, 1e3))
     m = unstarted(**values)

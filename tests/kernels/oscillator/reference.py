@@ -19,11 +19,13 @@ def collide(values, v1, v2):
     return common - e * m2 / (m1 + m2) * (v1 - v2), common + e * m1 / (m1 + m2) * (v1 - v2)
 
 
-def opening(values, x, v):
+def opening(values, x, v, phase):
     """Acceleration with which the gap would open with both masses at ``x`` and velocity ``v``."""
-    return (values["k1"] * x + values["d1"] * v) / values["m1"] - (
-        values["k2"] * x + values["d2"] * v
-    ) / values["m2"]
+    driven = (truth.felt(values, phase, 1) - truth.felt(values, phase, 2))(0)
+    return driven + (
+        (values["k1"] * x + values["d1"] * v) / values["m1"]
+        - (values["k2"] * x + values["d2"] * v) / values["m2"]
+    )
 
 
 def event_by_event(values, state, stop):
@@ -55,9 +57,9 @@ def event_by_event(values, state, stop):
             events.append((time, "release"))
             continue
         w1, w2 = collide(values, v1, v2)
-        pull = opening(
-            values, x, w1 + (w2 - w1) * mp.mpf(values["m2"]) / (mp.mpf(values["m1"]) + values["m2"])
-        )
+        total = mp.mpf(values["m1"]) + values["m2"]
+        phase += values["box_frequency"] * end
+        pull = opening(values, x, w1 + (w2 - w1) * mp.mpf(values["m2"]) / total, phase)
         if pull < 0 and 2 * (w2 - w1) < left * -pull:
             w1 = w2 = collide({**values, "e": 0}, v1, v2)[0]
             mode = CONTACT

@@ -11,11 +11,11 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.contact import gap_acceleration
+from fmu_src.kernels.oscillator.event_function import evaluate
 from fmu_src.kernels.oscillator.motion import state_at
 from tests import exact_motion as truth
 
-from .kernel import DEFAULTS, advanced, examples, pieces, rounded, started, structures
+from .kernel import DEFAULTS, FORCES, advanced, examples, pieces, rounded, started, structures
 from .reference import opening
 
 HALF_TURN = math.pi  # its sine is 1.2e-16 as a float, and nothing as an angle
@@ -47,7 +47,8 @@ def test_from_rest_newton_decides(values, phase):
 @examples(150)
 @given(structures(), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 def test_on_the_boundary_the_force_decides(values, x, v):
-    force = opening({**DEFAULTS, **values}, mp.mpf(x), mp.mpf(v))
+    phase = mp.mpf(values["phase_start"])
+    force = opening({**DEFAULTS, **values}, mp.mpf(x), mp.mpf(v), phase)
     assume(abs(force) > 1e-12)  # not where it vanishes
     m = started(x1_start=x, x2_start=x, v1_start=v, v2_start=v, **values)
     assert m[at.IN_CONTACT] == float(force < 0)
@@ -56,7 +57,7 @@ def test_on_the_boundary_the_force_decides(values, x, v):
 @examples(100)
 @given(structures(), st.floats(0.1, 1.0), st.sampled_from([-1.0, 1.0]))
 def test_where_the_force_vanishes_its_slope_decides(values, v, sign):
-    values = {**values, "d1": 0.3, "d2": 0.05}
+    values = {**values, "d1": 0.3, "d2": 0.05, **dict.fromkeys(FORCES, 0.0)}
     m2, k2 = values["m2"], values["k2"]
     assume(abs(1.0 - k2 / m2) > 1e-2)
     v *= sign
@@ -74,6 +75,8 @@ CONTACTS = pytest.mark.parametrize(
         {"e": 0.3},
         {"e": 0.0, "d1": 0.3, "d2": 0.02, "box_frequency": 0.7},
         {"m2": 2.0, "k2": 1.0, "e": 0.1},
+        {"e": 0.3, "force1_amplitude": 0.1, "force2": -0.05},
+        {"e": 0.3, "wall": True, "d1": 0.1},
     ],
 )
 
@@ -85,9 +88,7 @@ def test_pressed_together_all_through_contact(values):
     assert len(contacts) >= 5
     for state, entry, end in contacts:
         ages = np.linspace(entry, end, 200)
-        force = np.array(
-            [gap_acceleration(state, *state_at(state, float(age))[:2]) for age in ages]
-        )
+        force = np.array([-evaluate(state, float(age))[0] for age in ages])
         size = np.abs(force).max()
         assert force[1:-1].max() < 0.0
         if state[at.END_KIND] == at.END_EVENT:

@@ -26,7 +26,7 @@ def test_cubic_by_its_derivatives(cubic, age):
         sum(cubic[k] * age ** (k - i) / math.factorial(k - i) for k in range(i, 4))
         for i in range(4)
     ]
-    assert list(cubic_at(m, age)) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    assert list(cubic_at(m, at.CUBIC, age)) == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
 def handed_over(cubic, age):

@@ -25,6 +25,7 @@ def structure(mu, e, m1=1.3, e_slope=0.0):
     m = unstarted(m1=m1, m2=mu * m1, e=e, e_slope=e_slope)
     m[at.MU], m[at.OMEGA] = m[at.M2] / m[at.M1], 1.7
     m[at.SHARE] = 1.0 / (1.0 + m[at.MU])
+    m[at.REDUCED_MASS] = m[at.M2] * m[at.SHARE]
     return m
 
 

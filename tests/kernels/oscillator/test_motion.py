@@ -56,6 +56,7 @@ def events(m, stop):
             "stop": 60.0,
         },
         {"d1": 1.9, "d2": 0.3, "e": 0.0, "box_frequency": 0.6, "stop": 60.0},
+        {"force1_amplitude": 0.3, "force2_amplitude": -0.1, "force2": 0.02, "stop": 60.0},
     ],
 )
 def test_event_by_event_in_high_precision(values):

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.numerics.elementary import TWO_PI, sincos_turns
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.excitation import cubic_at, set_cubic_response, set_harmonic
+from fmu_src.kernels.oscillator.excitation import set_cubic_response, set_harmonic
 from fmu_src.kernels.oscillator.nodes import free_part_after
 from fmu_src.kernels.oscillator.parameters import set_oscillator
 from fmu_src.kernels.oscillator.response import displacement, fundamental_solutions, set_free
@@ -50,12 +50,13 @@ def oscillator(damping, omega_squared, x, v, phase, forcing=FORCING):
     m = [0.0] * at.SIZE
     set_oscillator(m, BRANCH, damping, omega_squared)
     m[at.ETA], m[at.TURN] = forcing["box_frequency"], phase / TWO_PI
-    m[at.FORCING] = forcing["box_amplitude"] * forcing["box_frequency"] ** 2
+    m[BRANCH + at.DRIVE + 1] = forcing["box_amplitude"] * forcing["box_frequency"] ** 2
     for i, name in enumerate(("acceleration", "jerk", "snap", "crackle")):
         m[at.CUBIC + i] = -forcing[f"box_{name}"]
     assert not set_harmonic(m, BRANCH, HARMONIC)
     m[at.CUBIC_PRESENT] = 1.0
-    set_cubic_response(m, BRANCH, CUBIC, cubic_at(m, 0.0))
+    m[BRANCH + at.SHARES] = 1.0
+    set_cubic_response(m, BRANCH, CUBIC)
     set_free(m, HARMONIC, FREE, CUBIC, x, v, *sincos_turns(m[at.TURN]))
     return m
 

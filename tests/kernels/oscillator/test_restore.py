@@ -22,7 +22,7 @@ def bits(values):
     return struct.pack(f"<{len(values)}d", *values)
 
 
-def drawn(draw):
+def drawn(draw, more):
     """A structure in motion, and its start time."""
     values = {
         "e": draw.choice([0.0, 0.3, 0.7, 0.95, 1.0]),
@@ -46,11 +46,15 @@ def drawn(draw):
             (1.0 + values["k2"]) / (1.0 + values["m2"]) if values["bonded"] else square
         )
         values |= {"d1": 0.0, "d2": 0.0, "box_frequency": natural, "box_amplitude": 1.0}
+    if not values["bonded"] and more.random() < 0.3:
+        values |= {"wall": 1.0, "x2_start": 0.0, "v2_start": 0.0}
+    if more.random() < 0.3:
+        values["stroke"] = 3.0 + more.random()
     start = draw.choice([0.0, 3.3, -1e3])
     return started(start, **values), start
 
 
-def change_inputs(draw, *memories):
+def change_inputs(draw, more, *memories):
     """The same in each of the memories."""
     changes = {
         at.BOX_AMPLITUDE: draw.uniform(-1.0, 1.0),
@@ -58,16 +62,20 @@ def change_inputs(draw, *memories):
         at.BOX_ACCELERATION: draw.uniform(-1.0, 1.0),
         at.BOX_JERK: draw.choice([0.0, draw.uniform(-1.0, 1.0)]),
     }
-    for slot, value in changes.items():
-        if draw.random() < 0.2:
+    slots = at.FORCE1_AMPLITUDE, at.FORCE1, at.FORCE2_2
+    if memories[0][at.E] == 1.0:  # pressed, masses would not stick: impacts without end
+        slots = ()
+    forces = {slot: more.uniform(-0.3, 0.3) for slot in slots}
+    for slot, value in (changes | forces).items():
+        if (more if slot in forces else draw).random() < 0.2:
             for m in memories:
                 m[slot] = value
 
 
 def check(seed, steps):
     """A run, and one that is restored before each of its steps."""
-    draw = random.Random(seed)
-    m, start = drawn(draw)
+    draw, more = random.Random(seed), random.Random(f"family {seed}")
+    m, start = drawn(draw, more)
     time = start
     for _ in range(steps):
         other = list(m)
@@ -75,7 +83,7 @@ def check(seed, steps):
         assert stepper.restore(other, start) == at.OK
         changed = {slot for slot in range(at.SIZE) if bits([m[slot]]) != bits([other[slot]])}
         assert changed <= (OF_NODES if m[at.SERIES] != 0.0 else set()), (seed, time)
-        change_inputs(draw, m, other)
+        change_inputs(draw, more, m, other)
         m[at.STOP_AT_IMPACT] = other[at.STOP_AT_IMPACT] = float(seed % 3 == 0)
         time += draw.choice([0.05, 0.3, 2.0, 7.0])
         code = stepper.advance(m, time)

@@ -128,8 +128,8 @@ def test_a_short_flight_under_a_preload_is_that_of_the_gap(values, x, v, slope):
 def test_a_gap_that_is_not_concave_is_walked():
     m = flight(1.0, 0.0, 1.0, 1e-3, box_amplitude=0.0)
     assert series.short_flight_duration(m, 8) == m[at.END] > 0.0
-    m[at.FORCING] = 1e9
+    m[at.OSCILLATOR_1 + at.DRIVE + 1] = 1e9
     assert series.short_flight_duration(m, 8) == 0.0
-    m[at.FORCING] = 0.0
+    m[at.OSCILLATOR_1 + at.DRIVE + 1] = 0.0
     m[at.SERIES_GAP + 6] = 1e3
     assert series.short_flight_duration(m, 8) == 0.0
