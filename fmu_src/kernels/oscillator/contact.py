@@ -13,7 +13,7 @@ ROUNDING = 1e-14
 HIGHEST = 5
 
 
-def gap_acceleration(m, x, v, cosine, sine, tau):
+def gap_acceleration(m, x, v, cosine, sine, tau):  # inline
     """Return f of (18), the gap's acceleration at displacement ``x`` of both masses from where they
     rest together, common velocity ``v``, a phase and an age of the state; negative where they are
     pressed together.

@@ -277,7 +277,7 @@ def collide(m, x, v1, v2):
     return (common, common) if sticks else velocities_after_impact(m, v1, v2, e)
 
 
-def gap_acceleration_at_start(m, x, v):
+def gap_acceleration_at_start(m, x, v):  # inline
     """Return f of (18) at the present state's start."""
     return gap_acceleration(m, x, v, m[at.COSINE], m[at.SINE], 0.0)
 

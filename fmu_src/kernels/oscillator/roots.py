@@ -102,12 +102,15 @@ def cross_intervals_loop(m, target, ceiling, plain, watched):  # inline
     m[at.CLEAR] = age if clear else left
     put_phasors(m, at.LEFT, old_x, old_v, old_x_b, old_v_b, old_cosine, old_sine)
     put_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
-    m[at.LEFT_VALUES] = l0
-    m[at.LEFT_VALUES + 1] = l1
-    m[at.LEFT_VALUES + 2] = l2
-    m[at.RIGHT_VALUES] = r0
-    m[at.RIGHT_VALUES + 1] = r1
-    m[at.RIGHT_VALUES + 2] = r2
+    put_values(m, at.LEFT_VALUES, l0, l1, l2)
+    put_values(m, at.RIGHT_VALUES, r0, r1, r2)
+
+
+def put_values(m, slot, h0, h1, h2):  # inline
+    """Write the event function and two derivatives to three slots."""
+    m[slot] = h0
+    m[slot + 1] = h1
+    m[slot + 2] = h2
 
 
 def clear_from_node(m):
@@ -162,7 +165,7 @@ def step_inside_interval(m):
     take_step(m, tau, reach, step, found, (h0, h1, h2, h3, h4, bound))
 
 
-def take_step(m, tau, reach, step, found, values):  # inline
+def take_step(m, tau, reach, step, found, values):
     """Take a step that the event function allows, or a shorter one, if the gap's limit is near.
 
     ``values`` are the event function's value, four derivatives and bound at ``tau``.

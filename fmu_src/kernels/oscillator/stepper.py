@@ -70,21 +70,9 @@ def initialize(m, time):
     m[at.STICKING_ENERGY] = 0.0
     m[at.IMPACT_SIDE] = 0.0
     x1, x2, gap = starting_point(m)
-    if gap < 0.0:
-        m[at.REPORT] = m[at.X1_START] - m[at.GAP_OFFSET]
-        return at.START_OVERLAP if m[at.GAP_OFFSET] <= 0.0 else at.START_BEYOND_CLEARANCE
-    rounding = TOUCHING * (abs(m[at.X1_START]) + abs(m[at.X2_START]) + m[at.STROKE])
-    if max(gap - rounding, m[at.CLEARANCE]) > m[at.LIMIT]:
-        m[at.REPORT] = gap
-        return at.START_BEYOND_STROKE
-    if m[at.BONDED] != 0.0 and (
-        m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]
-    ):
-        return at.START_BONDED
-    if m[at.WALL] != 0.0 and (
-        m[at.X2_START] != 0.0 or m[at.V2_START] != 0.0 or m[at.BONDED] != 0.0
-    ):
-        return at.START_WALL
+    code = check_start(m, gap)
+    if code != at.OK:
+        return code
     set_phase(m, m[at.PHASE_START] / TWO_PI)
     for i in range(3):
         m[at.CUBIC_SET + i] = 1.0
@@ -95,12 +83,7 @@ def initialize(m, time):
         return at.TOO_FAST
     m[at.WORK_LIMIT] = WORK_BASE
     m[at.MODE] = at.GLUED if m[at.BONDED] != 0.0 else at.CONTACT
-    v1, v2 = m[at.V1_START] / m[at.OMEGA], m[at.V2_START] / m[at.OMEGA]
-    if gap + rounding >= m[at.LIMIT]:  # rarely
-        mirror(m)
-        x1 = x2 = -x1 - m[at.REST_1]
-        v1, v2, gap = -v1, -v2, 0.0
-    begin_state(m, x1, v1, x2, v2, gap, 0)
+    begin_first_state(m, x1, x2, gap)
     if m[at.NARROW] != 0.0:  # rarely
         return at.TOO_NARROW
     seen = outputs_at(m, 0.0)
@@ -109,6 +92,40 @@ def initialize(m, time):
     if m[at.PEAKS_ON] != 0.0:
         record_peaks(m, 0.0, 0.0)
     return check_finite(finite_check_sum(seen) + sum_of_peaks(m))
+
+
+def check_start(m, gap):
+    """Return OK, or the code of what is wrong with the start, whose gap is given."""
+    if gap < 0.0:
+        m[at.REPORT] = m[at.X1_START] - m[at.GAP_OFFSET]
+        return at.START_OVERLAP if m[at.GAP_OFFSET] <= 0.0 else at.START_BEYOND_CLEARANCE
+    if max(gap - start_rounding(m), m[at.CLEARANCE]) > m[at.LIMIT]:
+        m[at.REPORT] = gap
+        return at.START_BEYOND_STROKE
+    if m[at.BONDED] != 0.0 and (
+        m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]
+    ):
+        return at.START_BONDED
+    if m[at.WALL] != 0.0 and (
+        m[at.X2_START] != 0.0 or m[at.V2_START] != 0.0 or m[at.BONDED] != 0.0
+    ):
+        return at.START_WALL
+    return at.OK
+
+
+def start_rounding(m):
+    """Return the rounding of the gap at the start."""
+    return TOUCHING * (abs(m[at.X1_START]) + abs(m[at.X2_START]) + m[at.STROKE])
+
+
+def begin_first_state(m, x1, x2, gap):
+    """Begin the first state; mirrored where the masses are at the outer end of their play."""
+    v1, v2 = m[at.V1_START] / m[at.OMEGA], m[at.V2_START] / m[at.OMEGA]
+    if gap + start_rounding(m) >= m[at.LIMIT]:  # rarely
+        mirror(m)
+        x1 = x2 = -x1 - m[at.REST_1]
+        v1, v2, gap = -v1, -v2, 0.0
+    begin_state(m, x1, v1, x2, v2, gap, 0)
 
 
 def restore(m, time):
