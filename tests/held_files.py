@@ -1,4 +1,4 @@
-"""Windows' rule, here: a file that this process holds open or has mapped is not removed or replaced.
+"""Windows' rule, here: a file that is open or mapped by this process is not removed or replaced.
 
 ``python -m pytest --held-files`` runs tests with it, where ``/proc`` says what is open.
 """
@@ -9,24 +9,20 @@ from pathlib import Path
 OPEN, MAPPED = Path("/proc/self/fd"), Path("/proc/self/maps")
 
 
-def whole_path(path, folder):
-    """The path that a name below an open folder, or below the present one, stands for."""
-    path = os.fsdecode(os.fspath(path))
-    return os.path.join(os.readlink(OPEN / str(folder)) if folder is not None else "", path)
+def target(link):
+    try:
+        return link.readlink()
+    except OSError:  # closed meanwhile
+        return None
 
 
 def refuse_if_held(path, folder=None):
-    path = os.path.realpath(whole_path(path, folder))
-    held = {link for number in os.listdir(OPEN) if (link := target(OPEN / number))}
-    if path in held or (path.endswith(".so") and f"{path}\n" in MAPPED.read_text()):
-        raise PermissionError(13, "in use by this process", path)
-
-
-def target(link):
-    try:
-        return os.readlink(link)
-    except OSError:  # closed meanwhile
-        return ""
+    """Raise as Windows does; ``folder`` is the descriptor of an open one that the path is in."""
+    base = Path() if folder is None else (OPEN / str(folder)).readlink()
+    path = (base / os.fsdecode(path)).resolve()
+    is_mapped = path.suffix == ".so" and f"{path}\n" in MAPPED.read_text()
+    if is_mapped or path in map(target, OPEN.iterdir()):
+        raise PermissionError(13, "in use by this process", str(path))
 
 
 def install():
