@@ -1,10 +1,10 @@
-"""A wheel carries the FMUs that were built from its own sources, so that it runs without compilers.
+"""The build backend: hatchling, and a wheel that carries the FMUs and runs without compilers.
 
 For a wheel, not for an editable installation, ``build/FORM/NAME.fmu`` of the source tree becomes
 ``orchestrate/fmu/fmus/FORM/NAME.fmu``, and ``build/wasm/NAME.wasm``, the kernel for web pages,
 ``orchestrate/fmu/fmus/wasm/NAME.wasm``; so do ``build/libraries/PLATFORM/``, compiled from the
-package's own C sources, for all platforms that are there. What is not there, or was made of other
-sources, is left out, and said to be.
+package's own C sources. What is not there, or was made of other sources, is made first; what cannot
+be made is left out, and said to be.
 """
 
 from __future__ import annotations
@@ -12,12 +12,27 @@ from __future__ import annotations
 import re
 import sys
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from hatchling import build as hatchling_build
+from hatchling.build import *  # noqa: F403  the backend, but for what is defined here
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
+ROOT = Path(__file__).resolve().parent
 PLACE = "orchestrate/fmu/fmus"
+IMPORTED = ("fmpy", "jinja2")  # by the exporters, beside the extra "build"
+
+
+def get_requires_for_build_wheel(config_settings: dict[str, Any] | None = None) -> list[str]:
+    """Return what making the FMUs of a wheel needs; an editable installation needs none of it."""
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    imported = [line for line in project["dependencies"] if line.startswith(IMPORTED)]
+    extra = project["optional-dependencies"]["build"]
+    return [*hatchling_build.get_requires_for_build_wheel(config_settings), *imported, *extra]
 
 
 def guid_inside(path: Path) -> str:
@@ -38,31 +53,67 @@ class CustomBuildHook(BuildHookInterface):
         """Name the files to be included; ``version`` is ``"editable"`` or ``"standard"``."""
         if version == "editable":
             return
-        root = Path(self.root)
+        root, self.included = Path(self.root), build_data["force_include"]
         sys.path.insert(0, str(root))
         from fmu_src.export import c_library, forms, platforms, webassembly
 
+        build = root / "build"
         for form in forms.FORMS:
             for name in forms.MODELS:
-                path = root / "build" / form / f"{name}.fmu"
-                if guid_inside(path) == forms.guid(name, form):
-                    build_data["force_include"][str(path)] = f"{PLACE}/{form}/{name}.fmu"
-                else:
-                    self.app.display_warning(f"{path}: none of these sources, left out")
+                path, token = build / form / f"{name}.fmu", forms.guid(name, form)
+                self.include(
+                    {path: f"{PLACE}/{form}/{name}.fmu"},
+                    lambda path=path, token=token: guid_inside(path) == token,
+                    lambda form=form, name=name: forms.export(name, form, build),
+                )
         for name, folder in forms.MODELS.items():
-            path = root / "build" / "wasm" / f"{name}.wasm"
-            module = path.read_bytes() if path.is_file() else b""
-            if webassembly.guid_inside(module) == webassembly.guid(folder):
-                build_data["force_include"][str(path)] = f"{PLACE}/wasm/{name}.wasm"
-            else:
-                self.app.display_warning(f"{path}: none of these sources, left out")
+            path = build / "wasm" / f"{name}.wasm"
+            self.include(
+                {path: f"{PLACE}/wasm/{name}.wasm"},
+                lambda path=path, folder=folder: (
+                    path.is_file()
+                    and webassembly.guid_inside(path.read_bytes()) == webassembly.guid(folder)
+                ),
+                lambda path=path, folder=folder: write(path, webassembly.export(folder)),
+            )
         for source in sorted(c_library.LOOPS.glob("*.c")):
             token = c_library.guid(source)
             for platform in platforms.PLATFORMS:
-                path = root / "build" / "libraries" / c_library.file_name(source, platform)
-                if c_library.is_current(path, token):
-                    for file in (path, c_library.digest_file(path)):
-                        place = f"{PLACE}/libraries/{platform}/{file.name}"
-                        build_data["force_include"][str(file)] = place
-                elif path.exists():
-                    self.app.display_warning(f"{path}: none of these sources, left out")
+                path = build / "libraries" / c_library.file_name(source, platform)
+                if platform in platforms.usual() or path.exists():
+                    files = path, c_library.digest_file(path)
+                    self.include(
+                        {one: f"{PLACE}/libraries/{platform}/{one.name}" for one in files},
+                        lambda path=path, token=token: c_library.is_current(path, token),
+                        lambda source=source, platform=platform, path=path: write_library(
+                            path, c_library.export(source, platform)
+                        ),
+                    )
+
+    def include(
+        self, files: dict[Path, str], is_current: Callable[[], bool], make: Callable[[], object]
+    ) -> None:
+        """Include files at their places in the wheel; make those that are not of these sources."""
+        from fmu_src.export.errors import CannotExport
+
+        try:
+            if not is_current():
+                make()
+        except CannotExport as reason:
+            self.app.display_warning(f"{next(iter(files))}: left out: {reason}")
+        else:
+            self.included |= {str(path): place for path, place in files.items()}
+
+
+def write_library(path: Path, library: bytes) -> None:
+    """Write a compiled library with its digest."""
+    from fmu_src.export import c_library
+
+    write(path, library)
+    write(c_library.digest_file(path), c_library.digest(library).encode())
+
+
+def write(path: Path, content: bytes) -> None:
+    """Write a file, and its folder if it is missing."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)

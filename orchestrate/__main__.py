@@ -41,7 +41,15 @@ def resend_interrupt(lost: sys.UnraisableHookArgs) -> None:
         sys.__unraisablehook__(lost)
         return
     number = signal.SIGINT if lost.exc_type is KeyboardInterrupt else signal.SIGTERM
-    threading.Timer(0.05, os.kill, (os.getpid(), number)).start()
+    threading.Timer(0.05, send_to_itself, (number,)).start()
+
+
+def send_to_itself(number: int) -> None:
+    """Send this process a signal; on Windows ``os.kill`` would end it at once."""
+    if sys.platform == "win32":
+        signal.raise_signal(number)
+    else:
+        os.kill(os.getpid(), number)
 
 
 def open_missing_streams() -> None:

@@ -8,6 +8,7 @@ import gc
 import pytest
 from hypothesis import HealthCheck, settings
 
+from . import held_files
 from .exports import BUILD, refresh
 from .fmu.programs.driver import Fmu2
 
@@ -23,6 +24,8 @@ def pytest_configure(config):
     """The slow run takes many examples of each property, and the ordinary one few."""
     if config.option.markexpr == "slow":
         settings.load_profile("many")
+    if config.option.held_files:
+        held_files.install()
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -43,6 +46,8 @@ def pytest_collection_finish():
 def pytest_addoption(parser):
     """Declare what a campaign takes: ``pytest tests/campaigns -m slow --seed 95 --budget 2000``."""
     parser.addoption("--seed", type=int, default=1, help="of all that a campaign draws")
+    text = "open files cannot be removed or replaced, as on Windows"
+    parser.addoption("--held-files", action="store_true", help=text)
     parser.addoption("--budget", type=int, help="units that a campaign does; else its own few")
 
 

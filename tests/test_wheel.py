@@ -35,5 +35,5 @@ def test_the_wheel_carries_nothing_else(wheel):
     libraries = {f"{PLACE}/libraries/{this_machine()}/{source.stem}" for source in SOURCES}
     assert libraries <= {name.partition(".")[0] for name in names}
     roots = {name.split("/")[0] for name in names if ".dist-info" not in name}
-    assert roots == {"fmu_src", "orchestrate"}
+    assert roots == {"fmu_src", "orchestrate", "vibroimpact"}
     assert "orchestrate/py.typed" in names

@@ -194,6 +194,7 @@ def windows_sources() -> dict[str, bytes]:
     """Return the files of mingw-w64, which comes with ziglang, that the Windows libraries
     contain.
     """
+    require("ziglang", "brings the C library of Windows")
     spec = importlib.util.find_spec("ziglang")
     assert spec is not None and spec.origin is not None
     folder = Path(spec.origin).parent / WINDOWS_FOLDER

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 
-EXTRA = 'pip install "vibroimpact[build]"'
+EXTRA = 'pip install -e ".[build]" in a clone'
 
 
 class CannotExport(Exception):

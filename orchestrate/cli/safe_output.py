@@ -34,6 +34,10 @@ class SafeStream:
         if self.error is None:
             try:
                 getattr(self._stream, name)(*arguments)
+            except UnicodeEncodeError:  # a console's letters: "?" stands for those it lacks
+                coding = self._stream.encoding
+                known = [str(one).encode(coding, "replace").decode(coding) for one in arguments]
+                self._call_unless_failed(name, *known)
             except (OSError, ValueError) as error:  # full, nobody reads, or closed
                 self.error = error
 

@@ -133,7 +133,8 @@ def find_orbit(instance: EventInstance, job: OrbitJob) -> Table:
         tried = orbit_guesses(instance, job, setting, values)
         family, root = first_possible_orbit(setting, tried, values, stable=job.guess is None)
     except SOLVER_ERRORS as reason:
-        expected = "another guess" if job.guess else "another period, or a guess"
+        expected = "another period, or a guess to orbit, whose result is a start for branch"
+        expected = "another guess" if job.guess else expected
         raise InputError(
             f"period = {job.period}: no orbit found ({reason}); expected {expected}"
         ) from None

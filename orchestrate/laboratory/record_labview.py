@@ -15,7 +15,7 @@ from .record_csv import decode_text
 
 def missing_reader(package: str, kind: str) -> InputError:
     """Return the error of a package that is not installed, with the remedy."""
-    text = f"expected the package {package}: pip install 'vibroimpact[laboratory]'"
+    text = f"expected the package {package}: pip install {package}"
     return InputError(f"{kind} need a package that is not here; {text}")
 
 

@@ -15,7 +15,7 @@ from .executors import RESUMES, Workers, format_end
 CONNECT_TIMEOUT = "5s"
 CONNECTION_ERRORS = (OSError, CancelledError, asyncio.CancelledError)
 RETRIES = 3  # a chunk whose worker is lost is computed by others
-NO_DASK = 'cluster: needs Dask; pip install "vibroimpact[cluster]" brings it'
+NO_DASK = "cluster: needs Dask; pip install distributed brings it"
 
 
 @contextmanager

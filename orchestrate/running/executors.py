@@ -17,6 +17,7 @@ import signal
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager
@@ -152,7 +153,11 @@ def processes(count: int, foreign: str = "") -> Iterator[Workers]:
         )
         pool.submit(int)  # starts them
     try:
-        yield Workers(pool, lambda: count + 1)
+        with warnings.catch_warnings():
+            # loky's, of a worker that it replaces: nothing is lost and nothing is to be done
+            replaced = "A worker (stopped|was restarted) while some jobs"
+            warnings.filterwarnings("ignore", replaced, UserWarning)
+            yield Workers(pool, lambda: count + 1)
     except BaseException as error:
         pool.shutdown(wait=True, kill_workers=True)
         remove_leftovers()

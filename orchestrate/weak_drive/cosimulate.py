@@ -206,7 +206,7 @@ class CosimulateJob(Question):
         """Return the progress bar's note where a run cannot be resumed."""
         if first or describe(self.drive).saves_states:
             return ""
-        return "not resumable"
+        return "run (not resumable)"
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Do some steps, of half the length too; or compute the motion at the end."""

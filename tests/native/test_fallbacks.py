@@ -49,7 +49,7 @@ def test_without_a_compiler_there_is_the_pythonfmu_fmu_and_one_line(fmus, hide, 
     made, reasons = build(tmp_path / "build")
     assert list(made) == ["fmi2-python"]
     for line in (*reasons.values(), *caplog.messages):
-        assert "no C compiler" in line and 'pip install "vibroimpact[build]"' in line
+        assert "no C compiler" in line and 'pip install -e ".[build]"' in line
         assert "\n" not in line
     (line,) = caplog.messages
     assert "pure Python" in line
@@ -63,7 +63,7 @@ def test_without_a_compiler_one_line_says_what_the_loops_need(hide, tmp_path):
         library(LOOPS / "respond.c", tmp_path)
     (line,) = str(caught.value).splitlines()
     assert line.startswith("respond.c: no library of it is here") and "no C compiler" in line
-    assert 'expected pip install "vibroimpact[build]"' in line
+    assert 'expected pip install -e ".[build]"' in line
 
 
 @pytest.mark.slow  # compiles for 4 s

@@ -183,3 +183,16 @@ def test_an_interrupt_while_modules_are_read(monkeypatch, capfd):
 def test_the_installed_command_is_the_same():
     (point,) = entry_points(group="console_scripts", name="vibroimpact")
     assert point.load() is __main__.main
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1251", "cp932"])
+def test_a_console_without_some_letters_gets_the_others(encoding):
+    """It had got nothing at all, because of one accent."""
+    stream = io.TextIOWrapper(io.BytesIO(), encoding=encoding)
+    safe = SafeStream(stream)
+    safe.write("Poincaré \u2192 map\n")
+    safe.write("sweep\n")
+    safe.flush()
+    assert safe.error is None
+    lines = stream.buffer.getvalue().decode(encoding).splitlines()
+    assert lines[0].startswith("Poincar") and lines[0].endswith("map") and lines[1] == "sweep"

@@ -5,6 +5,7 @@ import functools
 import numpy as np
 import pytest
 
+from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
@@ -142,6 +143,11 @@ def test_no_orbit_is_said():
     """4T/1 does not exist at 7.4: its flight would go through mass 1."""
     with pytest.raises(InputError, match="period = 4: no orbit found"):
         orbit(PAPER, eta=7.4, period=4, guess={"impact_time": [0.4]})
+
+
+def test_where_no_orbit_is_found_the_message_names_the_way_to_a_branch():
+    with pytest.raises(InputError, match="a guess to orbit, whose result is a start for branch"):
+        branch(PAPER, eta=2.5, period=2, limits=(2.4, 2.8))
 
 
 def test_an_impact_at_phase_0_makes_no_longer_period():

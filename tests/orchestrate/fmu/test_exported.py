@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from fmu_src.export.errors import EXTRA
 from orchestrate.errors import InputError, StoreError
 from orchestrate.fmu import (
     FORMS,
@@ -25,7 +26,7 @@ from orchestrate.fmu import (
 
 from .altered import altered_fmu
 
-REASON = "ziglang, which compiles the kernel, is not installed: expected vibroimpact[build]"
+REASON = "ziglang, which compiles the kernel, is not installed: expected " + EXTRA
 
 
 @pytest.fixture

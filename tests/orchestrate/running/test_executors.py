@@ -2,6 +2,7 @@
 
 import os
 import threading
+import warnings
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from typing import ClassVar
 
@@ -11,7 +12,7 @@ import pytest
 from orchestrate.errors import InputError, WorkerError
 from orchestrate.fmu import OSCILLATOR
 from orchestrate.running import cluster, runner
-from orchestrate.running.executors import compute, threads
+from orchestrate.running.executors import compute, processes, threads
 from orchestrate.running.runner import answer
 
 from .sums import Forgetful, Gathered, Squares, Sums
@@ -40,6 +41,14 @@ def test_all_give_what_this_process_gives(find, monkeypatch, where, dask):
         running = {"jobs": 2, "cluster": clusters.get(where)}
         for job, expected in zip(JOBS, alone, strict=True):
             assert answer(job, running, find).identical(expected)
+
+
+@pytest.mark.parametrize("text", ["was restarted while some jobs were", "stopped while some jobs"])
+def test_of_a_worker_that_is_replaced_the_user_hears_nothing(text, recwarn):
+    with processes(1):
+        warnings.warn(f"A worker {text} given to the executor ...", UserWarning, stacklevel=1)
+        warnings.warn("something else", UserWarning, stacklevel=1)
+    assert [str(warning.message) for warning in recwarn] == ["something else"]
 
 
 def test_threads_compute_at_once_and_no_more_than_so_many():

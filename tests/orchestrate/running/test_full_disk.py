@@ -33,7 +33,7 @@ def small_disk(tmp_path):
 
 
 @pytest.mark.parametrize("room", ["200k", "480k"])  # full at a chunk, full at the result
-def test_it_goes_on_when_there_is_room(find, tmp_path, small_disk, monkeypatch, room):
+def test_it_goes_on_when_there_is_room(find, tmp_path, small_disk, monkeypatch, room, pytestconfig):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     folder, resize = small_disk
     resize(room)
@@ -47,7 +47,9 @@ def test_it_goes_on_when_there_is_room(find, tmp_path, small_disk, monkeypatch, 
     resize("4m")
     answer(Noise("noise"), {"store": folder / "noise.nc"}, find)
     assert (folder / "noise.nc").read_bytes() == whole.read_bytes()
-    assert [path.name for path in folder.iterdir()] == ["noise.nc"]
+    left = {path.suffix for path in folder.iterdir()} - {".nc"}
+    # NetCDF's library keeps the file open that it could not finish: the next process removes it
+    assert not left or (pytestconfig.option.held_files and left == {".tmp"})
 
 
 def test_a_read_only_folder(find, small_disk):

@@ -95,7 +95,7 @@ def test_all_public_questions_are_drawn_or_known_to_have_no_picture():
     # an orbit is drawn as a motion begun on it, a passage with its waterfall; records are analysed
     assert {name for name in public if named.get(name, name) not in DRAW} == {
         *("couple_all", "impact_statistics", "orbit", "passage", "plot", "waterfall", "write_ssp"),
-        *("__version__", "measure", "record", "read_record", "write_record"),
+        *("__version__", "channels", "measure", "record", "read_record", "write_record"),
         *("read_curve", "resonance_curve"),
         *("detect_all", "report", "basin_entropy", "record_of_run"),
     }

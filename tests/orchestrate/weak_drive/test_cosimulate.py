@@ -150,7 +150,7 @@ def test_a_drive_without_states_is_said_to_begin_anew(drive, monkeypatch):
         **{"connect": (), "duration": 0.4, "step": 0.01},
     )
     assert [(chunk.start, chunk.stop) for chunk in job.chunks()] == [(0, 40), (40, 41)]
-    assert "not resumable" in job.progress_note(0)
+    assert job.progress_note(0) == "run (not resumable)"
 
 
 @pytest.mark.usefixtures("exported")
