@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
+from .ranges import checked_flag
 
 MAX_COUNT = 1_000_000  # periods, samples, values: more is a typing error
 MAX_NAME = 255  # bytes of a file's name, the limit of most systems
@@ -39,13 +40,6 @@ def checked_word(name: str, value: Any, known: Iterable[str]) -> str:
     if value not in words:
         raise InputError(f"{name} = {value!r}: expected one of {', '.join(words)}")
     return str(value)
-
-
-def checked_flag(name: str, value: Any) -> bool:
-    """Return whether a flag is set; raise ``InputError`` unless it is True or False."""
-    if not isinstance(value, (bool, np.bool_)):
-        raise InputError(f"{name} = {value!r}: expected True or False")
-    return bool(value)
 
 
 def checked_path(name: str, value: Any) -> Path:

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
 from ..errors import InputError
-from ..model.arguments import checked_flag, checked_integer, checked_path
+from ..model.arguments import checked_integer, checked_path
+from ..model.ranges import checked_flag
 
 if TYPE_CHECKING:
     from distributed import Client

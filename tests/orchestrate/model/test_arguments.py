@@ -34,7 +34,7 @@ def test_what_is_no_integer_of_the_range_is_refused(value):
     ("running", "text"),
     [
         *(
-            ({name: value}, rf"{name} = .*: expected True or False")
+            ({name: value}, rf"{name} = .*: expected true or false")
             for name in ("progress", "force", "keep_stale")
             for value in (print, "no", 1, None)
         ),

@@ -56,7 +56,7 @@ def test_a_keyword_is_a_field_with_its_check():
     ]
     with pytest.raises(InputError, match="count_of = 0: expected a whole number from 1"):
         echo(Structure(), count_of=0)
-    with pytest.raises(InputError, match="loud = 'yes': expected True or False"):
+    with pytest.raises(InputError, match="loud = 'yes': expected true or false"):
         echo(Structure(), loud="yes")
     with pytest.raises(TypeError, match="quiet"):
         echo(Structure(), quiet=True)
