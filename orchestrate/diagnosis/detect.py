@@ -162,12 +162,15 @@ class DetectJob(SearchJob):
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
-        numbers = results.parameters(stated_hypotheses(results, findings))
+        stated = stated_hypotheses(results, findings)
+        numbers = results.parameters(stated)
+        best = int(np.argmin(np.where(stated, results.misfit, np.inf)))
+        unclear = dict.fromkeys(results.undetermined(best).values()) if stated[best] else ()
         del numbers["asked"]
         return xr.Dataset({**scalars, **every, **numbers}, coordinates).assign_attrs(
             analysis="detect",
             title=f"Verdict: {findings.verdict()}",
-            reason=findings.reason(),
+            reason=" ".join([findings.reason(), *(f"{text}." for text in unclear)]),
             settle="Mend the wiring, and ask again." if wiring else findings.next_measurement(),
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
