@@ -40,6 +40,7 @@ STATED = {  # numbers of the rule: their names there, units and long names
     "frequency_low": ("first", "Hz", "lowest frequency"),
     "frequency_high": ("last", "Hz", "highest frequency"),
 }
+WITHOUT_GUESS = "both halves have the same mass: no guess was given"
 ASSUMED = (
     "the masses of both halves have the ratio of the guess",
     "each half has one mode in the range of the sweep",
@@ -52,7 +53,7 @@ ASSUMED = (
 
 def detect(
     record: xr.Dataset,
-    guess: Structure,
+    guess: Structure | None = None,
     *,
     free: Sequence[str] = FREE,
     participation: Participation = None,
@@ -67,9 +68,9 @@ def detect(
         Of a swept or stepped sine, with ``box_acceleration`` and one or both of ``acceleration1``
         and ``acceleration2``, as :func:`orchestrate.record` or :func:`orchestrate.read_record` make
         it.
-    guess : Structure
+    guess : Structure, optional
         Estimate of the delaminated structure. Frequencies may be off by 10 %; of the masses only
-        the ratio matters.
+        the ratio matters. By default halves of equal mass at both sides of the record's resonance.
     free : sequence of str
         What is fitted of the delaminated structure, as for :func:`fit`.
     participation : float or mapping of str to float, optional
@@ -132,12 +133,16 @@ def detect(
     >>> str(answer.verdict.values)
     'no opening seen'
     """
-    structure = delaminated_guess(guess)
+    chosen, changed = checked_free(free), checked_settings(settings)
+    structure = None if guess is None else delaminated_guess(guess)
+    data = checked_data(record, structure, participation, changed)
+    made = structure or halves_around(cached_orders(data).resonance)
     job = DetectJob(
-        name=f"detect_{checked_structure(guess).label()}",
-        data=checked_data(record, structure, participation, checked_settings(settings)),
-        guess=structure,
-        free=checked_free(free),
+        name=f"detect_{checked_structure(guess or made).label()}",
+        data=data,
+        guess=made,
+        free=chosen,
+        is_guessed=guess is not None,
     )
     return answer(job, running, finder(running))
 
@@ -145,6 +150,8 @@ def detect(
 @dataclass(frozen=True, kw_only=True)
 class DetectJob(SearchJob):
     """Fit all hypotheses to a record and decide which verdict they give."""
+
+    is_guessed: bool = True  # by the caller, not from the record's resonance
 
     def dataset(self, table: Table) -> xr.Dataset:
         results = Results.from_table(self, table)
@@ -173,10 +180,16 @@ class DetectJob(SearchJob):
             reason=" ".join([findings.reason(), *(f"{text}." for text in unclear)]),
             settle="Mend the wiring, and ask again." if wiring else findings.next_measurement(),
             seen_up_to=findings.seen_up_to(),
-            assumed="; ".join(ASSUMED),
+            assumed="; ".join(ASSUMED if self.is_guessed else (WITHOUT_GUESS, *ASSUMED[1:])),
             direction=sweep_direction(whole.windows.frequency),
             wiring=wiring,
         )
+
+
+def halves_around(resonance: float) -> Structure:
+    """Return halves of equal mass, 5 % at both sides of a resonance in Hz, as a first guess."""
+    ends = {"f1": 0.95 * resonance, "f2": 1.05 * resonance}
+    return Structure.from_halves(m1=1.0, m2=1.0, **ends, zeta1=0.01, zeta2=0.01, e=0.6)
 
 
 def record_variables(orders: RecordOrders) -> dict[str, Variable]:

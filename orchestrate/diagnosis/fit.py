@@ -84,8 +84,9 @@ def fit(
         does not hold it: the halves' numbers where no opening is seen, their frequencies where they
         are equal within their errors, a damping ratio whose error is above ``undetermined`` of it;
         errors and correlations also where the misfit is above ``delaminated`` of the settings. Over
-        ``parameter`` and ``other_parameter``: ``correlation``. ``misfit``, 1 where the model misses 3 % of order 1 or
-        the noise, and ``evaluations``; ``minima`` over ``minimum``: misfits of those that differ;
+        ``parameter`` and ``other_parameter``: ``correlation``. ``misfit``, 1 where the model misses
+        3 % of order 1 or the noise, and ``evaluations``; ``minima`` over ``minimum``: misfits of
+        those that differ;
         ``misfit_at`` over ``window``; ``participation`` and ``participation_error`` over
         ``channel``. Over ``channel``, ``order`` and ``window``: the amplitudes
         ``measured``, ``fitted`` and their ``floor`` in m/s2. The attribute ``reason`` says why

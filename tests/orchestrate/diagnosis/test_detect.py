@@ -148,6 +148,15 @@ def test_what_a_record_does_not_determine_is_said():
     assert Results.undetermined(other, 0) == {}
 
 
+def test_a_record_without_a_guess_gets_its_verdict_by_halves_around_its_resonance():
+    """It was a TypeError, while the guess may be left out by the contract."""
+    answer = orchestrate.detect(record(BEAM.as_bonded(), noise=0.02, both=False), **LIMIT)
+    assert str(answer.verdict.values) == "no opening seen"
+    assert "same mass: no guess" in answer.attrs["assumed"]
+    common = float(answer.value.sel(hypothesis="bonded", parameter="f"))
+    assert common == pytest.approx(33.79, rel=0.005)
+
+
 def test_a_gap_is_fitted_unless_it_is_left_out():
     """A gap of 0.09 mm was taken for frequencies: f2 = 29.7 +- 1.1 Hz, where it was 32.8."""
     assert inspect.signature(orchestrate.fit).parameters["free"].default == FREE
