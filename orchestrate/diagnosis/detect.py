@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..constants import TURN
 from ..fmu import finder
 from ..laboratory.record_checks import clipped_share
 from ..lazy import Unpack, xr
@@ -24,6 +25,7 @@ from .even_orders import smallest_openings, thresholds
 from .evidence import Participation
 from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
+from .impact_timing import strikes
 from .orders import RecordOrders
 from .search_job import SearchJob, cached_orders
 from .settings import Changes, checked_settings
@@ -102,7 +104,9 @@ def detect(
         about and that describe the record), ``misfit_at`` and the ``fitted`` orders over
         ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
         ``seen_up_to``, ``assumed``, ``direction`` of the sweep and ``wiring``, the doubts about the
-        channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`).
+        channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`); and ``strikes``, what strikes
+        by its timing (:meth:`orchestrate.diagnosis.impact_timing.Strikes.word`), which does not
+        act on the verdict.
 
     Raises
     ------
@@ -183,7 +187,17 @@ class DetectJob(SearchJob):
             assumed="; ".join(ASSUMED if self.is_guessed else (WITHOUT_GUESS, *ASSUMED[1:])),
             direction=sweep_direction(whole.windows.frequency),
             wiring=wiring,
+            strikes=self.what_strikes(whole),
         )
+
+    def what_strikes(self, orders: RecordOrders) -> str:
+        """Return the word of the sensor that hears most by impact timing, with its numbers."""
+        half = self.guess
+        shut = math.sqrt((half.k1 + half.k2) / (half.m1 + half.m2)) / TURN
+        known = shut if self.is_guessed else math.nan
+        every = (strikes(orders.channels, row, known) for row in orders.rows)
+        one = max(every, key=lambda strike: strike.heard)
+        return f"{one.word()} ({one.numbers()})"
 
 
 def halves_around(resonance: float) -> Structure:
