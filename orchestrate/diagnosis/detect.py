@@ -202,8 +202,8 @@ class DetectJob(SearchJob):
 
 def halves_around(resonance: float) -> Structure:
     """Return halves of equal mass, 5 % at both sides of a resonance in Hz, as a first guess."""
-    ends = {"f1": 0.95 * resonance, "f2": 1.05 * resonance}
-    return Structure.from_halves(m1=1.0, m2=1.0, **ends, zeta1=0.01, zeta2=0.01, e=0.6)
+    f1, f2 = 0.95 * resonance, 1.05 * resonance
+    return Structure.from_halves(m1=1.0, m2=1.0, f1=f1, f2=f2, zeta1=0.01, zeta2=0.01, e=0.6)
 
 
 def record_variables(orders: RecordOrders) -> dict[str, Variable]:
