@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..constants import TURN
 from ..fmu import finder
 from ..laboratory.record_checks import clipped_share
 from ..lazy import Unpack, xr
@@ -25,6 +26,7 @@ from .even_orders import smallest_openings, thresholds
 from .evidence import Participation
 from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
+from .impact_timing import strikes
 from .orders import RecordOrders
 from .search_job import SearchJob, cached_orders
 from .settings import Changes, checked_settings
@@ -41,6 +43,7 @@ STATED = {  # numbers of the rule: their names there, units and long names
     "frequency_low": ("first", "Hz", "lowest frequency"),
     "frequency_high": ("last", "Hz", "highest frequency"),
 }
+WITHOUT_GUESS = "both halves have the same mass: no guess was given"
 ASSUMED = (
     "the masses of both halves have the ratio of the guess",
     "each half has one mode in the range of the sweep",
@@ -53,7 +56,7 @@ ASSUMED = (
 
 def detect(
     record: xr.Dataset,
-    guess: Structure,
+    guess: Structure | None = None,
     *,
     free: Sequence[str] = FREE,
     participation: Participation = None,
@@ -68,9 +71,9 @@ def detect(
         Of a swept or stepped sine, with ``box_acceleration`` and one or both of ``acceleration1``
         and ``acceleration2``, as :func:`orchestrate.record` or :func:`orchestrate.read_record` make
         it.
-    guess : Structure
+    guess : Structure, optional
         Estimate of the delaminated structure. Frequencies may be off by 10 %; of the masses only
-        the ratio matters.
+        the ratio matters. By default halves of equal mass at both sides of the record's resonance.
     free : sequence of str
         What is fitted of the delaminated structure, as for :func:`fit`.
     participation : float or mapping of str to float, optional
@@ -102,7 +105,9 @@ def detect(
         about and that describe the record), ``misfit_at`` and the ``fitted`` orders over
         ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
         ``seen_up_to``, ``assumed``, ``direction`` of the sweep and ``wiring``, the doubts about the
-        channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`).
+        channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`); and ``strikes``, what strikes
+        by its timing (:meth:`orchestrate.diagnosis.impact_timing.Strikes.word`), which does not
+        act on the verdict.
 
     Raises
     ------
@@ -133,12 +138,16 @@ def detect(
     >>> str(answer.verdict.values)
     'no opening seen'
     """
-    structure = delaminated_guess(guess)
+    chosen, changed = checked_free(free), checked_settings(settings)
+    structure = None if guess is None else delaminated_guess(guess)
+    data = checked_data(record, structure, participation, changed)
+    made = structure or halves_around(cached_orders(data).resonance)
     job = DetectJob(
-        name=f"detect_{checked_structure(guess).label()}",
-        data=checked_data(record, structure, participation, checked_settings(settings)),
-        guess=structure,
-        free=checked_free(free),
+        name=f"detect_{checked_structure(guess or made).label()}",
+        data=data,
+        guess=made,
+        free=chosen,
+        is_guessed=guess is not None,
     )
     return answer(job, running, finder(running))
 
@@ -148,6 +157,7 @@ class DetectJob(SearchJob):
     """Fit all hypotheses to a record and decide which verdict they give."""
 
     asked: ClassVar[str] = "detect"
+    is_guessed: bool = True  # by the caller, not from the record's resonance
 
     def dataset(self, table: Table) -> xr.Dataset:
         results = Results.from_table(self, table)
@@ -165,18 +175,37 @@ class DetectJob(SearchJob):
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
-        numbers = results.parameters(stated_hypotheses(results, findings))
+        stated = stated_hypotheses(results, findings)
+        numbers = results.parameters(stated)
+        best = int(np.argmin(np.where(stated, results.misfit, np.inf)))
+        unclear = dict.fromkeys(results.undetermined(best).values()) if stated[best] else ()
         del numbers["asked"]
         return xr.Dataset({**scalars, **every, **numbers}, coordinates).assign_attrs(
             analysis="detect",
             title=f"Verdict: {findings.verdict()}",
-            reason=findings.reason(),
+            reason=" ".join([findings.reason(), *(f"{text}." for text in unclear)]),
             settle="Mend the wiring, and ask again." if wiring else findings.next_measurement(),
             seen_up_to=findings.seen_up_to(),
-            assumed="; ".join(ASSUMED),
+            assumed="; ".join(ASSUMED if self.is_guessed else (WITHOUT_GUESS, *ASSUMED[1:])),
             direction=sweep_direction(whole.windows.frequency),
             wiring=wiring,
+            strikes=self.what_strikes(whole),
         )
+
+    def what_strikes(self, orders: RecordOrders) -> str:
+        """Return the word of the sensor that hears most by impact timing, with its numbers."""
+        half = self.guess
+        shut = math.sqrt((half.k1 + half.k2) / (half.m1 + half.m2)) / TURN
+        known = shut if self.is_guessed else math.nan
+        every = (strikes(orders.channels, row, known) for row in orders.rows)
+        one = max(every, key=lambda strike: strike.heard)
+        return f"{one.word()} ({one.numbers()})"
+
+
+def halves_around(resonance: float) -> Structure:
+    """Return halves of equal mass, 5 % at both sides of a resonance in Hz, as a first guess."""
+    f1, f2 = 0.95 * resonance, 1.05 * resonance
+    return Structure.from_halves(m1=1.0, m2=1.0, f1=f1, f2=f2, zeta1=0.01, zeta2=0.01, e=0.6)
 
 
 def record_variables(orders: RecordOrders) -> dict[str, Variable]:

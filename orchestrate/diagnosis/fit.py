@@ -32,8 +32,8 @@ from .search_job import RecordData, SearchJob
 from .settings import SETTINGS, Changes, Settings, checked_settings
 from .wiring import WiringSettings, wiring_notes
 
-DEFAULT_FREE = ("f1", "f2", "zeta1", "zeta2", "e")
 DELAMINATED = "delaminated"
+EQUAL = 2.0  # standard errors of their difference within which two frequencies are equal
 # arguments for the hypotheses of `SOUND`, in their order
 SHORT_NAMES = ("bonded", "curved", "friction", "stop", "stop on the other side", "two modes")
 
@@ -42,7 +42,7 @@ def fit(
     record: xr.Dataset,
     guess: Structure,
     *,
-    free: Sequence[str] = DEFAULT_FREE,
+    free: Sequence[str] = FREE,
     hypothesis: str = DELAMINATED,
     participation: Participation = None,
     settings: Changes = None,
@@ -60,7 +60,8 @@ def fit(
         Its masses are kept (their ratio alone acts), and all that is not free. Its frequencies may
         be 10 % off: the search begins at the record's resonance.
     free : sequence of str
-        What is fitted: ``f1``, ``f2``, ``zeta1``, ``zeta2``, ``e``, ``clearance``.
+        What is fitted: ``f1``, ``f2``, ``zeta1``, ``zeta2``, ``e``, ``clearance``. A gap that is
+        not free is that of the guess, and what it does is taken for the frequencies.
     hypothesis : str
         ``"delaminated"``; or one mass, that is ``"bonded"``, ``"curved"`` (a spring that hardens or
         softens), ``"friction"`` (dry), ``"stop"`` or ``"stop on the other side"``; or ``"two
@@ -80,10 +81,12 @@ def fit(
     -------
     xarray.Dataset
         Over ``parameter``: ``value`` and ``standard_error``, with ``unit``; NaN where the record
-        does not hold it: both halves' frequencies where no opening is seen; errors and correlations
-        also where the misfit is above ``delaminated`` of the settings. Over ``parameter`` and
-        ``other_parameter``: ``correlation``. ``misfit``, 1 where the model misses 3 % of order 1 or
-        the noise, and ``evaluations``; ``minima`` over ``minimum``: misfits of those that differ;
+        does not hold it: the halves' numbers where no opening is seen, their frequencies where they
+        are equal within their errors, a damping ratio whose error is above ``undetermined`` of it;
+        errors and correlations also where the misfit is above ``delaminated`` of the settings. Over
+        ``parameter`` and ``other_parameter``: ``correlation``. ``misfit``, 1 where the model misses
+        3 % of order 1 or the noise, and ``evaluations``; ``minima`` over ``minimum``: misfits of
+        those that differ;
         ``misfit_at`` over ``window``; ``participation`` and ``participation_error`` over
         ``channel``. Over ``channel``, ``order`` and ``window``: the amplitudes
         ``measured``, ``fitted`` and their ``floor`` in m/s2. The attribute ``reason`` says why
@@ -233,7 +236,8 @@ class FitJob(SearchJob):
         made = named.drop_vars("asked").assign(
             correlation=results.correlation(position, list(named.parameter.values))
         )
-        reason = "; ".join(filter(None, (results.reason(), results.why_no_errors(position))))
+        whys = results.why_no_errors(position), *results.undetermined(position).values()
+        reason = "; ".join(filter(None, (results.reason(), *dict.fromkeys(whys))))
         return made.assign_attrs(
             analysis="fit", title=f"Fit: {name}", hypothesis=name, reason=reason
         )
@@ -303,17 +307,37 @@ class Results:
         covariance = self.covariance[position][: len(names), : len(names)]
         return hypothesis.reported(here, evidence), slopes @ covariance @ slopes.T
 
+    def undetermined(self, position: int) -> dict[str, str]:
+        """Return which reported numbers of a hypothesis the record does not determine, and why."""
+        reported, covariance = self.reported_values(position)
+        at = {name: number for number, name in enumerate(reported)}
+        error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+        found, limit = {}, self.job.data.settings.undetermined
+        for name in at.keys() & {"zeta", "zeta1", "zeta2"}:
+            if self.is_described[position] and error[at[name]] > limit * reported[name]:
+                number = f"{reported[name]:.2g}, standard error {error[at[name]]:.2g}"
+                found[name] = f"{name} is not determined ({number})"
+        if {"f1", "f2"} <= at.keys():
+            across = np.array([(name == "f1") - (name == "f2") for name in at], dtype=float)
+            apart = abs(reported["f1"] - reported["f2"])
+            if apart <= EQUAL * np.sqrt(max(float(across @ covariance @ across), 0.0)):
+                both = f"f1 and f2 ({reported['f1']:.4g} and {reported['f2']:.4g} Hz)"
+                text = f"{both} are equal within their errors: halves of equal frequency never open"
+                found |= dict.fromkeys(("f1", "f2"), f"{text}, and their numbers say nothing")
+        return found
+
     def parameters(self, stated: NDArray[np.bool_]) -> dict[str, Variable]:
         """Return values and errors of the hypotheses that are ``stated``, NaN of the others."""
         shape = (len(self.values), len(REPORTED))
         value, error, asked = np.full((3, *shape), np.nan)
         for row in range(len(self.values)):
             known, covariance = self.reported_values(row)
-            errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+            errors, unclear = np.sqrt(np.maximum(np.diag(covariance), 0.0)), self.undetermined(row)
             for (name, number), deviation in zip(known.items(), errors, strict=True):
                 column = list(REPORTED).index(name)
                 asked[row, column] = 1.0
-                if stated[row] and (self.is_opening_seen() or name not in FREE):
+                is_held = name not in unclear and (self.is_opening_seen() or name not in FREE)
+                if stated[row] and is_held:
                     value[row, column] = number
                     error[row, column] = deviation if self.is_described[row] else np.nan
         over = ("hypothesis", "parameter")

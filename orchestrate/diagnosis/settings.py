@@ -83,6 +83,7 @@ class Settings:
     slow: float = 0.01  # of the largest speed: below it dry friction is viscous
 
     # -- standard errors: see `errors` --
+    undetermined: float = 0.5  # over a damping ratio: two of more reach 0, it is not stated
     # doubt about a restitution and ln(f2/f1); of damping ratios it is the mean of both halves'
     restitution_doubt: float = 0.12
     split_doubt: float = 0.02

@@ -113,11 +113,17 @@ def notes_without_sine(channels: Channels, settings: WiringSettings) -> Iterator
             exchanged = replace(channels, values=values)
             orders = assembled_orders(exchanged, *sine_windows(exchanged))
         except InputError:
-            is_face = False
+            is_face = is_resonant = False
         else:
             is_face = is_heard(orders, row, settings)
+            size = np.abs(orders.order(1.0, BOX))
+            is_resonant = bool(size.max() > settings.peak * np.median(size))
         if spread[base] < settings.dead * spread[row]:
             yield Note("dead", f"the base has no sine and {face} moves: is the base's cable dead?")
+        elif is_resonant:
+            text = f"{face} has a sine with a resonance, noise or drift hides that of the base"
+            mend = f"({spread[base]:.2g} m/s2 rms in all): measure at a higher level"
+            yield Note("noise", f"{text} {mend}")
         elif is_face:
             text = f"the base has no sine and {face} has: swapped? exchange both in channels="
             yield Note("swapped", f"{text}; or does the base's reading drift?")

@@ -341,7 +341,11 @@ def draw_guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure
 
 
 def draw(
-    rng: np.random.Generator, kind: str, conditions: Conditions | None = None, rate: float = 2000.0
+    rng: np.random.Generator,
+    kind: str,
+    conditions: Conditions | None = None,
+    rate: float = 2000.0,
+    kinds: Mapping[str, Maker] = KINDS,
 ) -> Case:
     """Draw a beam and a bench and measure it; return record, guess and truth as a ``Case``."""
     conditions = conditions or Conditions()
@@ -360,7 +364,7 @@ def draw(
         steps=30.0 if "elements" in kind else 60.0,
     )
     for _ in range(TRIES):
-        own = KINDS[kind](rng, level, conditions)
+        own = kinds[kind](rng, level, conditions)
         guess = draw_guess(rng, own, conditions.off) if conditions.planned else None
         if guess is not None:
             guess = guess.replace(clearance=own.clearance * rng.uniform(0.7, 1.3))

@@ -1,17 +1,20 @@
 """Verdicts and fits on short records of structures that are known."""
 
+import inspect
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import orchestrate
 from orchestrate.diagnosis.detect import DetectJob, sweep_direction
-from orchestrate.diagnosis.fit import checked_data
+from orchestrate.diagnosis.fit import Results, checked_data
 from orchestrate.diagnosis.fitting import Search, Solution, without_neighbours
 from orchestrate.diagnosis.hypotheses import FREE, STARTING_SPLITS
 from orchestrate.diagnosis.search_job import is_worth_a_search
+from orchestrate.diagnosis.settings import SETTINGS
 from tests.benches.bench import Bench
 from tests.benches.excitation import Swept
 from tests.benches.lumped import Faces, Halves
@@ -97,10 +100,11 @@ def test_more_parameters_than_the_numbers_of_one_tone_are_not_fitted():
     orders = [np.sin(2.0 * np.pi * n * 33.0 * time + 0.4 * n) for n in (1, 2)]
     channels = {"box_acceleration": 2.0 * orders[0], "acceleration1": 9.0 * orders[0] + orders[1]}
     tone = orchestrate.record(**channels, sample_rate=RATE)
-    with pytest.raises(orchestrate.InputError, match="one tone of 33 Hz has 3 numbers, 5 are fit"):
+    with pytest.raises(orchestrate.InputError, match="one tone of 33 Hz has 3 numbers, 7 are fit"):
         orchestrate.fit(tone, guess(), **LIMIT)
     answer = orchestrate.fit(tone, guess(), hypothesis="bonded", **LIMIT)
-    assert np.isfinite(answer.value).all()
+    assert np.isfinite(answer.value).values.tolist() == [True, False]
+    assert "zeta is not determined" in answer.attrs["reason"]
     assert answer.participation.values.tolist() == [1.0]  # one frequency does not tell it
 
 
@@ -117,6 +121,47 @@ def test_errors_end_where_a_structure_does_not_describe_the_record():
     assert "errors" not in described.attrs["reason"]
     expected = f"no standard errors: the misfit {float(limited.misfit):.3g} is above 3"
     assert expected in limited.attrs["reason"]
+
+
+class Known:
+    """A search's end: what is reported of a hypothesis, and its covariance."""
+
+    def __init__(self, **numbers):
+        self.numbers = {name: value for name, (value, _) in numbers.items()}
+        self.covariance = np.diag([error**2 for _, error in numbers.values()])
+        self.is_described = [True]
+        self.job = SimpleNamespace(data=SimpleNamespace(settings=SETTINGS))
+
+    def reported_values(self, position):
+        return self.numbers, self.covariance
+
+
+def test_what_a_record_does_not_determine_is_said():
+    """Two halves of 46.95 and 46.91 Hz were stated, and dampings with errors of twice the value."""
+    halves = {"zeta1": (0.005, 0.001), "zeta2": (0.0003, 0.0004)}
+    apart = Results.undetermined(Known(f1=(42.0, 0.5), f2=(44.0, 0.5), **halves), 0)
+    assert apart == {"zeta2": "zeta2 is not determined (0.0003, standard error 0.0004)"}
+    alike = Results.undetermined(Known(f1=(46.95, 0.1), f2=(46.91, 0.1)), 0)
+    assert list(alike) == ["f1", "f2"] and "never open" in alike["f1"]
+    other = Known(zeta1=(0.0003, 0.0004))
+    other.is_described = [False]  # no error is stated that one could compare
+    assert Results.undetermined(other, 0) == {}
+
+
+def test_a_record_without_a_guess_gets_its_verdict_by_halves_around_its_resonance():
+    """It was a TypeError, while the guess may be left out by the contract."""
+    answer = orchestrate.detect(record(BEAM.as_bonded(), noise=0.02, both=False), **LIMIT)
+    assert str(answer.verdict.values) == "no opening seen"
+    assert "same mass: no guess" in answer.attrs["assumed"]
+    assert answer.attrs["strikes"].startswith("nothing heard (heard ")
+    common = float(answer.value.sel(hypothesis="bonded", parameter="f"))
+    assert common == pytest.approx(33.79, rel=0.005)
+
+
+def test_a_gap_is_fitted_unless_it_is_left_out():
+    """A gap of 0.09 mm was taken for frequencies: f2 = 29.7 +- 1.1 Hz, where it was 32.8."""
+    assert inspect.signature(orchestrate.fit).parameters["free"].default == FREE
+    assert "clearance" in FREE
 
 
 def test_a_history_without_its_impacts_spikes_is_refused():

@@ -171,6 +171,16 @@ def test_a_dead_base_is_told_from_swapped_columns():
         detect(made, guess, settings={"clipped": 1.0})
 
 
+@pytest.mark.parametrize("noise", [0.8, 1.0])
+def test_noise_that_hides_the_bases_sine_is_named_and_no_exchange_is_proposed(noise):
+    """A low level: both sensors have the same noise, and the face moves by far more than that."""
+    channels, rng = sweep(), np.random.default_rng(3)
+    size = noise * channels[BASE].std()
+    (note,) = notes({name: one + rng.normal(0.0, size, COUNT) for name, one in channels.items()})
+    assert note.kind == "noise" and "noise or drift hides" in note.text, note
+    assert "exchange" not in note.text and "higher level" in note.text
+
+
 @pytest.mark.filterwarnings("ignore::UserWarning")
 def test_what_a_note_says_mends_the_record(tmp_path):
     """Velocity in mm/s upside down and late, the base in volts, times of five digits."""

@@ -19,7 +19,11 @@ from orchestrate.response.signatures import as_given, question
 from ..running.test_kills import kinds_of_questions
 
 PACKAGE = Path(orchestrate.__file__).parent
-KINDS = {kind.asked: kind for kind in kinds_of_questions() if issubclass(kind, Question)}
+KINDS = {
+    kind.asked: kind
+    for kind in sorted(kinds_of_questions(), key=lambda kind: kind.__name__)
+    if issubclass(kind, Question)
+}
 ASKED = [name for name in KINDS if name != "cosimulate"]  # by a job that it makes itself
 
 
