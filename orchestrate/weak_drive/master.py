@@ -60,7 +60,7 @@ class Scheme:
         return intervals << self.halvings if self.tolerance else intervals
 
 
-STATES = {3: ("GetFMUState", "SetFMUState", "FreeFMUState")}
+STATES: dict[int, tuple[str, ...]] = {3: ("GetFMUState", "SetFMUState", "FreeFMUState")}
 STATES[2] = ("GetFMUstate", "SetFMUstate", "FreeFMUstate", "GetRealStatus", "GetBooleanStatus")
 
 
@@ -84,12 +84,12 @@ class Side(ctypes.Structure):
         instance = channel.instance
         fmi = Fmi.from_instance(instance)
         _, *states = function_addresses(instance, STATES[fmi.version])
-        states += [None] * (len(STATES[2]) - len(states))
+        rest = [None] * (len(STATES[2]) - len(states))
         inputs, outputs = channel.references()
         buffers = (pointer(channel.kept), pointer(channel.answer))
         counts = (len(inputs), len(outputs))
         names = (inputs, outputs, references(instance, impacts))
-        return cls(fmi, *states, *names, *counts, *buffers, instance.description.needs_tool)
+        return cls(fmi, *states, *rest, *names, *counts, *buffers, instance.description.needs_tool)
 
 
 class Links(ctypes.Structure):

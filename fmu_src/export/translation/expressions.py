@@ -166,8 +166,9 @@ class Expressions(ABC):
         table.
         """
         if self.is_table(node.value):
-            _, module, name = self.resolved(node.value)
-            place, numbers = self.expression(node.slice), resolve_name(module, name)
+            numbers, module, name = self.resolved(node.value)
+            assert isinstance(numbers, tuple)
+            place = self.expression(node.slice)
             if place.type != WHOLE:
                 raise self.refuse(node, ast.unparse(node), "a whole number as the index")
             kind = WHOLE if all(isinstance(n, int) for n in numbers) else REAL

@@ -17,7 +17,7 @@
 #endif
 
 enum { DONE, PAUSED, BROKEN };  /* what a loop answers: paused, it is to be called again */
-enum { WARNING = 1, NOT_FINITE = -1 };  /* statuses, of FMI and one that it does not have */
+enum { FMI_WARNING = 1, NOT_FINITE = -1 };  /* statuses, of FMI and one that it does not have */
 
 typedef void Function(void);
 
@@ -45,8 +45,8 @@ typedef int (*Transfer2)(void *, const unsigned *references, size_t count, void 
 typedef int (*Transfer3)(void *, const unsigned *references, size_t count, void *values, size_t value_count);
 
 static inline bool answered(Fmi *fmi, const char *function, int status) {
-    if (status == WARNING) fmi->warned = 1;
-    if (!status || status == WARNING) return true;
+    if (status == FMI_WARNING) fmi->warned = 1;
+    if (!status || status == FMI_WARNING) return true;
     fmi->failed = function;
     fmi->status = status;
     return false;

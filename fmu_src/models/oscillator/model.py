@@ -37,7 +37,7 @@ MODEL = Model(
         SlotRange(at.SPACING, at.NODE_SINE + 1 - at.SPACING),
         SlotRange(at.EVENT_DRIVE, 2 * at.EVENT_ORDERS),
         *(
-            SlotRange(at.SEGMENT_INPUTS + i, 1, v.minimum, v.maximum)
+            SlotRange(at.SEGMENT_INPUTS + i, 1, v.minimum or 0.0, v.maximum or 0.0)
             for i, v in enumerate(
                 VARIABLES[at.BOX_AMPLITUDE : at.BOX_CRACKLE + 1]
                 + VARIABLES[at.FORCE1_AMPLITUDE : at.FORCE2_3 + 1]
