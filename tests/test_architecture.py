@@ -320,6 +320,7 @@ def definitions(tree: ast.AST) -> Iterator[ast.AST]:
 OVERRIDDEN = {  # methods of base classes: that of a derived class has the same docstring
     *("items", "count", "dataset", "call_text", "get_state", "set_state"),
     *("voltage", "trend", "duration", "begin", "point", "limits", "usual_rate"),
+    *("ask", "summary", "draw", "words", "has_picture"),
     *("label", "description", "frequency", "phase", "level", "location_tolerances"),
 }
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
+from .face import Command, Options, Question, option
 from .grammar import parse_changes, parse_ends, parse_number_or_ends, parse_rate
 from .options import one_of, option_name, print_assumptions
 from .output import Files, digest, print_units_note, read_running_options, read_units
-from .table import Group
 
 if TYPE_CHECKING:
     from ..model import Drive, Structure
@@ -36,76 +35,131 @@ DATASHEET = ("rated_voltage", "no_load_rpm", "stall_torque")
 # -- options --------------------------------------------------------------------------------------
 
 
-DRIVE = (
-    Group(
-        "structure, motor and box",
-        """
-        --drive SET|FILE = quick  TOML file with [motor], [box] and [structure], or a set: quick
-            (no real one: jumps come soon), beam (some kg on a small motor), rig (near the paper's)
-        --structure SET|FILE  file or set with another [structure] than that of --drive
-        --set NAME=VALUE ...  a parameter of the structure, or of motor and box in SI; may be
-            repeated
-        """,
-    ),
-    Group(
-        "a motor by its datasheet",
-        """
-        --rated-voltage V  of the motor, V
-        --no-load-rpm RPM  its speed without load
-        --stall-torque N.M  its torque at rest, N m
-        """,
-        description="in place of motor_constant and armature_resistance: all three",
-    ),
-)
-ONLY = Group(options="--only {bonded,delaminated}  one of both (default: both)")
-STEP = """
---step X  communication step, in 1/omega (default: controlled by its defect, at most 0.4; 0.1 where
-    a controller or a picture takes samples)
-"""
-HOLD = """
---hold TIME  longest time for which a voltage is held until the speed settles, 0 for none, in
-    1/omega (default: 4000 and 200 times the rotor's own)
-"""
-SETTLE = "--settle X = 300.0  time at the first voltage, in 1/omega"
-VOLTAGE = """
---eta0 FIRST:LAST  voltage as no-load speed over omega (default: about the jumps of the averaged
-    theory)
---voltage FIRST:LAST  the same in V
-"""
-SCHEDULE = Group(
-    "voltage over time: a ramp, steps, one value, or a file",
-    (
-        VOLTAGE.replace("FIRST:LAST", "FIRST:LAST|VALUE"),
-        f"""
-    --duration S  time of a single VALUE, in s
-    --course FILE  CSV file with time in s and voltage in V, a row each: straight lines between,
-        instead
-    --rate RATE  change of eta0 in a time 1/omega (default: {USUAL_RATES}, else {RATE:g})
-    --volt-rate RATE  the same in V/s
-    --increment X = 0.0  change eta0 in steps of this height, at the same mean rate (default: a
-        ramp)
-    {SETTLE}
-    --one-way  do not come back
-    """,
-    ),
-)
-CONTROLLER = Group(
-    "controller: starts from rest, takes a part of the voltage at every communication step",
-    """
-    --speed-control SPEED  hold a speed in rad/s, by PI
-    --gain X  of the PI control, V s/rad (default: 5 K)
-    --reset-time S  of it, s (default: J R_a/K^2)
-    --speed-rise X  rate at which the wanted speed rises, rad/s2 (default: at once)
-    --speed-gradient  swing the rotor across the resonance by the speed-gradient method
-    --filter-time S  of it, s (default: 30/omega)
-    --low PART  part of the voltage while slower than the mean (default: 0.6)
-    """,
-)
+class Motor(Options):
+    """Options of structure, motor and box."""
+
+    heading, rank = "structure, motor and box", 0
+    drive: str = option(
+        "SET|FILE",
+        "TOML file with [motor], [box] and [structure], or a set: quick (no real one: jumps come "
+        "soon), beam (some kg on a small motor), rig (near the paper's)",
+        "quick",
+    )
+    structure: str | None = option(
+        "SET|FILE", "file or set with another [structure] than that of --drive"
+    )
+    set: list[str] = option(
+        "NAME=VALUE",
+        "a parameter of the structure, or of motor and box in SI; may be repeated",
+        (),
+    )
+
+
+class OfMotor(Motor):
+    """The same, with a motor by its datasheet."""
+
+    heading, rank = "a motor by its datasheet", 0
+    remark = "in place of motor_constant and armature_resistance: all three"
+    rated_voltage: float | None = option("V", "of the motor, V")
+    no_load_rpm: float | None = option("RPM", "its speed without load")
+    stall_torque: float | None = option("N.M", "its torque at rest, N m")
+
+
+class Only(Options):
+    """The option of one structure of both."""
+
+    only: Literal["bonded", "delaminated"] | None = option("", "one of both (default: both)")
+
+
+class Stepped(Options):
+    """The option of the communication step."""
+
+    step: float | None = option(
+        "X",
+        "communication step, in 1/omega (default: controlled by its defect, at most 0.4; 0.1 where "
+        "a controller or a picture takes samples)",
+    )
+
+
+class Held(Options):
+    """The option of held voltages."""
+
+    hold: float | None = option(
+        "TIME",
+        "longest time for which a voltage is held until the speed settles, 0 for none, in 1/omega "
+        "(default: 4000 and 200 times the rotor's own)",
+    )
+
+
+class OfVoltage(Options):
+    """Options of one voltage."""
+
+    heading, rank = "the motor's voltage", 1
+    eta0: float | None = option(
+        "X",
+        "voltage as no-load speed over omega (default: 1.53 for quick, 1.45 for beam, else between "
+        "the jumps of the averaged theory)",
+    )
+    voltage: float | None = option("X", "the same in V")
+
+
+class OfRamp(Options):
+    """Options of two voltages."""
+
+    heading, rank = "the motor's voltage", 1
+    eta0: str | None = option(
+        "FIRST:LAST",
+        "voltage as no-load speed over omega (default: about the jumps of the averaged theory)",
+    )
+    voltage: str | None = option("FIRST:LAST", "the same in V")
+
+
+class OfSchedule(OfRamp):
+    """Options of a voltage over time."""
+
+    heading, rank = "voltage over time: a ramp, steps, one value, or a file", 1
+    duration: float | None = option("S", "time of a single voltage, in s")
+    course: Path | None = option(
+        "FILE",
+        "CSV file with time in s and voltage in V, a row each: straight lines between, instead",
+    )
+    rate: str | None = option(
+        "RATE", f"change of eta0 in a time 1/omega (default: {USUAL_RATES}, else {RATE:g})"
+    )
+    volt_rate: str | None = option("RATE", "the same in V/s")
+    increment: float = option(
+        "X",
+        "change eta0 in steps of this height, at the same mean rate (default: a ramp)",
+        0.0,
+    )
+    settle: float = option("X", "time at the first voltage, in 1/omega", 300.0)
+    one_way: bool = option("", "do not come back", False)
+
+
+class OfController(Options):
+    """Options of a controller of the motor."""
+
+    heading = "controller"
+    remark = "starts from rest, takes a part of the voltage at every communication step"
+    speed_control: float | None = option("SPEED", "hold a speed in rad/s, by PI")
+    gain: float | None = option("X", "of the PI control, V s/rad (default: 5 K)")
+    reset_time: float | None = option("S", "of it, s (default: J R_a/K^2)")
+    speed_rise: float | None = option(
+        "X", "rate at which the wanted speed rises, rad/s2 (default: at once)"
+    )
+    speed_gradient: bool = option(
+        "", "swing the rotor across the resonance by the speed-gradient method", False
+    )
+    filter_time: float | None = option("S", "of it, s (default: 30/omega)")
+    low: float | None = option(
+        "PART", "part of the voltage while slower than the mean (default: 0.6)"
+    )
+
 
 # -- structure and motor --------------------------------------------------------------------------
 
 
-def read_drive_options(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
+def read_drive_options(arguments: Any) -> tuple[Structure, Drive]:
     """Return structure and drive of the options, with the changes of ``--set`` to either."""
     from ..model import Drive, Structure
 
@@ -138,7 +192,7 @@ def check_masses(source: str, changes: Mapping[str, Any]) -> None:
         )
 
 
-def read_datasheet(arguments: argparse.Namespace, changes: Mapping[str, float]) -> dict[str, float]:
+def read_datasheet(arguments: Any, changes: Mapping[str, float]) -> dict[str, float]:
     """Return motor constant and resistance from the datasheet's options; empty without them."""
     from ..model.drive import torque_line
 
@@ -152,9 +206,9 @@ def read_datasheet(arguments: argparse.Namespace, changes: Mapping[str, float]) 
         missing = next(name for name in names if name not in present)
         text = f"{options[present[0]]} {values[present[0]]:g}: without {options[missing]}"
         raise InputError(f"{text}; expected {', '.join(options.values())} together")
-    for name, option in options.items():
+    for name, flag in options.items():
         if not (math.isfinite(values[name]) and values[name] > 0.0):
-            raise InputError(f"{option} {values[name]:g}: expected a number > 0")
+            raise InputError(f"{flag} {values[name]:g}: expected a number > 0")
     for name in ("motor_constant", "armature_resistance"):
         if name in changes:
             text = f"--set {name}={changes[name]:g}: beside {options['rated_voltage']}"
@@ -167,16 +221,14 @@ def read_datasheet(arguments: argparse.Namespace, changes: Mapping[str, float]) 
 # -- voltages and controllers ----------------------------------------------------------------------
 
 
-def structures_by_name(arguments: argparse.Namespace, structure: Structure) -> dict[str, Structure]:
+def structures_by_name(arguments: Any, structure: Structure) -> dict[str, Structure]:
     """Return a dict of the bonded and the delaminated structure, or of the one ``--only`` names."""
     both = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
     only = getattr(arguments, "only", None)
     return {only: both[only]} if only else both
 
 
-def parse_voltages(
-    arguments: argparse.Namespace, structure: Structure, drive: Drive
-) -> tuple[float, ...]:
+def parse_voltages(arguments: Any, structure: Structure, drive: Drive) -> tuple[float, ...]:
     """Return one voltage or a ramp's first and last one, V; by default around the jumps."""
     one_of(arguments, "eta0", "voltage")
     if arguments.voltage:
@@ -192,9 +244,7 @@ def parse_voltages(
     return 0.88 * down, 1.06 * up
 
 
-def parse_ramp_ends(
-    arguments: argparse.Namespace, structure: Structure, drive: Drive
-) -> tuple[float, float]:
+def parse_ramp_ends(arguments: Any, structure: Structure, drive: Drive) -> tuple[float, float]:
     """Return the first and the last voltage of a ramp, V; raise if only one is given."""
     voltages = parse_voltages(arguments, structure, drive)
     if len(voltages) != 2:
@@ -205,7 +255,7 @@ def parse_ramp_ends(
 
 
 def averaged_jump_voltages(
-    arguments: argparse.Namespace, structure: Structure, drive: Drive
+    arguments: Any, structure: Structure, drive: Drive
 ) -> tuple[float, float]:
     """Return the averaged theory's jump voltages, down then up, V; raise where it has no jumps."""
     from ..weak_drive import averaged
@@ -222,7 +272,7 @@ def averaged_jump_voltages(
     return folds[-1].eta0 * volts, folds[0].eta0 * volts
 
 
-def ramp_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> float:
+def ramp_rate(arguments: Any, structure: Structure, drive: Drive) -> float:
     """Return a ramp's rate, V/s, from ``--rate`` or ``--volt-rate``."""
     one_of(arguments, "rate", "volt_rate")
     if arguments.volt_rate is not None:
@@ -233,9 +283,7 @@ def ramp_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive)
     return unit * parse_rate("--rate", arguments.rate)
 
 
-def times_in_seconds(
-    arguments: argparse.Namespace, structure: Structure, *names: str
-) -> dict[str, float | None]:
+def times_in_seconds(arguments: Any, structure: Structure, *names: str) -> dict[str, float | None]:
     """Convert options in 1/omega, such as ``--step``, to s; return a dict, None where not given."""
     values = {name: getattr(arguments, name) for name in names}
     omega = structure.omega
@@ -243,7 +291,7 @@ def times_in_seconds(
 
 
 def make_schedule(
-    arguments: argparse.Namespace, structure: Structure, drive: Drive, control: Controller | None
+    arguments: Any, structure: Structure, drive: Drive, control: Controller | None
 ) -> Schedule:
     """Return the voltage over time (a ``Schedule``) that the options describe."""
     from ..weak_drive.couple import schedule_from_arguments
@@ -273,9 +321,7 @@ def make_schedule(
     )
 
 
-def make_controller(
-    arguments: argparse.Namespace, structure: Structure, drive: Drive
-) -> Controller | None:
+def make_controller(arguments: Any, structure: Structure, drive: Drive) -> Controller | None:
     """Return the controller that the options describe; None if they ask for none."""
     from ..weak_drive import own_resonance
     from ..weak_drive.controllers import SpeedControl, SpeedGradient
@@ -307,14 +353,14 @@ def make_controller(
 # -- answers --------------------------------------------------------------------------------------
 
 
-def drive_units(arguments: argparse.Namespace) -> Units:
+def drive_units(arguments: Any) -> Units:
     """Return the display units from ``--units``; rpm by default if the motor's speed is in rpm."""
     in_rpm = arguments.no_load_rpm is not None
     return read_units(arguments).with_defaults(Units("rpm" if in_rpm else ""))
 
 
 def display(
-    arguments: argparse.Namespace, results: Mapping[str, xr.Dataset]
+    arguments: Any, results: Mapping[str, xr.Dataset]
 ) -> tuple[dict[str, xr.Dataset], dict[str, xr.Dataset]]:
     """Return runs in the units of ``--units``, and with readable lengths for print and picture."""
     units = drive_units(arguments)
@@ -322,22 +368,18 @@ def display(
     return asked, dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
 
 
-def result_name(
-    arguments: argparse.Namespace, structure: Structure, drive: Drive, question: Any
-) -> str:
+def result_name(arguments: Any, structure: Structure, drive: Drive, question: Any) -> str:
     """Return a result's file name: command, names of drive and structure, a digest of all."""
     digits = digest(structure.as_delaminated().parameters(), drive.parameters(), question)
-    return f"{arguments.row.function}_{'_'.join(source_names(arguments))}_{digits}"
+    return f"{arguments.calls}_{'_'.join(source_names(arguments))}_{digits}"
 
 
-def source_names(arguments: argparse.Namespace) -> Iterable[str]:
+def source_names(arguments: Any) -> Iterable[str]:
     """Return the names of the drive's file and, if it is another, of the structure's."""
     return dict.fromkeys(Path(p).stem for p in (arguments.drive, arguments.structure) if p)
 
 
-def picture_title(
-    arguments: argparse.Namespace, results: Mapping[str, xr.Dataset], words: str
-) -> str:
+def picture_title(arguments: Any, results: Mapping[str, xr.Dataset], words: str) -> str:
     """Return a picture's title: names of the files, what is shown, the structure."""
     from ..show.labels import title_from_attributes
 
@@ -345,31 +387,44 @@ def picture_title(
     return f"{', '.join(source_names(arguments))}: {words}; {structure}"
 
 
-def answer_drive(arguments: argparse.Namespace) -> None:
-    """Run a command: ask for each structure, or for both at once; print, write files, draw."""
-    import orchestrate
+class Driven(Command):
+    """A command that asks for each structure, or for both at once."""
 
-    row = arguments.row
-    structure, drive, question = row.ask(arguments)
-    base, results = result_name(arguments, structure, drive, question), {}
-    states = structures_by_name(arguments, structure) if "only" in arguments else {"": structure}
-    names = {state: f"{base}_{state}" if state else base for state in states}
-    files = {state: Files.from_options(arguments, name) for state, name in names.items()}
-    for state, chosen in states.items():
-        running = read_running_options(arguments, files[state].result)
-        results[state] = getattr(orchestrate, row.function)(chosen, drive, **question, **running)
-    asked, shown = display(arguments, results)
-    print(*row.summary(shown), sep="\n")
-    print_units_note(arguments, *shown.values())
-    for state, data in asked.items():
-        files[state].write(data)
-    title = picture_title(arguments, shown, row.title(shown, question))
-    draw = row.draw or (lambda results, _, title: orchestrate.plot(*results.values(), title=title))
-    picture = common_files(arguments, base, files.values())
-    picture.write_pictures(lambda: draw(shown, arguments, title))
+    def words(self, results: Mapping[str, xr.Dataset], question: Question) -> str:
+        """Return a part of the picture's title."""
+        raise NotImplementedError
+
+    def draw(self, results: Mapping[str, xr.Dataset], title: str) -> Any:
+        """Return the figure."""
+        import orchestrate
+
+        return orchestrate.plot(*results.values(), title=title)
+
+    def __call__(self) -> None:
+        """Ask, print the summary, write results and picture."""
+        import orchestrate
+
+        structure, drive, question = self.ask()
+        base, results = result_name(self, structure, drive, question), {}
+        has_both = hasattr(self, "only")
+        states = structures_by_name(self, structure) if has_both else {"": structure}
+        names = {state: f"{base}_{state}" if state else base for state in states}
+        files = {state: Files.from_options(self, name) for state, name in names.items()}
+        function = getattr(orchestrate, self.calls)
+        for state, chosen in states.items():
+            running = read_running_options(self, files[state].result)
+            results[state] = function(chosen, drive, **question, **running)
+        asked, shown = display(self, results)
+        print(*self.summary(shown), sep="\n")
+        print_units_note(self, *shown.values())
+        for state, data in asked.items():
+            files[state].write(data)
+        title = picture_title(self, shown, self.words(shown, question))
+        picture = common_files(self, base, files.values())
+        picture.write_pictures(lambda: self.draw(shown, title))
 
 
-def common_files(arguments: argparse.Namespace, base: str, files: Iterable[Files]) -> Files:
+def common_files(arguments: Any, base: str, files: Iterable[Files]) -> Files:
     """Return the ``Files`` of the picture of both structures, or of the one of ``--only``."""
     only = getattr(arguments, "only", None)
     name = f"{base}_{only}" if only else base

@@ -2,42 +2,56 @@
 
 from __future__ import annotations
 
-import argparse
 import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..lazy import xr
 from ..units import text_of, with_units
-from .answer import answer, read_earlier_result
-from .grammar import floats, parse_breakpoints, positive_number, read_pairs
+from .answer import Asked
+from .face import Command, Options, Question, option
+from .grammar import (
+    Breakpoints,
+    ChannelColumns,
+    Ends,
+    Listed,
+    Orders,
+    floats,
+    parse_breakpoints,
+    positive_number,
+    read_pairs,
+)
 from .options import (
-    BESIDE,
-    START,
+    Beside,
+    FromState,
+    OfStructure,
     join_option_names,
     option_name,
     read_structure_options,
-    structure_group,
 )
 from .output import (
-    FORMAT,
-    OUTPUT,
-    READING,
-    UNITS,
     Files,
+    Formats,
+    InFolder,
+    InUnits,
+    Reading,
+    Results,
+    Stored,
     digest,
     parse_endings,
     print_units_note,
     read_record_units,
-    result_groups,
     unit_note,
 )
-from .table import Command, Group, Question, Structure, parse_options, values_of
+from .stored import read_earlier_result
 from .text import Columns, columns_of, extents, impact_lines, table
+
+if TYPE_CHECKING:
+    from ..model import Structure
 
 KINDS = {  # of excitation: the class, its own options, and which of them it needs
     "swept_sine": ("SweptSine", ("duration", "rate", "spacing", "g", "acceleration"), ""),
@@ -46,56 +60,24 @@ KINDS = {  # of excitation: the class, its own options, and which of them it nee
     "shock": ("Shock", ("duration", "length", "delay", "g", "acceleration"), "length"),
     "record": ("Sampled", ("unit", "column", "scale"), ""),
 }
-EXCITATION = """
---swept-sine FIRST:LAST  frequencies, Hz; downwards too
---stepped-sine FIRST:LAST:STEP  frequencies, Hz; or a list A,B,...
---random PSD  density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz
---shock SHAPE  half-sine, sawtooth or trapezoid
---record FILE  measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc
---g LEVEL  peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too
---acceleration LEVEL  peak acceleration, m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too
---duration S  of all, s
---rate X  of a swept sine: Hz/s, or octaves/min where --spacing log
---spacing WORD  of a swept sine: linear or log (default: linear)
---settle-cycles N  of a stepped sine: cycles at each frequency before it is measured (default: 100)
---measured-cycles N  of a stepped sine: cycles at each frequency that are measured (default: 50)
---seed N  of random vibration (default: 0)
---length S  of a shock's pulse, s
---delay S  quiet before a shock, s (default: 0)
---unit UNIT  of a record: m/s2, g ... (default: what the file says)
---column NAME  of a record: the box's, by name or number from 0 (default: by usual names, or 1)
---scale X  of a record in a WAV file: m/s2 at its full scale
-"""
 
 
-def ask_shake(arguments: argparse.Namespace) -> tuple[Structure, Question]:
-    """Return structure and keywords of ``shake``."""
-    from .. import Shaker
-
-    structure, shaker = read_structure_options(arguments), arguments.shaker
-    return structure, {
-        "excitation": read_excitation(arguments),
-        **arguments.row.keywords(arguments),
-        "shaker": None if shaker is None else Shaker.from_file(shaker),
-    }
-
-
-def read_excitation(arguments: argparse.Namespace) -> Any:
+def read_excitation(arguments: Any) -> Any:
     """Return the excitation that the options describe, such as a ``SweptSine``."""
     import orchestrate
 
     kind = excitation_kind(arguments)
     if kind == "record":
         return read_record_excitation(arguments)
-    values = {one.name: one.value(arguments) for one in parse_options(EXCITATION)}
-    settings = {name: values[name] for name in (kind, *KINDS[kind][1]) if values[name] is not None}
+    given = arguments.given(OfExcitation)
+    settings = {name: given[name] for name in (kind, *KINDS[kind][1]) if name in given}
     main = settings.pop(kind)
     level = {} if kind == "random" else {"acceleration": read_level(arguments)}
     settings = {n: v for n, v in settings.items() if n not in ("g", "acceleration")} | level
     if kind == "swept_sine":
         settings |= {"first": main[0], "last": main[1]}
     elif kind == "stepped_sine":
-        settings["frequencies"] = main[0]
+        settings["frequencies"] = main
     elif kind == "random":
         settings["psd"] = main
     else:
@@ -105,7 +87,7 @@ def read_excitation(arguments: argparse.Namespace) -> Any:
     return getattr(orchestrate, KINDS[kind][0])(**settings)
 
 
-def read_record_excitation(arguments: argparse.Namespace) -> Any:
+def read_record_excitation(arguments: Any) -> Any:
     """Return the box's acceleration of a measured file as an excitation."""
     from .. import Sampled, read_record
 
@@ -121,7 +103,7 @@ def read_record_excitation(arguments: argparse.Namespace) -> Any:
     return Sampled.from_record(record)
 
 
-def excitation_kind(arguments: argparse.Namespace) -> str:
+def excitation_kind(arguments: Any) -> str:
     """Return which kind of excitation is chosen; raise for options of another kind."""
     chosen = [name for name in KINDS if getattr(arguments, name) is not None]
     if len(chosen) != 1:
@@ -130,8 +112,8 @@ def excitation_kind(arguments: argparse.Namespace) -> str:
         raise InputError(f"excitation: {words} given; expected one of {', '.join(names)}")
     (kind,) = chosen
     _, own, needed = KINDS[kind]
-    for name in (one.name for one in parse_options(EXCITATION) if one.name not in KINDS):
-        if getattr(arguments, name) is not None and name not in own:
+    for name in arguments.given(OfExcitation):
+        if name not in (kind, *own):
             owners = [option_name(other) for other, row in KINDS.items() if name in row[1]]
             raise InputError(f"{option_name(name)}: expected with {' or '.join(owners)} alone")
     if needed and getattr(arguments, needed) is None:
@@ -139,7 +121,7 @@ def excitation_kind(arguments: argparse.Namespace) -> str:
     return kind
 
 
-def read_level(arguments: argparse.Namespace) -> Any:
+def read_level(arguments: Any) -> Any:
     """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
     from ..constants import GRAVITY
 
@@ -153,43 +135,77 @@ def read_level(arguments: argparse.Namespace) -> Any:
     return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{chosen[0]}", text))
 
 
-def shake_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield the ranges of accelerations and gap, the impacts, and how long a transient lasts."""
-    yield from extents(data, "box_acceleration a1_abs a2_abs x_rel")
-    if "transient_time" in data:
-        yield f"a linear transient decays within {float(data.transient_time):.3g} s"
-    elif data.control_aborted.notnull():
-        end = float(data.control_aborted)
-        yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
-    yield from impact_lines(data)
+class OfExcitation(Options):
+    """Options of an excitation."""
+
+    heading, rank = "the box's acceleration", 1
+    remark = "one of the first five"
+    swept_sine: Ends = option("FIRST:LAST", "frequencies, Hz; downwards too")
+    stepped_sine: Listed = option("FIRST:LAST:STEP", "frequencies, Hz; or a list A,B,...")
+    random: Breakpoints = option("PSD", "density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz")
+    shock: str | None = option("SHAPE", "half-sine, sawtooth or trapezoid")
+    record: str | None = option("FILE", "measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc")
+    g: str | None = option(
+        "LEVEL",
+        "peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too",
+    )
+    acceleration: str | None = option(
+        "LEVEL", "peak acceleration, m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too"
+    )
+    duration: float | None = option("S", "of all, s")
+    rate: float | None = option("X", "of a swept sine: Hz/s, or octaves/min where --spacing log")
+    spacing: str | None = option("WORD", "of a swept sine: linear or log (default: linear)")
+    settle_cycles: int | None = option(
+        "N", "of a stepped sine: cycles at each frequency before it is measured (default: 100)"
+    )
+    measured_cycles: int | None = option(
+        "N", "of a stepped sine: cycles at each frequency that are measured (default: 50)"
+    )
+    seed: int | None = option("N", "of random vibration (default: 0)")
+    length: float | None = option("S", "of a shock's pulse, s")
+    delay: float | None = option("S", "quiet before a shock, s (default: 0)")
+    unit: str | None = option("UNIT", "of a record: m/s2, g ... (default: what the file says)")
+    column: str | None = option(
+        "NAME",
+        "of a record: the box's, by name or number from 0 (default: by usual names, or 1)",
+    )
+    scale: float | None = option("X", "of a record in a WAV file: m/s2 at its full scale")
 
 
-SHAKE = Command(
-    "shake",
-    "as in the laboratory: motion and impacts under sines, random, shock or a record",
-    """  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
+class Shake(OfStructure, OfExcitation, Beside, FromState, Asked, Stored, Results):
+    """Motion and impacts under an excitation of the laboratory."""
+
+    calls, takes = "shake", "accuracy"
+    shaker: str | None = option("FILE", "its electrodynamic shaker, level controlled")
+    sample_rate: float | None = option("HZ", "of the record (default: what the excitation needs)")
+    examples = """
+  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
   {program} shake --structure beam --stepped-sine 10:14:0.1 --settle-cycles 150 --g 0.02
   {program} shake --structure beam --random 5:0.1,100:0.1 --duration 30 --seed 1
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --shaker shaker_1kN
   {program} shake --structure beam --shock half-sine --length 0.011 --g 5
-  {program} shake --structure beam --record base.csv --unit g""",
-    (
-        structure_group(),
-        Group("the box's acceleration", EXCITATION, description="one of the first five"),
-        Group("what moves it", "--shaker FILE  its electrodynamic shaker, level controlled"),
-        Group(
-            "the record",
-            BESIDE,
-            ("--sample-rate HZ  of the record (default: what the excitation needs)", START),
-            "accuracy",
-        ),
-        *result_groups(),
-    ),
-    answer,
-    ask_shake,
-    shake_summary,
-)
+  {program} shake --structure beam --record base.csv --unit g"""
+
+    def ask(self) -> tuple[Structure, Question]:
+        from .. import Shaker
+
+        structure, shaker = read_structure_options(self), self.shaker
+        return structure, {
+            "excitation": read_excitation(self),
+            **self.keywords(),
+            "shaker": None if shaker is None else Shaker.from_file(shaker),
+        }
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield from extents(data, "box_acceleration a1_abs a2_abs x_rel")
+        if "transient_time" in data:
+            yield f"a linear transient decays within {float(data.transient_time):.3g} s"
+        elif data.control_aborted.notnull():
+            end = float(data.control_aborted)
+            yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
+        yield from impact_lines(data)
+
 
 MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 
@@ -256,66 +272,10 @@ ANALYSES = {
     "shock": Analysis("shock_spectrum", ("damping",), "shock response spectrum"),
     "density": Analysis("probability_density", ("bins",), "probability density, skewness"),
 }
-COLUMNS = f"""
---columns A=X,B=Y  columns by name or number from 0: CHANNEL=COLUMN,... with the channels time,
-    {", ".join(MASSES)}
-"""
-SETTINGS = """
---resolution HZ  distance of the lines, Hz, of frf, psd and spectrogram
---window WORD  hann (default), flattop, boxcar and others
---overlap X  part of a segment, of frf and psd
---orders ORDERS  orders 1 to N, or a list of them such as 0.5,1,2 (default: 3)
---highest X  order of harmonics (default: 5)
---periods X  of the excitation, in a window of orders and harmonics (default: 16)
---damping X  of the oscillators of shock (default: 0.05)
---bins X  of density (default: 100)
-"""
 SHOWN = ", ".join(f"{name} ({one.text})" for name, one in ANALYSES.items())
 
 
-def run_analyse(arguments: argparse.Namespace) -> None:
-    """Run ``analyse``: compute the chosen analyses of all records; print, store and draw them."""
-    from ..files import open_folder
-    from ..running.store import write_netcdf
-    from ..show.analysis import draw
-
-    names = parse_endings("--show", arguments.show, tuple(ANALYSES))
-    Files.from_options(arguments, "", fresh=True)  # before records are read
-    settings = settings_by_analysis(arguments, names)
-    paths = paths_by_label(arguments)
-    records = {label: read_cut_record(arguments, path) for label, path in paths.items()}
-    for label, record in records.items():
-        if note := unit_note(record.attrs):
-            print(f"{paths[label]}: {note}")
-    warn_without_sensor(arguments, records)
-    units = read_record_units(arguments)
-    reading = [getattr(arguments, name) for name in ("from", "to", "sensor")]
-    reading += values_of(arguments, (COLUMNS, READING)).items()
-    for name in names:
-        results = {
-            label: analyse(ANALYSES[name], record, paths[label], settings[name])
-            for label, record in records.items()
-        }
-        shown = {label: with_units(data, units) for label, data in results.items()}
-        for label, data in shown.items():
-            print(f"{f'{label}: ' if label else ''}{ANALYSES[name].text}")
-            print(*table(columns_of_analysis(name, data)), sep="\n")
-        print_units_note(arguments, *shown.values())
-        read = {label: str(path) for label, path in paths.items()}
-        stem = f"analyse_{name}_{arguments.record.stem}_{digest(read, settings[name], *reading)}"
-        open_folder(arguments.output)
-        for label, data in results.items():
-            words = "".join(letter if letter.isalnum() else "-" for letter in label)
-            ending = f"_{words}" if len(results) > 1 else ""
-            files = Files.from_options(arguments, f"{stem}{ending}", fresh=True)
-            write_netcdf(data, files.result)
-            files.write(shown[label])
-        (label, first), *others = shown.items()
-        picture = Files.from_options(arguments, stem, fresh=True)
-        picture.write_pictures(partial(draw, first, label, dict(others)))
-
-
-def warn_without_sensor(arguments: argparse.Namespace, records: Mapping[str, xr.Dataset]) -> None:
+def warn_without_sensor(arguments: Any, records: Mapping[str, xr.Dataset]) -> None:
     """Warn if simulated accelerations without impulses are compared with measured ones."""
     simulated = [label for label, record in records.items() if "impulse" in record]
     if arguments.sensor is None and 0 < len(simulated) < len(records):
@@ -326,11 +286,9 @@ def warn_without_sensor(arguments: argparse.Namespace, records: Mapping[str, xr.
         )
 
 
-def settings_by_analysis(
-    arguments: argparse.Namespace, names: tuple[str, ...]
-) -> dict[str, dict[str, Any]]:
+def settings_by_analysis(arguments: Any, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
     """Return a dict of keywords for each analysis; raise for an option that none of them takes."""
-    chosen = values_of(arguments, SETTINGS)
+    chosen = arguments.given(Settings)
     for one in chosen:
         owners = [name for name, analysis in ANALYSES.items() if one in analysis.options]
         if not set(owners) & set(names):
@@ -338,7 +296,7 @@ def settings_by_analysis(
     return {name: {o: chosen[o] for o in ANALYSES[name].options if o in chosen} for name in names}
 
 
-def paths_by_label(arguments: argparse.Namespace) -> dict[str, Path]:
+def paths_by_label(arguments: Any) -> dict[str, Path]:
     """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""
     label = arguments.label or (arguments.record.stem if arguments.beside else "")
     beside = read_pairs("--beside", arguments.beside, "LABEL=FILE, such as bonded=whole.nc")
@@ -348,10 +306,10 @@ def paths_by_label(arguments: argparse.Namespace) -> dict[str, Path]:
     return {label: arguments.record, **{name: Path(path) for name, path in beside.items()}}
 
 
-def read_cut_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
+def read_cut_record(arguments: Any, path: Path) -> xr.Dataset:
     """Read a record file and keep its samples between ``--from`` and ``--to``."""
     record = read_record_file(arguments, path)
-    begin, end = (getattr(arguments, name) for name in ("from", "to"))
+    begin, end = arguments.begin, arguments.to
     if "time" not in record.coords or begin is end is None:
         return record
     part = record.sel(time=slice(begin, end))
@@ -361,7 +319,7 @@ def read_cut_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     return part
 
 
-def read_record_file(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
+def read_record_file(arguments: Any, path: Path) -> xr.Dataset:
     """Read a record from a file of any format; apply ``--sensor`` to a simulated one."""
     from .. import read_record
 
@@ -371,7 +329,7 @@ def read_record_file(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
         if arguments.sensor is not None and "impulse" in stored:
             return apply_sensor(stored, arguments.sensor)
         return stored if units <= {"m/s2"} else read_record(path)
-    reading = values_of(arguments, (COLUMNS, READING))
+    reading = arguments.given(InColumns) | arguments.given(Reading)
     if path.suffix.lower() != ".wav":  # the scale is of the others
         reading.pop("scale", None)
     return read_record(path, **reading)
@@ -399,42 +357,109 @@ def analyse(
     return result
 
 
-ANALYSE = Command(
-    "analyse",
-    "what an analyser shows of a record: responses, spectra, orders, shock spectra",
-    """  {program} analyse results/shake.nc --show frf,psd --resolution 0.5
+class InColumns(Options):
+    """The option of a record's columns."""
+
+    heading = "how to read records"
+    columns: ChannelColumns = option(
+        "A=X,B=Y",
+        "columns by name or number from 0: CHANNEL=COLUMN,... with the channels time, "
+        + ", ".join(MASSES),
+    )
+
+
+class Settings(Options):
+    """Settings of analyses."""
+
+    heading = "settings"
+    resolution: float | None = option(
+        "HZ", "distance of the lines, Hz, of frf, psd and spectrogram"
+    )
+    window: str | None = option("WORD", "hann (default), flattop, boxcar and others")
+    overlap: float | None = option("X", "part of a segment, of frf and psd")
+    orders: Orders = option(
+        "ORDERS", "orders 1 to N, or a list of them such as 0.5,1,2 (default: 3)"
+    )
+    highest: float | None = option("X", "order of harmonics (default: 5)")
+    periods: float | None = option(
+        "X", "of the excitation, in a window of orders and harmonics (default: 16)"
+    )
+    damping: float | None = option("X", "of the oscillators of shock (default: 0.05)")
+    bins: float | None = option("X", "of density (default: 100)")
+
+
+class AnalysedRecords(Options):
+    """Options of the records of an analysis."""
+
+    heading, rank = "records", 0
+    record: Path = option(
+        "FILE",
+        "a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .wav or "
+        ".nc",
+        position=True,
+        needed=True,
+    )
+    show: str = option("A,B,...", SHOWN, "frf,psd")
+    label: str | None = option("WORDS", "what the record is, for the picture")
+    beside: list[str] = option(
+        "LABEL=FILE", "another record in the same picture; may be repeated", ()
+    )
+    sensor: str | None = option(
+        "HZ[:RATE]",
+        "of results of shake what accelerometers of this bandwidth read, with the impulses of "
+        "impacts; RATE: samples a second (default: accelerations between impacts)",
+    )
+    begin: float | None = option("S", "time it begins at, s", name="--from")
+    to: float | None = option("S", "time it ends at, s")
+
+
+class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, InFolder, Command):
+    """What an analyser shows of records."""
+
+    examples = """
+  {program} analyse results/shake.nc --show frf,psd --resolution 0.5
   {program} analyse swept.nc --label delaminated --beside bonded=whole.nc --show orders,harmonics
   {program} analyse swept.nc --sensor 2000 --beside measured=bench.csv --show orders
   {program} analyse measured.csv --unit g --columns time=0,box_acceleration=3,acceleration1=4
   {program} analyse run.wav --scale 500 --show spectrogram,density --from 2 --to 30
-  {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv""",
-    (
-        Group(
-            options=f"""
-            record FILE  a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .lvm,
-                .tdms, .wav, .nc
-            --show A,B,... = frf,psd  {SHOWN}
-            """
-        ),
-        Group(
-            "records",
-            """
-            --label WORDS  what the record is, for the picture
-            --beside LABEL=FILE ...  another record in the same picture; may be repeated
-            --sensor HZ[:RATE]  of results of shake what accelerometers of this bandwidth read, with
-                the impulses of impacts; RATE: samples a second (default: accelerations between
-                impacts)
-            --from S  time it begins at, s
-            --to S  time it ends at, s
-            """,
-        ),
-        Group("how to read records", (COLUMNS, READING)),
-        Group("settings", SETTINGS),
-        UNITS,
-        Group("files", FORMAT),
-        Group("results", OUTPUT),
-    ),
-    run_analyse,
-)
+  {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv"""
 
-COMMANDS = (SHAKE, ANALYSE)
+    def __call__(self) -> None:
+        from ..files import open_folder
+        from ..running.store import write_netcdf
+        from ..show.analysis import draw
+
+        names = parse_endings("--show", self.show, tuple(ANALYSES))
+        Files.from_options(self, "", fresh=True)  # before records are read
+        settings = settings_by_analysis(self, names)
+        paths = paths_by_label(self)
+        records = {label: read_cut_record(self, path) for label, path in paths.items()}
+        for label, record in records.items():
+            if note := unit_note(record.attrs):
+                print(f"{paths[label]}: {note}")
+        warn_without_sensor(self, records)
+        units = read_record_units(self)
+        reading = [self.begin, self.to, self.sensor]
+        reading += (self.given(InColumns) | self.given(Reading)).items()
+        for name in names:
+            results = {
+                label: analyse(ANALYSES[name], record, paths[label], settings[name])
+                for label, record in records.items()
+            }
+            shown = {label: with_units(data, units) for label, data in results.items()}
+            for label, data in shown.items():
+                print(f"{f'{label}: ' if label else ''}{ANALYSES[name].text}")
+                print(*table(columns_of_analysis(name, data)), sep="\n")
+            print_units_note(self, *shown.values())
+            read = {label: str(path) for label, path in paths.items()}
+            stem = f"analyse_{name}_{self.record.stem}_{digest(read, settings[name], *reading)}"
+            open_folder(self.output)
+            for label, data in results.items():
+                words = "".join(letter if letter.isalnum() else "-" for letter in label)
+                ending = f"_{words}" if len(results) > 1 else ""
+                files = Files.from_options(self, f"{stem}{ending}", fresh=True)
+                write_netcdf(data, files.result)
+                files.write(shown[label])
+            (label, first), *others = shown.items()
+            picture = Files.from_options(self, stem, fresh=True)
+            picture.write_pictures(partial(draw, first, label, dict(others)))

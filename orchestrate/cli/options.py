@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 import textwrap
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
+from .face import Options, option
 from .grammar import (
+    State,
     is_single_number,
     parse_changes,
     parse_ends,
@@ -19,8 +21,9 @@ from .grammar import (
     parse_one_or_more,
     positive_number,
 )
-from .output import result_groups
-from .table import Group, Structure
+
+if TYPE_CHECKING:
+    from ..model import Structure
 
 SETS = Path(__file__).resolve().parents[1] / "model" / "sets"
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
@@ -38,8 +41,6 @@ ASSUMED = {  # what a beam needs beside what is set, with the names that set it 
 CONTINUED = (  # what a continuation varies, for help texts
     "eta, hz, rpm, frequency, amplitude, box_acceleration or a parameter of the structure"
 )
-START = "--start X1,X2,V1,V2  state at the start, m and m/s (default: rest)"
-BESIDE = "--beside  the same of the bonded structure, beside it"
 
 
 def parameter_help(name: str, width: int = 94, indent: int = 24) -> str:
@@ -85,65 +86,77 @@ def list_shipped_sets() -> str:
     return "\n".join(lines)
 
 
-# -- tables of options ----------------------------------------------------------------------------
+# -- groups of options ----------------------------------------------------------------------------
 
 
-def structure_group(stored: str = "") -> Group:
-    """Return ``--structure`` and ``--set``; ``stored``: the option of a result that has one."""
-    default, usual = (
-        ("", f" (default: that of {stored}, else paper)") if stored else (" = paper", "")
+class OfStructure(Options):
+    """Options of the structure."""
+
+    heading, rank = "structure", 0
+    structure: str | None = option(
+        "SET|FILE", "TOML file with a [structure], or the name of a set", "paper"
     )
-    return Group(
-        "structure",
-        f"""
-        --structure SET|FILE{default}  TOML file with a [structure], or the name of a set{usual}
-        --set NAME=VALUE ...  one of its parameters, SI ({" ".join(STRUCTURE)}), of each half
-            (f1 f2 in Hz, zeta1 zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated
-        """,
-    )
-
-
-def box_group(several: bool = True, usual: str = "") -> Group:
-    """Return the options of the box's harmonic motion."""
-    values = "VALUES" if several else "VALUE"
-    form = ", FIRST:LAST:STEP with both ends or a list A,B,..." if several else ""
-    levels = "; several levels at one frequency" if several else ""
-    default = f" (default: {usual})" if usual else ""
-    return Group(
-        "the box's motion",
-        f"""
-        --hz {values}  frequency in Hz{form}
-        --rpm {values}  the same in turns per minute
-        --frequency {values}  the same as Omega in rad/s
-        --eta {values}  the same as frequency ratio Omega/omega{default}
-        --amplitude A  amplitude a in m (default with --eta: 1/eta^2 m)
-        --g G  the same as peak acceleration in g, held at all frequencies{levels}
-        """,
-        description="one frequency and one amplitude of these, or the [excitation] of the file of "
-        "--structure",
+    set: list[str] = option(
+        "NAME=VALUE",
+        f"one of its parameters, SI ({' '.join(STRUCTURE)}), of each half (f1 f2 in Hz, zeta1 "
+        "zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
+        (),
     )
 
 
-def response_groups(
-    question: Group, several: bool = True, usual: str = "", stored: str = ""
-) -> tuple[Group, ...]:
-    """Return the groups of a command on responses to harmonic excitation."""
-    return structure_group(stored), box_group(several, usual), question, *result_groups()
+class OfStored(OfStructure):
+    """The same, of a command that may begin with a stored result."""
+
+    structure: str | None = option(
+        "SET|FILE",
+        "TOML file with a [structure], or the name of a set (default: that of the stored result, "
+        "else paper)",
+    )
 
 
-def over_options(twice: bool = False) -> str:
-    """Return ``--over`` and ``--values``, which may be repeated if ``twice``."""
-    more, where = (" ...", "; twice at") if twice else ("", ", at")
-    return f"""
-    --over NAME{more}  a parameter of the structure that varies, as for --set{where} one frequency
-    --values VALUES{more}  its values, FIRST:LAST:STEP or a list A,B,...
-    """
+class OfBox(Options):
+    """Options of the box's harmonic motion."""
+
+    heading, rank = "the box's motion", 1
+    remark = (
+        "one frequency and one amplitude of these, or the [excitation] of the file of --structure; "
+        "where several values are taken: FIRST:LAST:STEP with both ends, or a list A,B,..."
+    )
+    hz: str | None = option("VALUES", "frequency in Hz")
+    rpm: str | None = option("VALUES", "the same in turns per minute")
+    frequency: str | None = option("VALUES", "the same as Omega in rad/s")
+    eta: str | None = option("VALUES", "the same as frequency ratio Omega/omega")
+    amplitude: str | None = option("A", "amplitude a in m (default with --eta: 1/eta^2 m)")
+    g: str | None = option("VALUES", "the same as peak acceleration in g, held at all frequencies")
+
+
+class Over(Options):
+    """Options of a parameter that varies."""
+
+    over: str | None = option(
+        "NAME", "a parameter of the structure that varies, as for --set, at one frequency"
+    )
+    values: str | None = option("VALUES", "its values, FIRST:LAST:STEP or a list A,B,...")
+
+
+class Beside(Options):
+    """The option of both structures."""
+
+    beside: bool = option("", "the same of the bonded structure, beside it", False)
+
+
+class FromState(Options):
+    """The option of a state at the start."""
+
+    start: State = option(
+        "X1,X2,V1,V2", "state at the start, m and m/s (default: rest)", keyword=True
+    )
 
 
 # -- structures -----------------------------------------------------------------------------------
 
 
-def read_structure_options(arguments: argparse.Namespace) -> Structure:
+def read_structure_options(arguments: Any) -> Structure:
     """Return the ``Structure`` of ``--structure`` with the changes of ``--set``."""
     from ..model import Structure
 
@@ -179,7 +192,7 @@ def format_assumed(name: str, value: float) -> str:
 
 
 def read_excitation(
-    arguments: argparse.Namespace, structure: Structure, si: bool = False, one: bool = False
+    arguments: Any, structure: Structure, si: bool = False, one: bool = False
 ) -> dict[str, Any]:
     """Return frequency and amplitude of the box's motion as keywords of the public API."""
     from ..constants import GRAVITY
@@ -213,14 +226,14 @@ def read_excitation(
     return {"frequency": frequencies, "amplitude": held}
 
 
-def read_question(arguments: argparse.Namespace) -> tuple[Structure, dict[str, Any]]:
+def read_question(arguments: Any) -> tuple[Structure, dict[str, Any]]:
     """Return the structure, and all keywords of a public function at one frequency."""
     structure = read_structure_options(arguments)
     excitation = read_excitation(arguments, structure, si=True, one=True)
-    return structure, {**excitation, **arguments.row.keywords(arguments)}
+    return structure, {**arguments.keywords(), **excitation}
 
 
-def excitation_from_file(arguments: argparse.Namespace) -> dict[str, Any] | None:
+def excitation_from_file(arguments: Any) -> dict[str, Any] | None:
     """Return frequency and amplitude from the structure's TOML file, or None; set ``--phase``."""
     from ..model.files import read
 
@@ -232,7 +245,7 @@ def excitation_from_file(arguments: argparse.Namespace) -> dict[str, Any] | None
     return {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
 
 
-def one_of(arguments: argparse.Namespace, *names: str) -> str | None:
+def one_of(arguments: Any, *names: str) -> str | None:
     """Return which of some options is given, None if none is; raise if several are."""
     given = [name for name in names if getattr(arguments, name) not in (None, False)]
     if len(given) > 1:
@@ -240,23 +253,23 @@ def one_of(arguments: argparse.Namespace, *names: str) -> str | None:
     return given[0] if given else None
 
 
-def frequency_option(arguments: argparse.Namespace) -> str | None:
+def frequency_option(arguments: Any) -> str | None:
     """Return which option gives the frequency, None if none does."""
     return one_of(arguments, *FREQUENCIES)
 
 
-def read_amplitude(arguments: argparse.Namespace) -> float | None:
+def read_amplitude(arguments: Any) -> float | None:
     """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is given."""
     name = one_of(arguments, "amplitude", "g")
     return None if name is None else positive_number(f"--{name}", getattr(arguments, name))
 
 
-def is_shaken(arguments: argparse.Namespace) -> bool:
+def is_shaken(arguments: Any) -> bool:
     """Return whether an option gives a frequency or an amplitude of the box."""
     return frequency_option(arguments) is not None or read_amplitude(arguments) is not None
 
 
-def read_over(arguments: argparse.Namespace) -> tuple[tuple[float, ...], bool] | None:
+def read_over(arguments: Any) -> tuple[tuple[float, ...], bool] | None:
     """Return the values of ``--over``, and whether they are a range; None without it."""
     if (arguments.over is None) != (arguments.values is None):
         raise InputError("--over and --values: expected both, or none of them")
@@ -277,7 +290,7 @@ def apply_to_each(change: Callable[[float], float], values: float | tuple[float,
 
 
 def varied_arguments(
-    arguments: argparse.Namespace, structure: Structure, usual: str | None = None
+    arguments: Any, structure: Structure, usual: str | None = None
 ) -> tuple[dict[str, Any], bool]:
     """Return excitation and varied parameter as keywords, and whether a range was given."""
     if arguments.over is None and arguments.g is not None and not is_single_number(arguments.g):
@@ -294,15 +307,13 @@ def varied_arguments(
     return excitation, ":" in str(getattr(arguments, frequency_option(arguments) or "eta"))
 
 
-def excitation_by_level(
-    arguments: argparse.Namespace, structure: Structure, one: bool = False
-) -> dict[str, Any]:
+def excitation_by_level(arguments: Any, structure: Structure, one: bool = False) -> dict[str, Any]:
     """Return the box's frequency and its level (m/s2) from ``--g``, each a number or a tuple."""
     from ..constants import GRAVITY
 
     one_of(arguments, "amplitude", "g")
     levels = parse_one_or_more("--g", arguments.g)
-    plain = argparse.Namespace(**{**vars(arguments), "g": None, "amplitude": "1"})
+    plain = SimpleNamespace(**{**vars(arguments), "g": None, "amplitude": "1"})
     frequency = read_excitation(plain, structure, one=one)["frequency"]
     return {"frequency": frequency, "level": apply_to_each(lambda peak: peak * GRAVITY, levels)}
 
@@ -320,7 +331,7 @@ def parse_varied(name: str, limits: str) -> tuple[str, tuple[float, float]]:
     return name, (first, last)
 
 
-def check_over(over: str, arguments: argparse.Namespace) -> None:
+def check_over(over: str, arguments: Any) -> None:
     """Raise unless ``--over`` names a structure's parameter that may vary with these options."""
     if over in FREQUENCIES:
         raise InputError(f"--over {over}: expected --{over} VALUES instead")

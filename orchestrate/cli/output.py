@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import json
 import os
@@ -16,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..lazy import xr
+from .face import Options, option
 from .grammar import floats
-from .table import Group
 
 if TYPE_CHECKING:
     from ..model import Structure
@@ -32,64 +31,101 @@ OWN_NAME = re.compile(rf"[a-z-]+_(.+)_[0-9a-f]{{{DIGITS}}}")  # of a result's fi
 
 # -- options --------------------------------------------------------------------------------------
 
-READING = """
---unit UNIT  g, mm/s ..., or by channel: base=V,face1=mm/s,time=us (default: what the file says)
---sensitivity VALUE  of voltages: "100 mV/g", or by channel "base=100 mV/g,face1=50 mV/(mm/s)"
---sample-rate HZ  where the file has no times
---scale FACTOR  by channel, such as face1=-1; of WAV files m/s2 at the full scale
---delay SECONDS  by which channels are late, such as face1=0.002
---resample  make uneven times equal, by splines
-"""
-UNITS = Group(
-    "units",
-    """
-    --units A,B,...  of prints, pictures, tables and their names: Hz, rpm, rad/s or eta; m, mm or
-        um; m/s2 or g; s or periods, a list such as Hz,mm,g (default: as the question is asked; nc
-        is in SI)
-    """,
-)
-STORE = """
---store FILE.nc  the result's own file (default: a name of its own for each question in --output)
-"""
-FORMAT = f"""
---format A,B,... = nc  also as {", ".join(FORMATS[1:])}, a list; nc is always written (default: nc)
---plot A,B,... = png  pictures: {", ".join(PLOTS)}, a list, or none (default: png)
---size W:H  shape of the pictures for slides, such as 16:9, with larger letters
-"""
-OUTPUT = "--output FOLDER = results  folder of the results (default: results)"
+
+class Reading(Options):
+    """How record files are read, as keywords of ``read_record``."""
+
+    heading = "how to read records"
+    unit: str | None = option(
+        "UNIT",
+        "g, mm/s ..., or by channel: base=V,face1=mm/s,time=us (default: what the file says)",
+    )
+    sensitivity: str | None = option(
+        "VALUE", 'of voltages: "100 mV/g", or by channel "base=100 mV/g,face1=50 mV/(mm/s)"'
+    )
+    sample_rate: float | None = option("HZ", "where the file has no times")
+    scale: str | None = option(
+        "FACTOR", "by channel, such as face1=-1; of WAV files m/s2 at the full scale"
+    )
+    delay: str | None = option("SECONDS", "by which channels are late, such as face1=0.002")
+    resample: bool = option("", "make uneven times equal, by splines", False)
 
 
-def running_group(output: str = OUTPUT, several: bool = False) -> Group:
-    """Return the options of how results are computed; of ``several`` FMUs or of one."""
-    repeat, again = (" ...", "; may be repeated") if several else ("", "")
-    return Group(
-        "results and running",
-        f"""
-        {output}
-        --force  compute anew what is there already
-        --keep-stale  take results that older code or another FMU has made
-        --jobs N  processes at once (default: all cores)
-        --cluster ADDRESS  compute on the workers of a Dask scheduler, such as tcp://host:8786
-        --fmu FILE{repeat}  own FMU (default: the one of the present sources){again}
-        --build-folder FOLDER  where FMUs are looked for and exported to
-        """,
+class InUnits(Options):
+    """The option of display units."""
+
+    heading, rank = "units", 3
+    units: str | None = option(
+        "A,B,...",
+        "of prints, pictures, tables and their names: Hz, rpm, rad/s or eta; m, mm or um; m/s2 or "
+        "g; s or periods, a list such as Hz,mm,g (default: as the question is asked; nc is in SI)",
     )
 
 
-def result_groups(store: bool = True, several: bool = False) -> tuple[Group, ...]:
-    """Return the groups of units, files and running, which end most commands' options."""
-    files = Group("files", (STORE if store else "", FORMAT))
-    return UNITS, files, running_group(several=several)
+class Formats(Options):
+    """Options of the files beside a result."""
+
+    heading, rank = "files", 4
+    format: str = option(
+        "A,B,...", f"also as {', '.join(FORMATS[1:])}, a list; nc is always written", "nc"
+    )
+    plot: str = option("A,B,...", f"pictures: {', '.join(PLOTS)}, a list, or none", "png")
+    size: str | None = option(
+        "W:H", "shape of the pictures for slides, such as 16:9, with larger letters"
+    )
 
 
-def read_units(arguments: argparse.Namespace) -> Units:
+class Stored(Options):
+    """The option of a result's own file."""
+
+    heading, rank = "files", 4
+    store: Path | None = option(
+        "FILE.nc",
+        "the result's own file (default: a name of its own for each question in --output)",
+    )
+
+
+class InFolder(Options):
+    """The option of the folder of results."""
+
+    heading, rank = "results and running", 5
+    output: Path = option("FOLDER", "folder of the results", Path("results"))
+
+
+class HowRun(Options):
+    """Options of how results are computed."""
+
+    heading, rank = "results and running", 5
+    force: bool = option("", "compute anew what is there already", False)
+    keep_stale: bool = option("", "take results that older code or another FMU has made", False)
+    jobs: int | None = option("N", "processes at once (default: all cores)")
+    cluster: str | None = option(
+        "ADDRESS", "compute on the workers of a Dask scheduler, such as tcp://host:8786"
+    )
+    fmu: Path | None = option("FILE", "own FMU (default: the one of the present sources)")
+    build_folder: Path | None = option("FOLDER", "where FMUs are looked for and exported to")
+
+
+class Results(InUnits, Formats, InFolder, HowRun):
+    """Options of units, files and running, which end most commands' options."""
+
+
+class OfBoth(Results):
+    """The same of a command that runs both FMUs."""
+
+    fmu: list[Path] = option(
+        "FILE", "own FMU (default: the one of the present sources); may be repeated", ()
+    )
+
+
+def read_units(arguments: Any) -> Units:
     """Return the display units of ``--units``; none chosen where a command lacks the option."""
     from ..units import Units
 
     return Units.from_text(getattr(arguments, "units", None) or "", "--units")
 
 
-def read_record_units(arguments: argparse.Namespace) -> Units:
+def read_record_units(arguments: Any) -> Units:
     """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
     from ..units import FACTORS, Units
 
@@ -104,13 +140,13 @@ def unit_note(attributes: Mapping[Any, Any]) -> str:
     return f"--unit {used} was used, although the file says {own}" if own else ""
 
 
-def refuse_units(arguments: argparse.Namespace, reason: str) -> None:
+def refuse_units(arguments: Any, reason: str) -> None:
     """Raise if ``--units`` is given to a command whose output has no units."""
     if str(read_units(arguments)):
         raise InputError(f"--units {arguments.units}: {reason}; expected the command without it")
 
 
-def print_units_note(arguments: argparse.Namespace, *answers: xr.Dataset) -> None:
+def print_units_note(arguments: Any, *answers: xr.Dataset) -> None:
     """Print a note if ``--units`` changes none of the numbers of some results."""
     from ..units import scale_of
 
@@ -127,7 +163,7 @@ def print_units_note(arguments: argparse.Namespace, *answers: xr.Dataset) -> Non
         print(f"--units {units}: these have no such numbers, only {words}")
 
 
-def read_running_options(arguments: argparse.Namespace, store: Path | None = None) -> Running:
+def read_running_options(arguments: Any, store: Path | None = None) -> Running:
     """Return ``jobs``, ``cluster``, ``force``, ``fmu`` and ``store`` as keywords of the API."""
     running: Running = {
         "jobs": arguments.jobs,
@@ -221,7 +257,7 @@ class Files:
 
     @classmethod
     def from_options(
-        cls, arguments: argparse.Namespace, name: str, over: str = "", fresh: bool | None = None
+        cls, arguments: Any, name: str, over: str = "", fresh: bool | None = None
     ) -> Files:
         """Return the ``Files`` of a result by the options; raise if they cannot be written."""
         formats = parse_endings("--format", arguments.format, FORMATS)

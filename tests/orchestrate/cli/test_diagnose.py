@@ -208,10 +208,10 @@ def test_another_guess_has_files_of_its_own(run):
     assert xr.load_dataset(signs).exceeds.sel(sign="order_2").item() == 1
     names = set()
     for setting in ("e=0.4", "e=0.6"):
-        from orchestrate.cli import diagnosis, make_parser
+        from orchestrate.cli import diagnosis, parse_arguments
 
         words = ["diagnose", str(folder / "parted.csv"), "--structure", "beam", "--set", setting]
-        arguments = make_parser().parse_args(words)
+        arguments = parse_arguments(words)
         names.add(
             diagnosis.file_stem(
                 diagnosis.Sweep(arguments.records[0]), read_structure_options(arguments), arguments

@@ -195,13 +195,13 @@ SYNTAX = """
     sweep --e 0.3 : --e: | did you mean --set e=0.3?
     analyse --shw=psd x.csv : --shw: | did you mean --show?
     spectra --eta0=1 --volt 1 : --volt: | did you mean --voltage?
-    sweep --samples 1.5 : --samples | '1.5' | int
-    sweep --direction sideways : --direction | 'sideways' | up
-    build now : now
-    build --folder : --folder | expected one argument
-    resonance --direction given : --direction | 'given' | both
-    couple --only glued : --only | 'glued' | bonded
-    attractors --scale big : --scale | 'big' | float
+    sweep --samples 1.5 : --samples 1.5 | whole number
+    sweep --direction sideways : --direction sideways | up
+    explore a.nc b.nc : b.nc: no option of explore
+    build --folder : --folder | expected one value
+    resonance --direction given : --direction given | both
+    couple --only glued : --only glued | bonded
+    attractors --scale big : --scale big | a number
 """
 
 
@@ -334,7 +334,7 @@ def test_a_path_that_is_not_utf_8_is_refused_before_anything_is_computed(ask, tm
 
 def test_a_backend_of_the_environment_that_is_none_is_refused(exported, tmp_path):
     """The result is stored, only its picture is not drawn."""
-    asked = ("sweep", "--eta", "1", *QUICK, "--output", str(tmp_path))
+    asked = ("sweep", "--eta", "1,1.1", *QUICK, "--output", str(tmp_path))
     command = [sys.executable, "-m", "orchestrate", *asked]
     environment = {**os.environ, "MPLBACKEND": "nonsense"}
     done = subprocess.run(command, env=environment, cwd=ROOT, capture_output=True, text=True)

@@ -1,0 +1,285 @@
+"""A command is a class whose options are its attributes; groups of options are its bases.
+
+cyclopts reads the options by their types. An option that is an argument of the command's public
+function is named only (``takes``): type, default, choices and help come from the function's
+signature and docstring.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import re
+import types
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+
+import cyclopts
+from cyclopts import Parameter
+from cyclopts.exceptions import (
+    CycloptsError,
+    MissingArgumentError,
+    UnknownOptionError,
+    UnusedCliTokensError,
+)
+
+from ..errors import InputError
+from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest
+from .grammar import SET_NAMES, read_choice, read_float, read_int
+
+LINK = re.compile(r"As in :func:`orchestrate\.(\w+)`")
+MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
+VALUES = {int: "N", float: "X", str: "WORD"}  # what the help calls values of a type
+READERS: dict[Any, Callable[[str, str], Any]] = {int: read_int, float: read_float}
+STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *SET_NAMES)
+Question = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option of a command; its type is the annotation of the attribute."""
+
+    value: str  # what the help calls its value
+    help: str
+    default: Any = None
+    name: str = ""  # where it is not the attribute's
+    position: bool = False  # no flag: the value stands by itself
+    needed: bool = False
+    many: bool = False  # several values after one flag
+    keyword: bool = False  # of a group: an argument of the public function
+
+    @property
+    def words(self) -> str:
+        """The help, with the default where it does not say so."""
+        usual = self.default in (None, False, (), "") or "(default: " in self.help
+        return self.help if usual else f"{self.help} (default: {self.default})"
+
+    def parameter(self, attribute: str, kind: Any, group: cyclopts.Group) -> inspect.Parameter:
+        """The parameter that cyclopts reads."""
+        read, choices = reader_of(kind)
+        flag = self.name or f"--{attribute.replace('_', '-')}"
+        details = Parameter(
+            name=None if self.position else flag,
+            help=self.words,
+            metavar="{" + ",".join(choices) + "}" if choices else self.value,
+            group=group,
+            negative=(),
+            show_default=False,
+            show_choices=False,
+            required=self.needed,
+            consume_multiple=self.many or None,
+            allow_repeating=True,  # the last one counts
+            converter=converter(read) if read else None,
+            n_tokens=1 if read else None,
+        )
+        position = inspect.Parameter.POSITIONAL_ONLY
+        return inspect.Parameter(
+            attribute,
+            position if self.position else inspect.Parameter.KEYWORD_ONLY,
+            default=inspect.Parameter.empty if self.needed else self.default,
+            annotation=Annotated[kind, details],
+        )
+
+
+def option(value: str, help: str, default: Any = None, **details: Any) -> Any:
+    """Return an option, as ``Any``: as an attribute it has the value's type."""
+    return Option(value, help, default, **details)
+
+
+def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, tuple[str, ...]]:
+    """Return what reads a text of a type, by an option's name and the text; and its choices."""
+    if get_origin(kind) is Annotated:
+        return next(one for one in get_args(kind) if inspect.isfunction(one)), ()
+    for one in (kind, *get_args(kind)):
+        if get_origin(one) is Literal:
+            choices = get_args(one)
+            return functools.partial(read_choice, choices), tuple(map(str, choices))
+        if one in READERS:
+            return READERS[one], ()
+    return None, ()
+
+
+def converter(read: Callable[[str, str], Any]) -> Callable[..., Any]:
+    """Return a reader in the form of cyclopts' converters."""
+    return lambda _, tokens: read(tokens[-1].keyword or "", tokens[-1].value)
+
+
+class Options:
+    """A group of options.
+
+    Of itself only, not of its bases: ``heading`` stands above its options in the help with a
+    ``remark``, ``rank`` orders the groups.
+    """
+
+
+class Debugging(Options):
+    """The option of all commands."""
+
+    heading, rank = "mistakes of the program", 6
+    debug: bool = option("", "show where in the program an error occurred", False)
+
+
+class Command(Debugging):
+    """A command; calling it runs it."""
+
+    calls = ""  # the public function
+    takes = ""  # names of its arguments whose options come from it
+    examples = ""
+    command = ""  # name and text in the list of commands
+    text = ""
+
+    def __init__(self, **values: Any) -> None:
+        self.command_line = ""
+        for name, (one, _, _) in self.options().items():
+            default = list(one.default) if isinstance(one.default, tuple) else one.default
+            setattr(self, name, values.get(name, default))
+
+    def __call__(self) -> None:
+        """Run the command."""
+        raise NotImplementedError
+
+    def ask(self) -> tuple[Any, ...]:
+        """Return structure, drive where it has one, and keywords of the public function."""
+        raise NotImplementedError
+
+    def summary(self, data: Any) -> Iterable[str]:
+        """Return the lines that are printed of the result."""
+        raise NotImplementedError
+
+    @classmethod
+    @functools.cache
+    def options(cls) -> dict[str, tuple[Option, Any, type[Options]]]:
+        """Return each option, its type and the group that it stands in, by the attribute."""
+        hints, found = get_type_hints(cls, include_extras=True), {}
+        for group in reversed(cls.__mro__):
+            for name, one in vars(group).items():
+                if isinstance(one, Option):
+                    found[name] = one, hints[name], found.get(name, (None, None, group))[2]
+        for name in cls.takes.split():
+            one, kind = option_of_argument(cls.calls, name)
+            found[name] = one, kind, cls
+        return dict(sorted(found.items(), key=lambda row: vars(row[1][2]).get("rank", 2)))
+
+    @classmethod
+    def flags(cls) -> list[str]:
+        """Return the names of all options that have one."""
+        rows = cls.options().items()
+        return [
+            one.name or f"--{name.replace('_', '-')}"
+            for name, (one, _, _) in rows
+            if not one.position
+        ]
+
+    def given(self, group: type[Options]) -> Question:
+        """Return the values of those options of a group that are given, by name."""
+        names = (name for name, one in vars(group).items() if isinstance(one, Option))
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+    def keywords(self) -> Question:
+        """Return the values of options that are arguments of the public function, by name."""
+        import orchestrate
+
+        arguments = inspect.signature(getattr(orchestrate, self.calls)).parameters
+        rows = self.options().items()
+        names = [name for name, (one, _, of) in rows if one.keyword or of is type(self)]
+        return {name: getattr(self, name) for name in names if name in arguments}
+
+    @classmethod
+    def app(cls) -> cyclopts.App:
+        """Return the cyclopts application of the command."""
+        groups: dict[str, cyclopts.Group] = {}
+        parameters = []
+        for name, (one, kind, of) in cls.options().items():
+            heading = vars(of).get("heading", "question")
+            remark = vars(of).get("remark", "")
+            group = cyclopts.Group(heading, help=remark, sort_key=len(groups))
+            group = groups.setdefault(heading, group)
+            parameters.append(one.parameter(name, kind, group))
+        parameters.sort(key=lambda one: one.kind)
+
+        def make(*positions: Any, **values: Any) -> Command:
+            names = [one.name for one in parameters]
+            return cls(**dict(zip(names, positions, strict=False)), **values)
+
+        make.__annotations__ = {}  # of the options' own names alone
+        make.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        text = f"{cls.text[0].upper()}{cls.text[1:]}."
+        return cyclopts.App(name=cls.command, help=text, default_command=make)
+
+
+# -- options from a public function ----------------------------------------------------------------
+
+
+@functools.cache
+def documentation_of(function: str) -> dict[str, tuple[str, str]]:
+    """Return type and description of each argument of a public function, by name."""
+    import docstring_parser
+
+    import orchestrate
+
+    found = {}
+    text = inspect.getdoc(getattr(orchestrate, function)) or ""
+    for one in docstring_parser.parse(text, docstring_parser.DocstringStyle.NUMPYDOC).params:
+        for name in one.arg_name.split(", "):
+            meaning = " ".join((one.description or "").split())
+            linked = LINK.match(meaning)
+            found[name] = (
+                documentation_of(linked[1])[name] if linked else (one.type_name or "", meaning)
+            )
+    return found
+
+
+@functools.cache
+def option_of_argument(function: str, name: str) -> tuple[Option, Any]:
+    """Return the option of a public function's argument, and its type."""
+    import orchestrate
+
+    called = getattr(orchestrate, function)
+    argument = inspect.signature(called).parameters[name]
+    holder = types.SimpleNamespace(__annotations__={name: argument.annotation})
+    kind = get_type_hints(holder, inspect.getmodule(called).__dict__)[name]
+    typed, meaning = documentation_of(function)[name]
+    if typed.startswith("{"):
+        kind = Literal[tuple(re.findall(r'"(\w+)"', typed))]
+    value = next((VALUES[one] for one in (kind, *get_args(kind)) if one in VALUES), "")
+    return Option(value, help_text(meaning), argument.default), kind
+
+
+def help_text(meaning: str) -> str:
+    """Return the first sentence of an argument's description as help of an option."""
+    plain = MARKUP.sub(lambda match: match[1] or match[2], meaning).partition(". ")[0].rstrip(".")
+    plain = plain.removeprefix("Whether to ")
+    return plain[:1].lower() + plain[1:]
+
+
+# -- mistakes --------------------------------------------------------------------------------------
+
+
+def explain(error: CycloptsError, command: type[Command]) -> str:
+    """Return a mistake of the command line in one line."""
+    lists = f"({command.command} --help lists them)"
+    if isinstance(error.__cause__, InputError):
+        return str(error.__cause__)
+    if isinstance(error, UnknownOptionError):
+        flag = (error.token.keyword or error.token.value).partition("=")[0]
+        near = suggestion(flag, error, command)
+        return f"{flag}: no option of {command.command}{near} {lists}"
+    if isinstance(error, UnusedCliTokensError):
+        words = " ".join(error.unused_tokens or ())
+        return f"{words}: no option of {command.command} {lists}"
+    name = error.argument.name if error.argument else ""
+    if isinstance(error, MissingArgumentError):
+        return f"{error.keyword}: expected one value" if error.keyword else f"{name} is missing"
+    return " ".join(str(error).split())
+
+
+def suggestion(flag: str, error: UnknownOptionError, command: type[Command]) -> str:
+    """Return what is probably meant by an unknown option, as words of a message; or nothing."""
+    name = flag.lstrip("-").replace("-", "_")
+    if name in STRUCTURE_NAMES and "--set" in command.flags():
+        words = error.root_input_tokens or []
+        after = words[words.index(flag) + 1 :] if flag in words else []
+        return f"; did you mean --set {name}={''.join(after[:1]) or 'VALUE'}?"
+    near = closest(flag, command.flags()) if flag.startswith("--") else ""
+    return f"; did you mean {near}?" if near else ""
