@@ -21,13 +21,24 @@ from cyclopts.exceptions import CycloptsError
 from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable
 from ..model.ranges import closest
 from ..version import __version__
-from . import commands
-from .commands import COMMANDS
+from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
 from .face import Command, explain
 from .grammar import with_option_names
 from .options import QUANTITIES, list_shipped_sets
 from .safe_output import safe_outputs
 
+COMMANDS: dict[str, type[Command]] = {
+    kind.name(): kind
+    for kind in (
+        *(pages.Build, responses.Simulate, laboratory.Shake, laboratory.Analyse),
+        *(diagnosis.Diagnose, diagnosis.Plan, responses.Resonance, responses.Spectra),
+        *(responses.Sweep, responses.Map, dynamics.Lyapunov, dynamics.Poincare),
+        *(dynamics.Attractors, dynamics.Basin, dynamics.Orbit, dynamics.Manifold),
+        *(dynamics.Branch, dynamics.Border, weak_drive.Cosimulate, weak_drive.Couple),
+        *(weak_drive.Capture, weak_drive.Passage, weak_drive.JumpVoltages),
+        *(weak_drive.DriveBranch, pages.Explore, pages.Report, pages.Paper),
+    )
+}
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 STORE = "orchestrate.running.store"
 EXAMPLES = """examples:
@@ -47,8 +58,15 @@ def program_name() -> str:
     return "vibroimpact" if called.startswith("vibroimpact") else "python -m orchestrate"
 
 
+def __getattr__(name: str) -> cyclopts.App:
+    """Return a command as cyclopts knows it; its function is imported then."""
+    if name not in COMMANDS:
+        raise AttributeError(name)
+    return COMMANDS[name].app()
+
+
 def make_app() -> cyclopts.App:
-    """Return the program as cyclopts knows it; each command's family is imported when it is run."""
+    """Return the program as cyclopts knows it, which loads a command when it is run."""
     app = cyclopts.App(
         name=program_name(),
         help="Simulate and analyse a vibro-impacting structure through its FMUs: its responses, "
@@ -58,8 +76,8 @@ def make_app() -> cyclopts.App:
         print_error=False,
         exit_on_error=False,
     )
-    for number, (name, (_, text)) in enumerate(COMMANDS.items()):
-        app.command(f"{commands.__name__}:{name}", name=name, help=text, sort_key=number)
+    for number, (name, kind) in enumerate(COMMANDS.items()):
+        app.command(f"{__name__}:{name}", name=name, help=kind.__doc__, sort_key=number)
     return app
 
 
@@ -68,7 +86,7 @@ def epilogue(name: str) -> str:
     program = program_name()
     if name not in COMMANDS:
         return EXAMPLES.format(program=program, sets=list_shipped_sets())
-    command = commands.command_class(name)
+    command = COMMANDS[name]
     quantities = QUANTITIES if "--structure" in command.flags() else ""
     return f"{quantities}examples:{command.examples.replace('{program}', program)}"
 
@@ -105,7 +123,7 @@ def parse_arguments(arguments: Sequence[str]) -> Command | None:
     except CycloptsError as error:
         if name not in COMMANDS:
             raise InputError(f"{name}: no option before a COMMAND {help_is_at}") from None
-        raise InputError(explain(error, commands.command_class(name))) from None
+        raise InputError(explain(error, COMMANDS[name])) from None
     chosen = call(*bound.args, **bound.kwargs)
     if isinstance(chosen, Command):
         return chosen

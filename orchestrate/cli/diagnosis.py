@@ -52,7 +52,7 @@ CHANNELS = {  # in the order of --columns, and what they are called towards the 
 
 
 class Sweep(NamedTuple):
-    """A record file, and which of its sweeps; 0 where it has one."""
+    """Follow responses along the frequency or another parameter: an orbit diagram."""
 
     path: Path
     number: int = 0
@@ -240,7 +240,7 @@ class DiagnosedRecords(Options):
 
 
 class Diagnose(DiagnosedRecords, OfStructure, Reading, Command, Results):
-    """A verdict on measured beams."""
+    """Whether a measured beam is delaminated: a verdict, its evidence, a report."""
 
     structure: str | None = option(
         "SET|FILE", "guess of the beam: TOML file with a [structure], or the name of a set"
@@ -330,7 +330,7 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
 
 
 class Plan(OfStructure, Command, Results):
-    """A sweep at which a delamination would show."""
+    """Plan a test: frequencies and levels of a sweep at which a delamination would show."""
 
     calls, takes = "plan_test", "periods gain_error threshold"
     hz: str | None = option(

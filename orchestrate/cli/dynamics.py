@@ -6,7 +6,6 @@ import ast
 import math
 from collections.abc import Iterator
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from ..errors import InputError
@@ -15,10 +14,9 @@ from ..lazy import xr
 from ..units import is_in_ratios, range_text, units_of, with_units
 from .answer import Asked, display_units, is_curve
 from .face import Question, option
-from .grammar import PlaneSide, State, parse, plain_int
+from .grammar import parse, plain_int
 from .options import (
     CONTINUED,
-    FromState,
     OfBox,
     OfStored,
     OfStructure,
@@ -65,7 +63,7 @@ def ask_along_parameter(arguments: Any) -> tuple[Structure, Question]:
 
 
 class Lyapunov(OfStructure, OfBox, Over, Asked, Stored, Results):
-    """Largest Lyapunov exponents along a parameter."""
+    """Largest Lyapunov exponents of responses: periodic, neutral or chaotic."""
 
     calls, takes = "lyapunov", "transient periods sigmas spectrum"
     follow: Literal["up", "down"] | None = option(
@@ -86,7 +84,7 @@ decided with so few --periods."""
 
             others = self.keywords()
             swept: Question = {name: question[name] for name in question if name not in others}
-            swept |= {"direction": self.follow, "samples": 1, "transient": self.transient}
+            swept |= {"direction": self.follow, "samples": 1, "transient": question["transient"]}
             question["start"] = orchestrate.sweep(structure, **swept, **read_running_options(self))
         return structure, question
 
@@ -128,10 +126,10 @@ COORDINATES = {  # that are printed of each section
 }
 
 
-class Poincare(OfStructure, OfBox, FromState, Asked, Stored, Results):
-    """A Poincaré section."""
+class Poincare(OfStructure, OfBox, Asked, Stored, Results):
+    """A Poincaré section: states at a phase of the box, at impacts or at releases."""
 
-    calls, takes = "poincare", "at phase transient periods"
+    calls, takes = "poincare", "at start phase transient periods"
     examples = """
   {program} poincare --eta 2.9 --periods 5000
   {program} poincare --eta 0.8 --at impacts
@@ -143,14 +141,9 @@ class Poincare(OfStructure, OfBox, FromState, Asked, Stored, Results):
 
 
 class Attractors(OfStructure, OfBox, Over, Asked, Stored, Results):
-    """Coexisting motions from random starts."""
+    """Coexisting motions: how many, and how many random starts lead to each."""
 
-    calls, takes = "attractors", "starts seed width transient settle samples"
-    scale: float | None = option(
-        "X",
-        "half width of one box of starts around zero, m (default: --width times the gap from rest, "
-        "and a second box around the response from rest)",
-    )
+    calls, takes = "attractors", "starts seed scale width transient settle samples"
     examples = """
   {program} attractors --eta 1.32 --starts 200 --seed 1
   {program} attractors --eta 1.2:1.4:0.01
@@ -211,24 +204,9 @@ alone may miss one whose basin is small."""
 
 
 class Basin(OfStructure, OfBox, Asked, Stored, Results):
-    """Basins of attraction on a plane."""
+    """Basins of attraction: which motion each start of a plane leads to."""
 
-    calls, takes = "basin", "phase transient settle samples"
-    x: PlaneSide = option(
-        "NAME,FIRST,LAST,COUNT",
-        "horizontal side of the plane (default: x_rel as far as twice the attractors' largest gap, "
-        "80 values)",
-    )
-    y: PlaneSide = option(
-        "NAME,FIRST,LAST,COUNT",
-        "vertical side of the plane (default: v_rel as far as twice the attractors' largest rate, "
-        "80 values)",
-    )
-    at: State = option(
-        "X1,X2,V1,V2",
-        "state that the plane goes through, m and m/s (default: rest; without --x and --y the mean "
-        "of the attractors)",
-    )
+    calls, takes = "basin", "x y at phase transient settle samples"
     examples = """
   {program} basin --eta 1.315
   {program} basin --eta 1.315 --x x_rel,0,1.3,60 --y v_rel,-1.3,1.3,60
@@ -275,13 +253,9 @@ def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
 
 
 class Orbit(OfStructure, OfBox, Asked, Stored, Results):
-    """A periodic motion by Newton's method."""
+    """A periodic motion by Newton's method, stable or unstable, with its multipliers."""
 
-    calls, takes = "orbit", "period box_acceleration"
-    guess: State = option(
-        "X1,X2,V1,V2",
-        "state at phase 0 to begin with, m and m/s (default: from the response from rest)",
-    )
+    calls, takes = "orbit", "guess period box_acceleration"
     examples = """
   {program} orbit --eta 3.0                     unstable: simulate would leave it
   {program} orbit --eta 1.32 --period 2
@@ -328,12 +302,9 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
 
 
 class Manifold(OfStored, OfBox, Asked, Stored, Results):
-    """The unstable manifold of a saddle."""
+    """The unstable manifold of a saddle of the stroboscopic map, as a curve to each side."""
 
-    calls, takes = "manifold", "period box_acceleration length spacing angle distance most"
-    start: Path | None = option(
-        "FILE", "NetCDF file of an orbit (default: that which the command orbit finds)"
-    )
+    calls, takes = "manifold", "start period box_acceleration length spacing angle distance most"
     examples = """
   {program} manifold --eta 3.0
   {program} manifold --start orbit.nc --length 20       of an orbit that orbit has written
@@ -379,15 +350,11 @@ def branch_excitation(arguments: Any, structure: Structure, over: str, begun: bo
 
 
 class Branch(OfStored, OfBox, Asked, Stored, Results):
-    """Periodic motions along a parameter."""
+    """Follow periodic motions along a parameter, stable and unstable, to their bifurcations."""
 
-    calls, takes = "branch", "period box_acceleration longest most"
+    calls, takes = "branch", "start switch period box_acceleration longest most"
     over: str = option("NAME", f"what varies: {CONTINUED}", "eta")
     limits: str | None = option("FIRST:LAST", "between which it is followed, in its own unit")
-    start: Path | None = option("FILE", "NetCDF file of an orbit or a branch to begin with")
-    switch: int | None = option(
-        "N", "number of a bifurcation of --start: the branch that leaves there"
-    )
     examples = """
   {program} branch --eta 2.5 --limits 2.4:2.8
   {program} branch --over e --eta 2.5 --limits 0.5:0.9
@@ -448,14 +415,13 @@ Bifurcation = Annotated[int | str, parse_bifurcation]
 
 
 class Border(OfStored, Asked, Stored, Results):
-    """A bifurcation over two parameters."""
+    """Follow a bifurcation of a branch over two parameters: where a window begins or ends."""
 
-    calls, takes = "border", "longest most"
+    calls, takes = "border", "start longest most"
     over: str = option(
         "NAME,NAME", f"what varies, that of the branch first, each {CONTINUED}", "eta,e"
     )
     limits: str | None = option("A:B,C:D", "between which each is followed, in its own unit")
-    start: Path | None = option("FILE", "NetCDF file of a branch")
     bifurcation: Bifurcation = option("N|all", "its number, or all of them in one picture", 0)
     examples = """
   {program} border --start branch.nc --bifurcation 0 --over eta,e --limits 2.4:2.9,0.6:0.8

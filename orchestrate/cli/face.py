@@ -10,9 +10,9 @@ from __future__ import annotations
 import functools
 import inspect
 import re
-import types
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 import cyclopts
@@ -26,11 +26,35 @@ from cyclopts.exceptions import (
 
 from ..errors import InputError
 from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest
-from .grammar import SET_NAMES, read_choice, read_float, read_int
+from .grammar import (
+    SET_NAMES,
+    Ends,
+    Orders,
+    PlaneSide,
+    State,
+    read_choice,
+    read_float,
+    read_int,
+)
 
-LINK = re.compile(r"As in :func:`orchestrate\.(\w+)`")
+LINK = re.compile(r"As (?:in|for) :\w+:`orchestrate\.(\w+)`")
 MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
-VALUES = {int: "N", float: "X", str: "WORD"}  # what the help calls values of a type
+KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of options are read, named
+    "array_like or xarray.Dataset": (State, "X1,X2,V1,V2"),
+    "array_like of 4 floats": (State, "X1,X2,V1,V2"),
+    "(str, float, float, int)": (PlaneSide, "NAME,FIRST,LAST,COUNT"),
+    "(float, float)": (Ends, "FIRST:LAST"),
+    "int or sequence of float": (Orders, "N|A,B,..."),
+    "int": (int, "N"),
+    "float or mapping": (str, "X|CHANNEL=X,..."),
+    "float": (float, "X"),
+    "bool": (bool, ""),
+    "str or mapping": (str, "WORD|CHANNEL=WORD,..."),
+    "str": (str, "WORD"),
+    "path": (Path, "PATH"),
+    "xarray.Dataset": (Path, "FILE.nc"),
+    "array_like": (float, "X"),
+}
 READERS: dict[Any, Callable[[str, str], Any]] = {int: read_int, float: read_float}
 STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *SET_NAMES)
 Question = dict[str, Any]
@@ -47,13 +71,14 @@ class Option:
     position: bool = False  # no flag: the value stands by itself
     needed: bool = False
     many: bool = False  # several values after one flag
-    keyword: bool = False  # of a group: an argument of the public function
+    usual: Any = None  # what is taken where it is not given, where that is not the default
 
     @property
     def words(self) -> str:
         """The help, with the default where it does not say so."""
-        usual = self.default in (None, False, (), "") or "(default: " in self.help
-        return self.help if usual else f"{self.help} (default: {self.default})"
+        usual = self.default if self.usual is None else self.usual
+        said = usual in (None, False, (), "") or "default" in self.help
+        return self.help if said else f"{self.help} (default: {usual})"
 
     def parameter(self, attribute: str, kind: Any, group: cyclopts.Group) -> inspect.Parameter:
         """The parameter that cyclopts reads."""
@@ -89,9 +114,9 @@ def option(value: str, help: str, default: Any = None, **details: Any) -> Any:
 
 def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, tuple[str, ...]]:
     """Return what reads a text of a type, by an option's name and the text; and its choices."""
-    if get_origin(kind) is Annotated:
-        return next(one for one in get_args(kind) if inspect.isfunction(one)), ()
     for one in (kind, *get_args(kind)):
+        if get_origin(one) is Annotated:
+            return next(read for read in get_args(one) if inspect.isfunction(read)), ()
         if get_origin(one) is Literal:
             choices = get_args(one)
             return functools.partial(read_choice, choices), tuple(map(str, choices))
@@ -109,8 +134,13 @@ class Options:
     """A group of options.
 
     Of itself only, not of its bases: ``heading`` stands above its options in the help with a
-    ``remark``, ``rank`` orders the groups.
+    ``remark``, ``rank`` orders the groups. ``takes`` are options that are arguments of public
+    functions, as ``"function: name name; other: name"``, by default of the one that the
+    command calls; with ``if_given`` they are None where they are not given.
     """
+
+    takes = ""
+    if_given = False
 
 
 class Debugging(Options):
@@ -121,13 +151,10 @@ class Debugging(Options):
 
 
 class Command(Debugging):
-    """A command; calling it runs it."""
+    """A command; calling it runs it, and its docstring stands in the list of commands."""
 
-    calls = ""  # the public function
-    takes = ""  # names of its arguments whose options come from it
+    calls = ""  # the public function, whose keywords are the options of the class itself
     examples = ""
-    command = ""  # name and text in the list of commands
-    text = ""
 
     def __init__(self, **values: Any) -> None:
         self.command_line = ""
@@ -156,9 +183,9 @@ class Command(Debugging):
             for name, one in vars(group).items():
                 if isinstance(one, Option):
                     found[name] = one, hints[name], found.get(name, (None, None, group))[2]
-        for name in cls.takes.split():
-            one, kind = option_of_argument(cls.calls, name)
-            found[name] = one, kind, cls
+            own = vars(group)
+            taken = options_of_functions(own.get("takes", ""), cls.calls, own.get("if_given"))
+            found |= {name: (one, kind, group) for name, one, kind in taken}
         return dict(sorted(found.items(), key=lambda row: vars(row[1][2]).get("rank", 2)))
 
     @classmethod
@@ -171,9 +198,14 @@ class Command(Debugging):
             if not one.position
         ]
 
-    def given(self, group: type[Options]) -> Question:
-        """Return the values of those options of a group that are given, by name."""
-        names = (name for name, one in vars(group).items() if isinstance(one, Option))
+    @classmethod
+    def name(cls) -> str:
+        """Return the name on the command line."""
+        return cyclopts.default_name_transform(cls.__name__)
+
+    def given(self, *groups: type[Options]) -> Question:
+        """Return the values of those options of groups that are given, by name."""
+        names = [name for name, (_, _, of) in self.options().items() if of in groups]
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def keywords(self) -> Question:
@@ -181,8 +213,7 @@ class Command(Debugging):
         import orchestrate
 
         arguments = inspect.signature(getattr(orchestrate, self.calls)).parameters
-        rows = self.options().items()
-        names = [name for name, (one, _, of) in rows if one.keyword or of is type(self)]
+        names = [name for name, (_, _, of) in self.options().items() if of is type(self)]
         return {name: getattr(self, name) for name in names if name in arguments}
 
     @classmethod
@@ -204,8 +235,7 @@ class Command(Debugging):
 
         make.__annotations__ = {}  # of the options' own names alone
         make.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-        text = f"{cls.text[0].upper()}{cls.text[1:]}."
-        return cyclopts.App(name=cls.command, help=text, default_command=make)
+        return cyclopts.App(name=cls.name(), help=cls.__doc__, default_command=make)
 
 
 # -- options from a public function ----------------------------------------------------------------
@@ -230,27 +260,37 @@ def documentation_of(function: str) -> dict[str, tuple[str, str]]:
     return found
 
 
-@functools.cache
-def option_of_argument(function: str, name: str) -> tuple[Option, Any]:
-    """Return the option of a public function's argument, and its type."""
+def options_of_functions(
+    takes: str, usual_function: str, if_given: bool | None
+) -> Iterator[tuple[str, Option, Any]]:
+    """Yield name, option and type of arguments of public functions."""
     import orchestrate
 
-    called = getattr(orchestrate, function)
-    argument = inspect.signature(called).parameters[name]
-    holder = types.SimpleNamespace(__annotations__={name: argument.annotation})
-    kind = get_type_hints(holder, inspect.getmodule(called).__dict__)[name]
-    typed, meaning = documentation_of(function)[name]
-    if typed.startswith("{"):
-        kind = Literal[tuple(re.findall(r'"(\w+)"', typed))]
-    value = next((VALUES[one] for one in (kind, *get_args(kind)) if one in VALUES), "")
-    return Option(value, help_text(meaning), argument.default), kind
+    for part in filter(None, takes.split("; ")):
+        function, _, names = part.rpartition(": ")
+        function = function or usual_function
+        parameters = inspect.signature(getattr(orchestrate, function)).parameters
+        for name in names.split():
+            typed, meaning = documentation_of(function)[name]
+            if typed.startswith("{"):
+                kind, value = Literal[tuple(re.findall(r'"(\w+)"', typed))], ""
+            else:
+                kind, value = next(KINDS[one] for one in KINDS if typed.startswith(one))
+            usual = parameters[name].default if name in parameters else None
+            usual = None if usual is inspect.Parameter.empty else usual
+            default = None if if_given else usual
+            words = help_text(meaning)
+            if ";" in takes:
+                words = f"{cyclopts.default_name_transform(function)}: {words}"
+            yield name, Option(value, words, default, usual=usual), kind
 
 
 def help_text(meaning: str) -> str:
-    """Return the first sentence of an argument's description as help of an option."""
-    plain = MARKUP.sub(lambda match: match[1] or match[2], meaning).partition(". ")[0].rstrip(".")
-    plain = plain.removeprefix("Whether to ")
-    return plain[:1].lower() + plain[1:]
+    """Return the first sentence of an argument's description, and the default, as help."""
+    plain = MARKUP.sub(lambda match: match[1] or match[2], meaning).removeprefix("Whether to ")
+    first, *others = plain.rstrip(".").split(". ")
+    usual = "".join(f"; b{one[1:]}" for one in others if one.startswith("By default"))
+    return f"{first[:1].lower()}{first[1:]}{usual}"
 
 
 # -- mistakes --------------------------------------------------------------------------------------
@@ -258,16 +298,16 @@ def help_text(meaning: str) -> str:
 
 def explain(error: CycloptsError, command: type[Command]) -> str:
     """Return a mistake of the command line in one line."""
-    lists = f"({command.command} --help lists them)"
+    lists = f"({command.name()} --help lists them)"
     if isinstance(error.__cause__, InputError):
         return str(error.__cause__)
     if isinstance(error, UnknownOptionError):
         flag = (error.token.keyword or error.token.value).partition("=")[0]
         near = suggestion(flag, error, command)
-        return f"{flag}: no option of {command.command}{near} {lists}"
+        return f"{flag}: no option of {command.name()}{near} {lists}"
     if isinstance(error, UnusedCliTokensError):
         words = " ".join(error.unused_tokens or ())
-        return f"{words}: no option of {command.command} {lists}"
+        return f"{words}: no option of {command.name()} {lists}"
     name = error.argument.name if error.argument else ""
     if isinstance(error, MissingArgumentError):
         return f"{error.keyword}: expected one value" if error.keyword else f"{name} is missing"

@@ -19,7 +19,6 @@ from .grammar import (
     ChannelColumns,
     Ends,
     Listed,
-    Orders,
     floats,
     parse_breakpoints,
     positive_number,
@@ -27,7 +26,6 @@ from .grammar import (
 )
 from .options import (
     Beside,
-    FromState,
     OfStructure,
     join_option_names,
     option_name,
@@ -140,6 +138,11 @@ class OfExcitation(Options):
 
     heading, rank = "the box's acceleration", 1
     remark = "one of the first five"
+    takes = (
+        "SweptSine: rate spacing; SteppedSine: settle_cycles measured_cycles; "
+        "Random: seed; Shock: length delay; read_record: unit scale"
+    )
+    if_given = True
     swept_sine: Ends = option("FIRST:LAST", "frequencies, Hz; downwards too")
     stepped_sine: Listed = option("FIRST:LAST:STEP", "frequencies, Hz; or a list A,B,...")
     random: Breakpoints = option("PSD", "density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz")
@@ -153,31 +156,17 @@ class OfExcitation(Options):
         "LEVEL", "peak acceleration, m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too"
     )
     duration: float | None = option("S", "of all, s")
-    rate: float | None = option("X", "of a swept sine: Hz/s, or octaves/min where --spacing log")
-    spacing: str | None = option("WORD", "of a swept sine: linear or log (default: linear)")
-    settle_cycles: int | None = option(
-        "N", "of a stepped sine: cycles at each frequency before it is measured (default: 100)"
-    )
-    measured_cycles: int | None = option(
-        "N", "of a stepped sine: cycles at each frequency that are measured (default: 50)"
-    )
-    seed: int | None = option("N", "of random vibration (default: 0)")
-    length: float | None = option("S", "of a shock's pulse, s")
-    delay: float | None = option("S", "quiet before a shock, s (default: 0)")
-    unit: str | None = option("UNIT", "of a record: m/s2, g ... (default: what the file says)")
     column: str | None = option(
         "NAME",
         "of a record: the box's, by name or number from 0 (default: by usual names, or 1)",
     )
-    scale: float | None = option("X", "of a record in a WAV file: m/s2 at its full scale")
 
 
-class Shake(OfStructure, OfExcitation, Beside, FromState, Asked, Stored, Results):
-    """Motion and impacts under an excitation of the laboratory."""
+class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
+    """As in the laboratory: motion and impacts under sines, random, shock or a record."""
 
-    calls, takes = "shake", "accuracy"
+    calls, takes = "shake", "sample_rate start accuracy"
     shaker: str | None = option("FILE", "its electrodynamic shaker, level controlled")
-    sample_rate: float | None = option("HZ", "of the record (default: what the excitation needs)")
     examples = """
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
@@ -329,7 +318,7 @@ def read_record_file(arguments: Any, path: Path) -> xr.Dataset:
         if arguments.sensor is not None and "impulse" in stored:
             return apply_sensor(stored, arguments.sensor)
         return stored if units <= {"m/s2"} else read_record(path)
-    reading = arguments.given(InColumns) | arguments.given(Reading)
+    reading = arguments.given(InColumns, Reading)
     if path.suffix.lower() != ".wav":  # the scale is of the others
         reading.pop("scale", None)
     return read_record(path, **reading)
@@ -372,20 +361,11 @@ class Settings(Options):
     """Settings of analyses."""
 
     heading = "settings"
-    resolution: float | None = option(
-        "HZ", "distance of the lines, Hz, of frf, psd and spectrogram"
+    takes = (
+        "frf: resolution window overlap; track_orders: orders periods; harmonics: highest; "
+        "shock_spectrum: damping; probability_density: bins"
     )
-    window: str | None = option("WORD", "hann (default), flattop, boxcar and others")
-    overlap: float | None = option("X", "part of a segment, of frf and psd")
-    orders: Orders = option(
-        "ORDERS", "orders 1 to N, or a list of them such as 0.5,1,2 (default: 3)"
-    )
-    highest: float | None = option("X", "order of harmonics (default: 5)")
-    periods: float | None = option(
-        "X", "of the excitation, in a window of orders and harmonics (default: 16)"
-    )
-    damping: float | None = option("X", "of the oscillators of shock (default: 0.05)")
-    bins: float | None = option("X", "of density (default: 100)")
+    if_given = True
 
 
 class AnalysedRecords(Options):
@@ -414,7 +394,7 @@ class AnalysedRecords(Options):
 
 
 class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, InFolder, Command):
-    """What an analyser shows of records."""
+    """What an analyser shows of a record: responses, spectra, orders, shock spectra."""
 
     examples = """
   {program} analyse results/shake.nc --show frf,psd --resolution 0.5
@@ -440,7 +420,7 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
         warn_without_sensor(self, records)
         units = read_record_units(self)
         reading = [self.begin, self.to, self.sensor]
-        reading += (self.given(InColumns) | self.given(Reading)).items()
+        reading += self.given(InColumns, Reading).items()
         for name in names:
             results = {
                 label: analyse(ANALYSES[name], record, paths[label], settings[name])

@@ -13,7 +13,6 @@ from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
 from .face import Options, option
 from .grammar import (
-    State,
     is_single_number,
     parse_changes,
     parse_ends,
@@ -143,14 +142,6 @@ class Beside(Options):
     """The option of both structures."""
 
     beside: bool = option("", "the same of the bonded structure, beside it", False)
-
-
-class FromState(Options):
-    """The option of a state at the start."""
-
-    start: State = option(
-        "X1,X2,V1,V2", "state at the start, m and m/s (default: rest)", keyword=True
-    )
 
 
 # -- structures -----------------------------------------------------------------------------------

@@ -36,19 +36,8 @@ class Reading(Options):
     """How record files are read, as keywords of ``read_record``."""
 
     heading = "how to read records"
-    unit: str | None = option(
-        "UNIT",
-        "g, mm/s ..., or by channel: base=V,face1=mm/s,time=us (default: what the file says)",
-    )
-    sensitivity: str | None = option(
-        "VALUE", 'of voltages: "100 mV/g", or by channel "base=100 mV/g,face1=50 mV/(mm/s)"'
-    )
-    sample_rate: float | None = option("HZ", "where the file has no times")
-    scale: str | None = option(
-        "FACTOR", "by channel, such as face1=-1; of WAV files m/s2 at the full scale"
-    )
-    delay: str | None = option("SECONDS", "by which channels are late, such as face1=0.002")
-    resample: bool = option("", "make uneven times equal, by splines", False)
+    takes = "read_record: unit sensitivity sample_rate scale delay resample"
+    if_given = True
 
 
 class InUnits(Options):

@@ -24,7 +24,9 @@ from .stored import print_difference, read_earlier_result, structure_of
 
 
 class Build(InUnits, Command):
-    """The FMUs' export."""
+    """Export the FMUs, each form with the same variables and numbers, and compile the master and
+    the explorer's kernels.
+    """
 
     folder: Path | None = option(
         "FOLDER", "where to (default: build/ of a clone, else a cache folder of the user's)"
@@ -94,7 +96,7 @@ def read_diagram(arguments: Any, branches: xr.Dataset | None) -> Any:
 
 
 class Explore(OfStored, InUnits, Command):
-    """The explorer's page."""
+    """Open a page that shows orbit diagrams and motions, computed in the browser."""
 
     result: Path | None = option(
         "RESULT",
@@ -132,7 +134,7 @@ class Explore(OfStored, InUnits, Command):
 
 
 class Report(InUnits, InFolder, Command):
-    """Stored results as one page."""
+    """Stored results as one page with pictures and numbers, to read, print and sign."""
 
     results: list[Path] = option(
         "FILE.nc",
@@ -171,7 +173,7 @@ def claim_lines(verdicts: Mapping[str, Any]) -> Iterator[str]:
 
 
 class Paper(InUnits, InFolder, HowRun, Command):
-    """The whole paper through the FMU."""
+    """The whole paper through the FMU: figures, claims, report."""
 
     figures: str | None = option(
         "NAME,...",

@@ -18,7 +18,6 @@ from .face import Question, option
 from .grammar import is_single_number, parse_changes, parse_listed
 from .options import (
     Beside,
-    FromState,
     OfBox,
     OfStructure,
     Over,
@@ -54,10 +53,10 @@ if TYPE_CHECKING:
     from ..model import Structure
 
 
-class Simulate(OfStructure, OfBox, Beside, FromState, Asked, Stored, Results):
-    """A motion in time."""
+class Simulate(OfStructure, OfBox, Beside, Asked, Stored, Results):
+    """A motion in time: both masses, gap, contact force, impacts, phase plane and spectrum."""
 
-    calls, takes = "simulate", "periods transient points phase"
+    calls, takes = "simulate", "start periods transient points phase"
     examples = """
   {program} simulate --eta 0.4 --transient 500 --periods 2      the paper's Figure 5
   {program} simulate --eta 1.047 --beside                       the undamaged structure beside it
@@ -90,7 +89,9 @@ def level_columns(data: xr.Dataset) -> Columns:
 
 
 class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
-    """Resonance curves, at one level or at several."""
+    """Resonance curves: amplitude and peak acceleration, bonded against delaminated; at several
+    levels (--g FIRST:LAST:STEP), with the level at which a preloaded structure first opens.
+    """
 
     calls, takes = "resonance", "direction transient samples prominence jump"
     examples = """
@@ -184,7 +185,7 @@ def line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> str:
 
 
 class Spectra(OfMotor, OfVoltage, OfBox, Asked, Stored, OfBoth):
-    """Spectra on a motor, or harmonic ones if a frequency is given."""
+    """Acceleration spectra, bonded beside delaminated (Figure 3)."""
 
     calls, takes = "spectra", "transient periods points"
     examples = """
@@ -271,10 +272,10 @@ def window_marks(data: xr.Dataset) -> list[tuple[str, float]]:
     ]
 
 
-class Sweep(OfStructure, OfBox, Over, FromState, Overlay, Asked, Stored, Results):
-    """Responses along a parameter, an orbit diagram."""
+class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
+    """Follow responses along the frequency or another parameter: an orbit diagram."""
 
-    calls, takes = "sweep", "transient samples tolerance"
+    calls, takes = "sweep", "start transient samples tolerance"
     eta: str | None = option(
         "VALUES",
         "the same as frequency ratio Omega/omega (default: 0.1:8.0:0.001 where no frequency is "
@@ -324,7 +325,7 @@ Repeat the command to resume an interrupted run. A finished result is left as it
 
 
 class Map(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
-    """Responses over two parameters."""
+    """Responses over two parameters: impacts per period, multiplicity, largest gap, exponent."""
 
     calls, takes = "map", "exponent transient settle samples periods tolerance longest"
     over: list[str] = option(

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..lazy import xr
@@ -40,8 +40,8 @@ from .drive import (
     times_in_seconds,
 )
 from .face import Options, Question, option
-from .grammar import Ends, parse_rates, plain_float, read_pairs
-from .options import FromState, OfStructure, Over, read_over, read_structure_options
+from .grammar import parse_rates, plain_float, read_pairs
+from .options import OfStructure, Over, read_over, read_structure_options
 from .output import Files, OfBoth, Results, Stored, digest, read_running_options, user_fmus
 from .text import Columns, columns_of, extents, parameter_column, table
 
@@ -132,12 +132,10 @@ class OfDrive(Options):
     record: list[str] = option("NAME", "variables of the drive that are stored", (), many=True)
 
 
-class Cosimulate(OfStructure, OfDrive, FromState, Asked, Stored, Results):
-    """Both FMUs together."""
+class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
+    """Both FMUs together: the oscillator and a drive of anybody's."""
 
-    calls = "cosimulate"
-    duration: float | None = option("S", "of the run, s (needed)")
-    step: float | None = option("S", "communication step, s (needed)")
+    calls, takes = "cosimulate", "duration step start"
     examples = """
   {program} cosimulate --drive shaker.fmu --list
   {program} cosimulate --structure beam --drive shaker.fmu --duration 2 --step 1e-3
@@ -190,7 +188,8 @@ def make_jobs(arguments: Any, structure: Structure, drive: Drive) -> list[Couple
     control = make_controller(arguments, structure, drive)
     schedule = make_schedule(arguments, structure, drive, control)
     step, hold = times_in_seconds(arguments, structure, "step", "hold").values()
-    scheme = scheme_from_arguments(structure, step, arguments.tolerance, control is not None)
+    tolerance = arguments.keywords()["tolerance"]
+    scheme = scheme_from_arguments(structure, step, tolerance, control is not None)
     base_name = result_name(arguments, structure, drive, (schedule, scheme, control, hold))
     return [
         replace(
@@ -295,13 +294,9 @@ def jump_cells(at: xr.Dataset, volts: float) -> tuple[str, ...]:
 
 
 class Couple(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Driven, OfBoth):
-    """Structure and motor coupled, the voltage up and down."""
+    """The weak drive: structure and motor coupled, the voltage up and down (Figure 2)."""
 
-    calls = "couple"
-    tolerance: float | None = option(
-        "X",
-        "step-size tolerance: largest defect over the work exchanged in a step (default: 1e-7)",
-    )
+    calls, takes = "couple", "tolerance"
     branches: bool = option(
         "",
         "compute the branches of stationary motions too, and draw them under the ramps",
@@ -388,7 +383,7 @@ def threshold_cells(data: xr.Dataset) -> dict[str, str]:
 
 
 class Capture(OfMotor, Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
-    """Voltages switched on from rest."""
+    """Voltages switched on from rest: which pass the resonance, which are captured."""
 
     calls, takes = "capture", "count tolerance time"
     examples = f"""
@@ -452,14 +447,9 @@ def first_stored_interval(data: xr.Dataset) -> xr.Dataset:
 
 
 class Passage(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Driven, OfBoth):
-    """A run through the resonance at full resolution."""
+    """A run through the resonance at full resolution: speed, motion, power, waterfall."""
 
-    calls = "passage"
-    around: float | None = option(
-        "S",
-        "time before and after the jump, or the passage where there is no jump, in s (default: "
-        "300/omega; all of a run at one voltage)",
-    )
+    calls, takes = "passage", "around"
     revolutions: int = option("N", "revolutions of each spectrum of the waterfall", 8)
     mass: Literal[1, 2] = option("", "whose acceleration the spectra are of", 1)
     examples = f"""
@@ -513,7 +503,7 @@ class Passage(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Driven, Of
 
 
 class JumpVoltages(OfMotor, OfRamp, Over, Stepped, Driven, Stored, OfBoth):
-    """Voltages at which the speed jumps."""
+    """Voltages at which the speed jumps, at rate 0 and on ramps of several rates."""
 
     calls = "jump_voltages"
     rate: str = option("A,B,...", "change of eta0 in a time 1/omega, a list", "1e-4,5e-5,2.5e-5")
@@ -608,13 +598,9 @@ def drive_branch_lines(results: Results) -> Iterator[str]:
 
 
 class DriveBranch(OfMotor, Driven, Stored, OfBoth):
-    """Stationary motions of structure and motor."""
+    """Stationary motions of structure and motor, stable and unstable, and their bifurcations."""
 
-    calls, takes = "drive_branch", "longest most period steps settle"
-    speed: Ends = option(
-        "FIRST:LAST",
-        "range of mean speeds, rad/s (default: 0.95 and 1.25 times the resonance)",
-    )
+    calls, takes = "drive_branch", "speed longest most period steps settle"
     examples = """
   {program} drive-branch                              quick, bonded and delaminated
   {program} drive-branch --drive beam --speed 92:110

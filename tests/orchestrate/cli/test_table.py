@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
-from orchestrate.cli.commands import COMMANDS, command_class
 from orchestrate.cli.options import excitation_by_level, read_excitation
 from orchestrate.cli.output import result_name
 from orchestrate.cli.text import format_ranges
@@ -26,13 +25,12 @@ from orchestrate.units import with_units
 
 from .commands import ROOT
 
-CLASSES = {name: command_class(name) for name in COMMANDS}
 CONVERTED = {"settle", "direction", "over", "bifurcation"}  # options in other units or words
 
 
 def test_every_default_is_that_of_the_function_and_in_the_help():
     compared = 0
-    for command, found in CLASSES.items():
+    for command, found in cli.COMMANDS.items():
         function = getattr(orchestrate, found.calls, None)
         parameters = inspect.signature(function).parameters if inspect.isfunction(function) else {}
         for name, (option, _, _) in found.options().items():
@@ -50,7 +48,7 @@ def test_every_default_is_that_of_the_function_and_in_the_help():
 @pytest.mark.parametrize("program", ["vibroimpact", "python -m orchestrate"])
 def test_help_has_quantities_and_examples_that_can_be_typed(capsys, monkeypatch, program):
     monkeypatch.setattr(sys, "argv", [f"/bin/{program}"])
-    for command, found in CLASSES.items():
+    for command, found in cli.COMMANDS.items():
         assert cli.main([command, "--help"]) == 0
         text = capsys.readouterr().out
         assert text.startswith(f"Usage: {program} {command}")
@@ -66,7 +64,7 @@ def test_help_has_quantities_and_examples_that_can_be_typed(capsys, monkeypatch,
 def test_help_lists_commands_and_shipped_sets(capsys):
     assert cli.main(["--help"]) == 0
     words = capsys.readouterr().out.split()
-    assert {*COMMANDS, "paper", "quick", "beam"} <= set(words)
+    assert {*cli.COMMANDS, "paper", "quick", "beam"} <= set(words)
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1251", "utf-8"])
