@@ -12,13 +12,10 @@ from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
 from .face import Command, Options, Question, option
 from .notes import print_frequency_notes, trivial_notes
-from .options import read_question
 from .output import (
     Files,
     digest,
     importing_matplotlib,
-    read_running_options,
-    read_units,
     result_name,
 )
 from .stored import read_earlier_result
@@ -43,13 +40,45 @@ class Overlay(Options):
         "FILE,...", "NetCDF files of branches that are drawn over the picture", (), many=True
     )
 
+    def read_overlay(self, structure: Structure, question: Mapping[str, Any]) -> list[xr.Dataset]:
+        """Return the branches of ``--overlay``; raise for one that does not fit the question."""
+        texts = getattr(self, "overlay", [])
+        paths = [Path(name) for text in texts for name in text.split(",")]
+        if not paths:
+            return []
+        branches = [read_earlier_result("--overlay", path) for path in paths]
+        if self.calls == "map":
+            from ..show.overlay import explain_border_mismatch
+
+            both = {name for name, value in question.items() if isinstance(value, tuple)}
+            for path, curve in zip(paths, branches, strict=True):
+                if why := explain_border_mismatch(curve, both, structure.parameters()):
+                    raise InputError(f"--overlay {path}: {why}")
+            return branches
+        if self.calls == "resonance" and "level" in question:
+            raise InputError(f"--overlay: with several levels, --g {self.g}; expected one")
+        if not is_curve(question):
+            raise InputError("--overlay: one value has no picture; expected a range or a list")
+        from ..show.overlay import explain_mismatch
+
+        over = question.get("over") or ("eta" if "eta" in question else "frequency")
+        parameters = structure.parameters()
+        if self.calls == "resonance":  # of both
+            parameters.pop("bonded")
+        for path, branch in zip(paths, branches, strict=True):
+            if why := explain_mismatch(branch, over, parameters):
+                raise InputError(f"--overlay {path}: {why}")
+        return branches
+
 
 class Asked(Command):
     """A command that asks its public function and shows the result."""
 
     def ask(self) -> tuple[Structure, Question]:
         """Return the structure and the keywords of the public function, at one frequency."""
-        return read_question(self)
+        structure = self.read_structure()
+        excitation = self.read_excitation(structure, si=True, one=True)
+        return structure, {**self.keywords(), **excitation}
 
     def has_picture(self, question: Question) -> bool:
         """Return whether a question has a picture."""
@@ -89,7 +118,7 @@ class Asked(Command):
         import orchestrate
 
         function = function or self.calls
-        branches = read_overlay(self, structure, question)
+        branches = self.read_overlay(structure, question)
         over = f"over_{digest(*branches)}" if branches else ""
         file = getattr(self, "structure", "") or getattr(self, "start", None) or "paper"
         name = result_name(function, file, structure, question)
@@ -97,9 +126,9 @@ class Asked(Command):
         picture = picture and self.has_picture(question)
         print_frequency_notes(self, structure, question)
         with importing_matplotlib(picture and files.lacks_pictures()):
-            running = read_running_options(self, files.result)
+            running = self.running(files.result)
             data: xr.Dataset = getattr(orchestrate, function)(structure, **question, **running)
-        asked = with_units(data, display_units(self, question))
+        asked = with_units(data, self.display_units(question))
         (shown,) = with_readable_lengths(asked)
         for line in (*trivial_notes(structure, question, shown), *self.summary(shown)):
             print(line)
@@ -107,65 +136,30 @@ class Asked(Command):
         files.write(asked, draw if picture else None)
         return data
 
+    def display_units(self, question: Mapping[str, Any]) -> Units:
+        """Return the display units: those of ``--units``, else those of the question's options."""
+        varied = str(getattr(self, "over", "")).replace(" ", "").split(",")  # two of a border
+        over = next((UNIT_OF_OPTION[name] for name in varied if name in UNIT_OF_OPTION), "")
+        given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(self, name, None)]
+        keys = self.excitation_keys() if "frequency" in question and not given else ()
+        given += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
+        both = question.get("over") or ()  # of a border
+        by_ratio = "eta" in question or (not isinstance(both, str) and "eta" in both)
+        frequency = over or next(iter(given), "eta" if by_ratio else "Hz")
+        in_g = getattr(self, "g", None) is not None or "acceleration_g" in keys
+        usual = Units(frequency, acceleration="g" if in_g else "")
+        return self.read_units().with_defaults(usual)
+
+    def excitation_keys(self) -> Collection[str]:
+        """Return the keys of the section ``[excitation]`` in the TOML file of ``--structure``."""
+        from ..model.files import parse, resolve
+
+        if self.structure is None:  # but that of a stored result
+            return ()
+        return tuple(parse(resolve(self.structure)).get("excitation", {}))
+
 
 def is_curve(question: Mapping[str, Any]) -> bool:
     """Return whether a parameter has several values, so that a curve can be drawn."""
     varied = (question.get(name) for name in VARIED)
     return any(len(values) > 1 for values in varied if isinstance(values, tuple))
-
-
-def display_units(arguments: Any, question: Mapping[str, Any]) -> Units:
-    """Return the display units: those of ``--units``, else those of the question's options."""
-    varied = str(getattr(arguments, "over", "")).replace(" ", "").split(",")  # two of a border
-    over = next((UNIT_OF_OPTION[name] for name in varied if name in UNIT_OF_OPTION), "")
-    given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
-    keys = excitation_keys(arguments) if "frequency" in question and not given else ()
-    given += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
-    both = question.get("over") or ()  # of a border
-    by_ratio = "eta" in question or (not isinstance(both, str) and "eta" in both)
-    frequency = over or next(iter(given), "eta" if by_ratio else "Hz")
-    in_g = getattr(arguments, "g", None) is not None or "acceleration_g" in keys
-    usual = Units(frequency, acceleration="g" if in_g else "")
-    return read_units(arguments).with_defaults(usual)
-
-
-def excitation_keys(arguments: Any) -> Collection[str]:
-    """Return the keys of the section ``[excitation]`` in the TOML file of ``--structure``."""
-    from ..model.files import parse, resolve
-
-    if arguments.structure is None:  # but that of a stored result
-        return ()
-    return tuple(parse(resolve(arguments.structure)).get("excitation", {}))
-
-
-def read_overlay(
-    arguments: Any, structure: Structure, question: Mapping[str, Any]
-) -> list[xr.Dataset]:
-    """Return the branches of ``--overlay``; raise for one that does not fit the question."""
-    texts = getattr(arguments, "overlay", [])
-    paths = [Path(name) for text in texts for name in text.split(",")]
-    if not paths:
-        return []
-    branches = [read_earlier_result("--overlay", path) for path in paths]
-    if arguments.command == "map":
-        from ..show.overlay import explain_border_mismatch
-
-        both = {name for name, value in question.items() if isinstance(value, tuple)}
-        for path, curve in zip(paths, branches, strict=True):
-            if why := explain_border_mismatch(curve, both, structure.parameters()):
-                raise InputError(f"--overlay {path}: {why}")
-        return branches
-    if arguments.command == "resonance" and "level" in question:
-        raise InputError(f"--overlay: with several levels, --g {arguments.g}; expected one")
-    if not is_curve(question):
-        raise InputError("--overlay: one value has no picture; expected a range or a list")
-    from ..show.overlay import explain_mismatch
-
-    over = question.get("over") or ("eta" if "eta" in question else "frequency")
-    parameters = structure.parameters()
-    if arguments.command == "resonance":  # of both
-        parameters.pop("bonded")
-    for path, branch in zip(paths, branches, strict=True):
-        if why := explain_mismatch(branch, over, parameters):
-            raise InputError(f"--overlay {path}: {why}")
-    return branches

@@ -16,15 +16,12 @@ from ..lazy import xr
 from ..units import Units, range_text, text_of, with_readable_lengths, with_units
 from .face import Command, Options, Question, option
 from .grammar import parse_values, with_option_names
-from .options import OfStructure, read_structure_options
+from .options import OfStructure
 from .output import (
     Files,
     Reading,
     Results,
     digest,
-    read_record_units,
-    read_running_options,
-    read_units,
     result_name,
     unit_note,
 )
@@ -62,153 +59,9 @@ class Sweep(NamedTuple):
         return f"{self.path}{f', sweep {self.number}' if self.number else ''}"
 
 
-def file_stem(sweep: Sweep, guess: Structure, arguments: Any) -> str:
-    """Return the name of a record's result files, unique for content, guess and reading options."""
-    read_as = [arguments.columns, arguments.participation, *arguments.given(Reading).items()]
-    number = f"_sweep{sweep.number}" if sweep.number else ""
-    part = digest(file_checksum(sweep.path), guess.parameters(), read_as)
-    return f"diagnose_{sweep.path.stem}{number}_{part}"
-
-
 def file_checksum(path: Path) -> str:
     """Return a file's SHA-256 in hexadecimal digits."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
-
-
-def read_all_records(arguments: Any) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
-    """Read all record files; return a dict of sweeps, and an error line per refused file."""
-    from ..diagnosis.fit import checked_data
-    from ..diagnosis.sweeps import split_sweeps
-
-    records: dict[Sweep, xr.Dataset] = {}
-    refused: list[str] = []
-    paths = list(dict.fromkeys(arguments.records))
-    for path in paths:
-        try:
-            record = read_one_record(arguments, path)
-            checked_data(record)
-            parts = split_sweeps(record)
-            records |= {Sweep(path, n * (len(parts) > 1)): one for n, one in enumerate(parts, 1)}
-        except InputError as error:
-            line = str(error)
-            refused.append(line if line.startswith(str(path)) else f"{path}: {line}")
-    if refused and len(paths) == 1:
-        raise InputError(refused[0])
-    return records, refused
-
-
-def read_one_record(arguments: Any, path: Path) -> xr.Dataset:
-    """Read a record from a file; raise if it has no acceleration of either face."""
-    from .. import read_record
-
-    columns = parse_columns(arguments)
-    record = read_record(path, columns=columns, **arguments.given(Reading))
-    if "acceleration1" not in record and "acceleration2" not in record:
-        taken = record.attrs.get("columns", "no columns")
-        text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"
-        raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
-    return record
-
-
-def parse_columns(arguments: Any) -> dict[str, str | int] | None:
-    """Parse ``--columns A,B,...`` into a dict from channel to column; None if it is not given."""
-    if arguments.columns is None:
-        return None
-    texts = [text.strip() for text in arguments.columns.split(",")]
-    names = list(CHANNELS)[arguments.sample_rate is not None :]
-    if not 2 <= len(texts) <= len(names) or not all(texts):
-        words = ", ".join(CHANNELS[name] for name in names)
-        expected = f"expected columns of {words}, the last one if it is there"
-        raise InputError(f"--columns {arguments.columns}: {expected}")
-    numbers = (int(text) if text.isdecimal() else text for text in texts)
-    return dict(zip(names, numbers, strict=False))
-
-
-def participation_by_sensor(arguments: Any) -> dict[str, float] | None:
-    """Parse ``--participation G,...`` into a dict by face; None if it is not given."""
-    if arguments.participation is None:
-        return None
-    from ..laboratory.sensors import PARTICIPATION
-
-    texts = arguments.participation.split(",")
-    faces = list(CHANNELS)[2:]
-    try:
-        factors = [PARTICIPATION.check(float(text)) for text in texts]
-        return dict(zip(faces[: len(texts)], factors, strict=True))
-    except ValueError:
-        expected = "expected -10 to 10 for face 1, or for both faces, such as 1.57 or 0.53,0.6"
-        raise InputError(f"--participation {arguments.participation}: {expected}") from None
-
-
-def compute_verdicts(
-    arguments: Any,
-    records: Mapping[Sweep, xr.Dataset],
-    names: Mapping[Sweep, str],
-    guess: Structure,
-) -> dict[Sweep, xr.Dataset]:
-    """Compute each record's verdict, or load a stored one; store with it where it comes from."""
-    from .. import detect_all
-    from ..running.store import write_netcdf
-
-    named = {names[sweep]: record for sweep, record in records.items()}
-    running = read_running_options(arguments, arguments.output)
-    factors = participation_by_sensor(arguments)
-    verdicts = detect_all(named, guess, participation=factors, **running)
-    described = {}
-    for sweep, name in names.items():
-        verdict = verdicts[name]
-        words = origin_attributes(arguments, sweep.path, records[sweep])
-        label = Sweep(Path(sweep.path.name), sweep.number)
-        words["title"] = f"Verdict on {label}: {verdict.verdict.item()}"
-        described[sweep] = verdict.assign_attrs(words)
-        if not words.items() <= verdict.attrs.items():
-            write_netcdf(described[sweep], arguments.output / f"{name}.nc")
-    return described
-
-
-def origin_attributes(arguments: Any, path: Path, record: xr.Dataset) -> dict[str, str]:
-    """Return a verdict's attributes on its record, the guess's file and the command."""
-    words = {
-        "record_file": path.name,
-        "record_sha256": file_checksum(path),
-        "record_columns": record.attrs.get("columns", ""),
-        "record_unit": record.attrs.get("unit", ""),
-        "record_unit_note": unit_note(record.attrs),
-        "record_converted": record.attrs.get("converted", ""),
-        "record_time_base": record.attrs.get("time_base", ""),
-        "sensors": record.attrs.get("sensors", ""),
-        "guess_file": str(arguments.structure),
-        "command": getattr(arguments, "command_line", ""),
-    }
-    return {name: text for name, text in words.items() if text}
-
-
-def write_files(arguments: Any, stem: str, answers: Mapping[str, xr.Dataset]) -> None:
-    """Write results, pictures and the HTML report of one record; print the files' paths."""
-    from .. import plot, report
-    from ..files import open_folder
-    from ..running.store import write_netcdf
-
-    folder, units = open_folder(arguments.output), read_record_units(arguments)
-    for ending, answer in answers.items():
-        files = Files.from_options(arguments, f"{stem}{ending}", fresh=True)
-        if ending:  # the verdict is stored already
-            write_netcdf(answer, files.result)
-        shown = with_units(answer, units)
-        files.write(shown, partial(plot, shown))
-    page = folder / f"{stem}.html"
-    print(report(*answers.values(), output=page, notes=arguments.notes or "", units=units))
-
-
-def verdict_lines(sweep: Sweep, verdict: xr.Dataset, arguments: Any) -> Iterator[str]:
-    """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
-    from ..show.verdict import make_verdict
-
-    shown = make_verdict(verdict)
-    yield f"{sweep}: {shown.word} {with_option_names(shown.sentence, arguments)}"
-    for name, label in LINES.items():
-        if verdict.attrs.get(name):
-            yield f"  {label}: {with_option_names(verdict.attrs[name], arguments)}"
 
 
 class DiagnosedRecords(Options):
@@ -242,7 +95,7 @@ class DiagnosedRecords(Options):
 class Diagnose(DiagnosedRecords, OfStructure, Reading, Command, Results):
     """Whether a measured beam is delaminated: a verdict, its evidence, a report."""
 
-    structure: str | None = option(
+    structure: Any = option(
         "SET|FILE", "guess of the beam: TOML file with a [structure], or the name of a set"
     )
     notes: str | None = option("WORDS", "below the title of the report: which beam, who, when")
@@ -273,32 +126,177 @@ what it gives:
         from ..laboratory.record_files import check_file
 
         Files.from_options(self, "", fresh=True)  # before records are read
-        participation_by_sensor(self)
+        self.participation_by_sensor()
         if self.structure is None:
             check_file(self.records[0])  # a name may be wrong too
             text = "expected a TOML file with a guess of the beam, within some 10 %"
             raise InputError(f"--structure is missing; {text}")
-        guess = read_structure_options(self)
-        others = [read_one_record(self, path) for path in self.other]
+        guess = self.read_structure()
+        others = [self.read_one_record(path) for path in self.other]
         if others and len(self.records) > 1:
             raise InputError("--other: of one beam; expected one record with it")
         log.info("reading %s", ", ".join(path.name for path in self.records))
-        records, refused = read_all_records(self)
-        names = {one: file_stem(one, guess, self) for one in records}
-        verdicts = compute_verdicts(self, records, names, guess) if records else {}
-        units = read_record_units(self)
+        records, refused = self.read_all_records()
+        names = {one: self.file_stem(one, guess) for one in records}
+        verdicts = self.compute_verdicts(records, names, guess) if records else {}
+        units = self.read_record_units()
         for sweep, verdict in verdicts.items():
-            for line in verdict_lines(sweep, with_units(verdict, units), self):
+            for line in self.verdict_lines(sweep, with_units(verdict, units)):
                 print(line)
             log.info("%s: signs, pictures and page", sweep.path.name)
             same = [
                 data for one, data in records.items() if one.path == sweep.path and one != sweep
             ]
             signs = orchestrate.signs(records[sweep], other=[*others, *same], structure=guess)
-            write_files(self, names[sweep], {"": verdict, "_signs": signs})
+            self.write_files(names[sweep], {"": verdict, "_signs": signs})
         if refused:
             count = len({one.path for one in records}) + len(refused)
             raise InputError(f"{len(refused)} of {count} records refused: {'; '.join(refused)}")
+
+    def file_stem(
+        self,
+        sweep: Sweep,
+        guess: Structure,
+    ) -> str:
+        """Return the name of a record's results, unique for content, guess and reading."""
+        read_as = [self.columns, self.participation, *self.given(Reading).items()]
+        number = f"_sweep{sweep.number}" if sweep.number else ""
+        part = digest(file_checksum(sweep.path), guess.parameters(), read_as)
+        return f"diagnose_{sweep.path.stem}{number}_{part}"
+
+    def read_all_records(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
+        """Read all record files; return a dict of sweeps, and an error line per refused file."""
+        from ..diagnosis.fit import checked_data
+        from ..diagnosis.sweeps import split_sweeps
+
+        records: dict[Sweep, xr.Dataset] = {}
+        refused: list[str] = []
+        paths = list(dict.fromkeys(self.records))
+        for path in paths:
+            try:
+                record = self.read_one_record(path)
+                checked_data(record)
+                parts = split_sweeps(record)
+                records |= {
+                    Sweep(path, n * (len(parts) > 1)): one for n, one in enumerate(parts, 1)
+                }
+            except InputError as error:
+                line = str(error)
+                refused.append(line if line.startswith(str(path)) else f"{path}: {line}")
+        if refused and len(paths) == 1:
+            raise InputError(refused[0])
+        return records, refused
+
+    def read_one_record(self, path: Path) -> xr.Dataset:
+        """Read a record from a file; raise if it has no acceleration of either face."""
+        from .. import read_record
+
+        columns = self.parse_columns()
+        record = read_record(path, columns=columns, **self.given(Reading))
+        if "acceleration1" not in record and "acceleration2" not in record:
+            taken = record.attrs.get("columns", "no columns")
+            text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"
+            raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
+        return record
+
+    def parse_columns(self) -> dict[str, str | int] | None:
+        """Return the columns of ``--columns A,B,...`` by channel; None if it is not given."""
+        if self.columns is None:
+            return None
+        texts = [text.strip() for text in self.columns.split(",")]
+        names = list(CHANNELS)[self.sample_rate is not None :]
+        if not 2 <= len(texts) <= len(names) or not all(texts):
+            words = ", ".join(CHANNELS[name] for name in names)
+            expected = f"expected columns of {words}, the last one if it is there"
+            raise InputError(f"--columns {self.columns}: {expected}")
+        numbers = (int(text) if text.isdecimal() else text for text in texts)
+        return dict(zip(names, numbers, strict=False))
+
+    def participation_by_sensor(self) -> dict[str, float] | None:
+        """Parse ``--participation G,...`` into a dict by face; None if it is not given."""
+        if self.participation is None:
+            return None
+        from ..laboratory.sensors import PARTICIPATION
+
+        texts = self.participation.split(",")
+        faces = list(CHANNELS)[2:]
+        try:
+            factors = [PARTICIPATION.check(float(text)) for text in texts]
+            return dict(zip(faces[: len(texts)], factors, strict=True))
+        except ValueError:
+            expected = "expected -10 to 10 for face 1, or for both faces, such as 1.57 or 0.53,0.6"
+            raise InputError(f"--participation {self.participation}: {expected}") from None
+
+    def compute_verdicts(
+        self,
+        records: Mapping[Sweep, xr.Dataset],
+        names: Mapping[Sweep, str],
+        guess: Structure,
+    ) -> dict[Sweep, xr.Dataset]:
+        """Compute or load each record's verdict; store with it where it comes from."""
+        from .. import detect_all
+        from ..running.store import write_netcdf
+
+        named = {names[sweep]: record for sweep, record in records.items()}
+        running = self.running(self.output)
+        factors = self.participation_by_sensor()
+        verdicts = detect_all(named, guess, participation=factors, **running)
+        described = {}
+        for sweep, name in names.items():
+            verdict = verdicts[name]
+            words = self.origin_attributes(sweep.path, records[sweep])
+            label = Sweep(Path(sweep.path.name), sweep.number)
+            words["title"] = f"Verdict on {label}: {verdict.verdict.item()}"
+            described[sweep] = verdict.assign_attrs(words)
+            if not words.items() <= verdict.attrs.items():
+                write_netcdf(described[sweep], self.output / f"{name}.nc")
+        return described
+
+    def origin_attributes(self, path: Path, record: xr.Dataset) -> dict[str, str]:
+        """Return a verdict's attributes on its record, the guess's file and the command."""
+        words = {
+            "record_file": path.name,
+            "record_sha256": file_checksum(path),
+            "record_columns": record.attrs.get("columns", ""),
+            "record_unit": record.attrs.get("unit", ""),
+            "record_unit_note": unit_note(record.attrs),
+            "record_converted": record.attrs.get("converted", ""),
+            "record_time_base": record.attrs.get("time_base", ""),
+            "sensors": record.attrs.get("sensors", ""),
+            "guess_file": str(self.structure),
+            "command": getattr(self, "command_line", ""),
+        }
+        return {name: text for name, text in words.items() if text}
+
+    def write_files(self, stem: str, answers: Mapping[str, xr.Dataset]) -> None:
+        """Write results, pictures and the HTML report of one record; print the files' paths."""
+        from .. import plot, report
+        from ..files import open_folder
+        from ..running.store import write_netcdf
+
+        folder, units = open_folder(self.output), self.read_record_units()
+        for ending, answer in answers.items():
+            files = Files.from_options(self, f"{stem}{ending}", fresh=True)
+            if ending:  # the verdict is stored already
+                write_netcdf(answer, files.result)
+            shown = with_units(answer, units)
+            files.write(shown, partial(plot, shown))
+        page = folder / f"{stem}.html"
+        print(report(*answers.values(), output=page, notes=self.notes or "", units=units))
+
+    def verdict_lines(
+        self,
+        sweep: Sweep,
+        verdict: xr.Dataset,
+    ) -> Iterator[str]:
+        """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
+        from ..show.verdict import make_verdict
+
+        shown = make_verdict(verdict)
+        yield f"{sweep}: {shown.word} {with_option_names(shown.sentence, self)}"
+        for name, label in LINES.items():
+            if verdict.attrs.get(name):
+                yield f"  {label}: {with_option_names(verdict.attrs[name], self)}"
 
 
 def plan_lines(data: xr.Dataset) -> Iterator[str]:
@@ -353,7 +351,7 @@ class Plan(OfStructure, Command, Results):
     def ask(self) -> tuple[Structure, Question]:
         from .. import Sensor
 
-        structure = read_structure_options(self)
+        structure = self.read_structure()
         hz, g = (
             getattr(self, name) and parse_values(f"--{name}", getattr(self, name))[0]
             for name in ("hz", "g")
@@ -378,8 +376,8 @@ class Plan(OfStructure, Command, Results):
         structure, question = self.ask()
         name = result_name("plan", self.structure, structure, question)
         files = Files.from_options(self, name, fresh=True)
-        plan = orchestrate.plan_test(structure, **question, **read_running_options(self))
-        units = read_units(self).with_defaults(Units("Hz", acceleration="g"))
+        plan = orchestrate.plan_test(structure, **question, **self.running())
+        units = self.read_units().with_defaults(Units("Hz", acceleration="g"))
         described = plan.assign_attrs(structure.parameters())
         (shown,) = with_readable_lengths(with_units(described, units))
         print(*plan_lines(shown), sep="\n")

@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
 from ..units import is_in_ratios, range_text, units_of, with_units
-from .answer import Asked, display_units, is_curve
+from .answer import Asked, is_curve
 from .face import Question, option
 from .grammar import parse, plain_int
 from .options import (
@@ -21,15 +21,9 @@ from .options import (
     OfStored,
     OfStructure,
     Over,
-    frequency_option,
-    is_shaken,
     parse_varied,
-    read_amplitude,
-    read_excitation,
-    read_structure_options,
-    varied_arguments,
 )
-from .output import Files, Results, Stored, read_running_options, result_name
+from .output import Files, Results, Stored, result_name
 from .stored import read_structure_and_question
 from .text import (
     MOST_ROWS,
@@ -57,8 +51,8 @@ if TYPE_CHECKING:
 
 def ask_along_parameter(arguments: Any) -> tuple[Structure, Question]:
     """Return structure and keywords of a function along a parameter."""
-    structure = read_structure_options(arguments)
-    excitation, _ = varied_arguments(arguments, structure)
+    structure = arguments.read_structure()
+    excitation, _ = arguments.varied_arguments(structure)
     return structure, {**arguments.keywords(), **excitation}
 
 
@@ -85,7 +79,7 @@ decided with so few --periods."""
             others = self.keywords()
             swept: Question = {name: question[name] for name in question if name not in others}
             swept |= {"direction": self.follow, "samples": 1, "transient": question["transient"]}
-            question["start"] = orchestrate.sweep(structure, **swept, **read_running_options(self))
+            question["start"] = orchestrate.sweep(structure, **swept, **self.running())
         return structure, question
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
@@ -180,7 +174,7 @@ alone may miss one whose basin is small."""
         }
         yield from table(columns)
 
-    def draw(self, data: xr.Dataset) -> Any:
+    def draw(self, data: xr.Dataset, *_: xr.Dataset) -> Any:
         import orchestrate
 
         from ..model import Structure
@@ -265,7 +259,7 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
     def has_picture(self, question: Question) -> bool:
         return not question["box_acceleration"]
 
-    def draw(self, data: xr.Dataset) -> Any:
+    def draw(self, data: xr.Dataset, *_: xr.Dataset) -> Any:
         import orchestrate
 
         from ..model import Structure
@@ -313,8 +307,8 @@ What starts beside a saddle with one multiplier outside the unit circle leaves a
 
     def ask(self) -> tuple[Structure, Question]:
         structure, question = read_structure_and_question(self)
-        if is_shaken(self) or question["start"] is None:
-            question |= read_excitation(self, structure, si=True, one=True)
+        if self.is_shaken() or question["start"] is None:
+            question |= self.read_excitation(structure, si=True, one=True)
         return structure, question
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
@@ -327,26 +321,6 @@ What starts beside a saddle with one multiplier outside the unit circle leaves a
             "breaks": [f"{int((data.break_side == i).sum())}" for i in range(data.sizes["side"])],
         }
         yield from table(sides)
-
-
-def branch_excitation(arguments: Any, structure: Structure, over: str, begun: bool) -> Question:
-    """Return the excitation at which the first orbit is searched, as keywords for ``branch``."""
-    name, amplitude = frequency_option(arguments), read_amplitude(arguments)
-    if over == "frequency" and arguments.g is not None:
-        raise InputError(
-            "--g: a branch over the frequency has one amplitude; expected --amplitude in m "
-            "(impacts and bifurcations do not depend on the level)"
-        )
-    if over == "frequency" and amplitude is None and not begun:
-        raise InputError(f"--over {arguments.over}: expected --amplitude in m with it")
-    if name is None and (begun or over in ("eta", "frequency")):
-        return {} if amplitude is None else {"amplitude": amplitude}
-    excitation = read_excitation(arguments, structure, one=True)
-    needed = "frequency" if over in ("frequency", "amplitude") else over
-    if over in ("eta", "frequency", "amplitude") and needed not in excitation:
-        expected = "--eta without an amplitude" if over == "eta" else "a frequency and --amplitude"
-        raise InputError(f"--over {over}: expected {expected} with it")
-    return excitation
 
 
 class Branch(OfStored, OfBox, Asked, Stored, Results):
@@ -367,7 +341,7 @@ The excitation says where a first orbit is looked for; without it that is the lo
             raise InputError("--limits is missing; expected FIRST:LAST")
         over, limits = parse_varied(self.over, self.limits)
         structure, keywords = read_structure_and_question(self)
-        excitation = branch_excitation(self, structure, over, keywords["start"] is not None)
+        excitation = self.branch_excitation(structure, over, keywords["start"] is not None)
         return structure, {**keywords, **excitation, "over": over, "limits": limits}
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
@@ -386,6 +360,27 @@ The excitation says where a first orbit is looked for; without it that is the lo
         else:
             yield "no bifurcation in this range"
         yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
+
+    def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Question:
+        """Return the excitation at which the first orbit is searched, as keywords."""
+        name, amplitude = self.frequency_option(), self.read_amplitude()
+        if over == "frequency" and self.g is not None:
+            raise InputError(
+                "--g: a branch over the frequency has one amplitude; expected --amplitude in m "
+                "(impacts and bifurcations do not depend on the level)"
+            )
+        if over == "frequency" and amplitude is None and not begun:
+            raise InputError(f"--over {self.over}: expected --amplitude in m with it")
+        if name is None and (begun or over in ("eta", "frequency")):
+            return {} if amplitude is None else {"amplitude": amplitude}
+        excitation = self.read_excitation(structure, one=True)
+        needed = "frequency" if over in ("frequency", "amplitude") else over
+        if over in ("eta", "frequency", "amplitude") and needed not in excitation:
+            expected = (
+                "--eta without an amplitude" if over == "eta" else "a frequency and --amplitude"
+            )
+            raise InputError(f"--over {over}: expected {expected} with it")
+        return excitation
 
 
 def is_on_curve(curve: xr.Dataset, question: Question, near: float = 1e-3) -> bool:
@@ -421,7 +416,7 @@ class Border(OfStored, Asked, Stored, Results):
     over: str = option(
         "NAME,NAME", f"what varies, that of the branch first, each {CONTINUED}", "eta,e"
     )
-    limits: str | None = option("A:B,C:D", "between which each is followed, in its own unit")
+    limits: Any = option("A:B,C:D", "between which each is followed, in its own unit")
     bifurcation: Bifurcation = option("N|all", "its number, or all of them in one picture", 0)
     examples = """
   {program} border --start branch.nc --bifurcation 0 --over eta,e --limits 2.4:2.9,0.6:0.8
@@ -470,7 +465,7 @@ structure and excitation are those of that branch."""
         if not curves:
             raise InputError(f"--start {self.start}: no bifurcation that can be followed")
         name = result_name("border_all", str(self.start), structure, question)
-        shown = [with_units(curve, display_units(self, question)) for curve in curves]
+        shown = [with_units(curve, self.display_units(question)) for curve in curves]
         files = Files.from_options(self, name, fresh=True)
         files.write_pictures(partial(orchestrate.plot, *shown))
 

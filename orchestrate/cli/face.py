@@ -13,7 +13,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 import cyclopts
 from cyclopts import Parameter
@@ -83,7 +83,7 @@ class Option:
     def parameter(self, attribute: str, kind: Any, group: cyclopts.Group) -> inspect.Parameter:
         """The parameter that cyclopts reads."""
         read, choices = reader_of(kind)
-        flag = self.name or f"--{attribute.replace('_', '-')}"
+        flag = self.name or option_name(attribute)
         details = Parameter(
             name=None if self.position else flag,
             help=self.words,
@@ -110,6 +110,11 @@ class Option:
 def option(value: str, help: str, default: Any = None, **details: Any) -> Any:
     """Return an option, as ``Any``: as an attribute it has the value's type."""
     return Option(value, help, default, **details)
+
+
+def option_name(name: str) -> str:
+    """Return the option of an attribute: ``--max-points`` for ``max_points``."""
+    return f"--{name.replace('_', '-')}"
 
 
 def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, tuple[str, ...]]:
@@ -141,6 +146,18 @@ class Options:
 
     takes = ""
     if_given = False
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Options that come from functions, or from groups beside this one."""
+
+    def one_of(self, *names: str) -> str | None:
+        """Return which of some options is given, None if none is; raise if several are."""
+        given = [name for name in names if getattr(self, name) not in (None, False)]
+        if len(given) > 1:
+            raise InputError(f"{' and '.join(map(option_name, given))}: expected one of them")
+        return given[0] if given else None
 
 
 class Debugging(Options):
@@ -178,11 +195,12 @@ class Command(Debugging):
     @functools.cache
     def options(cls) -> dict[str, tuple[Option, Any, type[Options]]]:
         """Return each option, its type and the group that it stands in, by the attribute."""
-        hints, found = get_type_hints(cls, include_extras=True), {}
+        hints = get_type_hints(cls, include_extras=True)
+        found: dict[str, tuple[Option, Any, type[Options]]] = {}
         for group in reversed(cls.__mro__):
             for name, one in vars(group).items():
                 if isinstance(one, Option):
-                    found[name] = one, hints[name], found.get(name, (None, None, group))[2]
+                    found[name] = one, hints[name], found[name][2] if name in found else group
             own = vars(group)
             taken = options_of_functions(own.get("takes", ""), cls.calls, own.get("if_given"))
             found |= {name: (one, kind, group) for name, one, kind in taken}
@@ -192,11 +210,7 @@ class Command(Debugging):
     def flags(cls) -> list[str]:
         """Return the names of all options that have one."""
         rows = cls.options().items()
-        return [
-            one.name or f"--{name.replace('_', '-')}"
-            for name, (one, _, _) in rows
-            if not one.position
-        ]
+        return [one.name or option_name(name) for name, (one, _, _) in rows if not one.position]
 
     @classmethod
     def name(cls) -> str:

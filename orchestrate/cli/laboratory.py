@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..units import text_of, with_units
 from .answer import Asked
-from .face import Command, Options, Question, option
+from .face import Command, Options, Question, option, option_name
 from .grammar import (
     Breakpoints,
     ChannelColumns,
@@ -28,8 +28,6 @@ from .options import (
     Beside,
     OfStructure,
     join_option_names,
-    option_name,
-    read_structure_options,
 )
 from .output import (
     Files,
@@ -41,8 +39,6 @@ from .output import (
     Stored,
     digest,
     parse_endings,
-    print_units_note,
-    read_record_units,
     unit_note,
 )
 from .stored import read_earlier_result
@@ -60,79 +56,6 @@ KINDS = {  # of excitation: the class, its own options, and which of them it nee
 }
 
 
-def read_excitation(arguments: Any) -> Any:
-    """Return the excitation that the options describe, such as a ``SweptSine``."""
-    import orchestrate
-
-    kind = excitation_kind(arguments)
-    if kind == "record":
-        return read_record_excitation(arguments)
-    given = arguments.given(OfExcitation)
-    settings = {name: given[name] for name in (kind, *KINDS[kind][1]) if name in given}
-    main = settings.pop(kind)
-    level = {} if kind == "random" else {"acceleration": read_level(arguments)}
-    settings = {n: v for n, v in settings.items() if n not in ("g", "acceleration")} | level
-    if kind == "swept_sine":
-        settings |= {"first": main[0], "last": main[1]}
-    elif kind == "stepped_sine":
-        settings["frequencies"] = main
-    elif kind == "random":
-        settings["psd"] = main
-    else:
-        if not isinstance(level["acceleration"], float):
-            raise InputError("--shock: expected one number for its peak, no profile")
-        settings |= {"shape": main, "peak": settings.pop("acceleration")}
-    return getattr(orchestrate, KINDS[kind][0])(**settings)
-
-
-def read_record_excitation(arguments: Any) -> Any:
-    """Return the box's acceleration of a measured file as an excitation."""
-    from .. import Sampled, read_record
-
-    column = arguments.column
-    columns = None
-    if column is not None:
-        columns = {"box_acceleration": int(column) if column.isdecimal() else column}
-    record = read_record(
-        arguments.record, unit=arguments.unit, columns=columns, scale=arguments.scale
-    )
-    if note := unit_note(record.attrs):
-        print(f"{arguments.record}: {note}")
-    return Sampled.from_record(record)
-
-
-def excitation_kind(arguments: Any) -> str:
-    """Return which kind of excitation is chosen; raise for options of another kind."""
-    chosen = [name for name in KINDS if getattr(arguments, name) is not None]
-    if len(chosen) != 1:
-        names = [option_name(name) for name in KINDS]
-        words = " and ".join(map(option_name, chosen)) or "nothing"
-        raise InputError(f"excitation: {words} given; expected one of {', '.join(names)}")
-    (kind,) = chosen
-    _, own, needed = KINDS[kind]
-    for name in arguments.given(OfExcitation):
-        if name not in (kind, *own):
-            owners = [option_name(other) for other, row in KINDS.items() if name in row[1]]
-            raise InputError(f"{option_name(name)}: expected with {' or '.join(owners)} alone")
-    if needed and getattr(arguments, needed) is None:
-        raise InputError(f"{option_name(kind)}: expected --{needed} with it, in s")
-    return kind
-
-
-def read_level(arguments: Any) -> Any:
-    """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
-    from ..constants import GRAVITY
-
-    chosen = [name for name in ("g", "acceleration") if getattr(arguments, name) is not None]
-    if len(chosen) != 1:
-        words = join_option_names(chosen, " and ") or "nothing"
-        raise InputError(f"level: {words} given; expected one of --g and --acceleration")
-    text, unit = getattr(arguments, chosen[0]), GRAVITY if chosen[0] == "g" else 1.0
-    if ":" not in text:
-        return unit * positive_number(f"--{chosen[0]}", text)
-    return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{chosen[0]}", text))
-
-
 class OfExcitation(Options):
     """Options of an excitation."""
 
@@ -147,7 +70,7 @@ class OfExcitation(Options):
     stepped_sine: Listed = option("FIRST:LAST:STEP", "frequencies, Hz; or a list A,B,...")
     random: Breakpoints = option("PSD", "density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz")
     shock: str | None = option("SHAPE", "half-sine, sawtooth or trapezoid")
-    record: str | None = option("FILE", "measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc")
+    record: Any = option("FILE", "measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc")
     g: str | None = option(
         "LEVEL",
         "peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too",
@@ -160,6 +83,60 @@ class OfExcitation(Options):
         "NAME",
         "of a record: the box's, by name or number from 0 (default: by usual names, or 1)",
     )
+
+    def read_excitation(self) -> Any:
+        """Return the excitation that the options describe, such as a ``SweptSine``."""
+        import orchestrate
+
+        kind = self.excitation_kind()
+        if kind == "record":
+            return self.read_record_excitation()
+        given = self.given(OfExcitation)
+        settings = {name: given[name] for name in (kind, *KINDS[kind][1]) if name in given}
+        main = settings.pop(kind)
+        level = {} if kind == "random" else {"acceleration": self.read_level()}
+        settings = {n: v for n, v in settings.items() if n not in ("g", "acceleration")} | level
+        if kind == "swept_sine":
+            settings |= {"first": main[0], "last": main[1]}
+        elif kind == "stepped_sine":
+            settings["frequencies"] = main
+        elif kind == "random":
+            settings["psd"] = main
+        else:
+            if not isinstance(level["acceleration"], float):
+                raise InputError("--shock: expected one number for its peak, no profile")
+            settings |= {"shape": main, "peak": settings.pop("acceleration")}
+        return getattr(orchestrate, KINDS[kind][0])(**settings)
+
+    def excitation_kind(self) -> str:
+        """Return which kind of excitation is chosen; raise for options of another kind."""
+        chosen = [name for name in KINDS if getattr(self, name) is not None]
+        if len(chosen) != 1:
+            names = [option_name(name) for name in KINDS]
+            words = " and ".join(map(option_name, chosen)) or "nothing"
+            raise InputError(f"excitation: {words} given; expected one of {', '.join(names)}")
+        (kind,) = chosen
+        _, own, needed = KINDS[kind]
+        for name in self.given(OfExcitation):
+            if name not in (kind, *own):
+                owners = [option_name(other) for other, row in KINDS.items() if name in row[1]]
+                raise InputError(f"{option_name(name)}: expected with {' or '.join(owners)} alone")
+        if needed and getattr(self, needed) is None:
+            raise InputError(f"{option_name(kind)}: expected --{needed} with it, in s")
+        return kind
+
+    def read_level(self) -> Any:
+        """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
+        from ..constants import GRAVITY
+
+        chosen = [name for name in ("g", "acceleration") if getattr(self, name) is not None]
+        if len(chosen) != 1:
+            words = join_option_names(chosen, " and ") or "nothing"
+            raise InputError(f"level: {words} given; expected one of --g and --acceleration")
+        text, unit = getattr(self, chosen[0]), GRAVITY if chosen[0] == "g" else 1.0
+        if ":" not in text:
+            return unit * positive_number(f"--{chosen[0]}", text)
+        return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{chosen[0]}", text))
 
 
 class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
@@ -179,9 +156,9 @@ class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
     def ask(self) -> tuple[Structure, Question]:
         from .. import Shaker
 
-        structure, shaker = read_structure_options(self), self.shaker
+        structure, shaker = self.read_structure(), self.shaker
         return structure, {
-            "excitation": read_excitation(self),
+            "excitation": self.read_excitation(),
             **self.keywords(),
             "shaker": None if shaker is None else Shaker.from_file(shaker),
         }
@@ -194,6 +171,19 @@ class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
             end = float(data.control_aborted)
             yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
         yield from impact_lines(data)
+
+    def read_record_excitation(self) -> Any:
+        """Return the box's acceleration of a measured file as an excitation."""
+        from .. import Sampled, read_record
+
+        column = self.column
+        columns = None
+        if column is not None:
+            columns = {"box_acceleration": int(column) if column.isdecimal() else column}
+        record = read_record(self.record, unit=self.unit, columns=columns, scale=self.scale)
+        if note := unit_note(record.attrs):
+            print(f"{self.record}: {note}")
+        return Sampled.from_record(record)
 
 
 MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
@@ -262,66 +252,6 @@ ANALYSES = {
     "density": Analysis("probability_density", ("bins",), "probability density, skewness"),
 }
 SHOWN = ", ".join(f"{name} ({one.text})" for name, one in ANALYSES.items())
-
-
-def warn_without_sensor(arguments: Any, records: Mapping[str, xr.Dataset]) -> None:
-    """Warn if simulated accelerations without impulses are compared with measured ones."""
-    simulated = [label for label, record in records.items() if "impulse" in record]
-    if arguments.sensor is None and 0 < len(simulated) < len(records):
-        warnings.warn(
-            f"{', '.join(simulated)}: accelerations between impacts, compared with a record whose "
-            "sensors feel the impulses too; --sensor HZ:RATE compares like with like",
-            stacklevel=2,
-        )
-
-
-def settings_by_analysis(arguments: Any, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-    """Return a dict of keywords for each analysis; raise for an option that none of them takes."""
-    chosen = arguments.given(Settings)
-    for one in chosen:
-        owners = [name for name, analysis in ANALYSES.items() if one in analysis.options]
-        if not set(owners) & set(names):
-            raise InputError(f"--{one}: expected with --show {' or '.join(owners)} alone")
-    return {name: {o: chosen[o] for o in ANALYSES[name].options if o in chosen} for name in names}
-
-
-def paths_by_label(arguments: Any) -> dict[str, Path]:
-    """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""
-    label = arguments.label or (arguments.record.stem if arguments.beside else "")
-    beside = read_pairs("--beside", arguments.beside, "LABEL=FILE, such as bonded=whole.nc")
-    if label in beside:
-        expected = "expected another label"
-        raise InputError(f"--beside {label}={beside[label]}: a second record {label}; {expected}")
-    return {label: arguments.record, **{name: Path(path) for name, path in beside.items()}}
-
-
-def read_cut_record(arguments: Any, path: Path) -> xr.Dataset:
-    """Read a record file and keep its samples between ``--from`` and ``--to``."""
-    record = read_record_file(arguments, path)
-    begin, end = arguments.begin, arguments.to
-    if "time" not in record.coords or begin is end is None:
-        return record
-    part = record.sel(time=slice(begin, end))
-    if not part.sizes["time"]:
-        ends = f"{float(record.time[0]):.6g} to {float(record.time[-1]):.6g} s"
-        raise InputError(f"{path}: nothing between --from and --to; it has {ends}")
-    return part
-
-
-def read_record_file(arguments: Any, path: Path) -> xr.Dataset:
-    """Read a record from a file of any format; apply ``--sensor`` to a simulated one."""
-    from .. import read_record
-
-    if path.suffix.lower() == ".nc":
-        stored = read_earlier_result("FILE" if path == arguments.record else "--beside", path)
-        units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
-        if arguments.sensor is not None and "impulse" in stored:
-            return apply_sensor(stored, arguments.sensor)
-        return stored if units <= {"m/s2"} else read_record(path)
-    reading = arguments.given(InColumns, Reading)
-    if path.suffix.lower() != ".wav":  # the scale is of the others
-        reading.pop("scale", None)
-    return read_record(path, **reading)
 
 
 def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:
@@ -411,15 +341,15 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
 
         names = parse_endings("--show", self.show, tuple(ANALYSES))
         Files.from_options(self, "", fresh=True)  # before records are read
-        settings = settings_by_analysis(self, names)
-        paths = paths_by_label(self)
-        records = {label: read_cut_record(self, path) for label, path in paths.items()}
+        settings = self.settings_by_analysis(names)
+        paths = self.paths_by_label()
+        records = {label: self.read_cut_record(path) for label, path in paths.items()}
         for label, record in records.items():
             if note := unit_note(record.attrs):
                 print(f"{paths[label]}: {note}")
-        warn_without_sensor(self, records)
-        units = read_record_units(self)
-        reading = [self.begin, self.to, self.sensor]
+        self.warn_without_sensor(records)
+        units = self.read_record_units()
+        reading: list[Any] = [self.begin, self.to, self.sensor]
         reading += self.given(InColumns, Reading).items()
         for name in names:
             results = {
@@ -430,7 +360,7 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
             for label, data in shown.items():
                 print(f"{f'{label}: ' if label else ''}{ANALYSES[name].text}")
                 print(*table(columns_of_analysis(name, data)), sep="\n")
-            print_units_note(self, *shown.values())
+            self.print_units_note(*shown.values())
             read = {label: str(path) for label, path in paths.items()}
             stem = f"analyse_{name}_{self.record.stem}_{digest(read, settings[name], *reading)}"
             open_folder(self.output)
@@ -443,3 +373,62 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
             (label, first), *others = shown.items()
             picture = Files.from_options(self, stem, fresh=True)
             picture.write_pictures(partial(draw, first, label, dict(others)))
+
+    def warn_without_sensor(self, records: Mapping[str, xr.Dataset]) -> None:
+        """Warn if simulated accelerations without impulses are compared with measured ones."""
+        simulated = [label for label, record in records.items() if "impulse" in record]
+        if self.sensor is None and 0 < len(simulated) < len(records):
+            warnings.warn(
+                f"{', '.join(simulated)}: accelerations between impacts, compared with a record "
+                "whose sensors feel the impulses too; --sensor HZ:RATE compares like with like",
+                stacklevel=2,
+            )
+
+    def settings_by_analysis(self, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+        """Return each analysis's keywords; raise for an option that none of them takes."""
+        chosen = self.given(Settings)
+        for one in chosen:
+            owners = [name for name, analysis in ANALYSES.items() if one in analysis.options]
+            if not set(owners) & set(names):
+                raise InputError(f"--{one}: expected with --show {' or '.join(owners)} alone")
+        return {
+            name: {o: chosen[o] for o in ANALYSES[name].options if o in chosen} for name in names
+        }
+
+    def paths_by_label(self) -> dict[str, Path]:
+        """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""
+        label = self.label or (self.record.stem if self.beside else "")
+        beside = read_pairs("--beside", self.beside, "LABEL=FILE, such as bonded=whole.nc")
+        if label in beside:
+            expected = "expected another label"
+            raise InputError(
+                f"--beside {label}={beside[label]}: a second record {label}; {expected}"
+            )
+        return {label: self.record, **{name: Path(path) for name, path in beside.items()}}
+
+    def read_cut_record(self, path: Path) -> xr.Dataset:
+        """Read a record file and keep its samples between ``--from`` and ``--to``."""
+        record = self.read_record_file(path)
+        begin, end = self.begin, self.to
+        if "time" not in record.coords or begin is end is None:
+            return record
+        part = record.sel(time=slice(begin, end))
+        if not part.sizes["time"]:
+            ends = f"{float(record.time[0]):.6g} to {float(record.time[-1]):.6g} s"
+            raise InputError(f"{path}: nothing between --from and --to; it has {ends}")
+        return part
+
+    def read_record_file(self, path: Path) -> xr.Dataset:
+        """Read a record from a file of any format; apply ``--sensor`` to a simulated one."""
+        from .. import read_record
+
+        if path.suffix.lower() == ".nc":
+            stored = read_earlier_result("FILE" if path == self.record else "--beside", path)
+            units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
+            if self.sensor is not None and "impulse" in stored:
+                return apply_sensor(stored, self.sensor)
+            return stored if units <= {"m/s2"} else read_record(path)
+        reading = self.given(InColumns, Reading)
+        if path.suffix.lower() != ".wav":  # the scale is of the others
+            reading.pop("scale", None)
+        return read_record(path, **reading)

@@ -39,6 +39,13 @@ class Reading(Options):
     takes = "read_record: unit sensitivity sample_rate scale delay resample"
     if_given = True
 
+    def read_record_units(self) -> Units:
+        """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
+        from ..units import FACTORS, Units
+
+        own = self.unit if self.unit in FACTORS["acceleration"] else ""
+        return self.read_units().with_defaults(Units(acceleration=own))
+
 
 class InUnits(Options):
     """The option of display units."""
@@ -49,6 +56,33 @@ class InUnits(Options):
         "of prints, pictures, tables and their names: Hz, rpm, rad/s or eta; m, mm or um; m/s2 or "
         "g; s or periods, a list such as Hz,mm,g (default: as the question is asked; nc is in SI)",
     )
+
+    def read_units(self) -> Units:
+        """Return the display units of ``--units``; none chosen where a command lacks the option."""
+        from ..units import Units
+
+        return Units.from_text(getattr(self, "units", None) or "", "--units")
+
+    def print_units_note(self, *answers: xr.Dataset) -> None:
+        """Print a note if ``--units`` changes none of the numbers of some results."""
+        from ..units import scale_of
+
+        kinds = {
+            str(array.attrs.get("units", "1"))
+            for data in answers
+            for array in data.variables.values()
+            if array.dtype.kind == "f"
+        }
+        units = self.read_units()
+        changed = any(scale_of(data, kind)[1] != kind for data in answers for kind in kinds)
+        if units.words and not changed and kinds.isdisjoint(units.words):
+            words = ", ".join(sorted(kinds - {"1"}))
+            print(f"--units {units}: these have no such numbers, only {words}")
+
+    def refuse_units(self, reason: str) -> None:
+        """Raise if ``--units`` is given to a command whose output has no units."""
+        if str(self.read_units()):
+            raise InputError(f"--units {self.units}: {reason}; expected the command without it")
 
 
 class Formats(Options):
@@ -94,6 +128,20 @@ class HowRun(Options):
     fmu: Path | None = option("FILE", "own FMU (default: the one of the present sources)")
     build_folder: Path | None = option("FOLDER", "where FMUs are looked for and exported to")
 
+    def running(self, store: Path | None = None) -> Running:
+        """Return ``jobs``, ``cluster``, ``force``, ``fmu`` and ``store`` as keywords of the API."""
+        running: Running = {
+            "jobs": self.jobs,
+            "cluster": self.cluster,
+            "force": self.force,
+            "keep_stale": self.keep_stale,
+            "fmu": user_fmus(self.fmu) if isinstance(self.fmu, list) else self.fmu,
+            "build_folder": self.build_folder,
+        }
+        if store is not None:
+            running["store"] = store
+        return running
+
 
 class Results(InUnits, Formats, InFolder, HowRun):
     """Options of units, files and running, which end most commands' options."""
@@ -102,24 +150,9 @@ class Results(InUnits, Formats, InFolder, HowRun):
 class OfBoth(Results):
     """The same of a command that runs both FMUs."""
 
-    fmu: list[Path] = option(
+    fmu: list[Path] = option(  # type: ignore[assignment]
         "FILE", "own FMU (default: the one of the present sources); may be repeated", ()
     )
-
-
-def read_units(arguments: Any) -> Units:
-    """Return the display units of ``--units``; none chosen where a command lacks the option."""
-    from ..units import Units
-
-    return Units.from_text(getattr(arguments, "units", None) or "", "--units")
-
-
-def read_record_units(arguments: Any) -> Units:
-    """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
-    from ..units import FACTORS, Units
-
-    own = arguments.unit if arguments.unit in FACTORS["acceleration"] else ""
-    return read_units(arguments).with_defaults(Units(acceleration=own))
 
 
 def unit_note(attributes: Mapping[Any, Any]) -> str:
@@ -127,44 +160,6 @@ def unit_note(attributes: Mapping[Any, Any]) -> str:
     own = attributes.get("unit_in_file", "")
     used = attributes.get("unit", "")
     return f"--unit {used} was used, although the file says {own}" if own else ""
-
-
-def refuse_units(arguments: Any, reason: str) -> None:
-    """Raise if ``--units`` is given to a command whose output has no units."""
-    if str(read_units(arguments)):
-        raise InputError(f"--units {arguments.units}: {reason}; expected the command without it")
-
-
-def print_units_note(arguments: Any, *answers: xr.Dataset) -> None:
-    """Print a note if ``--units`` changes none of the numbers of some results."""
-    from ..units import scale_of
-
-    kinds = {
-        str(array.attrs.get("units", "1"))
-        for data in answers
-        for array in data.variables.values()
-        if array.dtype.kind == "f"
-    }
-    units = read_units(arguments)
-    changed = any(scale_of(data, kind)[1] != kind for data in answers for kind in kinds)
-    if units.words and not changed and kinds.isdisjoint(units.words):
-        words = ", ".join(sorted(kinds - {"1"}))
-        print(f"--units {units}: these have no such numbers, only {words}")
-
-
-def read_running_options(arguments: Any, store: Path | None = None) -> Running:
-    """Return ``jobs``, ``cluster``, ``force``, ``fmu`` and ``store`` as keywords of the API."""
-    running: Running = {
-        "jobs": arguments.jobs,
-        "cluster": arguments.cluster,
-        "force": arguments.force,
-        "keep_stale": arguments.keep_stale,
-        "fmu": user_fmus(arguments.fmu) if isinstance(arguments.fmu, list) else arguments.fmu,
-        "build_folder": arguments.build_folder,
-    }
-    if store is not None:
-        running["store"] = store
-    return running
 
 
 def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
@@ -261,7 +256,7 @@ class Files:
 
             resumed = journal_path(result, anew=True).exists()
             fresh = arguments.force or resumed or not result.exists()
-        units = str(read_units(arguments)).replace(", ", "-").replace("/", "_")
+        units = str(arguments.read_units()).replace(", ", "-").replace("/", "_")
         text = getattr(arguments, "size", None)
         size = SIZE("--size", text) if text else None
         files = cls(

@@ -4,23 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..lazy import xr
 from .face import Command, option
 from .grammar import parse_changes
-from .options import OfStored, read_structure_options
+from .options import OfStored
 from .output import (
     HowRun,
     InFolder,
     InUnits,
     check_output,
-    read_running_options,
-    read_units,
-    refuse_units,
 )
 from .stored import print_difference, read_earlier_result, structure_of
+
+if TYPE_CHECKING:
+    from ..model import Structure
 
 
 class Build(InUnits, Command):
@@ -57,7 +56,7 @@ class Build(InUnits, Command):
   {program} build --sources-only"""
 
     def __call__(self) -> None:
-        refuse_units(self, "FMUs are in SI")
+        self.refuse_units("FMUs are in SI")
         from ..fmu import FORMS, PLAIN_FORMS, build, build_libraries, build_web_kernels, sources_of
 
         if self.folder is not None:
@@ -74,25 +73,6 @@ class Build(InUnits, Command):
             made += build_web_kernels(self.folder)
         for path in made:
             print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
-
-
-def read_diagram(arguments: Any, branches: xr.Dataset | None) -> Any:
-    """Return the sweep of RESULT, or else the structure: asked for, of ``--branches``, or usual."""
-    drawn = None if branches is None else structure_of("--branches", arguments.branches, branches)
-    data: Any
-    if arguments.result is not None:
-        if arguments.set or arguments.structure:
-            raise InputError(f"{arguments.result} with --structure or --set: expected one of them")
-        data = read_earlier_result("RESULT", arguments.result)
-        structure = structure_of("RESULT", arguments.result, data) if drawn else None
-    elif drawn and not arguments.structure:
-        data = structure = drawn.replace(**parse_changes(arguments.set))
-    else:
-        arguments.structure = arguments.structure or "paper"
-        data = structure = read_structure_options(arguments)
-    if drawn and structure:
-        print_difference("--branches", arguments.branches, drawn, structure)
-    return data
 
 
 class Explore(OfStored, InUnits, Command):
@@ -117,13 +97,16 @@ class Explore(OfStored, InUnits, Command):
     def __call__(self) -> None:
         from ..explorer.page import explore
 
-        branches = self.branches and read_earlier_result("--branches", self.branches)
-        data = read_diagram(self, branches)
+        branches, drawn = None, None
+        if self.branches is not None:
+            branches = read_earlier_result("--branches", self.branches)
+            drawn = structure_of("--branches", self.branches, branches)
+        data = self.read_diagram(drawn)
         page = explore(
             data,
             output=self.output,
             branches=branches,
-            units=read_units(self),
+            units=self.read_units(),
             build_folder=self.build_folder,
         )
         print(f"{page}  {page.stat().st_size / 1024:.0f} kB")
@@ -131,6 +114,23 @@ class Explore(OfStored, InUnits, Command):
             import webbrowser
 
             webbrowser.open(page.resolve().as_uri())
+
+    def read_diagram(self, drawn: Structure | None) -> Any:
+        """Return the sweep of RESULT, or the structure: given, of ``--branches``, or usual."""
+        data: Any
+        if self.result is not None:
+            if self.set or self.structure:
+                raise InputError(f"{self.result} with --structure or --set: expected one of them")
+            data = read_earlier_result("RESULT", self.result)
+            structure = structure_of("RESULT", self.result, data) if drawn else None
+        elif drawn and not self.structure:
+            data = structure = drawn.replace(**parse_changes(self.set))
+        else:
+            self.structure = self.structure or "paper"
+            data = structure = self.read_structure()
+        if self.branches and drawn and structure:
+            print_difference("--branches", self.branches, drawn, structure)
+        return data
 
 
 class Report(InUnits, InFolder, Command):
@@ -157,7 +157,7 @@ class Report(InUnits, InFolder, Command):
         answers = [read_earlier_result("FILE", path) for path in self.results]
         page = open_folder(self.output) / f"report_{self.results[0].stem}.html"
         words = {"title": self.title or "", "notes": self.notes or ""}
-        print(orchestrate.report(*answers, output=page, **words, units=read_units(self)))
+        print(orchestrate.report(*answers, output=page, **words, units=self.read_units()))
 
 
 def claim_lines(verdicts: Mapping[str, Any]) -> Iterator[str]:
@@ -184,7 +184,7 @@ class Paper(InUnits, InFolder, HowRun, Command):
         "reduced resolution: the same frequencies, fewer periods, starts and map points",
         False,
     )
-    output: Path | None = option(
+    output: Path | None = option(  # type: ignore[assignment]
         "FOLDER", "folder of the results (default: results/paper, with --quick results/paper-quick)"
     )
     examples = """
@@ -195,7 +195,7 @@ class Paper(InUnits, InFolder, HowRun, Command):
 Repeat the command to resume an interrupted run. Finished data is left as it is."""
 
     def __call__(self) -> None:
-        refuse_units(self, "figures and numbers are those of the paper, ratios")
+        self.refuse_units("figures and numbers are those of the paper, ratios")
         from ..paper.reproduce import reproduce
         from ..paper.resolution import FULL, QUICK
 
@@ -204,7 +204,7 @@ Repeat the command to resume an interrupted run. Finished data is left as it is.
         check_output(output)
         figures = None if self.figures is None else self.figures.split(",")
         resolution = QUICK if self.quick else FULL
-        outcome = reproduce(output, resolution, figures, read_running_options(self))
+        outcome = reproduce(output, resolution, figures, self.running())
         for line in claim_lines(outcome.found):
             print(line)
         for picture in outcome.pictures.values():

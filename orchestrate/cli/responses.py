@@ -13,7 +13,7 @@ from ..flags import flag_words
 from ..lazy import xr
 from ..units import is_in_ratios, text_of, with_units
 from .answer import Asked, Overlay, is_curve
-from .drive import OfMotor, OfVoltage, drive_units, read_drive_options
+from .drive import OfMotor, OfVoltage
 from .face import Question, option
 from .grammar import is_single_number, parse_changes, parse_listed
 from .options import (
@@ -21,16 +21,8 @@ from .options import (
     OfBox,
     OfStructure,
     Over,
-    check_over,
-    excitation_by_level,
-    frequency_option,
-    is_shaken,
-    one_of,
-    read_excitation,
-    read_structure_options,
-    varied_arguments,
 )
-from .output import Files, OfBoth, Results, Stored, digest, read_running_options
+from .output import Files, OfBoth, Results, Stored, digest
 from .text import (
     MOST_ROWS,
     Columns,
@@ -102,12 +94,12 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
     has_picture = staticmethod(is_curve)
 
     def __call__(self) -> None:
-        structure = read_structure_options(self)
+        structure = self.read_structure()
         several = self.g is not None and not is_single_number(self.g)
         if several:
-            excitation = excitation_by_level(self, structure)
+            excitation = self.excitation_by_level(structure)
         else:
-            excitation = read_excitation(self, structure, si=True)
+            excitation = self.read_excitation(structure, si=True)
         question = {**self.keywords(), **excitation}
         function = "resonance_levels" if several else "resonance"
         self.answer(structure, question, function=function)
@@ -150,31 +142,6 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
 HANGING = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor hangs at the resonance
 
 
-def answer_motor_spectra(arguments: Any) -> None:
-    """Compute spectra of a motor-driven structure (Figure 3); print, store and draw them."""
-    structure, drive = read_drive_options(arguments)
-    eta0 = HANGING.get(arguments.drive) if arguments.eta0 is None else arguments.eta0
-    voltage = arguments.voltage
-    if voltage is None and eta0 is not None:
-        voltage = eta0 * drive.volts(structure)
-    digits = digest(structure.parameters(), drive.parameters(), voltage)
-    stem = Path(arguments.drive).stem
-    files = Files.from_options(arguments, f"spectra_{stem}_{digits}")
-
-    import orchestrate
-
-    running = read_running_options(arguments, files.result)
-    data = orchestrate.drive_spectra(structure, drive, voltage=voltage, **running)
-    data = with_units(data, drive_units(arguments))
-    for kind in map(str, data.kind.values):
-        part = data.sel(kind=kind, mass=1)
-        speed = text_of(data, part.speed, "rad/s", ".5g")
-        print(line_ratio(data, f"{kind} at {speed}", part.acceleration))
-    words = str(data.attrs["title"])
-    title = f"{stem}: {words[0].lower()}{words[1:]}, absolute acceleration of mass 1"
-    files.write(data, partial(orchestrate.plot, data, title=title))
-
-
 def line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> str:
     """Format a spectrum's largest line, and its largest one above the excitation over that."""
     largest = float(amplitude.max())
@@ -195,18 +162,18 @@ class Spectra(OfMotor, OfVoltage, OfBox, Asked, Stored, OfBoth):
   {program} spectra --structure beam --hz 12.5 --g 0.02 --format nc,csv"""
 
     def __call__(self) -> None:
-        of_motor = one_of(self, "eta0", "voltage")
-        if not is_shaken(self):
-            answer_motor_spectra(self)
+        of_motor = self.one_of("eta0", "voltage")
+        if not self.is_shaken():
+            self.answer_motor_spectra()
             return
         if of_motor is not None:
-            frequency = frequency_option(self) or "amplitude or --g"
+            frequency = self.frequency_option() or "amplitude or --g"
             raise InputError(f"--{frequency}: expected without --{of_motor}, which is the motor's")
         from ..model import Structure
 
         self.structure = self.structure or "paper"
         structure = Structure.from_file(self.structure).replace(**parse_changes(self.set))
-        excitation = read_excitation(self, structure, si=True)
+        excitation = self.read_excitation(structure, si=True)
         self.answer(structure, {**self.keywords(), **excitation})
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
@@ -217,6 +184,30 @@ class Spectra(OfMotor, OfVoltage, OfBox, Asked, Stored, OfBoth):
                 yield line_ratio(
                     data, f"{kind} at {format_parameter(data, name, float(value))}", part
                 )
+
+    def answer_motor_spectra(self) -> None:
+        """Compute spectra of a motor-driven structure (Figure 3); print, store and draw them."""
+        structure, drive = self.read_structure_and_drive()
+        eta0 = HANGING.get(self.drive) if self.eta0 is None else self.eta0
+        voltage = self.voltage
+        if voltage is None and eta0 is not None:
+            voltage = eta0 * drive.volts(structure)
+        digits = digest(structure.parameters(), drive.parameters(), voltage)
+        stem = Path(self.drive).stem
+        files = Files.from_options(self, f"spectra_{stem}_{digits}")
+
+        import orchestrate
+
+        running = self.running(files.result)
+        data = orchestrate.drive_spectra(structure, drive, voltage=voltage, **running)
+        data = with_units(data, self.drive_units())
+        for kind in map(str, data.kind.values):
+            part = data.sel(kind=kind, mass=1)
+            speed = text_of(data, part.speed, "rad/s", ".5g")
+            print(line_ratio(data, f"{kind} at {speed}", part.acceleration))
+        words = str(data.attrs["title"])
+        title = f"{stem}: {words[0].lower()}{words[1:]}, absolute acceleration of mass 1"
+        files.write(data, partial(orchestrate.plot, data, title=title))
 
 
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6
@@ -276,7 +267,7 @@ class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
     """Follow responses along the frequency or another parameter: an orbit diagram."""
 
     calls, takes = "sweep", "start transient samples tolerance"
-    eta: str | None = option(
+    eta: Any = option(
         "VALUES",
         "the same as frequency ratio Omega/omega (default: 0.1:8.0:0.001 where no frequency is "
         "given)",
@@ -297,8 +288,8 @@ Repeat the command to resume an interrupted run. A finished result is left as it
     has_picture = staticmethod(is_curve)
 
     def ask(self) -> tuple[Structure, Question]:
-        structure = read_structure_options(self)
-        excitation, is_range = varied_arguments(self, structure, usual=PAPER_RANGE)
+        structure = self.read_structure()
+        excitation, is_range = self.varied_arguments(structure, usual=PAPER_RANGE)
         direction = self.direction or ("up" if is_range else "given")
         return structure, {**self.keywords(), **excitation, "direction": direction}
 
@@ -343,13 +334,13 @@ class Map(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
 Each point starts from rest. The picture has a panel for each quantity."""
 
     def ask(self) -> tuple[Structure, Question]:
-        structure = read_structure_options(self)
+        structure = self.read_structure()
         if len(self.over) != len(self.values):
             raise InputError("--over and --values: give exactly one --values for each --over")
         for name in self.over:
-            check_over(name, self)
-        chosen = excitation_by_level if self.g is not None else read_excitation
-        excitation: Question = chosen(self, structure, one=len(self.over) == 2)
+            self.check_over(name)
+        chosen = self.excitation_by_level if self.g is not None else self.read_excitation
+        excitation: Question = chosen(structure, one=len(self.over) == 2)
         for name, text in zip(self.over, self.values, strict=True):
             if name in excitation or (name == "level" and "amplitude" in excitation):
                 raise InputError(f"--over {name}: twice; expected two parameters")

@@ -11,7 +11,7 @@ from ..errors import InputError, StoreError
 from ..lazy import xr
 from ..model.ranges import STRUCTURE
 from .grammar import parse_changes
-from .options import print_assumptions, read_structure_options
+from .options import print_assumptions
 
 if TYPE_CHECKING:
     from ..model import Structure
@@ -24,9 +24,9 @@ def read_structure_and_question(arguments: Any) -> tuple[Structure, dict[str, An
     """Return the structure and the keywords of a command that may begin with a stored result."""
     if arguments.start is None:
         arguments.structure = arguments.structure or "paper"
-        return read_structure_options(arguments), arguments.keywords()
+        return arguments.read_structure(), arguments.keywords()
     changes = parse_changes(arguments.set)
-    asked = read_structure_options(arguments) if arguments.structure else None
+    asked = arguments.read_structure() if arguments.structure else None
     data = read_earlier_result("--start", arguments.start)
     stored, question = structure_of("--start", arguments.start, data), arguments.keywords()
     question["start"] = data

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from ..errors import InputError
 from ..lazy import xr
@@ -24,32 +24,20 @@ from .drive import (
     OfSchedule,
     Only,
     Stepped,
-    averaged_jump_voltages,
-    common_files,
-    display,
-    drive_units,
     format_title,
-    make_controller,
-    make_schedule,
-    parse_ramp_ends,
-    picture_title,
-    read_drive_options,
-    result_name,
-    source_names,
-    structures_by_name,
     times_in_seconds,
 )
 from .face import Options, Question, option
 from .grammar import parse_rates, plain_float, read_pairs
-from .options import OfStructure, Over, read_over, read_structure_options
-from .output import Files, OfBoth, Results, Stored, digest, read_running_options, user_fmus
+from .options import OfStructure, Over
+from .output import Files, OfBoth, Results, Stored, digest, user_fmus
 from .text import Columns, columns_of, extents, parameter_column, table
 
 if TYPE_CHECKING:
     from ..model import Drive, Structure
     from ..weak_drive.couple import CoupleJob
+    from .drive import Runs
 
-    Results = dict[str, xr.Dataset]  # by structure, or by "" if one result is of both
 
 LISTED = ("parameter", "structuralParameter", "input", "output")
 PAIR = "NAME=VALUE"
@@ -151,7 +139,7 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
             super().__call__()
 
     def ask(self) -> tuple[Structure, Question]:
-        structure = read_structure_options(self)
+        structure = self.read_structure()
         if self.structure == "paper" and not self.set:
             raise InputError(
                 "--structure is missing; expected one in SI units, as the drive has them"
@@ -181,43 +169,9 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
 ERROR_LIMIT = 1e-6  # of the motor's work: larger errors give a warning
 
 
-def make_jobs(arguments: Any, structure: Structure, drive: Drive) -> list[CoupleJob]:
-    """Return the jobs for the runs asked for, a ``CoupleJob`` per structure, bonded first."""
-    from ..weak_drive.couple import couple_job, scheme_from_arguments
-
-    control = make_controller(arguments, structure, drive)
-    schedule = make_schedule(arguments, structure, drive, control)
-    step, hold = times_in_seconds(arguments, structure, "step", "hold").values()
-    tolerance = arguments.keywords()["tolerance"]
-    scheme = scheme_from_arguments(structure, step, tolerance, control is not None)
-    base_name = result_name(arguments, structure, drive, (schedule, scheme, control, hold))
-    return [
-        replace(
-            couple_job(chosen, drive, schedule, scheme, control=control, hold=hold),
-            name=f"{base_name}_{state}",
-        )
-        for state, chosen in structures_by_name(arguments, structure).items()
-    ]
-
-
-def write_package(
-    arguments: Any, drive: Drive, job: CoupleJob, user_fmus: Mapping[str, Path]
-) -> Path:
-    """Write the coupled system as an SSP file with its FMUs; return its path."""
-    from ..fmu import find
-    from ..weak_drive.ssp import write_ssp
-
-    folder = arguments.build_folder
-    fmus = [find(model, "fmi2", folder, user_fmus.get(model)).path for model in job.models]
-    voltage, speed = job.schedule.voltage(0.0), job.speed_start
-    return write_ssp(
-        arguments.ssp, job.structure, drive, voltage=voltage, speed_start=speed, fmus=fmus
-    )
-
-
 def draw_couple(
     title: str,
-    results: Results,
+    results: Runs,
     structure: Structure,
     drive: Drive,
     job: CoupleJob,
@@ -253,7 +207,7 @@ def draw_couple(
     return draw(results, with_units(theory, units), under, title)
 
 
-def couple_lines(results: Results, volts: float) -> Iterator[str]:
+def couple_lines(results: Runs, volts: float) -> Iterator[str]:
     """Yield revolutions and speeds of each run, a table of jumps, and the runs' accuracy."""
     names = ("structure", "jump", "voltage V", "eta0", "of the ramp V", "decided")
     columns: dict[str, list[str]] = {name: [] for name in names}
@@ -325,35 +279,63 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         from ..running.runner import answer_all
         from ..running.store import load
 
-        structure, drive = read_drive_options(self)
-        jobs = make_jobs(self, structure, drive)
+        structure, drive = self.read_structure_and_drive()
+        jobs = self.make_jobs(structure, drive)
         if self.ssp:
-            print(write_package(self, drive, jobs[-1], user_fmus(self.fmu)))
+            print(self.write_package(self.ssp, drive, jobs[-1]))
             return
         files = [Files.from_options(self, job.name) for job in jobs]
-        running, branches = read_running_options(self), None
+        running, branches = self.running(), None
         answer_all(jobs, self.output, RunOptions.from_keywords(running), finder(running))
-        states = structures_by_name(self, structure)
+        states = self.structures_by_name(structure)
         results = {state: load(one.result) for state, one in zip(states, files, strict=True)}
-        asked, shown = display(self, results)
+        asked, shown = self.display(results)
         if self.branches:
             digits = digest(structure.as_delaminated().parameters(), drive.parameters())
-            store = self.output / f"branches_{'_'.join(source_names(self))}_{digits}.nc"
-            running = read_running_options(self, store)
+            store = self.output / f"branches_{'_'.join(self.source_names())}_{digits}.nc"
+            running = self.running(store)
             branches = orchestrate.drive_branch(structure, drive, **running)
-            branches = with_units(branches, drive_units(self))
+            branches = with_units(branches, self.drive_units())
             print(*drive_branch_lines({"": branches}), sep="\n")
         print(*couple_lines(shown, drive.volts(structure)), sep="\n")
         for one, data in zip(files, asked.values(), strict=True):
             one.write(data)
-        picture = common_files(self, jobs[0].name.rpartition("_")[0], files)
-        title = picture_title(self, shown, format_title(shown, jobs[0].control))
+        picture = self.common_files(jobs[0].name.rpartition("_")[0], files)
+        title = self.picture_title(shown, format_title(shown, jobs[0].control))
         picture.write_pictures(
             partial(draw_couple, title, shown, structure, drive, jobs[0], branches)
         )
         if any(data.jumps.notnull().any() for data in results.values()):
             draw = partial(orchestrate.plot, *shown.values(), part="jumps", title=title)
             picture.write_pictures(draw, "jumps")
+
+    def make_jobs(self, structure: Structure, drive: Drive) -> list[CoupleJob]:
+        """Return the jobs for the runs asked for, a ``CoupleJob`` per structure, bonded first."""
+        from ..weak_drive.couple import couple_job, scheme_from_arguments
+
+        control = self.make_controller(structure, drive)
+        schedule = self.make_schedule(structure, drive, control)
+        step, hold = times_in_seconds(self, structure, "step", "hold").values()
+        tolerance = self.keywords()["tolerance"]
+        scheme = scheme_from_arguments(structure, step, tolerance, control is not None)
+        base_name = self.drive_result_name(structure, drive, (schedule, scheme, control, hold))
+        return [
+            replace(
+                couple_job(chosen, drive, schedule, scheme, control=control, hold=hold),
+                name=f"{base_name}_{state}",
+            )
+            for state, chosen in self.structures_by_name(structure).items()
+        ]
+
+    def write_package(self, path: Path, drive: Drive, job: CoupleJob) -> Path:
+        """Write the coupled system as an SSP file with its FMUs; return its path."""
+        from ..fmu import find
+        from ..weak_drive.ssp import write_ssp
+
+        own = user_fmus(self.fmu)
+        fmus = [find(name, "fmi2", self.build_folder, own.get(name)).path for name in job.models]
+        voltage, speed = job.schedule.voltage(0.0), job.speed_start
+        return write_ssp(path, job.structure, drive, voltage=voltage, speed_start=speed, fmus=fmus)
 
 
 UNDECIDED, NEITHER = "undecided", "settled at the resonance"
@@ -396,24 +378,24 @@ The motor is switched on at once and followed until its speed has settled.
 {RESUME}"""
 
     def ask(self) -> tuple[Structure, Drive, Question]:
-        structure, drive = read_drive_options(self)
-        values = read_over(self)
+        structure, drive = self.read_structure_and_drive()
+        values = self.read_over()
         if self.eta0 or self.voltage:
-            ends = parse_ramp_ends(self, structure, drive)
+            ends = self.parse_ramp_ends(structure, drive)
         else:
-            down, up = averaged_jump_voltages(self, structure, drive)
+            down, up = self.averaged_jump_voltages(structure, drive)
             ends = down, 1.06 * up
         question = self.keywords()
         question |= {"voltage": ends, "over": self.over, "values": values and values[0]}
-        question["control"] = make_controller(self, structure, drive)
+        question["control"] = self.make_controller(structure, drive)
         return structure, drive, question | times_in_seconds(self, structure, "step")
 
-    def words(self, _: Results, question: Question) -> str:
+    def words(self, _: Runs, question: Question) -> str:
         control = question["control"]
         switched = f"controlled by {type(control).__name__}" if control else "switched on from rest"
         return "{}, {:.4g} V to {:.4g} V".format(switched, *question["voltage"])
 
-    def summary(self, results: Results) -> Iterator[str]:
+    def summary(self, results: Runs) -> Iterator[str]:
         rows: list[dict[str, str]] = []
         notes: list[str] = []
         for state, data in results.items():
@@ -462,11 +444,11 @@ class Passage(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Driven, Of
     def ask(self) -> tuple[Structure, Drive, Question]:
         from ..weak_drive.schedule import Constant
 
-        structure, drive = read_drive_options(self)
+        structure, drive = self.read_structure_and_drive()
         if self.revolutions < 1:
             raise InputError(f"--revolutions {self.revolutions}: expected a whole number >= 1")
-        control = make_controller(self, structure, drive)
-        schedule = make_schedule(self, structure, drive, control)
+        control = self.make_controller(structure, drive)
+        schedule = self.make_schedule(structure, drive, control)
         around = self.around
         if around is None and not isinstance(schedule, Constant):
             around = 300.0 / structure.omega
@@ -477,11 +459,11 @@ class Passage(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Driven, Of
             {"voltage": schedule, "around": around, "control": control, **times},
         )
 
-    def words(self, results: Results, question: Question) -> str:
+    def words(self, results: Runs, question: Question) -> str:
         shown = {state: first_stored_interval(data) for state, data in results.items()}
         return format_title(shown, question["control"])
 
-    def draw(self, results: Results, title: str) -> Any:
+    def draw(self, results: Runs, title: str) -> Any:
         from .. import waterfall
         from ..show.passage import draw
 
@@ -490,7 +472,7 @@ class Passage(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Driven, Of
         falls = {state: waterfall(data, **spectra) for state, data in shown.items()}
         return draw(shown, falls, title)
 
-    def summary(self, results: Results) -> Iterator[str]:
+    def summary(self, results: Runs) -> Iterator[str]:
         from ..show.passage import format_jumps
 
         for state, data in results.items():
@@ -518,23 +500,23 @@ class JumpVoltages(OfMotor, OfRamp, Over, Stepped, Driven, Stored, OfBoth):
 {RESUME}"""
 
     def ask(self) -> tuple[Structure, Drive, Question]:
-        structure, drive = read_drive_options(self)
+        structure, drive = self.read_structure_and_drive()
         unit = drive.volts(structure) * structure.omega
         question: Question = {
-            "voltage": parse_ramp_ends(self, structure, drive),
+            "voltage": self.parse_ramp_ends(structure, drive),
             "rates": [rate * unit for rate in parse_rates("--rate", self.rate)],
             "back": not self.one_way,
         }
-        if (values := read_over(self)) is not None:
+        if (values := self.read_over()) is not None:
             question |= {"over": self.over, "values": values[0]}
         return structure, drive, question | times_in_seconds(self, structure, "settle", "step")
 
-    def words(self, _: Results, question: Question) -> str:
+    def words(self, _: Runs, question: Question) -> str:
         ends = "{:.4g} V to {:.4g} V".format(*question["voltage"])
         rates = dict.fromkeys(f"{end(question['rates']):.2g} V/s" for end in (min, max))
         return f"{ends}, {' to '.join(rates)}, and at rate 0"
 
-    def summary(self, results: Results) -> Iterator[str]:
+    def summary(self, results: Runs) -> Iterator[str]:
         (data,) = results.values()
         # a direction in which no ramp went has not been decided
         data = data.sel(
@@ -576,7 +558,7 @@ def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
     return ", ".join(speeds)
 
 
-def drive_branch_lines(results: Results) -> Iterator[str]:
+def drive_branch_lines(results: Runs) -> Iterator[str]:
     """Yield tables of the bifurcations and of the branches."""
     (data,) = results.values()
     if count := data.sizes["bifurcation"]:
@@ -607,8 +589,8 @@ class DriveBranch(OfMotor, Driven, Stored, OfBoth):
 Branches go round their folds. Repeat the command to resume an interrupted run."""
 
     def ask(self) -> tuple[Structure, Drive, Question]:
-        return *read_drive_options(self), self.keywords()
+        return *self.read_structure_and_drive(), self.keywords()
 
-    def words(self, results: Results, _: Question) -> str:
+    def words(self, results: Runs, _: Question) -> str:
         voltage = results[""].voltage
         return f"stationary motions, {float(voltage.min()):.4g} V to {float(voltage.max()):.4g} V"

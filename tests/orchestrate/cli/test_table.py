@@ -7,7 +7,6 @@ import os
 import shlex
 import subprocess
 import sys
-from types import SimpleNamespace
 
 import pytest
 from hypothesis import given
@@ -16,7 +15,6 @@ from hypothesis import strategies as st
 import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
-from orchestrate.cli.options import excitation_by_level, read_excitation
 from orchestrate.cli.output import result_name
 from orchestrate.cli.text import format_ranges
 from orchestrate.errors import InputError
@@ -135,20 +133,15 @@ def test_other_names_of_parameters():
     assert changes == {"zeta1": 0.007, "zeta2": 0.007, "clearance": -2e-5, "f1": 42.0}
 
 
-def motion(**given):
-    names = ("eta", "hz", "rpm", "frequency", "amplitude", "g")
-    return SimpleNamespace(**{**dict.fromkeys(names), "structure": "beam", **given})
-
-
 def test_levels_of_the_box_are_a_number_or_several():
     """Held as peak accelerations; where a command does not take several, one is expected."""
-    beam = Structure.from_file("beam")
-    levels = excitation_by_level(motion(hz="12", g="0.1:2:0.05"), beam)
+    beam, sweep = Structure.from_file("beam"), cli.COMMANDS["sweep"]
+    levels = sweep(hz="12", g="0.1:2:0.05").excitation_by_level(beam)
     assert isinstance(levels["frequency"], float) and len(levels["level"]) == 39
-    single = read_excitation(motion(hz="12", g="0.1"), beam)
+    single = sweep(hz="12", g="0.1").read_excitation(beam)
     assert levels["level"][0] == pytest.approx(single["amplitude"] * single["frequency"] ** 2)
     with pytest.raises(InputError, match="--hz 12:14:1: 3 values; expected one"):
-        excitation_by_level(motion(hz="12:14:1", g="0.1,0.2"), beam, one=True)
+        sweep(hz="12:14:1", g="0.1,0.2").excitation_by_level(beam, one=True)
 
 
 # -- names and ranges -----------------------------------------------------------------------------
