@@ -40,36 +40,6 @@ class Overlay(Options):
         "FILE,...", "NetCDF files of branches that are drawn over the picture", (), many=True
     )
 
-    def read_overlay(self, structure: Structure, question: Mapping[str, Any]) -> list[xr.Dataset]:
-        """Return the branches of ``--overlay``; raise for one that does not fit the question."""
-        texts = getattr(self, "overlay", [])
-        paths = [Path(name) for text in texts for name in text.split(",")]
-        if not paths:
-            return []
-        branches = [read_earlier_result("--overlay", path) for path in paths]
-        if self.calls == "map":
-            from ..show.overlay import explain_border_mismatch
-
-            both = {name for name, value in question.items() if isinstance(value, tuple)}
-            for path, curve in zip(paths, branches, strict=True):
-                if why := explain_border_mismatch(curve, both, structure.parameters()):
-                    raise InputError(f"--overlay {path}: {why}")
-            return branches
-        if self.calls == "resonance" and "level" in question:
-            raise InputError(f"--overlay: with several levels, --g {self.g}; expected one")
-        if not is_curve(question):
-            raise InputError("--overlay: one value has no picture; expected a range or a list")
-        from ..show.overlay import explain_mismatch
-
-        over = question.get("over") or ("eta" if "eta" in question else "frequency")
-        parameters = structure.parameters()
-        if self.calls == "resonance":  # of both
-            parameters.pop("bonded")
-        for path, branch in zip(paths, branches, strict=True):
-            if why := explain_mismatch(branch, over, parameters):
-                raise InputError(f"--overlay {path}: {why}")
-        return branches
-
 
 class Asked(Command):
     """A command that asks its public function and shows the result."""
@@ -135,6 +105,36 @@ class Asked(Command):
         draw = partial(self.draw, shown, *branches, *beside)
         files.write(asked, draw if picture else None)
         return data
+
+    def read_overlay(self, structure: Structure, question: Mapping[str, Any]) -> list[xr.Dataset]:
+        """Return the branches of ``--overlay``; raise for one that does not fit the question."""
+        texts = getattr(self, "overlay", [])
+        paths = [Path(name) for text in texts for name in text.split(",")]
+        if not paths:
+            return []
+        branches = [read_earlier_result("--overlay", path) for path in paths]
+        if self.calls == "map":
+            from ..show.overlay import explain_border_mismatch
+
+            both = {name for name, value in question.items() if isinstance(value, tuple)}
+            for path, curve in zip(paths, branches, strict=True):
+                if why := explain_border_mismatch(curve, both, structure.parameters()):
+                    raise InputError(f"--overlay {path}: {why}")
+            return branches
+        if self.calls == "resonance" and "level" in question:
+            raise InputError(f"--overlay: with several levels, --g {self.g}; expected one")
+        if not is_curve(question):
+            raise InputError("--overlay: one value has no picture; expected a range or a list")
+        from ..show.overlay import explain_mismatch
+
+        over = question.get("over") or ("eta" if "eta" in question else "frequency")
+        parameters = structure.parameters()
+        if self.calls == "resonance":  # of both
+            parameters.pop("bonded")
+        for path, branch in zip(paths, branches, strict=True):
+            if why := explain_mismatch(branch, over, parameters):
+                raise InputError(f"--overlay {path}: {why}")
+        return branches
 
     def display_units(self, question: Mapping[str, Any]) -> Units:
         """Return the display units: those of ``--units``, else those of the question's options."""

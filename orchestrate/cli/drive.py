@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
-from .face import Command, Options, Question, option, option_name
+from .face import Command, Options, Question, option, option_names
 from .grammar import parse_changes, parse_ends, parse_number_or_ends, parse_rate
 from .options import print_assumptions
 from .output import Files, digest
@@ -91,7 +91,7 @@ class OfMotor(Motor):
 
         names = DATASHEET
         values = {name: getattr(self, name) for name in names}
-        options = {name: option_name(name) for name in names}
+        options = {name: option_names([name]) for name in names}
         present = [name for name in names if values[name] is not None]
         if not present:
             return {}
@@ -331,8 +331,8 @@ class OfController(Options):
             for name in names:
                 value = getattr(self, name)
                 if value is not None and chosen != needed:
-                    expected = f"expected {option_name(needed)} with it"
-                    raise InputError(f"{option_name(name)} {value:g}: {expected}")
+                    expected = f"expected {option_names([needed])} with it"
+                    raise InputError(f"{option_names([name])} {value:g}: {expected}")
                 if value is not None:
                     given[name.removeprefix("speed_")] = value
         require_motor(drive)

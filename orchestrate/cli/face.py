@@ -83,7 +83,7 @@ class Option:
     def parameter(self, attribute: str, kind: Any, group: cyclopts.Group) -> inspect.Parameter:
         """The parameter that cyclopts reads."""
         read, choices = reader_of(kind)
-        flag = self.name or option_name(attribute)
+        flag = self.name or option_names([attribute])
         details = Parameter(
             name=None if self.position else flag,
             help=self.words,
@@ -112,9 +112,9 @@ def option(value: str, help: str, default: Any = None, **details: Any) -> Any:
     return Option(value, help, default, **details)
 
 
-def option_name(name: str) -> str:
-    """Return the option of an attribute: ``--max-points`` for ``max_points``."""
-    return f"--{name.replace('_', '-')}"
+def option_names(names: Iterable[str], joint: str = ", ") -> str:
+    """Join attributes as options in a text: ``--eta, --max-points``."""
+    return joint.join(f"--{name.replace('_', '-')}" for name in names)
 
 
 def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, tuple[str, ...]]:
@@ -156,7 +156,7 @@ class Options:
         """Return which of some options is given, None if none is; raise if several are."""
         given = [name for name in names if getattr(self, name) not in (None, False)]
         if len(given) > 1:
-            raise InputError(f"{' and '.join(map(option_name, given))}: expected one of them")
+            raise InputError(f"{option_names(given, ' and ')}: expected one of them")
         return given[0] if given else None
 
 
@@ -210,7 +210,7 @@ class Command(Debugging):
     def flags(cls) -> list[str]:
         """Return the names of all options that have one."""
         rows = cls.options().items()
-        return [one.name or option_name(name) for name, (one, _, _) in rows if not one.position]
+        return [one.name or option_names([name]) for name, (one, _, _) in rows if not one.position]
 
     @classmethod
     def name(cls) -> str:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import warnings
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..units import text_of, with_units
 from .answer import Asked
-from .face import Command, Options, Question, option, option_name
+from .face import Command, Options, Question, option, option_names
 from .grammar import (
     Breakpoints,
     ChannelColumns,
@@ -27,7 +27,6 @@ from .grammar import (
 from .options import (
     Beside,
     OfStructure,
-    join_option_names,
 )
 from .output import (
     Files,
@@ -47,13 +46,23 @@ from .text import Columns, columns_of, extents, impact_lines, table
 if TYPE_CHECKING:
     from ..model import Structure
 
-KINDS = {  # of excitation: the class, its own options, and which of them it needs
-    "swept_sine": ("SweptSine", ("duration", "rate", "spacing", "g", "acceleration"), ""),
-    "stepped_sine": ("SteppedSine", ("settle_cycles", "measured_cycles", "g", "acceleration"), ""),
-    "random": ("Random", ("duration", "seed"), "duration"),
-    "shock": ("Shock", ("duration", "length", "delay", "g", "acceleration"), "length"),
-    "record": ("Sampled", ("unit", "column", "scale"), ""),
+KINDS = {  # of excitation: the class, or the reader, whose arguments are its options
+    "swept_sine": "SweptSine",
+    "stepped_sine": "SteppedSine",
+    "random": "Random",
+    "shock": "Shock",
+    "record": "read_record",
 }
+
+LEVELS = ("g", "acceleration")
+
+
+def arguments_of(function: str) -> dict[str, bool]:
+    """Return the arguments of a public function or class, and whether each is needed."""
+    import orchestrate
+
+    parameters = inspect.signature(getattr(orchestrate, function)).parameters.values()
+    return {one.name: one.default is inspect.Parameter.empty for one in parameters}
 
 
 class OfExcitation(Options):
@@ -89,49 +98,54 @@ class OfExcitation(Options):
         import orchestrate
 
         kind = self.excitation_kind()
-        if kind == "record":
-            return self.read_record_excitation()
-        given = self.given(OfExcitation)
-        settings = {name: given[name] for name in (kind, *KINDS[kind][1]) if name in given}
+        settings = self.given(OfExcitation)
         main = settings.pop(kind)
-        level = {} if kind == "random" else {"acceleration": self.read_level()}
-        settings = {n: v for n, v in settings.items() if n not in ("g", "acceleration")} | level
-        if kind == "swept_sine":
-            settings |= {"first": main[0], "last": main[1]}
-        elif kind == "stepped_sine":
-            settings["frequencies"] = main
-        elif kind == "random":
-            settings["psd"] = main
-        else:
-            if not isinstance(level["acceleration"], float):
+        if kind == "record":
+            if column := settings.pop("column", None):
+                column = int(column) if column.isdecimal() else column
+                settings["columns"] = {"box_acceleration": column}
+            record = orchestrate.read_record(main, **settings)
+            if note := unit_note(record.attrs):
+                print(f"{main}: {note}")
+            return orchestrate.Sampled.from_record(record)
+        if kind != "random":
+            level = self.read_level()
+            settings = {name: settings[name] for name in settings if name not in LEVELS}
+            settings["peak" if kind == "shock" else "acceleration"] = level
+            if kind == "shock" and not isinstance(level, float):
                 raise InputError("--shock: expected one number for its peak, no profile")
-            settings |= {"shape": main, "peak": settings.pop("acceleration")}
-        return getattr(orchestrate, KINDS[kind][0])(**settings)
+        names = {"stepped_sine": "frequencies", "random": "psd", "shock": "shape"}
+        settings |= {names[kind]: main} if kind in names else {"first": main[0], "last": main[1]}
+        return getattr(orchestrate, KINDS[kind])(**settings)
 
     def excitation_kind(self) -> str:
         """Return which kind of excitation is chosen; raise for options of another kind."""
-        chosen = [name for name in KINDS if getattr(self, name) is not None]
+        given = self.given(OfExcitation)
+        chosen = [name for name in KINDS if name in given]
         if len(chosen) != 1:
-            names = [option_name(name) for name in KINDS]
-            words = " and ".join(map(option_name, chosen)) or "nothing"
-            raise InputError(f"excitation: {words} given; expected one of {', '.join(names)}")
-        (kind,) = chosen
-        _, own, needed = KINDS[kind]
-        for name in self.given(OfExcitation):
-            if name not in (kind, *own):
-                owners = [option_name(other) for other, row in KINDS.items() if name in row[1]]
-                raise InputError(f"{option_name(name)}: expected with {' or '.join(owners)} alone")
-        if needed and getattr(self, needed) is None:
-            raise InputError(f"{option_name(kind)}: expected --{needed} with it, in s")
-        return kind
+            words = option_names(chosen, " and ") or "nothing"
+            names = option_names(KINDS)
+            raise InputError(f"excitation: {words} given; expected one of {names}")
+        takes = {name: arguments_of(called) for name, called in KINDS.items()}
+        sines = ["swept_sine", "stepped_sine", "shock"]
+        owners = {**dict.fromkeys(LEVELS, sines), "column": ["record"]}
+        for name in given.keys() - KINDS.keys():
+            own = owners.get(name) or [one for one in KINDS if name in takes[one]]
+            if chosen[0] not in own:
+                words = option_names(own, " or ")
+                raise InputError(f"{option_names([name])}: expected with {words} alone")
+        for name in ("duration", "length"):
+            if takes[chosen[0]].get(name) and name not in given:
+                raise InputError(f"{option_names(chosen)}: expected --{name} with it, in s")
+        return chosen[0]
 
     def read_level(self) -> Any:
         """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
         from ..constants import GRAVITY
 
-        chosen = [name for name in ("g", "acceleration") if getattr(self, name) is not None]
+        chosen = [name for name in LEVELS if getattr(self, name) is not None]
         if len(chosen) != 1:
-            words = join_option_names(chosen, " and ") or "nothing"
+            words = option_names(chosen, " and ") or "nothing"
             raise InputError(f"level: {words} given; expected one of --g and --acceleration")
         text, unit = getattr(self, chosen[0]), GRAVITY if chosen[0] == "g" else 1.0
         if ":" not in text:
@@ -171,19 +185,6 @@ class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
             end = float(data.control_aborted)
             yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
         yield from impact_lines(data)
-
-    def read_record_excitation(self) -> Any:
-        """Return the box's acceleration of a measured file as an excitation."""
-        from .. import Sampled, read_record
-
-        column = self.column
-        columns = None
-        if column is not None:
-            columns = {"box_acceleration": int(column) if column.isdecimal() else column}
-        record = read_record(self.record, unit=self.unit, columns=columns, scale=self.scale)
-        if note := unit_note(record.attrs):
-            print(f"{self.record}: {note}")
-        return Sampled.from_record(record)
 
 
 MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
@@ -232,26 +233,16 @@ def columns_of_analysis(name: str, data: xr.Dataset) -> Columns:
     return columns | {"largest amplitude": peak_cells(data, data[variable], "m/s2")}
 
 
-@dataclass(frozen=True)
-class Analysis:
-    """One analysis that ``--show`` names."""
-
-    function: str  # of the public face
-    options: tuple[str, ...]  # of the command that it takes
-    text: str  # what it shows
-
-
-SPECTRAL, SWEPT = ("resolution", "window"), ("orders", "periods")
-ANALYSES = {
-    "frf": Analysis("frf", (*SPECTRAL, "overlap"), "frequency response and coherence"),
-    "psd": Analysis("psd", (*SPECTRAL, "overlap"), "power spectral density"),
-    "orders": Analysis("track_orders", SWEPT, "orders of a swept sine"),
-    "harmonics": Analysis("harmonics", ("highest", "periods"), "harmonics and their distortion"),
-    "spectrogram": Analysis("spectrogram", SPECTRAL, "spectra over the time"),
-    "shock": Analysis("shock_spectrum", ("damping",), "shock response spectrum"),
-    "density": Analysis("probability_density", ("bins",), "probability density, skewness"),
+ANALYSES = {  # that --show names: the public function, and what it shows
+    "frf": ("frf", "frequency response and coherence"),
+    "psd": ("psd", "power spectral density"),
+    "orders": ("track_orders", "orders of a swept sine"),
+    "harmonics": ("harmonics", "harmonics and their distortion"),
+    "spectrogram": ("spectrogram", "spectra over the time"),
+    "shock": ("shock_spectrum", "shock response spectrum"),
+    "density": ("probability_density", "probability density, skewness"),
 }
-SHOWN = ", ".join(f"{name} ({one.text})" for name, one in ANALYSES.items())
+SHOWN = ", ".join(f"{name} ({text})" for name, (_, text) in ANALYSES.items())
 
 
 def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:
@@ -263,14 +254,12 @@ def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:
     return measure(history, Sensor(bandwidth=bandwidth, sample_rate=rate[0] if rate else None))
 
 
-def analyse(
-    analysis: Analysis, record: xr.Dataset, path: Path, settings: Mapping[str, Any]
-) -> xr.Dataset:
+def analyse(name: str, record: xr.Dataset, path: Path, settings: Mapping[str, Any]) -> xr.Dataset:
     """Call the public function of an analysis on a record; errors begin with the file's name."""
     import orchestrate
 
     try:
-        result: xr.Dataset = getattr(orchestrate, analysis.function)(record, **settings)
+        result: xr.Dataset = getattr(orchestrate, ANALYSES[name][0])(record, **settings)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return result
@@ -353,12 +342,12 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
         reading += self.given(InColumns, Reading).items()
         for name in names:
             results = {
-                label: analyse(ANALYSES[name], record, paths[label], settings[name])
+                label: analyse(name, record, paths[label], settings[name])
                 for label, record in records.items()
             }
             shown = {label: with_units(data, units) for label, data in results.items()}
             for label, data in shown.items():
-                print(f"{f'{label}: ' if label else ''}{ANALYSES[name].text}")
+                print(f"{f'{label}: ' if label else ''}{ANALYSES[name][1]}")
                 print(*table(columns_of_analysis(name, data)), sep="\n")
             self.print_units_note(*shown.values())
             read = {label: str(path) for label, path in paths.items()}
@@ -387,13 +376,12 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
     def settings_by_analysis(self, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
         """Return each analysis's keywords; raise for an option that none of them takes."""
         chosen = self.given(Settings)
+        takes = {name: arguments_of(function) for name, (function, _) in ANALYSES.items()}
         for one in chosen:
-            owners = [name for name, analysis in ANALYSES.items() if one in analysis.options]
+            owners = [name for name in takes if one in takes[name]]
             if not set(owners) & set(names):
                 raise InputError(f"--{one}: expected with --show {' or '.join(owners)} alone")
-        return {
-            name: {o: chosen[o] for o in ANALYSES[name].options if o in chosen} for name in names
-        }
+        return {name: {o: chosen[o] for o in chosen if o in takes[name]} for name in names}
 
     def paths_by_label(self) -> dict[str, Path]:
         """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""

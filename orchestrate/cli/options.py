@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
-from .face import Options, option
+from .face import Options, option, option_names
 from .grammar import (
     is_single_number,
     parse_changes,
@@ -144,7 +144,7 @@ class OfBox(Options):
             return described
         if name is None:
             raise InputError(
-                f"frequency: nothing given; expected one of {join_option_names(FREQUENCIES)}"
+                f"frequency: nothing given; expected one of {option_names(FREQUENCIES)}"
             )
         text = getattr(self, name)
         values = parse_one_or_more(f"--{name}", text, one)
@@ -244,7 +244,7 @@ class Over(Options):
             raise InputError(f"--over {over}: expected --g VALUES at one frequency instead")
         scaled = self.read_amplitude() is not None and self.eta is not None
         if scaled and over in ("m1", "k1", "omega"):
-            expected = join_option_names(UNITS, " or ")
+            expected = option_names(UNITS, " or ")
             raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
 
 
@@ -280,11 +280,6 @@ def format_assumed(name: str, value: float) -> str:
 
 
 # -- the box's motion -----------------------------------------------------------------------------
-
-
-def join_option_names(names: Any, joint: str = ", ") -> str:
-    """Join names as options in a text: ``--eta, --hz``."""
-    return joint.join(f"--{name}" for name in names)
 
 
 def apply_to_each(change: Callable[[float], float], values: float | tuple[float, ...]) -> Any:
