@@ -166,15 +166,23 @@ def read_pairs(option: str, texts: Iterable[str], expected: str) -> dict[str, st
 
 
 def with_option_names(message: str, chosen: object) -> str:
-    """Return a message in which keywords are options: ``--unit`` for ``unit=`` without a value."""
+    """Return a message in which keywords are options: ``--unit g`` for ``unit = g``."""
+    options = vars(chosen)
 
-    def option(keyword: re.Match[str]) -> str:
+    def given(keyword: re.Match[str]) -> str:  # at the beginning: what is wrong
+        name, missing = keyword["name"], keyword["missing"]
+        if name not in options or (options[name] is None) != bool(missing):
+            return keyword[0]
+        return f"--{name.replace('_', '-')} {'is missing' if missing else ''}"
+
+    def named(keyword: re.Match[str]) -> str:  # what to do
         name = keyword["name"]
         spelling = f"--{name.replace('_', '-')}{' ' if keyword['quoted'] else ''}"
-        return spelling if name in vars(chosen) else keyword[0]
+        return spelling if name in options else keyword[0]
 
+    message = re.sub(r"^(?P<name>[a-z_]\w*) = (?P<missing>None)?", given, message)
     pattern = r"(?<![\w-])(?P<name>[a-z_]\w*)=((?=[\s,;:.)]|$)|(?=(?P<quoted>\")))"
-    return re.sub(pattern, option, message)
+    return re.sub(pattern, named, message)
 
 
 # -- ranges and lists -----------------------------------------------------------------------------

@@ -18,7 +18,7 @@ MISTAKES = {  # options of each command, then what its line says
     "sweep": """
         --eta -1 : --eta -1: | 0 < FIRST
         --eta nan : --eta nan: | FIRST:LAST:STEP
-        --eta 1e7 : eta = 10000000.0 | <= eta <= 1e+06
+        --eta 1e7 : --eta 10000000.0 | <= eta <= 1e+06
         --eta abc : --eta abc: | not numbers | FIRST:LAST:STEP
         --eta 1:2 : --eta 1:2: | FIRST:LAST:STEP
         --eta 2:1:0.1 : --eta 2:1:0.1: | FIRST <= LAST
@@ -40,7 +40,7 @@ MISTAKES = {  # options of each command, then what its line says
         --set e=0.1 --set e=0.2 : --set e=0.2 | each name once
         --set e=1.2 : e = 1.2 | 0 <= e <= 1
         --structure nowhere.toml : nowhere.toml | no such file | paper
-        --samples 0 : samples = 0 | from 1
+        --samples 0 : --samples 0 | from 1
         --fmu nowhere.fmu : nowhere.fmu | no such file
     """,
     "simulate": """
@@ -98,20 +98,20 @@ MISTAKES = {  # options of each command, then what its line says
         --eta 1,2 --over e --values 0.3,0.7 : --eta 1,2 | 2 values
     """,
     "attractors": """
-        --eta 1 --scale 0 : scale = 0.0
+        --eta 1 --scale 0 : --scale 0.0
     """,
     "basin": """
         --eta 1:2:0.5 : --eta 1:2:0.5 | 3 values
         --eta 1 --x x_rel,0,1 : --x x_rel,0,1 | NAME,FIRST,LAST,COUNT
     """,
     "orbit": """
-        --eta 1 --period 0 : period = 0
+        --eta 1 --period 0 : --period 0
         --eta 1 --guess 1,2 : --guess 1,2 | four numbers
     """,
     "branch": """
         : --limits | FIRST:LAST
         --limits 2 : --limits 2 | FIRST:LAST
-        --eta 2.5 --limits 2.6:2.4 : limits | the lower one first
+        --eta 2.5 --limits 2.6:2.4 : --limits | the lower one first
         --eta 3 --limits 2.4:2.6 : eta = 3.0 at the start | inside
         --over hz --g 1 --limits 2.4:2.6 : --g | --amplitude
         --over frequency --eta 1 --limits 2.4:2.6 : --over frequency | --amplitude
@@ -143,7 +143,7 @@ MISTAKES = {  # options of each command, then what its line says
         --rated-voltage 9 --no-load-rpm 9 --stall-torque 1 --set motor_constant=2 : beside --rated
         --eta0 x:2 : --eta0 x:2 | FIRST:LAST
         --eta0 1:2 --voltage 1:2 : --eta0 and --voltage | one of them
-        --step -0.1 : step = -0.1 s | 0.0001 <= step <= 1
+        --step -0.1 : --step -0.1 s | 0.0001 <= step <= 1
         --eta0 1.2 : one voltage, 1.2 V | --duration
         --eta0 1:2 --duration 3 : --duration | one voltage
         --voltage high : --voltage high | a number, or FIRST:LAST
@@ -298,7 +298,7 @@ def test_debug_shows_where_an_error_came_from(tmp_path):
 
 @pytest.mark.parametrize("asked", [("--eta", "1"), ("--frequency", "1", "--amplitude", "1")])
 def test_no_orbit_is_looked_for_at_an_undamped_resonance(ask, tmp_path, asked):
-    ask("orbit", *asked, "--set", "D=0").complaint("frequency = 1.0 rad/s", "d1 = 0.0")
+    ask("orbit", *asked, "--set", "D=0").complaint(" 1.0 rad/s", "d1 = 0.0")
     assert list(tmp_path.rglob("*.nc*")) == []
 
 
