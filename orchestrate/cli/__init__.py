@@ -21,7 +21,7 @@ from cyclopts.exceptions import CycloptsError
 from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable
 from ..model.ranges import closest
 from ..version import __version__
-from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
+from . import cosimulation, diagnosis, dynamics, laboratory, pages, responses, weak_drive
 from .face import Command, explain
 from .grammar import with_option_names
 from .options import QUANTITIES, list_shipped_sets
@@ -34,7 +34,7 @@ COMMANDS: dict[str, type[Command]] = {
         *(diagnosis.Diagnose, diagnosis.Plan, responses.Resonance, responses.Spectra),
         *(responses.Sweep, responses.Map, dynamics.Lyapunov, dynamics.Poincare),
         *(dynamics.Attractors, dynamics.Basin, dynamics.Orbit, dynamics.Manifold),
-        *(dynamics.Branch, dynamics.Border, weak_drive.Cosimulate, weak_drive.Couple),
+        *(dynamics.Branch, dynamics.Border, cosimulation.Cosimulate, weak_drive.Couple),
         *(weak_drive.Capture, weak_drive.Passage, weak_drive.JumpVoltages),
         *(weak_drive.DriveBranch, pages.Explore, pages.Report, pages.Paper),
     )

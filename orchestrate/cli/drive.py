@@ -8,11 +8,12 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from ..constants import TURN
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
 from .face import Command, Options, Question, option, option_names
-from .grammar import parse_changes, parse_ends, parse_number_or_ends, parse_rate
+from .grammar import Positive, parse_changes, parse_ends, parse_number_or_ends, parse_rate
 from .options import print_assumptions
 from .output import Files, digest
 
@@ -60,9 +61,9 @@ class OfMotor(Motor):
 
     heading, rank = "a motor by its datasheet", 0
     remark = "in place of motor_constant and armature_resistance: all three"
-    rated_voltage: float | None = option("V", "of the motor, V")
-    no_load_rpm: float | None = option("RPM", "its speed without load")
-    stall_torque: float | None = option("N.M", "its torque at rest, N m")
+    rated_voltage: Positive = option("V", "of the motor, V")
+    no_load_rpm: Positive = option("RPM", "its speed without load")
+    stall_torque: Positive = option("N.M", "its torque at rest, N m")
 
     def read_structure_and_drive(self) -> tuple[Structure, Drive]:
         """Return structure and drive of the options, with the changes of ``--set`` to either."""
@@ -89,26 +90,18 @@ class OfMotor(Motor):
         """Return motor constant and resistance from the datasheet's options; empty without them."""
         from ..model.drive import torque_line
 
-        names = DATASHEET
-        values = {name: getattr(self, name) for name in names}
-        options = {name: option_names([name]) for name in names}
-        present = [name for name in names if values[name] is not None]
-        if not present:
+        given, names = self.given(OfMotor), ("motor_constant", "armature_resistance")
+        if not given:
             return {}
-        if len(present) < len(names):
-            missing = next(name for name in names if name not in present)
-            text = f"{options[present[0]]} {values[present[0]]:g}: without {options[missing]}"
-            raise InputError(f"{text}; expected {', '.join(options.values())} together")
-        for name, flag in options.items():
-            if not (math.isfinite(values[name]) and values[name] > 0.0):
-                raise InputError(f"{flag} {values[name]:g}: expected a number > 0")
-        for name in ("motor_constant", "armature_resistance"):
-            if name in changes:
-                text = f"--set {name}={changes[name]:g}: beside {options['rated_voltage']}"
-                raise InputError(f"{text}; expected one of them")
-        speed = 2.0 * math.pi * values["no_load_rpm"] / 60.0
-        line = torque_line(values["rated_voltage"], speed, values["stall_torque"])
-        return dict(zip(("motor_constant", "armature_resistance"), line, strict=True))
+        first = f"{option_names(list(given)[:1])} {next(iter(given.values())):g}"
+        if missing := [name for name in DATASHEET if name not in given]:
+            text = f"{first}: without {option_names(missing[:1])}"
+            raise InputError(f"{text}; expected {option_names(DATASHEET)} together")
+        if twice := [name for name in names if name in changes]:
+            text = f"--set {twice[0]}={changes[twice[0]]:g}: beside {option_names(DATASHEET[:1])}"
+            raise InputError(f"{text}; expected one of them")
+        voltage, rpm, torque = given.values()
+        return dict(zip(names, torque_line(voltage, TURN * rpm / 60.0, torque), strict=True))
 
     def source_names(self) -> Iterable[str]:
         """Return the names of the drive's file and, if it is another, of the structure's."""
@@ -305,7 +298,7 @@ class OfController(Options):
 
     heading = "controller"
     remark = "starts from rest, takes a part of the voltage at every communication step"
-    speed_control: Any = option("SPEED", "hold a speed in rad/s, by PI")
+    speed_control: float | None = option("SPEED", "hold a speed in rad/s, by PI")
     gain: float | None = option("X", "of the PI control, V s/rad (default: 5 K)")
     reset_time: float | None = option("S", "of it, s (default: J R_a/K^2)")
     speed_rise: float | None = option(
@@ -325,25 +318,23 @@ class OfController(Options):
         from ..weak_drive.controllers import SpeedControl, SpeedGradient
         from ..weak_drive.couple import require_motor
 
-        chosen = self.one_of(*CONTROLS)
-        given: dict[str, float] = {}
+        chosen = self.one_of(*CONTROLS) or ""
+        given = self.given(OfController)
         for needed, names in CONTROLS.items():
-            for name in names:
-                value = getattr(self, name)
-                if value is not None and chosen != needed:
+            for name in names if needed != chosen else ():
+                if name in given:
                     expected = f"expected {option_names([needed])} with it"
-                    raise InputError(f"{option_names([name])} {value:g}: {expected}")
-                if value is not None:
-                    given[name.removeprefix("speed_")] = value
+                    raise InputError(f"{option_names([name])} {given[name]:g}: {expected}")
+        own = {name.removeprefix("speed_"): given[name] for name in given if name not in CONTROLS}
         require_motor(drive)
         constant = drive.motor_constant
         if chosen == "speed_control":
             slow = drive.rotor_inertia * drive.armature_resistance / constant**2
             usual = {"gain": 5.0 * constant, "reset_time": slow, "rise": math.inf}
-            return SpeedControl(speed=self.speed_control, **{**usual, **given})
+            return SpeedControl(speed=given["speed_control"], **{**usual, **own})
         if chosen == "speed_gradient":
             passed = own_resonance.dividing_speed(structure, drive) * structure.omega
-            swing = {"filter_time": 30.0 / structure.omega, "low": 0.6, **given}
+            swing = {"filter_time": 30.0 / structure.omega, "low": 0.6, **own}
             return SpeedGradient(passed=passed, **swing)
         return None
 

@@ -102,6 +102,9 @@ def positive_number(option: str, text: str) -> float:
     return reader(option, text)[0]
 
 
+Positive = Annotated[float | None, positive_number]
+
+
 def parse_rate(option: str, text: str) -> float:
     """Parse one rate > 0; name the command that takes several."""
     rates = parse_rates(option, text)
