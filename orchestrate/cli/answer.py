@@ -37,7 +37,7 @@ class Overlay(Options):
     """The option of branches over a picture."""
 
     overlay: list[str] = option(
-        "FILE,...", "NetCDF files of branches that are drawn over the picture", (), many=True
+        "NetCDF files of branches that are drawn over the picture", (), value="FILE,...", many=True
     )
 
 

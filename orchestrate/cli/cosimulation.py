@@ -73,31 +73,31 @@ class OfDrive(Options):
     """Options of the drive of a co-simulation."""
 
     heading, rank = "the drive", 1
-    drive: Path = option("FMU", "FMI 2.0 or 3.0", needed=True)
-    listed: bool = option(
-        "", "show its variables, propose connections, and end", False, name="--list"
-    )
+    drive: Path = option("FMI 2.0 or 3.0", value="FMU", needed=True)
+    listed: bool = option("show its variables, propose connections, and end", name="--list")
     connect: list[str] = option(
-        "OURS=THEIRS",
         "box_acceleration (or box_velocity, box_position) and box_force, by names of the drive; a "
         "minus before a name turns its sign",
         (),
+        value="OURS=THEIRS",
         many=True,
     )
     unit: list[str] = option(
-        "NAME=UNIT",
         "units of connected variables that it does not state, or not rightly",
         (),
+        value="NAME=UNIT",
         many=True,
     )
-    parameter: list[str] = option("NAME=VALUE", "its start values", (), many=True)
+    parameter: list[str] = option("its start values", (), value="NAME=VALUE", many=True)
     input: list[str] = option(
-        "NAME=VALUE",
         "its other inputs: a number, or a CSV file with time in s and value",
         (),
+        value="NAME=VALUE",
         many=True,
     )
-    record: list[str] = option("NAME", "variables of the drive that are stored", (), many=True)
+    record: list[str] = option(
+        "variables of the drive that are stored", (), value="NAME", many=True
+    )
 
 
 class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):

@@ -69,26 +69,22 @@ class DiagnosedRecords(Options):
 
     heading, rank = "records", 0
     records: list[Path] = option(
-        "FILE",
-        ".csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .nc; one beam each",
-        position=True,
-        needed=True,
+        ".csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .nc; one beam each", position=True, needed=True
     )
     other: list[Path] = option(
-        "FILE",
         "record of the same beam at another level or in the other direction, for the signs; may be "
         "repeated",
         (),
     )
     columns: str | None = option(
-        "A,B,...",
         "of time, base, face 1 and face 2, by name or number from 0, without time where "
         "--sample-rate is given (default: by usual names)",
+        value="A,B,...",
     )
     participation: str | None = option(
-        "G,...",
         "of the sensors on face 1 and face 2: the beam's mode there over that of a mass on a "
         "spring, 1.57 at the tip of a cantilever (default: fitted)",
+        value="G,...",
     )
 
 
@@ -96,9 +92,11 @@ class Diagnose(DiagnosedRecords, OfStructure, Reading, Command, Results):
     """Whether a measured beam is delaminated: a verdict, its evidence, a report."""
 
     structure: Any = option(
-        "SET|FILE", "guess of the beam: TOML file with a [structure], or the name of a set"
+        "guess of the beam: TOML file with a [structure], or the name of a set", value="SET|FILE"
     )
-    notes: str | None = option("WORDS", "below the title of the report: which beam, who, when")
+    notes: str | None = option(
+        "below the title of the report: which beam, who, when", value="WORDS"
+    )
     examples = """
   {program} diagnose record.csv --structure beam.toml
   {program} diagnose left.csv right.uff --structure beam.toml --set e=0.4 --jobs 2
@@ -332,17 +330,15 @@ class Plan(OfStructure, Command, Results):
 
     calls, takes = "plan_test", "periods gain_error threshold"
     hz: str | None = option(
-        "VALUES",
         "frequencies in Hz, FIRST:LAST:STEP (default: 0.8 times the lower to 1.2 times the higher "
         "natural frequency of the halves)",
+        value="VALUES",
     )
     g: str | None = option(
-        "VALUES", "levels, peak acceleration in g (default: nine from 0.01 to 1)"
+        "levels, peak acceleration in g (default: nine from 0.01 to 1)", value="VALUES"
     )
-    noise: float | None = option(
-        "X", "density of the sensor's noise, (m/s2)/sqrt(Hz) (default: 1e-3)"
-    )
-    range: float | None = option("X", "of the sensor, g (default: none)")
+    noise: float | None = option("density of the sensor's noise, (m/s2)/sqrt(Hz) (default: 1e-3)")
+    range: float | None = option("of the sensor, g (default: none)")
     examples = """
   {program} plan --structure beam.toml
   {program} plan --structure beam.toml --hz 30:60:0.5 --g 0.05,0.1,0.2,0.5 --noise 3e-4

@@ -43,16 +43,18 @@ class Motor(Options):
 
     heading, rank = "structure, motor and box", 0
     drive: str = option(
-        "SET|FILE",
         "TOML file with [motor], [box] and [structure], or a set: quick (no real one: jumps come "
         "soon), beam (some kg on a small motor), rig (near the paper's)",
         "quick",
+        value="SET|FILE",
     )
-    structure: Any = option("SET|FILE", "file or set with another [structure] than that of --drive")
+    structure: Any = option(
+        "file or set with another [structure] than that of --drive", value="SET|FILE"
+    )
     set: list[str] = option(
-        "NAME=VALUE",
         "a parameter of the structure, or of motor and box in SI; may be repeated",
         (),
+        value="NAME=VALUE",
     )
 
 
@@ -61,9 +63,9 @@ class OfMotor(Motor):
 
     heading, rank = "a motor by its datasheet", 0
     remark = "in place of motor_constant and armature_resistance: all three"
-    rated_voltage: Positive = option("V", "of the motor, V")
-    no_load_rpm: Positive = option("RPM", "its speed without load")
-    stall_torque: Positive = option("N.M", "its torque at rest, N m")
+    rated_voltage: Positive = option("of the motor, V", value="V")
+    no_load_rpm: Positive = option("its speed without load", value="RPM")
+    stall_torque: Positive = option("its torque at rest, N m", value="N.M")
 
     def read_structure_and_drive(self) -> tuple[Structure, Drive]:
         """Return structure and drive of the options, with the changes of ``--set`` to either."""
@@ -134,7 +136,7 @@ class OfMotor(Motor):
 class Only(Options):
     """The option of one structure of both."""
 
-    only: Literal["bonded", "delaminated"] | None = option("", "one of both (default: both)")
+    only: Literal["bonded", "delaminated"] | None = option("one of both (default: both)")
 
     def structures_by_name(self, structure: Structure) -> dict[str, Structure]:
         """Return the bonded and the delaminated structure, or the one ``--only`` names."""
@@ -153,9 +155,8 @@ class Stepped(Options):
     """The option of the communication step."""
 
     step: float | None = option(
-        "X",
         "communication step, in 1/omega (default: controlled by its defect, at most 0.4; 0.1 where "
-        "a controller or a picture takes samples)",
+        "a controller or a picture takes samples)"
     )
 
 
@@ -163,9 +164,9 @@ class Held(Options):
     """The option of held voltages."""
 
     hold: float | None = option(
-        "TIME",
         "longest time for which a voltage is held until the speed settles, 0 for none, in 1/omega "
         "(default: 4000 and 200 times the rotor's own)",
+        value="TIME",
     )
 
 
@@ -174,11 +175,10 @@ class OfVoltage(Options):
 
     heading, rank = "the motor's voltage", 1
     eta0: float | None = option(
-        "X",
         "voltage as no-load speed over omega (default: 1.53 for quick, 1.45 for beam, else between "
-        "the jumps of the averaged theory)",
+        "the jumps of the averaged theory)"
     )
-    voltage: float | None = option("X", "the same in V")
+    voltage: float | None = option("the same in V")
 
 
 class OfRamp(Options):
@@ -186,10 +186,10 @@ class OfRamp(Options):
 
     heading, rank = "the motor's voltage", 1
     eta0: str | None = option(
-        "FIRST:LAST",
         "voltage as no-load speed over omega (default: about the jumps of the averaged theory)",
+        value="FIRST:LAST",
     )
-    voltage: str | None = option("FIRST:LAST", "the same in V")
+    voltage: str | None = option("the same in V", value="FIRST:LAST")
 
     def parse_voltages(self, structure: Structure, drive: Drive) -> tuple[float, ...]:
         """Return one voltage or a ramp's first and last one, V; by default around the jumps."""
@@ -235,22 +235,19 @@ class OfSchedule(OfRamp):
     """Options of a voltage over time."""
 
     heading, rank = "voltage over time: a ramp, steps, one value, or a file", 1
-    duration: float | None = option("S", "time of a single voltage, in s")
+    duration: float | None = option("time of a single voltage in place of FIRST:LAST, in s")
     course: Path | None = option(
-        "FILE",
-        "CSV file with time in s and voltage in V, a row each: straight lines between, instead",
+        "CSV file with time in s and voltage in V, a row each: straight lines between, instead"
     )
     rate: str | None = option(
-        "RATE", f"change of eta0 in a time 1/omega (default: {USUAL_RATES}, else {RATE:g})"
+        f"change of eta0 in a time 1/omega (default: {USUAL_RATES}, else {RATE:g})", value="RATE"
     )
-    volt_rate: str | None = option("RATE", "the same in V/s")
+    volt_rate: str | None = option("the same in V/s", value="RATE")
     increment: float = option(
-        "X",
-        "change eta0 in steps of this height, at the same mean rate (default: a ramp)",
-        0.0,
+        "change eta0 in steps of this height, at the same mean rate (default: a ramp)", 0.0
     )
-    settle: float = option("X", "time at the first voltage, in 1/omega", 300.0)
-    one_way: bool = option("", "do not come back", False)
+    settle: float = option("time at the first voltage, in 1/omega", 300.0)
+    one_way: bool = option("do not come back")
 
     def ramp_rate(self, structure: Structure, drive: Drive) -> float:
         """Return a ramp's rate, V/s, from ``--rate`` or ``--volt-rate``."""
@@ -298,19 +295,17 @@ class OfController(Options):
 
     heading = "controller"
     remark = "starts from rest, takes a part of the voltage at every communication step"
-    speed_control: float | None = option("SPEED", "hold a speed in rad/s, by PI")
-    gain: float | None = option("X", "of the PI control, V s/rad (default: 5 K)")
-    reset_time: float | None = option("S", "of it, s (default: J R_a/K^2)")
+    speed_control: float | None = option("hold a speed in rad/s, by PI", value="SPEED")
+    gain: float | None = option("of the PI control, V s/rad (default: 5 K)")
+    reset_time: float | None = option("of it, s (default: J R_a/K^2)")
     speed_rise: float | None = option(
-        "X", "rate at which the wanted speed rises, rad/s2 (default: at once)"
+        "rate at which the wanted speed rises, rad/s2 (default: at once)"
     )
     speed_gradient: bool = option(
-        "", "swing the rotor across the resonance by the speed-gradient method", False
+        "swing the rotor across the resonance by the speed-gradient method"
     )
-    filter_time: float | None = option("S", "of it, s (default: 30/omega)")
-    low: float | None = option(
-        "PART", "part of the voltage while slower than the mean (default: 0.6)"
-    )
+    filter_time: float | None = option("of it, s (default: 30/omega)")
+    low: float | None = option("part of the voltage while slower than the mean (default: 0.6)")
 
     def make_controller(self, structure: Structure, drive: Drive) -> Controller | None:
         """Return the controller that the options describe; None if they ask for none."""

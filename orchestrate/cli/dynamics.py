@@ -61,7 +61,7 @@ class Lyapunov(OfStructure, OfBox, Over, Asked, Stored, Results):
 
     calls, takes = "lyapunov", "transient periods sigmas spectrum"
     follow: Literal["up", "down"] | None = option(
-        "", "responses of a sweep in this direction (default: each from rest)"
+        "responses of a sweep in this direction (default: each from rest)"
     )
     examples = """
   {program} lyapunov --eta 2.5:3.8:0.02 --follow up        along a sweep
@@ -327,8 +327,8 @@ class Branch(OfStored, OfBox, Asked, Stored, Results):
     """Follow periodic motions along a parameter, stable and unstable, to their bifurcations."""
 
     calls, takes = "branch", "start switch period box_acceleration longest most"
-    over: str = option("NAME", f"what varies: {CONTINUED}", "eta")
-    limits: str | None = option("FIRST:LAST", "between which it is followed, in its own unit")
+    over: str = option(f"what varies: {CONTINUED}", "eta", value="NAME")
+    limits: str | None = option("between which it is followed, in its own unit", value="FIRST:LAST")
     examples = """
   {program} branch --eta 2.5 --limits 2.4:2.8
   {program} branch --over e --eta 2.5 --limits 0.5:0.9
@@ -414,10 +414,10 @@ class Border(OfStored, Asked, Stored, Results):
 
     calls, takes = "border", "start longest most"
     over: str = option(
-        "NAME,NAME", f"what varies, that of the branch first, each {CONTINUED}", "eta,e"
+        f"what varies, that of the branch first, each {CONTINUED}", "eta,e", value="NAME,NAME"
     )
-    limits: Any = option("A:B,C:D", "between which each is followed, in its own unit")
-    bifurcation: Bifurcation = option("N|all", "its number, or all of them in one picture", 0)
+    limits: Any = option("between which each is followed, in its own unit", value="A:B,C:D")
+    bifurcation: Bifurcation = option("its number, or all of them in one picture", 0, value="N|all")
     examples = """
   {program} border --start branch.nc --bifurcation 0 --over eta,e --limits 2.4:2.9,0.6:0.8
   {program} border --start beam.nc --over hz,e --limits 14:18,0.6:0.8

@@ -11,7 +11,7 @@ import functools
 import inspect
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
@@ -39,6 +39,7 @@ from .grammar import (
 
 LINK = re.compile(r"As (?:in|for) :\w+:`orchestrate\.(\w+)`")
 MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
+MAPPING = re.compile(r'\{"(\w+)": "?([^"}]*)"?\}')  # on the command line NAME=VALUE
 KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of options are read, named
     "array_like or xarray.Dataset": (State, "X1,X2,V1,V2"),
     "array_like of 4 floats": (State, "X1,X2,V1,V2"),
@@ -64,9 +65,9 @@ Question = dict[str, Any]
 class Option:
     """One option of a command; its type is the annotation of the attribute."""
 
-    value: str  # what the help calls its value
     help: str
     default: Any = None
+    value: str = ""  # what the help calls it, where its type does not tell
     name: str = ""  # where it is not the attribute's
     position: bool = False  # no flag: the value stands by itself
     needed: bool = False
@@ -87,7 +88,7 @@ class Option:
         details = Parameter(
             name=None if self.position else flag,
             help=self.words,
-            metavar="{" + ",".join(choices) + "}" if choices else self.value,
+            metavar="{" + ",".join(choices) + "}" if choices else self.value or name_of_value(kind),
             group=group,
             negative=(),
             show_default=False,
@@ -107,14 +108,20 @@ class Option:
         )
 
 
-def option(value: str, help: str, default: Any = None, **details: Any) -> Any:
+def option(help: str, default: Any = None, **details: Any) -> Any:
     """Return an option, as ``Any``: as an attribute it has the value's type."""
-    return Option(value, help, default, **details)
+    return Option(help, default, **details)
 
 
 def option_names(names: Iterable[str], joint: str = ", ") -> str:
     """Join attributes as options in a text: ``--eta, --max-points``."""
     return joint.join(f"--{name.replace('_', '-')}" for name in names)
+
+
+def name_of_value(kind: Any) -> str:
+    """Return what the help calls a value of a type."""
+    known = {int: "N", float: "X", Path: "FILE"}
+    return next((known[one] for one in (kind, *get_args(kind)) if one in known), "TEXT")
 
 
 def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, tuple[str, ...]]:
@@ -164,7 +171,7 @@ class Debugging(Options):
     """The option of all commands."""
 
     heading, rank = "mistakes of the program", 6
-    debug: bool = option("", "show where in the program an error occurred", False)
+    debug: bool = option("show where in the program an error occurred")
 
 
 class Command(Debugging):
@@ -200,6 +207,8 @@ class Command(Debugging):
         for group in reversed(cls.__mro__):
             for name, one in vars(group).items():
                 if isinstance(one, Option):
+                    if hints[name] is bool:
+                        one = replace(one, default=False)
                     found[name] = one, hints[name], found[name][2] if name in found else group
             own = vars(group)
             taken = options_of_functions(own.get("takes", ""), cls.calls, own.get("if_given"))
@@ -296,15 +305,21 @@ def options_of_functions(
             words = help_text(meaning)
             if ";" in takes:
                 words = f"{cyclopts.default_name_transform(function)}: {words}"
-            yield name, Option(value, words, default, usual=usual), kind
+            yield name, Option(words, default, value, usual=usual), kind
 
 
 def help_text(meaning: str) -> str:
     """Return the first sentence of an argument's description, and the default, as help."""
-    plain = MARKUP.sub(lambda match: match[1] or match[2], meaning).removeprefix("Whether to ")
+    plain = (
+        MARKUP.sub(lambda match: match[1] or match[2], meaning)
+        .removeprefix("Whether ")
+        .removeprefix("to ")
+    )
+    plain = MAPPING.sub(r"\1=\2", plain)
     first, *others = plain.rstrip(".").split(". ")
     usual = "".join(f"; b{one[1:]}" for one in others if one.startswith("By default"))
-    return f"{first[:1].lower()}{first[1:]}{usual}"
+    begins = first[:1] if first.startswith(("Hz", "V ")) else first[:1].lower()
+    return f"{begins}{first[1:]}{usual}"
 
 
 # -- mistakes --------------------------------------------------------------------------------------

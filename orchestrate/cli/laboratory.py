@@ -75,22 +75,22 @@ class OfExcitation(Options):
         "Random: seed; Shock: length delay; read_record: unit scale"
     )
     if_given = True
-    swept_sine: Ends = option("FIRST:LAST", "frequencies, Hz; downwards too")
-    stepped_sine: Listed = option("FIRST:LAST:STEP", "frequencies, Hz; or a list A,B,...")
-    random: Breakpoints = option("PSD", "density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz")
-    shock: str | None = option("SHAPE", "half-sine, sawtooth or trapezoid")
-    record: Any = option("FILE", "measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc")
+    swept_sine: Ends = option("frequencies, Hz; downwards too", value="FIRST:LAST")
+    stepped_sine: Listed = option("frequencies, Hz; or a list A,B,...", value="FIRST:LAST:STEP")
+    random: Breakpoints = option("density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz", value="PSD")
+    shock: str | None = option("half-sine, sawtooth or trapezoid", value="SHAPE")
+    record: Any = option("measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc", value="FILE")
     g: str | None = option(
-        "LEVEL",
         "peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too",
+        value="LEVEL",
     )
     acceleration: str | None = option(
-        "LEVEL", "peak acceleration, m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too"
+        "peak acceleration, m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too", value="LEVEL"
     )
-    duration: float | None = option("S", "of all, s")
+    duration: float | None = option("of all, s")
     column: str | None = option(
-        "NAME",
         "of a record: the box's, by name or number from 0 (default: by usual names, or 1)",
+        value="NAME",
     )
 
     def read_excitation(self) -> Any:
@@ -157,7 +157,7 @@ class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
     """As in the laboratory: motion and impacts under sines, random, shock or a record."""
 
     calls, takes = "shake", "sample_rate start accuracy"
-    shaker: str | None = option("FILE", "its electrodynamic shaker, level controlled")
+    shaker: str | None = option("its electrodynamic shaker, level controlled", value="FILE")
     examples = """
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
@@ -270,9 +270,9 @@ class InColumns(Options):
 
     heading = "how to read records"
     columns: ChannelColumns = option(
-        "A=X,B=Y",
         "columns by name or number from 0: CHANNEL=COLUMN,... with the channels time, "
         + ", ".join(MASSES),
+        value="A=X,B=Y",
     )
 
 
@@ -292,24 +292,23 @@ class AnalysedRecords(Options):
 
     heading, rank = "records", 0
     record: Path = option(
-        "FILE",
         "a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .wav or "
         ".nc",
         position=True,
         needed=True,
     )
-    show: str = option("A,B,...", SHOWN, "frf,psd")
-    label: str | None = option("WORDS", "what the record is, for the picture")
+    show: str = option(SHOWN, "frf,psd", value="A,B,...")
+    label: str | None = option("what the record is, for the picture", value="WORDS")
     beside: list[str] = option(
-        "LABEL=FILE", "another record in the same picture; may be repeated", ()
+        "another record in the same picture; may be repeated", (), value="LABEL=FILE"
     )
     sensor: str | None = option(
-        "HZ[:RATE]",
         "of results of shake what accelerometers of this bandwidth read, with the impulses of "
         "impacts; RATE: samples a second (default: accelerations between impacts)",
+        value="HZ[:RATE]",
     )
-    begin: float | None = option("S", "time it begins at, s", name="--from")
-    to: float | None = option("S", "time it ends at, s")
+    begin: float | None = option("time it begins at, s", name="--from")
+    to: float | None = option("time it ends at, s")
 
 
 class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, InFolder, Command):

@@ -88,13 +88,13 @@ class OfStructure(Options):
 
     heading, rank = "structure", 0
     structure: Any = option(
-        "SET|FILE", "TOML file with a [structure], or the name of a set", "paper"
+        "TOML file with a [structure], or the name of a set", "paper", value="SET|FILE"
     )
     set: list[str] = option(
-        "NAME=VALUE",
         f"one of its parameters, SI ({' '.join(STRUCTURE)}), of each half (f1 f2 in Hz, zeta1 "
         "zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
         (),
+        value="NAME=VALUE",
     )
 
     def read_structure(self) -> Structure:
@@ -111,9 +111,9 @@ class OfStored(OfStructure):
     """The same, of a command that may begin with a stored result."""
 
     structure: Any = option(
-        "SET|FILE",
         "TOML file with a [structure], or the name of a set (default: that of the stored result, "
         "else paper)",
+        value="SET|FILE",
     )
 
 
@@ -125,12 +125,12 @@ class OfBox(Options):
         "one frequency and one amplitude of these, or the [excitation] of the file of --structure; "
         "where several values are taken: FIRST:LAST:STEP with both ends, or a list A,B,..."
     )
-    hz: str | None = option("VALUES", "frequency in Hz")
-    rpm: str | None = option("VALUES", "the same in turns per minute")
-    frequency: str | None = option("VALUES", "the same as Omega in rad/s")
-    eta: Any = option("VALUES", "the same as frequency ratio Omega/omega")
-    amplitude: str | None = option("A", "amplitude a in m (default with --eta: 1/eta^2 m)")
-    g: Any = option("VALUES", "the same as peak acceleration in g, held at all frequencies")
+    hz: str | None = option("frequency in Hz", value="VALUES")
+    rpm: str | None = option("the same in turns per minute", value="VALUES")
+    frequency: str | None = option("the same as Omega in rad/s", value="VALUES")
+    eta: Any = option("the same as frequency ratio Omega/omega", value="VALUES")
+    amplitude: str | None = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
+    g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
 
     def read_excitation(
         self, structure: Structure, si: bool = False, one: bool = False
@@ -206,9 +206,9 @@ class Over(Options):
     """Options of a parameter that varies."""
 
     over: Any = option(
-        "NAME", "a parameter of the structure that varies, as for --set, at one frequency"
+        "a parameter of the structure that varies, as for --set, at one frequency", value="NAME"
     )
-    values: Any = option("VALUES", "its values, FIRST:LAST:STEP or a list A,B,...")
+    values: Any = option("its values, FIRST:LAST:STEP or a list A,B,...", value="VALUES")
 
     def read_over(self) -> tuple[tuple[float, ...], bool] | None:
         """Return the values of ``--over``, and whether they are a range; None without it."""
@@ -251,7 +251,7 @@ class Over(Options):
 class Beside(Options):
     """The option of both structures."""
 
-    beside: bool = option("", "the same of the bonded structure, beside it", False)
+    beside: bool = option("the same of the bonded structure, beside it")
 
 
 # -- structures -----------------------------------------------------------------------------------

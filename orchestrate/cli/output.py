@@ -52,9 +52,9 @@ class InUnits(Options):
 
     heading, rank = "units", 3
     units: str | None = option(
-        "A,B,...",
         "of prints, pictures, tables and their names: Hz, rpm, rad/s or eta; m, mm or um; m/s2 or "
         "g; s or periods, a list such as Hz,mm,g (default: as the question is asked; nc is in SI)",
+        value="A,B,...",
     )
 
     def read_units(self) -> Units:
@@ -90,11 +90,11 @@ class Formats(Options):
 
     heading, rank = "files", 4
     format: str = option(
-        "A,B,...", f"also as {', '.join(FORMATS[1:])}, a list; nc is always written", "nc"
+        f"also as {', '.join(FORMATS[1:])}, a list; nc is always written", "nc", value="A,B,..."
     )
-    plot: str = option("A,B,...", f"pictures: {', '.join(PLOTS)}, a list, or none", "png")
+    plot: str = option(f"pictures: {', '.join(PLOTS)}, a list, or none", "png", value="A,B,...")
     size: str | None = option(
-        "W:H", "shape of the pictures for slides, such as 16:9, with larger letters"
+        "shape of the pictures for slides, such as 16:9, with larger letters", value="W:H"
     )
 
 
@@ -103,8 +103,8 @@ class Stored(Options):
 
     heading, rank = "files", 4
     store: Path | None = option(
-        "FILE.nc",
         "the result's own file (default: a name of its own for each question in --output)",
+        value="FILE.nc",
     )
 
 
@@ -112,21 +112,21 @@ class InFolder(Options):
     """The option of the folder of results."""
 
     heading, rank = "results and running", 5
-    output: Path = option("FOLDER", "folder of the results", Path("results"))
+    output: Path = option("folder of the results", Path("results"), value="FOLDER")
 
 
 class HowRun(Options):
     """Options of how results are computed."""
 
     heading, rank = "results and running", 5
-    force: bool = option("", "compute anew what is there already", False)
-    keep_stale: bool = option("", "take results that older code or another FMU has made", False)
-    jobs: int | None = option("N", "processes at once (default: all cores)")
+    force: bool = option("compute anew what is there already")
+    keep_stale: bool = option("take results that older code or another FMU has made")
+    jobs: int | None = option("processes at once (default: all cores)")
     cluster: str | None = option(
-        "ADDRESS", "compute on the workers of a Dask scheduler, such as tcp://host:8786"
+        "compute on the workers of a Dask scheduler, such as tcp://host:8786", value="ADDRESS"
     )
-    fmu: Path | None = option("FILE", "own FMU (default: the one of the present sources)")
-    build_folder: Path | None = option("FOLDER", "where FMUs are looked for and exported to")
+    fmu: Path | None = option("own FMU (default: the one of the present sources)")
+    build_folder: Path | None = option("where FMUs are looked for and exported to", value="FOLDER")
 
     def running(self, store: Path | None = None) -> Running:
         """Return ``jobs``, ``cluster``, ``force``, ``fmu`` and ``store`` as keywords of the API."""
@@ -150,8 +150,8 @@ class Results(InUnits, Formats, InFolder, HowRun):
 class OfBoth(Results):
     """The same of a command that runs both FMUs."""
 
-    fmu: list[Path] = option(  # type: ignore[assignment]
-        "FILE", "own FMU (default: the one of the present sources); may be repeated", ()
+    fmu: list[Path] = option(
+        "own FMU (default: the one of the present sources); may be repeated", ()
     )
 
 

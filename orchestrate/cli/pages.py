@@ -28,25 +28,21 @@ class Build(InUnits, Command):
     """
 
     folder: Path | None = option(
-        "FOLDER", "where to (default: build/ of a clone, else a cache folder of the user's)"
+        "where to (default: build/ of a clone, else a cache folder of the user's)", value="FOLDER"
     )
     platforms: str | None = option(
-        "LIST",
         "binaries in the native FMUs: all, this, or names such as aarch64-linux,x86_64-darwin "
         "(default: Linux and Windows on x86-64, and this machine)",
+        value="LIST",
     )
     plain: bool = option(
-        "",
         "instead, into fmi2-plain/ and fmi3-plain/: native FMUs for tools that stumble over "
-        "arrays, clocks or long lists of variables; the same numbers",
-        False,
+        "arrays, clocks or long lists of variables; the same numbers"
     )
     sources_only: bool = option(
-        "",
         "instead, into fmi2-sources/ and fmi3-sources/ (with --plain: fmi2-plain-sources/, "
         "fmi3-plain-sources/): native FMUs without binaries, for targets that compile the C "
-        "sources inside; no compiler is needed here",
-        False,
+        "sources inside; no compiler is needed here"
     )
     examples = """
   {program} build
@@ -79,16 +75,16 @@ class Explore(OfStored, InUnits, Command):
     """Open a page that shows orbit diagrams and motions, computed in the browser."""
 
     result: Path | None = option(
-        "RESULT",
         "NetCDF file of a sweep along the frequency (default: the paper's Figure 6)",
+        value="RESULT",
         position=True,
     )
-    branches: Path | None = option(
-        "FILE", "NetCDF file of branches over eta, drawn over the diagram"
+    branches: Path | None = option("NetCDF file of branches over eta, drawn over the diagram")
+    output: Path = option("the page", Path("explorer.html"))
+    no_open: bool = option("only write it")
+    build_folder: Path | None = option(
+        "where the compiled kernel is looked for and put", value="FOLDER"
     )
-    output: Path = option("FILE", "the page", Path("explorer.html"))
-    no_open: bool = option("", "only write it", False)
-    build_folder: Path | None = option("FOLDER", "where the compiled kernel is looked for and put")
     examples = """
   {program} explore                              the paper's Figure 6
   {program} explore results/sweep_paper_7e3015.nc   an own sweep: a click replays its responses
@@ -137,13 +133,13 @@ class Report(InUnits, InFolder, Command):
     """Stored results as one page with pictures and numbers, to read, print and sign."""
 
     results: list[Path] = option(
-        "FILE.nc",
         "results of earlier commands; a verdict of diagnose is first",
+        value="FILE.nc",
         position=True,
         needed=True,
     )
-    title: str | None = option("WORDS", "by default that of the first result")
-    notes: str | None = option("WORDS", "below the title: what, who, when")
+    title: str | None = option("by default that of the first result", value="WORDS")
+    notes: str | None = option("below the title: what, who, when", value="WORDS")
     examples = """
   {program} report results/sweep.nc --title Beam --notes November
   {program} report results/map.nc results/resonance.nc --output study"""
@@ -176,16 +172,15 @@ class Paper(InUnits, InFolder, HowRun, Command):
     """The whole paper through the FMU: figures, claims, report."""
 
     figures: str | None = option(
-        "NAME,...",
         "some of it: 5 to 12, claims, lyapunov, attractors, basin, maps, spectra (default: all)",
+        value="NAME,...",
     )
     quick: bool = option(
-        "",
-        "reduced resolution: the same frequencies, fewer periods, starts and map points",
-        False,
+        "reduced resolution: the same frequencies, fewer periods, starts and map points"
     )
-    output: Path | None = option(  # type: ignore[assignment]
-        "FOLDER", "folder of the results (default: results/paper, with --quick results/paper-quick)"
+    output: Path | None = option(
+        "folder of the results (default: results/paper, with --quick results/paper-quick)",
+        value="FOLDER",
     )
     examples = """
   {program} paper                     all at the paper's resolution, into results/paper/

@@ -268,14 +268,13 @@ class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
 
     calls, takes = "sweep", "start transient samples tolerance"
     eta: Any = option(
-        "VALUES",
         "the same as frequency ratio Omega/omega (default: 0.1:8.0:0.001 where no frequency is "
         "given)",
+        value="VALUES",
     )
     direction: Literal["up", "down", "both"] | None = option(
-        "",
         "order of the values, each started from the end of the last (default: up for a range, a "
-        "list as it stands)",
+        "list as it stands)"
     )
     examples = """
   {program} sweep                                           the paper's Figure 6
@@ -320,10 +319,12 @@ class Map(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
 
     calls, takes = "map", "exponent transient settle samples periods tolerance longest"
     over: list[str] = option(
-        "NAME", "a parameter of the structure that varies, as for --set; twice at one frequency", ()
+        "a parameter of the structure that varies, as for --set; twice at one frequency",
+        (),
+        value="NAME",
     )
     values: list[str] = option(
-        "VALUES", "its values, FIRST:LAST:STEP or a list A,B,...; one for each --over", ()
+        "its values, FIRST:LAST:STEP or a list A,B,...; one for each --over", (), value="VALUES"
     )
     examples = """
   {program} map --eta 0.4:2.2:0.05 --over e --values 0.1:0.9:0.05

@@ -124,11 +124,9 @@ class Couple(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Driven, OfB
 
     calls, takes = "couple", "tolerance"
     branches: bool = option(
-        "",
-        "compute the branches of stationary motions too, and draw them under the ramps",
-        False,
+        "compute the branches of stationary motions too, and draw them under the ramps"
     )
-    ssp: Path | None = option("FILE", "write the coupled system for other tools instead")
+    ssp: Path | None = option("write the coupled system for other tools instead")
     examples = f"""
   {{program}} couple                               quick: bonded, delaminated, up and down
   {{program}} couple --drive beam                  a delaminated beam on a small motor
@@ -304,8 +302,8 @@ class Passage(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Driven, Of
     """A run through the resonance at full resolution: speed, motion, power, waterfall."""
 
     calls, takes = "passage", "around"
-    revolutions: int = option("N", "revolutions of each spectrum of the waterfall", 8)
-    mass: Literal[1, 2] = option("", "whose acceleration the spectra are of", 1)
+    revolutions: int = option("revolutions of each spectrum of the waterfall", 8)
+    mass: Literal[1, 2] = option("whose acceleration the spectra are of", 1)
     examples = f"""
   {{program}} passage --eta0 1.4:1.65 --one-way               quick through its resonance
   {{program}} passage --drive rig --one-way --around 3
@@ -360,9 +358,11 @@ class JumpVoltages(OfMotor, OfRamp, Over, Stepped, Driven, Stored, OfBoth):
     """Voltages at which the speed jumps, at rate 0 and on ramps of several rates."""
 
     calls = "jump_voltages"
-    rate: str = option("A,B,...", "change of eta0 in a time 1/omega, a list", "1e-4,5e-5,2.5e-5")
-    settle: float = option("X", "time at the first voltage, in 1/omega", 300.0)
-    one_way: bool = option("", "do not come back: jumps up only", False)
+    rate: str = option(
+        "change of eta0 in a time 1/omega, a list", "1e-4,5e-5,2.5e-5", value="A,B,..."
+    )
+    settle: float = option("time at the first voltage, in 1/omega", 300.0)
+    one_way: bool = option("do not come back: jumps up only")
     examples = f"""
   {{program}} jump-voltages                                 quick, up and down
   {{program}} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way

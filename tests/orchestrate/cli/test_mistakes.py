@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import json
 import os
+import random
 import shlex
 import subprocess
 import sys
 
 import netCDF4
 import pytest
+
+from orchestrate import cli
+from orchestrate.errors import InputError
 
 from .commands import ROOT
 
@@ -288,12 +292,9 @@ def test_a_stale_result_is_refused_with_what_has_changed(ask, tmp_path):
 
 
 def test_debug_shows_where_an_error_came_from(tmp_path):
-    from orchestrate.cli import main
-    from orchestrate.errors import InputError
-
     for arguments in (["--debug", "sweep"], ["sweep", "--debug"]):
         with pytest.raises(InputError, match="e = 2"):
-            main([*arguments, "--set", "e=2", "--output", str(tmp_path)])
+            cli.main([*arguments, "--set", "e=2", "--output", str(tmp_path)])
 
 
 @pytest.mark.parametrize("asked", [("--eta", "1"), ("--frequency", "1", "--amplitude", "1")])
@@ -371,3 +372,22 @@ def test_nothing_is_recommended_that_is_refused_then(ask, line):
     options, _, words = line.strip().partition(" : ")
     said = ask(*options.split(), "--structure", "beam").complaint(words)
     assert "--g with it" not in said and "--g in" not in said
+
+
+WORDS = ["1", "-1", "nan", "1:2:0.5", "1,2", "", "a=b", "e=1.2", "beam", "x.nc", "--", "ä", "1_000"]
+
+
+def test_random_command_lines_end_in_one_line(ask, monkeypatch):
+    def stop(*_):
+        raise InputError("nothing is computed")
+
+    monkeypatch.setattr("orchestrate.cli.output.HowRun.running", stop)
+    chance = random.Random(62)
+    for _ in range(80):
+        name = chance.choice([one for one in cli.COMMANDS if one not in ("build", "explore")])
+        words = [name]
+        for flag in chance.choices(cli.COMMANDS[name].flags(), k=chance.randrange(5)):
+            words += [flag] if flag == "--debug" else [flag, chance.choice(WORDS)]
+        done = ask(*(word for word in words if word != "--debug"))
+        assert done.code in (0, 2), words
+        assert done.code == 0 or [line for line in done.complaints if line.startswith("error: ")]
