@@ -103,7 +103,7 @@ class OfDrive(Options):
 class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
     """Both FMUs together: the oscillator and a drive of anybody's."""
 
-    calls, takes = "cosimulate", "duration step start"
+    calls = "cosimulate"
     examples = """
   {program} cosimulate --drive shaker.fmu --list
   {program} cosimulate --structure beam --drive shaker.fmu --duration 2 --step 1e-3

@@ -328,7 +328,7 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
 class Plan(OfStructure, Command, Results):
     """Plan a test: frequencies and levels of a sweep at which a delamination would show."""
 
-    calls, takes = "plan_test", "periods gain_error threshold"
+    calls = "plan_test"
     hz: str | None = option(
         "frequencies in Hz, FIRST:LAST:STEP (default: 0.8 times the lower to 1.2 times the higher "
         "natural frequency of the halves)",

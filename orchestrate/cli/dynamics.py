@@ -59,7 +59,7 @@ def ask_along_parameter(arguments: Any) -> tuple[Structure, Question]:
 class Lyapunov(OfStructure, OfBox, Over, Asked, Stored, Results):
     """Largest Lyapunov exponents of responses: periodic, neutral or chaotic."""
 
-    calls, takes = "lyapunov", "transient periods sigmas spectrum"
+    calls = "lyapunov"
     follow: Literal["up", "down"] | None = option(
         "responses of a sweep in this direction (default: each from rest)"
     )
@@ -123,7 +123,7 @@ COORDINATES = {  # that are printed of each section
 class Poincare(OfStructure, OfBox, Asked, Stored, Results):
     """A Poincaré section: states at a phase of the box, at impacts or at releases."""
 
-    calls, takes = "poincare", "at start phase transient periods"
+    calls = "poincare"
     examples = """
   {program} poincare --eta 2.9 --periods 5000
   {program} poincare --eta 0.8 --at impacts
@@ -137,7 +137,7 @@ class Poincare(OfStructure, OfBox, Asked, Stored, Results):
 class Attractors(OfStructure, OfBox, Over, Asked, Stored, Results):
     """Coexisting motions: how many, and how many random starts lead to each."""
 
-    calls, takes = "attractors", "starts seed scale width transient settle samples"
+    calls, takes = "attractors", "* scale"
     examples = """
   {program} attractors --eta 1.32 --starts 200 --seed 1
   {program} attractors --eta 1.2:1.4:0.01
@@ -200,7 +200,7 @@ alone may miss one whose basin is small."""
 class Basin(OfStructure, OfBox, Asked, Stored, Results):
     """Basins of attraction: which motion each start of a plane leads to."""
 
-    calls, takes = "basin", "x y at phase transient settle samples"
+    calls = "basin"
     examples = """
   {program} basin --eta 1.315
   {program} basin --eta 1.315 --x x_rel,0,1.3,60 --y v_rel,-1.3,1.3,60
@@ -249,7 +249,7 @@ def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
 class Orbit(OfStructure, OfBox, Asked, Stored, Results):
     """A periodic motion by Newton's method, stable or unstable, with its multipliers."""
 
-    calls, takes = "orbit", "guess period box_acceleration"
+    calls = "orbit"
     examples = """
   {program} orbit --eta 3.0                     unstable: simulate would leave it
   {program} orbit --eta 1.32 --period 2
@@ -298,7 +298,7 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
 class Manifold(OfStored, OfBox, Asked, Stored, Results):
     """The unstable manifold of a saddle of the stroboscopic map, as a curve to each side."""
 
-    calls, takes = "manifold", "start period box_acceleration length spacing angle distance most"
+    calls = "manifold"
     examples = """
   {program} manifold --eta 3.0
   {program} manifold --start orbit.nc --length 20       of an orbit that orbit has written
@@ -326,7 +326,7 @@ What starts beside a saddle with one multiplier outside the unit circle leaves a
 class Branch(OfStored, OfBox, Asked, Stored, Results):
     """Follow periodic motions along a parameter, stable and unstable, to their bifurcations."""
 
-    calls, takes = "branch", "start switch period box_acceleration longest most"
+    calls = "branch"
     over: str = option(f"what varies: {CONTINUED}", "eta", value="NAME")
     limits: str | None = option("between which it is followed, in its own unit", value="FIRST:LAST")
     examples = """
@@ -412,7 +412,7 @@ Bifurcation = Annotated[int | str, parse_bifurcation]
 class Border(OfStored, Asked, Stored, Results):
     """Follow a bifurcation of a branch over two parameters: where a window begins or ends."""
 
-    calls, takes = "border", "start longest most"
+    calls = "border"
     over: str = option(
         f"what varies, that of the branch first, each {CONTINUED}", "eta,e", value="NAME,NAME"
     )

@@ -1,8 +1,8 @@
 """A command is a class whose options are its attributes; groups of options are its bases.
 
-cyclopts reads the options by their types. An option that is an argument of the command's public
-function is named only (``takes``): type, default, choices and help come from the function's
-signature and docstring.
+cyclopts reads the options by their types. Options that are arguments of the command's public
+function have type, default, choices and help from its signature and docstring: a new argument of
+the function is an option of the command.
 """
 
 from __future__ import annotations
@@ -56,6 +56,7 @@ KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of optio
     "xarray.Dataset": (Path, "FILE.nc"),
     "array_like": (float, "X"),
 }
+OF_BOX = ("eta", "frequency", "amplitude", "level")
 READERS: dict[Any, Callable[[str, str], Any]] = {int: read_int, float: read_float}
 STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *SET_NAMES)
 Question = dict[str, Any]
@@ -147,8 +148,9 @@ class Options:
 
     Of itself only, not of its bases: ``heading`` stands above its options in the help with a
     ``remark``, ``rank`` orders the groups. ``takes`` are options that are arguments of public
-    functions, as ``"function: name name; other: name"``, by default of the one that the
-    command calls; with ``if_given`` they are None where they are not given.
+    functions, as ``"function: name name; other: name"``, by default of the one that the command
+    calls, and of that ``"*"``: all whose types can be read, but those of other groups. With
+    ``if_given`` they are None where they are not given.
     """
 
     takes = ""
@@ -211,7 +213,10 @@ class Command(Debugging):
                         one = replace(one, default=False)
                     found[name] = one, hints[name], found[name][2] if name in found else group
             own = vars(group)
-            taken = options_of_functions(own.get("takes", ""), cls.calls, own.get("if_given"))
+            takes = own.get("takes", "*" if own.get("calls") else "")
+            others = [name for name in arguments_read(cls.calls) if name not in found]
+            takes = takes.replace("*", " ".join(others))
+            taken = options_of_functions(takes, cls.calls, own.get("if_given"))
             found |= {name: (one, kind, group) for name, one, kind in taken}
         return dict(sorted(found.items(), key=lambda row: vars(row[1][2]).get("rank", 2)))
 
@@ -281,6 +286,26 @@ def documentation_of(function: str) -> dict[str, tuple[str, str]]:
                 documentation_of(linked[1])[name] if linked else (one.type_name or "", meaning)
             )
     return found
+
+
+@functools.cache
+def arguments_read(function: str) -> list[str]:
+    """Return a public function's arguments that the command line can read by their types."""
+    import orchestrate
+
+    if not function:
+        return []
+    typed = documentation_of(function)
+    arguments = inspect.signature(getattr(orchestrate, function)).parameters.values()
+    return [
+        one.name
+        for one in arguments
+        if one.kind == one.KEYWORD_ONLY
+        and one.name not in (*OF_BOX, "over", "values")
+        and one.default is not True
+        and typed[one.name][0].startswith(("{", *KINDS))
+        and typed[one.name][0].partition(",")[0] != "array_like"  # of one number, where named
+    ]
 
 
 def options_of_functions(

@@ -156,7 +156,7 @@ class OfExcitation(Options):
 class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
     """As in the laboratory: motion and impacts under sines, random, shock or a record."""
 
-    calls, takes = "shake", "sample_rate start accuracy"
+    calls = "shake"
     shaker: str | None = option("its electrodynamic shaker, level controlled", value="FILE")
     examples = """
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside

@@ -150,7 +150,7 @@ class Results(InUnits, Formats, InFolder, HowRun):
 class OfBoth(Results):
     """The same of a command that runs both FMUs."""
 
-    fmu: list[Path] = option(
+    fmu: list[Path] = option(  # type: ignore[assignment]
         "own FMU (default: the one of the present sources); may be repeated", ()
     )
 

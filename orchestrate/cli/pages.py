@@ -178,7 +178,7 @@ class Paper(InUnits, InFolder, HowRun, Command):
     quick: bool = option(
         "reduced resolution: the same frequencies, fewer periods, starts and map points"
     )
-    output: Path | None = option(
+    output: Path | None = option(  # type: ignore[assignment]
         "folder of the results (default: results/paper, with --quick results/paper-quick)",
         value="FOLDER",
     )

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 class Simulate(OfStructure, OfBox, Beside, Asked, Stored, Results):
     """A motion in time: both masses, gap, contact force, impacts, phase plane and spectrum."""
 
-    calls, takes = "simulate", "start periods transient points phase"
+    calls = "simulate"
     examples = """
   {program} simulate --eta 0.4 --transient 500 --periods 2      the paper's Figure 5
   {program} simulate --eta 1.047 --beside                       the undamaged structure beside it
@@ -85,7 +85,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
     levels (--g FIRST:LAST:STEP), with the level at which a preloaded structure first opens.
     """
 
-    calls, takes = "resonance", "direction transient samples prominence jump"
+    calls = "resonance"
     examples = """
   {program} resonance --structure beam --hz 8:20:0.05 --g 0.02
   {program} resonance --structure beam --rpm 500:1200:5 --amplitude 3e-5 --format nc,csv
@@ -154,7 +154,7 @@ def line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> str:
 class Spectra(OfMotor, OfVoltage, OfBox, Asked, Stored, OfBoth):
     """Acceleration spectra, bonded beside delaminated (Figure 3)."""
 
-    calls, takes = "spectra", "transient periods points"
+    calls = "spectra"
     examples = """
   {program} spectra                      Figure 3: quick, the motor hangs at the resonance
   {program} spectra --drive beam --voltage 6.5
@@ -266,7 +266,7 @@ def window_marks(data: xr.Dataset) -> list[tuple[str, float]]:
 class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
     """Follow responses along the frequency or another parameter: an orbit diagram."""
 
-    calls, takes = "sweep", "start transient samples tolerance"
+    calls = "sweep"
     eta: Any = option(
         "the same as frequency ratio Omega/omega (default: 0.1:8.0:0.001 where no frequency is "
         "given)",
@@ -317,7 +317,7 @@ Repeat the command to resume an interrupted run. A finished result is left as it
 class Map(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
     """Responses over two parameters: impacts per period, multiplicity, largest gap, exponent."""
 
-    calls, takes = "map", "exponent transient settle samples periods tolerance longest"
+    calls = "map"
     over: list[str] = option(
         "a parameter of the structure that varies, as for --set; twice at one frequency",
         (),

@@ -237,7 +237,7 @@ def threshold_cells(data: xr.Dataset) -> dict[str, str]:
 class Capture(OfMotor, Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
     """Voltages switched on from rest: which pass the resonance, which are captured."""
 
-    calls, takes = "capture", "count tolerance time"
+    calls = "capture"
     examples = f"""
   {{program}} capture                                       quick, bonded and delaminated
   {{program}} capture --drive beam --voltage 6.1:6.9
@@ -357,7 +357,7 @@ class Passage(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Driven, Of
 class JumpVoltages(OfMotor, OfRamp, Over, Stepped, Driven, Stored, OfBoth):
     """Voltages at which the speed jumps, at rate 0 and on ramps of several rates."""
 
-    calls = "jump_voltages"
+    calls, takes = "jump_voltages", ""
     rate: str = option(
         "change of eta0 in a time 1/omega, a list", "1e-4,5e-5,2.5e-5", value="A,B,..."
     )
@@ -454,7 +454,7 @@ def drive_branch_lines(results: Runs) -> Iterator[str]:
 class DriveBranch(OfMotor, Driven, Stored, OfBoth):
     """Stationary motions of structure and motor, stable and unstable, and their bifurcations."""
 
-    calls, takes = "drive_branch", "speed longest most period steps settle"
+    calls = "drive_branch"
     examples = """
   {program} drive-branch                              quick, bonded and delaminated
   {program} drive-branch --drive beam --speed 92:110

@@ -43,6 +43,28 @@ def test_every_default_is_that_of_the_function_and_in_the_help():
     assert compared > 40
 
 
+def test_an_argument_of_a_function_is_an_option_without_more(monkeypatch):
+    def echo(structure, *, eta=None, depth=3, loud=False, mood="calm"):
+        """Sound.
+
+        Parameters
+        ----------
+        depth : int
+            How deep, m. Not shown.
+        loud : bool
+            Whether to shout.
+        mood : {"calm", "cross"}
+            What it is.
+        """
+
+    monkeypatch.setattr(orchestrate, "echo", echo, raising=False)
+    command = type("Echo", (cli.face.Command,), {"calls": "echo"})
+    options = {name: option.words for name, (option, _, _) in command.options().items()}
+    assert options["depth"] == "how deep, m (default: 3)" and options["loud"] == "shout"
+    (call, bound, _) = command.app().parse_args(["--depth", "7", "--mood", "cross", "--loud"])
+    assert call(**bound.kwargs).keywords() == {"depth": 7, "loud": True, "mood": "cross"}
+
+
 @pytest.mark.parametrize("program", ["vibroimpact", "python -m orchestrate"])
 def test_help_has_quantities_and_examples_that_can_be_typed(capsys, monkeypatch, program):
     monkeypatch.setattr(sys, "argv", [f"/bin/{program}"])
