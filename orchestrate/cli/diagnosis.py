@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, range_text, text_of, with_readable_lengths, with_units
 from .face import Command, Options, Question, option
-from .grammar import parse_values, with_option_names
+from .grammar import Listed, with_option_names
 from .options import OfStructure
 from .output import (
     Files,
@@ -329,12 +329,12 @@ class Plan(OfStructure, Command, Results):
     """Plan a test: frequencies and levels of a sweep at which a delamination would show."""
 
     calls = "plan_test"
-    hz: str | None = option(
+    hz: Listed = option(
         "frequencies in Hz, FIRST:LAST:STEP (default: 0.8 times the lower to 1.2 times the higher "
         "natural frequency of the halves)",
         value="VALUES",
     )
-    g: str | None = option(
+    g: Listed = option(
         "levels, peak acceleration in g (default: nine from 0.01 to 1)", value="VALUES"
     )
     noise: float | None = option("density of the sensor's noise, (m/s2)/sqrt(Hz) (default: 1e-3)")
@@ -348,11 +348,8 @@ class Plan(OfStructure, Command, Results):
         from .. import Sensor
 
         structure = self.read_structure()
-        hz, g = (
-            getattr(self, name) and parse_values(f"--{name}", getattr(self, name))[0]
-            for name in ("hz", "g")
-        )
-        question: Question = {**self.keywords(), "frequencies": hz, "g": g}
+        hz = self.hz
+        question: Question = {**self.keywords(), "frequencies": hz}
         if self.noise is not None or self.range is not None:
             from ..diagnosis.plan_test import USUAL_NOISE
 

@@ -13,6 +13,7 @@ from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
 from .face import Options, option, option_names
 from .grammar import (
+    Positive,
     is_single_number,
     parse_changes,
     parse_ends,
@@ -129,7 +130,7 @@ class OfBox(Options):
     rpm: str | None = option("the same in turns per minute", value="VALUES")
     frequency: str | None = option("the same as Omega in rad/s", value="VALUES")
     eta: Any = option("the same as frequency ratio Omega/omega", value="VALUES")
-    amplitude: str | None = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
+    amplitude: Positive = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
     g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
 
     def read_excitation(
@@ -183,8 +184,8 @@ class OfBox(Options):
 
     def read_amplitude(self) -> float | None:
         """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is given."""
-        name = self.one_of("amplitude", "g")
-        return None if name is None else positive_number(f"--{name}", getattr(self, name))
+        given = self.one_of("amplitude", "g") == "g"
+        return positive_number("--g", self.g) if given else self.amplitude
 
     def is_shaken(self) -> bool:
         """Return whether an option gives a frequency or an amplitude of the box."""
@@ -197,7 +198,7 @@ class OfBox(Options):
         self.one_of("amplitude", "g")
         levels = parse_one_or_more("--g", self.g)
         plain = copy(self)
-        plain.g, plain.amplitude = None, "1"
+        plain.g, plain.amplitude = None, 1.0
         frequency = plain.read_excitation(structure, one=one)["frequency"]
         return {"frequency": frequency, "level": apply_to_each(lambda peak: peak * GRAVITY, levels)}
 
