@@ -73,7 +73,8 @@ ONLY_IN = {  # packages of others, and the one place of ours that may know them
     "distributed": "orchestrate/running/",
     "sqlite3": "orchestrate/running/",
     "tqdm": "orchestrate/running/",
-    "argparse": ("orchestrate/cli/", "tools/"),
+    "argparse": "tools/",
+    "cyclopts": "orchestrate/cli/",
     "platformdirs": "orchestrate/fmu/",
     "pythonfmu": ("fmu_src/export/", "fmu_src/runtime/"),
     "ziglang": "fmu_src/export/",
@@ -374,6 +375,7 @@ def definitions(tree: ast.AST) -> Iterator[ast.AST]:
 OVERRIDDEN = {  # methods of base classes: that of a derived class has the same docstring
     *("items", "count", "dataset", "call_text", "get_state", "set_state"),
     *("voltage", "trend", "duration", "begin", "point", "limits", "usual_rate"),
+    *("ask", "summary", "draw", "words", "has_picture"),
     *("label", "description", "frequency", "phase", "level", "location_tolerances"),
 }
 

@@ -1,38 +1,46 @@
 """Command line's entry: parse the arguments, run one command, turn errors into exit codes.
 
-A command is a row of a :mod:`.table`; the rows stand in one module for each family of commands.
+A command is a class (:mod:`.face`); the classes stand in one module for each family of commands.
 """
 
 from __future__ import annotations
 
-import argparse
 import logging
 import re
 import shlex
 import sys
 import warnings
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import cyclopts
+from cyclopts.exceptions import CycloptsError
+
 from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable
-from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest
+from ..model.ranges import closest
 from ..version import __version__
-from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
-from .grammar import SET_NAMES, with_option_names
+from . import cosimulation, diagnosis, dynamics, laboratory, pages, responses, weak_drive
+from .face import Command, explain
+from .grammar import with_option_names
 from .options import QUANTITIES, list_shipped_sets
 from .safe_output import safe_outputs
-from .table import DEBUG, parse_options
 
-COMMANDS = (
-    *(pages.BUILD, responses.SIMULATE, *laboratory.COMMANDS, *diagnosis.COMMANDS),
-    *(responses.RESONANCE, responses.SPECTRA, responses.SWEEP, responses.MAP),
-    *(*dynamics.COMMANDS, *weak_drive.COMMANDS, pages.EXPLORE, pages.REPORT, pages.PAPER),
-)
+COMMANDS: dict[str, type[Command]] = {
+    kind.name(): kind
+    for kind in (
+        *(pages.Build, responses.Simulate, laboratory.Shake, laboratory.Analyse),
+        *(diagnosis.Diagnose, diagnosis.Plan, responses.Resonance, responses.Spectra),
+        *(responses.Sweep, responses.Map, dynamics.Lyapunov, dynamics.Poincare),
+        *(dynamics.Attractors, dynamics.Basin, dynamics.Orbit, dynamics.Manifold),
+        *(dynamics.Branch, dynamics.Border, cosimulation.Cosimulate, weak_drive.Couple),
+        *(weak_drive.Capture, weak_drive.Passage, weak_drive.JumpVoltages),
+        *(weak_drive.DriveBranch, pages.Explore, pages.Report, pages.Paper),
+    )
+}
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 STORE = "orchestrate.running.store"
-STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *SET_NAMES)
 EXAMPLES = """examples:
   {program} build
   {program} sweep
@@ -50,59 +58,78 @@ def program_name() -> str:
     return "vibroimpact" if called.startswith("vibroimpact") else "python -m orchestrate"
 
 
-def make_parser(words: Collection[str] | None = None) -> argparse.ArgumentParser:
-    """Return the command line's parser; options of those commands alone that are among words."""
-    program = program_name()
-    parser = argparse.ArgumentParser(
-        prog=program,
-        description="Simulate and analyse a vibro-impacting structure through its FMUs: its "
-        "responses, where they are irregular, and how a motor of limited power drives it.",
-        epilog=EXAMPLES.format(program=program, sets=list_shipped_sets()),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
+def __getattr__(name: str) -> cyclopts.App:
+    """Return a command as cyclopts knows it; its function is imported then."""
+    if name not in COMMANDS:
+        raise AttributeError(name)
+    return COMMANDS[name].app()
+
+
+def make_app() -> cyclopts.App:
+    """Return the program as cyclopts knows it, which loads a command when it is run."""
+    app = cyclopts.App(
+        name=program_name(),
+        help="Simulate and analyse a vibro-impacting structure through its FMUs: its responses, "
+        "where they are irregular, and how a motor of limited power drives it.",
+        help_format="plaintext",
+        version=__version__,
+        print_error=False,
+        exit_on_error=False,
     )
-    parser.add_argument("--version", action="version", version=__version__)
-    (debug,) = parse_options(DEBUG)
-    parser.add_argument(debug.flag, **debug.details)
-    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    for command in COMMANDS:
-        complete = words is None or command.name in words
-        command.add_parser(commands, program, QUANTITIES, complete)
-    return parser
+    for number, (name, kind) in enumerate(COMMANDS.items()):
+        app.command(f"{__name__}:{name}", name=name, help=kind.__doc__, sort_key=number)
+    return app
+
+
+def epilogue(name: str) -> str:
+    """Return what stands below a help: quantities and examples."""
+    program = program_name()
+    if name not in COMMANDS:
+        return EXAMPLES.format(program=program, sets=list_shipped_sets())
+    command = COMMANDS[name]
+    quantities = QUANTITIES if "--structure" in command.flags() else ""
+    return f"{quantities}examples:{command.examples.replace('{program}', program)}"
 
 
 def join_negative_values(arguments: Sequence[str]) -> list[str]:
-    """Join ``--eta -1:2:0.5`` to ``--eta=-1:2:0.5``, which argparse would read as an option."""
+    """Join ``--at -1,2`` to ``--at=-1,2``, which cyclopts would read as an option."""
     joined: list[str] = []
     for text in arguments:
-        needs_value = joined and joined[-1].startswith("--") and "=" not in joined[-1]
-        if needs_value and re.match(r"-[\d.]", text):
+        takes_value = joined and joined[-1].startswith("--") and "=" not in joined[-1]
+        if takes_value and re.match(r"-[\d.]", text):
             joined[-1] += f"={text}"
         else:
             joined.append(text)
     return joined
 
 
-def parse_arguments(arguments: Sequence[str]) -> argparse.Namespace:
-    """Parse the arguments; raise for an unknown command or option, with the one most alike."""
-    command = next((word for word in arguments if word != "--debug"), "-")
-    names = [row.name for row in COMMANDS]
-    if not command.startswith("-") and command not in names:
-        near = closest(command, names)
+def parse_arguments(arguments: Sequence[str]) -> Command | None:
+    """Return the command with its options; print a help, and return None, where that is asked.
+
+    Raise ``InputError`` for a mistake, with the command or option that is probably meant.
+    """
+    words = join_negative_values(arguments)
+    while words and words[0] == "--debug":
+        words.append(words.pop(0))
+    name = words[0] if words else "COMMAND is missing"
+    help_is_at = f"({program_name()} --help lists them)"
+    if name not in COMMANDS and not name.startswith("-"):
+        near = closest(name, COMMANDS)
         meant = f"; did you mean {near}?" if near else ""
-        raise InputError(f"{command}: no command{meant} ({program_name()} --help lists them)")
-    parser = make_parser(arguments)
-    chosen, unknown = parser.parse_known_args(join_negative_values(arguments))
-    if unknown:
-        flag, _, value = " ".join(unknown[:2]).replace("=", " ").partition(" ")
-        name = flag.lstrip("-").replace("-", "_")
-        set_by = f"--set {name}={value}" if name in STRUCTURE_NAMES else ""
-        near = set_by if "--set" in chosen.row.flags else ""
-        if not near and flag.startswith("--"):
-            near = closest(flag, [one for one in chosen.row.flags if one.startswith("--")])
-        meant = f"; did you mean {near}?" if near else ""
-        raise InputError(f"{flag}: no option of {command}{meant} ({command} --help lists them)")
-    return chosen
+        raise InputError(f"{name}: no command{meant} {help_is_at}")
+    app = make_app()
+    try:
+        call, bound, _ = app.parse_args(words)
+    except CycloptsError as error:
+        if name not in COMMANDS:
+            raise InputError(f"{name}: no option before a COMMAND {help_is_at}") from None
+        raise InputError(explain(error, COMMANDS[name])) from None
+    chosen = call(*bound.args, **bound.kwargs)
+    if isinstance(chosen, Command):
+        return chosen
+    if "--version" not in words:
+        print(epilogue(name))
+    return None
 
 
 def set_up_logging() -> None:
@@ -138,10 +165,12 @@ def run_command(arguments: Sequence[str]) -> int:
     except InputError as error:
         print_error(f"error: {error}")
         return MISTAKE
+    if chosen is None:
+        return SUCCESS
     chosen.command_line = f"{program_name()} {shlex.join(arguments)}"
     try:
         with print_warnings_in_one_line():
-            chosen.run(chosen)
+            chosen()
         return SUCCESS
     except KeyboardInterrupt as ended:
         return report_interruption(ended)

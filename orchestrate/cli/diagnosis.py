@@ -2,34 +2,33 @@
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import logging
 import math
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..constants import GRAVITY
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, range_text, text_of, with_readable_lengths, with_units
-from .grammar import parse_values, with_option_names
-from .options import read_structure_options, structure_group
+from .face import Command, Options, Question, option
+from .grammar import Listed, with_option_names
+from .options import OfStructure
 from .output import (
-    READING,
     Files,
+    Reading,
+    Results,
     digest,
-    read_record_units,
-    read_running_options,
-    read_units,
-    result_groups,
     result_name,
     unit_note,
 )
-from .table import Command, Group, Question, Structure, values_of
 from .text import columns_of, parameter_column, table
+
+if TYPE_CHECKING:
+    from ..model import Structure
 
 log = logging.getLogger(__name__)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
@@ -50,7 +49,7 @@ CHANNELS = {  # in the order of --columns, and what they are called towards the 
 
 
 class Sweep(NamedTuple):
-    """A record file, and which of its sweeps; 0 where it has one."""
+    """Follow responses along the frequency or another parameter: an orbit diagram."""
 
     path: Path
     number: int = 0
@@ -60,198 +59,46 @@ class Sweep(NamedTuple):
         return f"{self.path}{f', sweep {self.number}' if self.number else ''}"
 
 
-def run_diagnose(arguments: argparse.Namespace) -> None:
-    """Run ``diagnose``: compute a verdict per record; print it; write results and reports."""
-    import orchestrate
-
-    from ..laboratory.record_files import check_file
-
-    Files.from_options(arguments, "", fresh=True)  # before records are read
-    participation_by_sensor(arguments)
-    if arguments.structure is None:
-        check_file(arguments.records[0])  # a name may be wrong too
-        text = "expected a TOML file with a guess of the beam, within some 10 %"
-        raise InputError(f"--structure is missing; {text}")
-    guess = read_structure_options(arguments)
-    others = [read_one_record(arguments, path) for path in arguments.other]
-    if others and len(arguments.records) > 1:
-        raise InputError("--other: of one beam; expected one record with it")
-    log.info("reading %s", ", ".join(path.name for path in arguments.records))
-    records, refused = read_all_records(arguments)
-    names = {one: file_stem(one, guess, arguments) for one in records}
-    verdicts = compute_verdicts(arguments, records, names, guess) if records else {}
-    units = read_record_units(arguments)
-    for sweep, verdict in verdicts.items():
-        for line in verdict_lines(sweep, with_units(verdict, units), arguments):
-            print(line)
-        log.info("%s: signs, pictures and page", sweep.path.name)
-        same = [data for one, data in records.items() if one.path == sweep.path and one != sweep]
-        signs = orchestrate.signs(records[sweep], other=[*others, *same], structure=guess)
-        write_files(arguments, names[sweep], {"": verdict, "_signs": signs})
-    if refused:
-        count = len({one.path for one in records}) + len(refused)
-        raise InputError(f"{len(refused)} of {count} records refused: {'; '.join(refused)}")
-
-
-def file_stem(sweep: Sweep, guess: Structure, arguments: argparse.Namespace) -> str:
-    """Return the name of a record's result files, unique for content, guess and reading options."""
-    read_as = [arguments.columns, arguments.participation, *values_of(arguments, READING).items()]
-    number = f"_sweep{sweep.number}" if sweep.number else ""
-    part = digest(file_checksum(sweep.path), guess.parameters(), read_as)
-    return f"diagnose_{sweep.path.stem}{number}_{part}"
-
-
 def file_checksum(path: Path) -> str:
     """Return a file's SHA-256 in hexadecimal digits."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def read_all_records(arguments: argparse.Namespace) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
-    """Read all record files; return a dict of sweeps, and an error line per refused file."""
-    from ..diagnosis.fit import checked_data
-    from ..diagnosis.sweeps import split_sweeps
+class DiagnosedRecords(Options):
+    """Options of the records of a diagnosis."""
 
-    records: dict[Sweep, xr.Dataset] = {}
-    refused: list[str] = []
-    paths = list(dict.fromkeys(arguments.records))
-    for path in paths:
-        try:
-            record = read_one_record(arguments, path)
-            checked_data(record)
-            parts = split_sweeps(record)
-            records |= {Sweep(path, n * (len(parts) > 1)): one for n, one in enumerate(parts, 1)}
-        except InputError as error:
-            line = str(error)
-            refused.append(line if line.startswith(str(path)) else f"{path}: {line}")
-    if refused and len(paths) == 1:
-        raise InputError(refused[0])
-    return records, refused
-
-
-def read_one_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
-    """Read a record from a file; raise if it has no acceleration of either face."""
-    from .. import read_record
-
-    columns = parse_columns(arguments)
-    record = read_record(path, columns, **values_of(arguments, READING))
-    if "acceleration1" not in record and "acceleration2" not in record:
-        taken = record.attrs.get("columns", "no columns")
-        text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"
-        raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
-    return record
+    heading, rank = "records", 0
+    records: list[Path] = option(
+        ".csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .nc; one beam each", position=True, needed=True
+    )
+    other: list[Path] = option(
+        "record of the same beam at another level or in the other direction, for the signs; may be "
+        "repeated",
+        (),
+    )
+    columns: str | None = option(
+        "of time, base, face 1 and face 2, by name or number from 0, without time where "
+        "--sample-rate is given (default: by usual names)",
+        value="A,B,...",
+    )
+    participation: str | None = option(
+        "of the sensors on face 1 and face 2: the beam's mode there over that of a mass on a "
+        "spring, 1.57 at the tip of a cantilever (default: fitted)",
+        value="G,...",
+    )
 
 
-def parse_columns(arguments: argparse.Namespace) -> dict[str, str | int] | None:
-    """Parse ``--columns A,B,...`` into a dict from channel to column; None if it is not given."""
-    if arguments.columns is None:
-        return None
-    texts = [text.strip() for text in arguments.columns.split(",")]
-    names = list(CHANNELS)[arguments.sample_rate is not None :]
-    if not 2 <= len(texts) <= len(names) or not all(texts):
-        words = ", ".join(CHANNELS[name] for name in names)
-        expected = f"expected columns of {words}, the last one if it is there"
-        raise InputError(f"--columns {arguments.columns}: {expected}")
-    numbers = (int(text) if text.isdecimal() else text for text in texts)
-    return dict(zip(names, numbers, strict=False))
+class Diagnose(DiagnosedRecords, OfStructure, Reading, Command, Results):
+    """Whether a measured beam is delaminated: a verdict, its evidence, a report."""
 
-
-def participation_by_sensor(arguments: argparse.Namespace) -> dict[str, float] | None:
-    """Parse ``--participation G,...`` into a dict by face; None if it is not given."""
-    if arguments.participation is None:
-        return None
-    from ..laboratory.sensors import PARTICIPATION
-
-    texts = arguments.participation.split(",")
-    faces = list(CHANNELS)[2:]
-    try:
-        factors = [PARTICIPATION.check(float(text)) for text in texts]
-        return dict(zip(faces[: len(texts)], factors, strict=True))
-    except ValueError:
-        expected = "expected -10 to 10 for face 1, or for both faces, such as 1.57 or 0.53,0.6"
-        raise InputError(f"--participation {arguments.participation}: {expected}") from None
-
-
-def compute_verdicts(
-    arguments: argparse.Namespace,
-    records: Mapping[Sweep, xr.Dataset],
-    names: Mapping[Sweep, str],
-    guess: Structure,
-) -> dict[Sweep, xr.Dataset]:
-    """Compute each record's verdict, or load a stored one; store with it where it comes from."""
-    from .. import detect_all
-    from ..running.store import write_netcdf
-
-    named = {names[sweep]: record for sweep, record in records.items()}
-    running = read_running_options(arguments, arguments.output)
-    factors = participation_by_sensor(arguments)
-    verdicts = detect_all(named, guess, participation=factors, **running)
-    described = {}
-    for sweep, name in names.items():
-        verdict = verdicts[name]
-        words = origin_attributes(arguments, sweep.path, records[sweep])
-        label = Sweep(Path(sweep.path.name), sweep.number)
-        words["title"] = f"Verdict on {label}: {verdict.verdict.item()}"
-        described[sweep] = verdict.assign_attrs(words)
-        if not words.items() <= verdict.attrs.items():
-            write_netcdf(described[sweep], arguments.output / f"{name}.nc")
-    return described
-
-
-def origin_attributes(
-    arguments: argparse.Namespace, path: Path, record: xr.Dataset
-) -> dict[str, str]:
-    """Return a verdict's attributes on its record, the guess's file and the command."""
-    words = {
-        "record_file": path.name,
-        "record_sha256": file_checksum(path),
-        "record_columns": record.attrs.get("columns", ""),
-        "record_unit": record.attrs.get("unit", ""),
-        "record_unit_note": unit_note(record.attrs),
-        "record_converted": record.attrs.get("converted", ""),
-        "record_time_base": record.attrs.get("time_base", ""),
-        "sensors": record.attrs.get("sensors", ""),
-        "guess_file": str(arguments.structure),
-        "command": getattr(arguments, "command_line", ""),
-    }
-    return {name: text for name, text in words.items() if text}
-
-
-def write_files(
-    arguments: argparse.Namespace, stem: str, answers: Mapping[str, xr.Dataset]
-) -> None:
-    """Write results, pictures and the HTML report of one record; print the files' paths."""
-    from .. import plot, report
-    from ..files import open_folder
-    from ..running.store import write_netcdf
-
-    folder, units = open_folder(arguments.output), read_record_units(arguments)
-    for ending, answer in answers.items():
-        files = Files.from_options(arguments, f"{stem}{ending}", fresh=True)
-        if ending:  # the verdict is stored already
-            write_netcdf(answer, files.result)
-        shown = with_units(answer, units)
-        files.write(shown, partial(plot, shown))
-    page = folder / f"{stem}.html"
-    print(report(*answers.values(), output=page, notes=arguments.notes or "", units=units))
-
-
-def verdict_lines(
-    sweep: Sweep, verdict: xr.Dataset, arguments: argparse.Namespace
-) -> Iterator[str]:
-    """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
-    from ..show.verdict import make_verdict
-
-    shown = make_verdict(verdict)
-    yield f"{sweep}: {shown.word} {with_option_names(shown.sentence, arguments)}"
-    for name, label in LINES.items():
-        if verdict.attrs.get(name):
-            yield f"  {label}: {with_option_names(verdict.attrs[name], arguments)}"
-
-
-DIAGNOSE = Command(
-    "diagnose",
-    "whether a measured beam is delaminated: a verdict, its evidence, a report",
-    """  {program} diagnose record.csv --structure beam.toml
+    structure: Any = option(
+        "guess of the beam: TOML file with a [structure], or the name of a set", value="SET|FILE"
+    )
+    notes: str | None = option(
+        "below the title of the report: which beam, who, when", value="WORDS"
+    )
+    examples = """
+  {program} diagnose record.csv --structure beam.toml
   {program} diagnose left.csv right.uff --structure beam.toml --set e=0.4 --jobs 2
   {program} diagnose up.csv --other down.csv --other louder.csv --structure beam.toml
   {program} diagnose export.txt --columns 0,3,4 --unit g --structure beam.toml
@@ -269,78 +116,185 @@ what it gives:
   no opening seen  up to the level and over the frequencies of the record; never "intact"
   not described    the beam, its clamp or the sensors do something else
   undecided        this record does not tell; the report says which one would
-  and for each record a report to read, print and sign (.html), the answers (.nc), a picture""",
-    (
-        Group(
-            options="records FILE +  .csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .nc; one beam each"
-        ),
-        Group(
-            "the guess",
-            """
-            --structure SET|FILE  TOML file with a [structure], or the name of a set
-            --set NAME=VALUE ...  one of its parameters, such as f1=42; may be repeated
-            """,
-        ),
-        Group(
-            "records",
-            (
-                """
-            --other FILE ...  record of the same beam at another level or in the other direction,
-                for the signs
-            --columns A,B,...  of time, base, face 1 and face 2, by name or number from 0, without
-                time where --sample-rate is given (default: by usual names)
-            --participation G,...  of the sensors on face 1 and face 2: the beam's mode there over
-                that of a mass on a spring, 1.57 at the tip of a cantilever (default: fitted)
-            """,
-                READING,
-            ),
-        ),
-        Group("report", "--notes WORDS  below the title: which beam, who, when"),
-        *result_groups(store=False),
-    ),
-    run_diagnose,
-)
+  and for each record a report to read, print and sign (.html), the answers (.nc), a picture"""
 
+    def __call__(self) -> None:
+        import orchestrate
 
-def ask_plan(arguments: argparse.Namespace) -> tuple[Structure, Question]:
-    """Return structure and keywords of ``plan_test``."""
-    from .. import Sensor
+        from ..laboratory.record_files import check_file
 
-    structure = read_structure_options(arguments)
-    hz, g = (
-        getattr(arguments, name) and parse_values(f"--{name}", getattr(arguments, name))[0]
-        for name in ("hz", "g")
-    )
-    question: Question = {"frequencies": hz, "g": g, **arguments.row.keywords(arguments)}
-    if arguments.noise is not None or arguments.range is not None:
-        from ..diagnosis.plan_test import USUAL_NOISE
+        Files.from_options(self, "", fresh=True)  # before records are read
+        self.participation_by_sensor()
+        if self.structure is None:
+            check_file(self.records[0])  # a name may be wrong too
+            text = "expected a TOML file with a guess of the beam, within some 10 %"
+            raise InputError(f"--structure is missing; {text}")
+        guess = self.read_structure()
+        others = [self.read_one_record(path) for path in self.other]
+        if others and len(self.records) > 1:
+            raise InputError("--other: of one beam; expected one record with it")
+        log.info("reading %s", ", ".join(path.name for path in self.records))
+        records, refused = self.read_all_records()
+        names = {one: self.file_stem(one, guess) for one in records}
+        verdicts = self.compute_verdicts(records, names, guess) if records else {}
+        units = self.read_record_units()
+        for sweep, verdict in verdicts.items():
+            for line in self.verdict_lines(sweep, with_units(verdict, units)):
+                print(line)
+            log.info("%s: signs, pictures and page", sweep.path.name)
+            same = [
+                data for one, data in records.items() if one.path == sweep.path and one != sweep
+            ]
+            signs = orchestrate.signs(records[sweep], other=[*others, *same], structure=guess)
+            self.write_files(names[sweep], {"": verdict, "_signs": signs})
+        if refused:
+            count = len({one.path for one in records}) + len(refused)
+            raise InputError(f"{len(refused)} of {count} records refused: {'; '.join(refused)}")
 
-        question["sensor"] = Sensor(
-            bandwidth=40.0 * (hz[-1] if hz else 1.2 * max(structure.f1, structure.f2)),
-            noise=USUAL_NOISE if arguments.noise is None else arguments.noise,
-            range=GRAVITY * (math.inf if arguments.range is None else arguments.range),
-        )
-    return structure, question
+    def file_stem(
+        self,
+        sweep: Sweep,
+        guess: Structure,
+    ) -> str:
+        """Return the name of a record's results, unique for content, guess and reading."""
+        read_as = [self.columns, self.participation, *self.given(Reading).items()]
+        number = f"_sweep{sweep.number}" if sweep.number else ""
+        part = digest(file_checksum(sweep.path), guess.parameters(), read_as)
+        return f"diagnose_{sweep.path.stem}{number}_{part}"
 
+    def read_all_records(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
+        """Read all record files; return a dict of sweeps, and an error line per refused file."""
+        from ..diagnosis.fit import checked_data
+        from ..diagnosis.sweeps import split_sweeps
 
-def run_plan(arguments: argparse.Namespace) -> None:
-    """Run ``plan``: compute a plan; print it; write result and picture."""
-    import orchestrate
+        records: dict[Sweep, xr.Dataset] = {}
+        refused: list[str] = []
+        paths = list(dict.fromkeys(self.records))
+        for path in paths:
+            try:
+                record = self.read_one_record(path)
+                checked_data(record)
+                parts = split_sweeps(record)
+                records |= {
+                    Sweep(path, n * (len(parts) > 1)): one for n, one in enumerate(parts, 1)
+                }
+            except InputError as error:
+                line = str(error)
+                refused.append(line if line.startswith(str(path)) else f"{path}: {line}")
+        if refused and len(paths) == 1:
+            raise InputError(refused[0])
+        return records, refused
 
-    from ..files import open_folder
-    from ..running.store import write_netcdf
+    def read_one_record(self, path: Path) -> xr.Dataset:
+        """Read a record from a file; raise if it has no acceleration of either face."""
+        from .. import read_record
 
-    structure, question = ask_plan(arguments)
-    name = result_name("plan", arguments.structure, structure, question)
-    files = Files.from_options(arguments, name, fresh=True)
-    plan = orchestrate.plan_test(structure, **question, **read_running_options(arguments))
-    units = read_units(arguments).with_defaults(Units("Hz", acceleration="g"))
-    described = plan.assign_attrs(structure.parameters())
-    (shown,) = with_readable_lengths(with_units(described, units))
-    print(*plan_lines(shown), sep="\n")
-    open_folder(arguments.output)
-    write_netcdf(plan, files.result)
-    files.write(shown, partial(orchestrate.plot, shown))
+        columns = self.parse_columns()
+        record = read_record(path, columns, **self.given(Reading))
+        if "acceleration1" not in record and "acceleration2" not in record:
+            taken = record.attrs.get("columns", "no columns")
+            text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"
+            raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
+        return record
+
+    def parse_columns(self) -> dict[str, str | int] | None:
+        """Return the columns of ``--columns A,B,...`` by channel; None if it is not given."""
+        if self.columns is None:
+            return None
+        texts = [text.strip() for text in self.columns.split(",")]
+        names = list(CHANNELS)[self.sample_rate is not None :]
+        if not 2 <= len(texts) <= len(names) or not all(texts):
+            words = ", ".join(CHANNELS[name] for name in names)
+            expected = f"expected columns of {words}, the last one if it is there"
+            raise InputError(f"--columns {self.columns}: {expected}")
+        numbers = (int(text) if text.isdecimal() else text for text in texts)
+        return dict(zip(names, numbers, strict=False))
+
+    def participation_by_sensor(self) -> dict[str, float] | None:
+        """Parse ``--participation G,...`` into a dict by face; None if it is not given."""
+        if self.participation is None:
+            return None
+        from ..laboratory.sensors import PARTICIPATION
+
+        texts = self.participation.split(",")
+        faces = list(CHANNELS)[2:]
+        try:
+            factors = [PARTICIPATION.check(float(text)) for text in texts]
+            return dict(zip(faces[: len(texts)], factors, strict=True))
+        except ValueError:
+            expected = "expected -10 to 10 for face 1, or for both faces, such as 1.57 or 0.53,0.6"
+            raise InputError(f"--participation {self.participation}: {expected}") from None
+
+    def compute_verdicts(
+        self,
+        records: Mapping[Sweep, xr.Dataset],
+        names: Mapping[Sweep, str],
+        guess: Structure,
+    ) -> dict[Sweep, xr.Dataset]:
+        """Compute or load each record's verdict; store with it where it comes from."""
+        from .. import detect_all
+        from ..running.store import write_netcdf
+
+        named = {names[sweep]: record for sweep, record in records.items()}
+        running = self.running(self.output)
+        factors = self.participation_by_sensor()
+        verdicts = detect_all(named, guess, participation=factors, **running)
+        described = {}
+        for sweep, name in names.items():
+            verdict = verdicts[name]
+            words = self.origin_attributes(sweep.path, records[sweep])
+            label = Sweep(Path(sweep.path.name), sweep.number)
+            words["title"] = f"Verdict on {label}: {verdict.verdict.item()}"
+            described[sweep] = verdict.assign_attrs(words)
+            if not words.items() <= verdict.attrs.items():
+                write_netcdf(described[sweep], self.output / f"{name}.nc")
+        return described
+
+    def origin_attributes(self, path: Path, record: xr.Dataset) -> dict[str, str]:
+        """Return a verdict's attributes on its record, the guess's file and the command."""
+        words = {
+            "record_file": path.name,
+            "record_sha256": file_checksum(path),
+            "record_columns": record.attrs.get("columns", ""),
+            "record_unit": record.attrs.get("unit", ""),
+            "record_unit_note": unit_note(record.attrs),
+            "record_converted": record.attrs.get("converted", ""),
+            "record_time_base": record.attrs.get("time_base", ""),
+            "sensors": record.attrs.get("sensors", ""),
+            "guess_file": str(self.structure),
+            "command": getattr(self, "command_line", ""),
+        }
+        return {name: text for name, text in words.items() if text}
+
+    def write_files(self, stem: str, answers: Mapping[str, xr.Dataset]) -> None:
+        """Write results, pictures and the HTML report of one record; print the files' paths."""
+        from .. import plot, report
+        from ..files import open_folder
+        from ..running.store import write_netcdf
+
+        folder, units = open_folder(self.output), self.read_record_units()
+        for ending, answer in answers.items():
+            files = Files.from_options(self, f"{stem}{ending}", fresh=True)
+            if ending:  # the verdict is stored already
+                write_netcdf(answer, files.result)
+            shown = with_units(answer, units)
+            files.write(shown, partial(plot, shown))
+        page = folder / f"{stem}.html"
+        print(report(*answers.values(), output=page, notes=self.notes or "", units=units))
+
+    def verdict_lines(
+        self,
+        sweep: Sweep,
+        verdict: xr.Dataset,
+    ) -> Iterator[str]:
+        """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
+        from ..show.verdict import make_verdict
+
+        shown = make_verdict(verdict)
+        yield f"{sweep}: {shown.word} {with_option_names(shown.sentence, self)}"
+        for name, label in LINES.items():
+            if verdict.attrs.get(name):
+                yield f"  {label}: {with_option_names(verdict.attrs[name], self)}"
 
 
 def plan_lines(data: xr.Dataset) -> Iterator[str]:
@@ -371,29 +325,55 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
     yield from table(rows)
 
 
-PLAN = Command(
-    "plan",
-    "plan a test: frequencies and levels of a sweep at which a delamination would show",
-    """  {program} plan --structure beam.toml
-  {program} plan --structure beam.toml --hz 30:60:0.5 --g 0.05,0.1,0.2,0.5 --noise 3e-4
-  {program} plan --structure beam.toml --set clearance=-20um --range 50""",
-    (
-        structure_group(),
-        Group(
-            "the test",
-            """
-            --hz VALUES  frequencies in Hz, FIRST:LAST:STEP (default: 0.8 times the lower to 1.2
-                times the higher natural frequency of the halves)
-            --g VALUES  levels, peak acceleration in g (default: nine from 0.01 to 1)
-            --noise X  density of the sensor's noise, (m/s2)/sqrt(Hz) (default: 1e-3)
-            --range X  of the sensor, g (default: none)
-            """,
-            declared="periods gain_error threshold",
-        ),
-        *result_groups(store=False),
-    ),
-    run_plan,
-    calls="plan_test",
-)
+class Plan(OfStructure, Command, Results):
+    """Plan a test: frequencies and levels of a sweep at which a delamination would show."""
 
-COMMANDS = (DIAGNOSE, PLAN)
+    calls = "plan_test"
+    hz: Listed = option(
+        "frequencies in Hz, FIRST:LAST:STEP (default: 0.8 times the lower to 1.2 times the higher "
+        "natural frequency of the halves)",
+        value="VALUES",
+    )
+    g: Listed = option(
+        "levels, peak acceleration in g (default: nine from 0.01 to 1)", value="VALUES"
+    )
+    noise: float | None = option("density of the sensor's noise, (m/s2)/sqrt(Hz) (default: 1e-3)")
+    range: float | None = option("of the sensor, g (default: none)")
+    examples = """
+  {program} plan --structure beam.toml
+  {program} plan --structure beam.toml --hz 30:60:0.5 --g 0.05,0.1,0.2,0.5 --noise 3e-4
+  {program} plan --structure beam.toml --set clearance=-20um --range 50"""
+
+    def ask(self) -> tuple[Structure, Question]:
+        from .. import Sensor
+
+        structure = self.read_structure()
+        hz = self.hz
+        question: Question = {**self.keywords(), "frequencies": hz}
+        if self.noise is not None or self.range is not None:
+            from ..diagnosis.plan_test import USUAL_NOISE
+
+            question["sensor"] = Sensor(
+                bandwidth=40.0 * (hz[-1] if hz else 1.2 * max(structure.f1, structure.f2)),
+                noise=USUAL_NOISE if self.noise is None else self.noise,
+                range=GRAVITY * (math.inf if self.range is None else self.range),
+            )
+        return structure, question
+
+    def __call__(self) -> None:
+        import orchestrate
+
+        from ..files import open_folder
+        from ..running.store import write_netcdf
+
+        structure, question = self.ask()
+        name = result_name("plan", self.structure, structure, question)
+        files = Files.from_options(self, name, fresh=True)
+        plan = orchestrate.plan_test(structure, **question, **self.running())
+        units = self.read_units().with_defaults(Units("Hz", acceleration="g"))
+        described = plan.assign_attrs(structure.parameters())
+        (shown,) = with_readable_lengths(with_units(described, units))
+        print(*plan_lines(shown), sep="\n")
+        open_folder(self.output)
+        write_netcdf(plan, files.result)
+        files.write(shown, partial(orchestrate.plot, shown))

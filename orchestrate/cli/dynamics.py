@@ -2,37 +2,29 @@
 
 from __future__ import annotations
 
-import argparse
 import ast
 import math
 from collections.abc import Iterator
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
 from ..units import is_in_ratios, range_text, units_of, with_units
-from .answer import answer, answer_question, display_units, is_curve, read_earlier_result
+from .answer import Asked, is_curve
+from .face import Question, option
 from .grammar import parse, plain_int
 from .options import (
     CONTINUED,
-    START,
-    frequency_option,
-    is_shaken,
-    over_options,
+    OfBox,
+    OfStored,
+    OfStructure,
+    Over,
     parse_varied,
-    read_amplitude,
-    read_excitation,
-    read_question,
-    read_structure_options,
-    response_groups,
-    structure_group,
-    varied_arguments,
 )
-from .output import Files, read_running_options, result_groups, result_name
+from .output import Files, Results, Stored, result_name
 from .stored import read_structure_and_question
-from .table import Command, Group, Question, Structure
 from .text import (
     MOST_ROWS,
     attractor_table,
@@ -53,80 +45,73 @@ from .text import (
     without_unit,
 )
 
+if TYPE_CHECKING:
+    from ..model import Structure
 
-def ask_along_parameter(arguments: argparse.Namespace) -> tuple[Structure, Question]:
+
+def ask_along_parameter(arguments: Any) -> tuple[Structure, Question]:
     """Return structure and keywords of a function along a parameter."""
-    structure = read_structure_options(arguments)
-    excitation, _ = varied_arguments(arguments, structure)
-    return structure, {**excitation, **arguments.row.keywords(arguments)}
+    structure = arguments.read_structure()
+    excitation, _ = arguments.varied_arguments(structure)
+    return structure, {**arguments.keywords(), **excitation}
 
 
-def ask_lyapunov(arguments: argparse.Namespace) -> tuple[Structure, Question]:
-    """Return structure and keywords of ``lyapunov``, with the responses of a sweep if followed."""
-    structure, question = ask_along_parameter(arguments)
-    if arguments.follow:
-        import orchestrate
+class Lyapunov(OfStructure, OfBox, Over, Asked, Stored, Results):
+    """Largest Lyapunov exponents of responses: periodic, neutral or chaotic."""
 
-        others = arguments.row.keywords(arguments)
-        swept: Question = {name: question[name] for name in question if name not in others}
-        swept |= {"direction": arguments.follow, "samples": 1, "transient": arguments.transient}
-        question["start"] = orchestrate.sweep(structure, **swept, **read_running_options(arguments))
-    return structure, question
-
-
-def lyapunov_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield the exponents, or the largest one and the ranges of each verdict."""
-    name = varied_parameter(data)
-    data = data.sortby(name)
-    if data.sizes[name] <= MOST_ROWS:
-        rows = parameter_column(data, name, data[name].values)
-        yield from table(rows | columns_of(data, "exponent standard_error verdict"))
-    else:
-        top = data.isel(data.exponent.argmax(...))
-        yield (
-            f"largest exponent {float(top.exponent):.5f} +- {float(top.standard_error):.5f} per "
-            f"tau at {format_parameter(data, name, top[name])}; the largest of {data.sizes[name]} "
-            "is biased by its error: repeat it alone, with more --periods and another --transient"
-        )
-        for word in flag_words(data.verdict.attrs).values():
-            holds = has_flag(data.verdict, word).values
-            where = f" at {format_ranges(data, name, holds)}" if holds.any() else ""
-            yield f"{format_share(int(holds.sum()), holds.size, word)}{where}"
-    neutral = data.isel({name: has_flag(data.verdict, "neutral").values})
-    wander = math.log(float(data.attrs["wander"]))
-    sizes = zip(abs(neutral.exponent.values), neutral.period.values, strict=True)
-    needed = max((wander / (size * period) for size, period in sizes if size > 0.0), default=0.0)
-    if needed > float(data.attrs["periods"]):
-        yield (
-            "neutral: quasi-periodic, or too few periods: exponents of these sizes take about "
-            f"--periods {float(f'{needed:.2g}'):.0f}"
-        )
-
-
-LYAPUNOV = Command(
-    "lyapunov",
-    "largest Lyapunov exponents of responses: periodic, neutral or chaotic",
-    """  {program} lyapunov --eta 2.5:3.8:0.02 --follow up        along a sweep
+    calls = "lyapunov"
+    follow: Literal["up", "down"] | None = option(
+        "responses of a sweep in this direction (default: each from rest)"
+    )
+    examples = """
+  {program} lyapunov --eta 2.5:3.8:0.02 --follow up        along a sweep
   {program} lyapunov --eta 1.2 --over e --values 0.1:0.9:0.02
   {program} lyapunov --structure beam --hz 12.5,16.7 --amplitude 1e-4
 Chaotic, periodic: the exponent is three standard errors from zero. Neutral: quasi-periodic, or not
-decided with so few --periods.""",
-    response_groups(
-        Group(
-            "question",
-            (
-                over_options(),
-                "--follow {up,down}  responses of a sweep in this direction (default: each from "
-                "rest)",
-            ),
-            declared="transient periods sigmas spectrum",
+decided with so few --periods."""
+    has_picture = staticmethod(is_curve)
+
+    def ask(self) -> tuple[Structure, Question]:
+        structure, question = ask_along_parameter(self)
+        if self.follow:
+            import orchestrate
+
+            others = self.keywords()
+            swept: Question = {name: question[name] for name in question if name not in others}
+            swept |= {"direction": self.follow, "samples": 1, "transient": question["transient"]}
+            question["start"] = orchestrate.sweep(structure, **swept, **self.running())
+        return structure, question
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        name = varied_parameter(data)
+        data = data.sortby(name)
+        if data.sizes[name] <= MOST_ROWS:
+            rows = parameter_column(data, name, data[name].values)
+            yield from table(rows | columns_of(data, "exponent standard_error verdict"))
+        else:
+            top = data.isel(data.exponent.argmax(...))
+            yield (
+                f"largest exponent {float(top.exponent):.5f} +- {float(top.standard_error):.5f} "
+                f"per tau at {format_parameter(data, name, top[name])}; the largest of "
+                f"{data.sizes[name]} is biased by its error: repeat it alone, with more --periods "
+                "and another --transient"
+            )
+            for word in flag_words(data.verdict.attrs).values():
+                holds = has_flag(data.verdict, word).values
+                where = f" at {format_ranges(data, name, holds)}" if holds.any() else ""
+                yield f"{format_share(int(holds.sum()), holds.size, word)}{where}"
+        neutral = data.isel({name: has_flag(data.verdict, "neutral").values})
+        wander = math.log(float(data.attrs["wander"]))
+        sizes = zip(abs(neutral.exponent.values), neutral.period.values, strict=True)
+        needed = max(
+            (wander / (size * period) for size, period in sizes if size > 0.0), default=0.0
         )
-    ),
-    answer,
-    ask_lyapunov,
-    lyapunov_summary,
-    has_picture=is_curve,
-)
+        if needed > float(data.attrs["periods"]):
+            yield (
+                "neutral: quasi-periodic, or too few periods: exponents of these sizes take about "
+                f"--periods {float(f'{needed:.2g}'):.0f}"
+            )
+
 
 COORDINATES = {  # that are printed of each section
     "phase": "x_rel v_rel",
@@ -135,188 +120,123 @@ COORDINATES = {  # that are printed of each section
 }
 
 
-def poincare_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield the number of points of a Poincaré section and the ranges they lie in."""
-    yield f"{data.sizes['point']} points"
-    yield from extents(data, COORDINATES[str(data.attrs["at"])])
+class Poincare(OfStructure, OfBox, Asked, Stored, Results):
+    """A Poincaré section: states at a phase of the box, at impacts or at releases."""
 
-
-POINCARE = Command(
-    "poincare",
-    "a Poincaré section: states at a phase of the box, at impacts or at releases",
-    """  {program} poincare --eta 2.9 --periods 5000
+    calls = "poincare"
+    examples = """
+  {program} poincare --eta 2.9 --periods 5000
   {program} poincare --eta 0.8 --at impacts
-  {program} poincare --structure beam --hz 12.5 --g 0.02 --at releases""",
-    response_groups(
-        Group(
-            "question",
-            "",
-            START.replace("at the start", "at phase 0"),
-            "at phase transient periods",
-        ),
-        several=False,
-    ),
-    answer,
-    read_question,
-    poincare_summary,
-)
+  {program} poincare --structure beam --hz 12.5 --g 0.02 --at releases"""
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield f"{data.sizes['point']} points"
+        yield from extents(data, COORDINATES[str(data.attrs["at"])])
 
 
-def attractors_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield the attractors at one parameter value, or the ranges where there are several."""
-    name = varied_parameter(data)
-    if data.sizes[name] <= 5:  # values up to which every attractor is printed
-        for i in range(data.sizes[name]):
-            at = data.isel({name: i})
-            count, where = int(at.number), format_parameter(data, name, at[name])
-            word = "attractor" if count == 1 else "attractors"
-            yield f"{count} {word} at {where} ({data.sizes['start']} random starts)"
-            yield from attractor_table(at)
-        yield "what few starts lead to is easily overlooked: basin, or a range of values, finds it"
-        return
-    data = data.sortby(name)
-    for number in sorted(set(data.number.values.tolist())):
-        holds = data.number.values == number
-        share = format_share(int(holds.sum()), holds.size, f"values with {number}")
-        yield f"{share}: {format_ranges(data, name, holds)}"
-    shares = data.share.where(data.multiplicity.notnull())
-    ends = zip(data.first_found.values, data.last_found.values, strict=True)
-    columns = {
-        "range": [format_range(data, name, *map(float, pair)) for pair in ends],
-        "smallest share": [f"{share:.1%}" for share in shares.min(name).values],
-        "largest share": [f"{share:.1%}" for share in shares.max(name).values],
-    }
-    yield from table(columns)
+class Attractors(OfStructure, OfBox, Over, Asked, Stored, Results):
+    """Coexisting motions: how many, and how many random starts lead to each."""
 
-
-def draw_coexisting(data: xr.Dataset) -> Any:
-    """Draw attractors over a parameter; at one value their motions; return the figure."""
-    import orchestrate
-
-    from ..model import Structure
-    from ..show.planes import draw_motions
-
-    name = varied_parameter(data)
-    if data.sizes[name] > 1:
-        return orchestrate.plot(data)
-    at = data.isel({name: 0})
-    at = at.isel(attractor=at.multiplicity.notnull().values)
-    about = {str(key): value for key, value in data.attrs.items()}
-    structure = Structure.from_attributes(about)
-    if name not in ("eta", "frequency"):
-        structure = structure.replace(**{name: float(at[name])})
-    motions = []
-    for state, n in zip(at.state.values, at.multiplicity.values, strict=True):
-        periods = int(n) or 60  # that are drawn of an irregular attractor
-        box: Question = {"frequency": float(at.frequency), "amplitude": float(at.amplitude)}
-        motions.append(orchestrate.simulate(structure, **box, start=state, periods=periods))
-    return draw_motions(at, [with_units(motion, units_of(data)) for motion in motions])
-
-
-ATTRACTORS = Command(
-    "attractors",
-    "coexisting motions: how many, and how many random starts lead to each",
-    """  {program} attractors --eta 1.32 --starts 200 --seed 1
+    calls, takes = "attractors", "* scale"
+    examples = """
+  {program} attractors --eta 1.32 --starts 200 --seed 1
   {program} attractors --eta 1.2:1.4:0.01
   {program} attractors --structure beam --hz 15.5,16 --g 0.02 --scale 1e-3
 Half of the starts lie around zero, half around the response from rest. Every motion found at one
 value is carried to its neighbours, so along a range it is found as far as it exists; random starts
-alone may miss one whose basin is small.""",
-    response_groups(
-        Group(
-            "question",
-            over_options(),
-            """
-            --scale X  half width of one box of starts around zero, m (default: --width times the
-                gap from rest, and a second box around the response from rest)
-            """,
-            "starts seed width transient settle samples",
-        )
-    ),
-    answer,
-    ask_along_parameter,
-    attractors_summary,
-    draw_coexisting,
-)
+alone may miss one whose basin is small."""
 
+    def ask(self) -> tuple[Structure, Question]:
+        return ask_along_parameter(self)
 
-def basin_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield a basin result: the plane, its attractors with their shares, the basin entropy."""
-    labels = data.attractor_of.values
-    started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
-    axes = [data[name] for name in map(str, data.attractor_of.dims)]
-    sides = []
-    for axis in axes:
-        unit = str(axis.attrs["units"])
-        text = range_text(data, axis.min().item(), axis.max().item(), unit)
-        sides.append(f"{axis.name} {without_unit(data, text, unit)}")
-    plane = ", ".join(sides)
-    yield f"{data.sizes['attractor']} found, of {started} starts in {plane}"
-    yield from attractor_table(data)
-    if overlapping:
-        yield f"{overlapping} starts left out: there the masses would overlap"
-    if data.sizes["attractor"] > 1 and min(labels.shape) >= 32:  # along a side, for entropies
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        name = varied_parameter(data)
+        if data.sizes[name] <= 5:  # values up to which every attractor is printed
+            for i in range(data.sizes[name]):
+                at = data.isel({name: i})
+                count, where = int(at.number), format_parameter(data, name, at[name])
+                word = "attractor" if count == 1 else "attractors"
+                yield f"{count} {word} at {where} ({data.sizes['start']} random starts)"
+                yield from attractor_table(at)
+            yield "few starts overlook small basins: basin, or a range of values, finds them"
+            return
+        data = data.sortby(name)
+        for number in sorted(set(data.number.values.tolist())):
+            holds = data.number.values == number
+            share = format_share(int(holds.sum()), holds.size, f"values with {number}")
+            yield f"{share}: {format_ranges(data, name, holds)}"
+        shares = data.share.where(data.multiplicity.notnull())
+        ends = zip(data.first_found.values, data.last_found.values, strict=True)
+        columns = {
+            "range": [format_range(data, name, *map(float, pair)) for pair in ends],
+            "smallest share": [f"{share:.1%}" for share in shares.min(name).values],
+            "largest share": [f"{share:.1%}" for share in shares.max(name).values],
+        }
+        yield from table(columns)
+
+    def draw(self, data: xr.Dataset, *_: xr.Dataset) -> Any:
         import orchestrate
 
-        mixed = orchestrate.basin_entropy(data)
-        yield (
-            f"basin entropy {float(mixed.basin_entropy):.3g}, at boundaries "
-            f"{float(mixed.boundary_basin_entropy):.3g} (above 0.69: fractal)"
-        )
-        exponent, error = mixed.uncertainty_exponent, mixed.uncertainty_exponent_error
-        if math.isfinite(exponent):
-            yield (
-                f"uncertainty exponent {float(exponent):.3g} +- {float(error):.2g} "
-                "(1: smooth boundaries)"
-            )
+        from ..model import Structure
+        from ..show.planes import draw_motions
+
+        name = varied_parameter(data)
+        if data.sizes[name] > 1:
+            return orchestrate.plot(data)
+        at = data.isel({name: 0})
+        at = at.isel(attractor=at.multiplicity.notnull().values)
+        about = {str(key): value for key, value in data.attrs.items()}
+        structure = Structure.from_attributes(about)
+        if name not in ("eta", "frequency"):
+            structure = structure.replace(**{name: float(at[name])})
+        motions = []
+        for state, n in zip(at.state.values, at.multiplicity.values, strict=True):
+            periods = int(n) or 60  # that are drawn of an irregular attractor
+            box: Question = {"frequency": float(at.frequency), "amplitude": float(at.amplitude)}
+            motions.append(orchestrate.simulate(structure, **box, start=state, periods=periods))
+        return draw_motions(at, [with_units(motion, units_of(data)) for motion in motions])
 
 
-BASIN = Command(
-    "basin",
-    "basins of attraction: which motion each start of a plane leads to",
-    """  {program} basin --eta 1.315
+class Basin(OfStructure, OfBox, Asked, Stored, Results):
+    """Basins of attraction: which motion each start of a plane leads to."""
+
+    calls = "basin"
+    examples = """
+  {program} basin --eta 1.315
   {program} basin --eta 1.315 --x x_rel,0,1.3,60 --y v_rel,-1.3,1.3,60
   {program} basin --eta 1.32 --x phase,0,6.28,40 --y v1,-2,2,40
   {program} basin --structure beam --hz 15.8 --g 0.02 --x x_rel,0,1e-3,40 --y v_rel,-0.1,0.1,40
 Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not varied is that of
---at, such as a state that the command attractors has found.""",
-    response_groups(
-        Group(
-            "question",
-            "",
-            """
-            --x NAME,FIRST,LAST,COUNT  horizontal side of the plane (default: x_rel as far as twice
-                the attractors' largest gap, 80 values)
-            --y NAME,FIRST,LAST,COUNT  vertical side of the plane (default: v_rel as far as twice
-                the attractors' largest rate, 80 values)
-            --at X1,X2,V1,V2  state that the plane goes through, m and m/s (default: rest; without
-                --x and --y the mean of the attractors)
-            """,
-            "phase transient settle samples",
-        ),
-        several=False,
-    ),
-    answer,
-    read_question,
-    basin_summary,
-)
+--at, such as a state that the command attractors has found."""
 
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        labels = data.attractor_of.values
+        started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
+        axes = [data[name] for name in map(str, data.attractor_of.dims)]
+        sides = []
+        for axis in axes:
+            unit = str(axis.attrs["units"])
+            text = range_text(data, axis.min().item(), axis.max().item(), unit)
+            sides.append(f"{axis.name} {without_unit(data, text, unit)}")
+        plane = ", ".join(sides)
+        yield f"{data.sizes['attractor']} found, of {started} starts in {plane}"
+        yield from attractor_table(data)
+        if overlapping:
+            yield f"{overlapping} starts left out: there the masses would overlap"
+        if data.sizes["attractor"] > 1 and min(labels.shape) >= 32:  # along a side, for entropies
+            import orchestrate
 
-def draw_orbit(data: xr.Dataset) -> Any:
-    """Simulate one period from the orbit's state and draw the motion; return the figure."""
-    import orchestrate
-
-    from ..model import Structure
-
-    excitation: Question = dict(ast.literal_eval(str(data.attrs["excitation"])))
-    motion = orchestrate.simulate(
-        Structure.from_attributes({str(name): value for name, value in data.attrs.items()}),
-        **excitation,
-        periods=int(data.attrs["period"]),
-        start=data.state.isel(sample=0).values,
-    )
-    shown = with_units(motion, units_of(data))
-    return orchestrate.plot(shown, title=orbit_title(data, shown))
+            mixed = orchestrate.basin_entropy(data)
+            yield (
+                f"basin entropy {float(mixed.basin_entropy):.3g}, at boundaries "
+                f"{float(mixed.boundary_basin_entropy):.3g} (above 0.69: fractal)"
+            )
+            exponent, error = mixed.uncertainty_exponent, mixed.uncertainty_exponent_error
+            if math.isfinite(exponent):
+                yield (
+                    f"uncertainty exponent {float(exponent):.3g} +- {float(error):.2g} "
+                    "(1: smooth boundaries)"
+                )
 
 
 def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
@@ -326,196 +246,141 @@ def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
     return f"{flag_word(orbit.stability)} orbit, {title_from_attributes(motion)}"
 
 
-def orbit_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield an orbit's stability, multipliers, impacts, states at phase 0 and largest gap."""
-    parts = data.multipliers.transpose("multiplier", "part").values
-    size = max(abs(complex(*pair)) for pair in parts)
-    word = flag_word(data.stability)
-    yield f"{word}: the largest multiplier has the absolute value {size:.6f}"
-    if word == "undecided":
-        yield "a run of the FMU from this orbit has other impacts: the orbit may not be a motion"
-    yield "multipliers " + ", ".join(f"{real:.6f}{imaginary:+.6f}i" for real, imaginary in parts)
-    for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
-        if math.isfinite(time):
-            closing = length_text(data, speed, "m/s")
-            yield f"impact at {time_text(data, time, '.8g')}, closing at {closing}"
-    names = "x1, x2, v1, v2" if is_in_ratios(data) else "x1, x2 in m, v1, v2 in m/s"
-    for i, state in enumerate(data.state.values):
-        numbers = ", ".join(f"{value:.8g}" for value in state)
-        yield f"state at phase 0 after {i} periods: {numbers} ({names})"
-    yield f"largest gap: {format_largest_gap(data)}"
+class Orbit(OfStructure, OfBox, Asked, Stored, Results):
+    """A periodic motion by Newton's method, stable or unstable, with its multipliers."""
 
-
-ORBIT = Command(
-    "orbit",
-    "a periodic motion by Newton's method, stable or unstable, with its multipliers",
-    """  {program} orbit --eta 3.0                     unstable: simulate would leave it
+    calls = "orbit"
+    examples = """
+  {program} orbit --eta 3.0                     unstable: simulate would leave it
   {program} orbit --eta 1.32 --period 2
   {program} orbit --structure beam --hz 16.7 --g 0.02
-Floquet multipliers: of a stable orbit all lie inside the unit circle.""",
-    response_groups(
-        Group(
-            "question",
-            "",
-            "--guess X1,X2,V1,V2  state at phase 0 to begin with, m and m/s (default: from the "
-            "response from rest)",
-            "period box_acceleration",
-        ),
-        several=False,
-    ),
-    answer,
-    read_question,
-    orbit_summary,
-    draw_orbit,
-    has_picture=lambda question: not question["box_acceleration"],
-)
+Floquet multipliers: of a stable orbit all lie inside the unit circle."""
+
+    def has_picture(self, question: Question) -> bool:
+        return not question["box_acceleration"]
+
+    def draw(self, data: xr.Dataset, *_: xr.Dataset) -> Any:
+        import orchestrate
+
+        from ..model import Structure
+
+        excitation: Question = dict(ast.literal_eval(str(data.attrs["excitation"])))
+        motion = orchestrate.simulate(
+            Structure.from_attributes({str(name): value for name, value in data.attrs.items()}),
+            **excitation,
+            periods=int(data.attrs["period"]),
+            start=data.state.isel(sample=0).values,
+        )
+        shown = with_units(motion, units_of(data))
+        return orchestrate.plot(shown, title=orbit_title(data, shown))
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        parts = data.multipliers.transpose("multiplier", "part").values
+        size = max(abs(complex(*pair)) for pair in parts)
+        word = flag_word(data.stability)
+        yield f"{word}: the largest multiplier has the absolute value {size:.6f}"
+        if word == "undecided":
+            yield "a run of the FMU from this orbit has other impacts: it may not be a motion"
+        yield "multipliers " + ", ".join(
+            f"{real:.6f}{imaginary:+.6f}i" for real, imaginary in parts
+        )
+        for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
+            if math.isfinite(time):
+                closing = length_text(data, speed, "m/s")
+                yield f"impact at {time_text(data, time, '.8g')}, closing at {closing}"
+        names = "x1, x2, v1, v2" if is_in_ratios(data) else "x1, x2 in m, v1, v2 in m/s"
+        for i, state in enumerate(data.state.values):
+            numbers = ", ".join(f"{value:.8g}" for value in state)
+            yield f"state at phase 0 after {i} periods: {numbers} ({names})"
+        yield f"largest gap: {format_largest_gap(data)}"
 
 
-def ask_manifold(arguments: argparse.Namespace) -> tuple[Structure, Question]:
-    """Return structure and keywords of ``manifold``."""
-    structure, question = read_structure_and_question(arguments)
-    if is_shaken(arguments) or question["start"] is None:
-        question |= read_excitation(arguments, structure, si=True, one=True)
-    return structure, question
+class Manifold(OfStored, OfBox, Asked, Stored, Results):
+    """The unstable manifold of a saddle of the stroboscopic map, as a curve to each side."""
 
-
-def manifold_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield a manifold's multiplier, each side's length, and where the curve is broken."""
-    yield f"saddle: multiplier {float(data.multiplier):.6f}"
-    yield from extents(data, "x_rel")
-    lengths = (data.arclength.max("point") / data.orbit_size).values
-    sides = columns_of(data, "side end") | {
-        "points": [f"{n}" for n in data.arclength.count("point").values],
-        "length over the orbit's size": [f"{length:.4g}" for length in lengths],
-        "breaks": [f"{int((data.break_side == i).sum())}" for i in range(data.sizes["side"])],
-    }
-    yield from table(sides)
-
-
-MANIFOLD = Command(
-    "manifold",
-    "the unstable manifold of a saddle of the stroboscopic map, as a curve to each side",
-    """  {program} manifold --eta 3.0
+    calls = "manifold"
+    examples = """
+  {program} manifold --eta 3.0
   {program} manifold --start orbit.nc --length 20       of an orbit that orbit has written
   {program} manifold --structure beam --hz 14 --g 0.02
-What starts beside a saddle with one multiplier outside the unit circle leaves along it.""",
-    response_groups(
-        Group(
-            "question",
-            "",
-            "--start FILE  NetCDF file of an orbit (default: that which the command orbit finds)",
-            "period box_acceleration length spacing angle distance most",
-            readers={"start": read_earlier_result},
-        ),
-        several=False,
-        stored="--start",
-    ),
-    answer,
-    ask_manifold,
-    manifold_summary,
-)
+What starts beside a saddle with one multiplier outside the unit circle leaves along it."""
+
+    def ask(self) -> tuple[Structure, Question]:
+        structure, question = read_structure_and_question(self)
+        if self.is_shaken() or question["start"] is None:
+            question |= self.read_excitation(structure, si=True, one=True)
+        return structure, question
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield f"saddle: multiplier {float(data.multiplier):.6f}"
+        yield from extents(data, "x_rel")
+        lengths = (data.arclength.max("point") / data.orbit_size).values
+        sides = columns_of(data, "side end") | {
+            "points": [f"{n}" for n in data.arclength.count("point").values],
+            "length over the orbit's size": [f"{length:.4g}" for length in lengths],
+            "breaks": [f"{int((data.break_side == i).sum())}" for i in range(data.sizes["side"])],
+        }
+        yield from table(sides)
 
 
-def ask_branch(arguments: argparse.Namespace) -> tuple[Structure, Question]:
-    """Return structure and keywords of ``branch``."""
-    if arguments.limits is None:
-        raise InputError("--limits is missing; expected FIRST:LAST")
-    over, limits = parse_varied(arguments.over, arguments.limits)
-    structure, keywords = read_structure_and_question(arguments)
-    excitation = branch_excitation(arguments, structure, over, keywords["start"] is not None)
-    return structure, {**excitation, "over": over, "limits": limits, **keywords}
+class Branch(OfStored, OfBox, Asked, Stored, Results):
+    """Follow periodic motions along a parameter, stable and unstable, to their bifurcations."""
 
-
-def branch_excitation(
-    arguments: argparse.Namespace, structure: Structure, over: str, begun: bool
-) -> Question:
-    """Return the excitation at which the first orbit is searched, as keywords for ``branch``."""
-    name, amplitude = frequency_option(arguments), read_amplitude(arguments)
-    if over == "frequency" and arguments.g is not None:
-        raise InputError(
-            "--g: a branch over the frequency has one amplitude; expected --amplitude in m "
-            "(impacts and bifurcations do not depend on the level)"
-        )
-    if over == "frequency" and amplitude is None and not begun:
-        raise InputError(f"--over {arguments.over}: expected --amplitude in m with it")
-    if name is None and (begun or over in ("eta", "frequency")):
-        return {} if amplitude is None else {"amplitude": amplitude}
-    excitation = read_excitation(arguments, structure, one=True)
-    needed = "frequency" if over in ("frequency", "amplitude") else over
-    if over in ("eta", "frequency", "amplitude") and needed not in excitation:
-        expected = "--eta without an amplitude" if over == "eta" else "a frequency and --amplitude"
-        raise InputError(f"--over {over}: expected {expected} with it")
-    return excitation
-
-
-def branch_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield a branch's bifurcations as a table, and why the branch ends."""
-    name = str(data.attrs["over"])
-    stable, undecided = int(data.stable.sum()), int(has_flag(data.stability, "undecided").sum())
-    unsure = f", {undecided} undecided (runs of the FMU have other impacts)" if undecided else ""
-    where = format_range(data, name, float(data[name].min()), float(data[name].max()))
-    yield f"{data.sizes['point']} orbits at {where}, {stable} of them stable{unsure}"
-    if data.sizes.get("bifurcation", 0):
-        rows = {"number": [str(i) for i in range(data.sizes["bifurcation"])]}
-        rows |= columns_of(data, "kind", "bifurcation_")
-        rows |= parameter_column(data, name, data.bifurcation_value.values, ".8f")
-        yield from table(rows, len(rows["number"]))
-    else:
-        yield "no bifurcation in this range"
-    yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
-
-
-BRANCH = Command(
-    "branch",
-    "follow periodic motions along a parameter, stable and unstable, to their bifurcations",
-    """  {program} branch --eta 2.5 --limits 2.4:2.8
+    calls = "branch"
+    over: str = option(f"what varies: {CONTINUED}", "eta", value="NAME")
+    limits: str | None = option("between which it is followed, in its own unit", value="FIRST:LAST")
+    examples = """
+  {program} branch --eta 2.5 --limits 2.4:2.8
   {program} branch --over e --eta 2.5 --limits 0.5:0.9
   {program} branch --structure beam --over hz --limits 20:30 --amplitude 1e-4
   {program} branch --start branch.nc --switch 1 --limits 2.4:2.9   the branch that leaves there
-The excitation says where a first orbit is looked for; without it that is the lower limit.""",
-    response_groups(
-        Group(
-            "question",
-            f"""
-            --over NAME = eta  what varies: {CONTINUED}
-            --limits FIRST:LAST  between which it is followed, in its own unit
-            """,
-            """
-            --start FILE  NetCDF file of an orbit or a branch to begin with
-            --switch N  number of a bifurcation of --start: the branch that leaves there
-            """,
-            "period box_acceleration longest most",
-            readers={"start": read_earlier_result},
-        ),
-        several=False,
-        stored="--start",
-    ),
-    answer,
-    ask_branch,
-    branch_summary,
-)
+The excitation says where a first orbit is looked for; without it that is the lower limit."""
 
+    def ask(self) -> tuple[Structure, Question]:
+        if self.limits is None:
+            raise InputError("--limits is missing; expected FIRST:LAST")
+        over, limits = parse_varied(self.over, self.limits)
+        structure, keywords = read_structure_and_question(self)
+        excitation = self.branch_excitation(structure, over, keywords["start"] is not None)
+        return structure, {**keywords, **excitation, "over": over, "limits": limits}
 
-def ask_border(arguments: argparse.Namespace) -> tuple[Structure, Question]:
-    """Return structure and keywords of ``border``."""
-    for name, expected in (("start", "a file of the command branch"), ("limits", "A:B,C:D")):
-        if getattr(arguments, name) is None:
-            raise InputError(f"--{name} is missing; expected {expected}")
-    over, limits = arguments.over, arguments.limits
-    names, ranges = ([part.strip() for part in text.split(",")] for text in (over, limits))
-    if len(names) != 2:
-        raise InputError(f"--over {over}: expected two names, such as eta,e or hz,e")
-    pairs = [parse_varied(*pair) for pair in zip(names, ranges, strict=False)]
-    if len(ranges) != 2:
-        raise InputError(f"--limits {limits}: expected A:B,C:D, a range for each of {over}")
-    structure, question = read_structure_and_question(arguments)
-    both = {"over": tuple(name for name, _ in pairs), "limits": tuple(ends for _, ends in pairs)}
-    return structure, {**both, **question}
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        name = str(data.attrs["over"])
+        stable, undecided = int(data.stable.sum()), int(has_flag(data.stability, "undecided").sum())
+        unsure = (
+            f", {undecided} undecided (runs of the FMU have other impacts)" if undecided else ""
+        )
+        where = format_range(data, name, float(data[name].min()), float(data[name].max()))
+        yield f"{data.sizes['point']} orbits at {where}, {stable} of them stable{unsure}"
+        if data.sizes.get("bifurcation", 0):
+            rows = {"number": [str(i) for i in range(data.sizes["bifurcation"])]}
+            rows |= columns_of(data, "kind", "bifurcation_")
+            rows |= parameter_column(data, name, data.bifurcation_value.values, ".8f")
+            yield from table(rows, len(rows["number"]))
+        else:
+            yield "no bifurcation in this range"
+        yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
 
-
-def parse_bifurcation(option: str, text: str) -> int | str:
-    """Parse the number of a bifurcation, or the word ``all``."""
-    return text if text == "all" else parse(option, text, "a number, or all", plain_int)
+    def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Question:
+        """Return the excitation at which the first orbit is searched, as keywords."""
+        name, amplitude = self.frequency_option(), self.read_amplitude()
+        if over == "frequency" and self.g is not None:
+            raise InputError(
+                "--g: a branch over the frequency has one amplitude; expected --amplitude in m "
+                "(impacts and bifurcations do not depend on the level)"
+            )
+        if over == "frequency" and amplitude is None and not begun:
+            raise InputError(f"--over {self.over}: expected --amplitude in m with it")
+        if name is None and (begun or over in ("eta", "frequency")):
+            return {} if amplitude is None else {"amplitude": amplitude}
+        excitation = self.read_excitation(structure, one=True)
+        needed = "frequency" if over in ("frequency", "amplitude") else over
+        if over in ("eta", "frequency", "amplitude") and needed not in excitation:
+            expected = (
+                "--eta without an amplitude" if over == "eta" else "a frequency and --amplitude"
+            )
+            raise InputError(f"--over {over}: expected {expected} with it")
+        return excitation
 
 
 def is_on_curve(curve: xr.Dataset, question: Question, near: float = 1e-3) -> bool:
@@ -536,78 +401,84 @@ def is_on_curve(curve: xr.Dataset, question: Question, near: float = 1e-3) -> bo
     return bool(curve.attrs["kind"] == kind and (np.abs(passes) < reach).any())
 
 
-def run_border(arguments: argparse.Namespace) -> None:
-    """Run ``border``: follow one bifurcation, or all of a branch into one picture."""
-    import orchestrate
-
-    structure, question = ask_border(arguments)
-    if question["bifurcation"] != "all":
-        answer_question(arguments, structure, question)
-        return
-    if arguments.store is not None:
-        raise InputError("--store: of one bifurcation; expected it without --bifurcation all")
-    curves: list[xr.Dataset] = []
-    for number in range(question["start"].sizes.get("bifurcation", 0)):
-        one = {**question, "bifurcation": number}
-        if any(is_on_curve(curve, one) for curve in curves):
-            print(f"number {number} is on a curve that was followed")
-            continue
-        try:
-            curves.append(answer_question(arguments, structure, one, picture=False))
-        except InputError as reason:
-            print(f"number {number} is not followed: {reason}")
-    if not curves:
-        raise InputError(f"--start {arguments.start}: no bifurcation that can be followed")
-    name = result_name("border_all", str(arguments.start), structure, question)
-    shown = [with_units(curve, display_units(arguments, question)) for curve in curves]
-    files = Files.from_options(arguments, name, fresh=True)
-    files.write_pictures(partial(orchestrate.plot, *shown))
+def parse_bifurcation(option: str, text: str) -> int | str:
+    """Parse the number of a bifurcation, or the word ``all``."""
+    return text if text == "all" else parse(option, text, "a number, or all", plain_int)
 
 
-def border_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield a bifurcation curve's extent, its codimension-two points, and why it ends."""
-    names = [str(name) for name in data.attrs["over"]]
-    yield f"{data.attrs['kind']}: {data.sizes['point']} points"
-    for name in names:
-        reach = format_range(data, name, float(data[name].min()), float(data[name].max()))
-        ends = (format_parameter(data, name, data[name][i]) for i in (0, -1))
-        yield f"from {' to '.join(ends)}, within {reach}"
-    if data.sizes["codimension_two"]:
-        rows = columns_of(data, "kind", "codimension_two_")
-        for name in names:
-            rows |= parameter_column(data, name, data[f"codimension_two_{name}"].values)
-        yield from table(rows, data.sizes["codimension_two"])
-    yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
+Bifurcation = Annotated[int | str, parse_bifurcation]
 
 
-BORDER = Command(
-    "border",
-    "follow a bifurcation of a branch over two parameters: where a window begins or ends",
-    """  {program} border --start branch.nc --bifurcation 0 --over eta,e --limits 2.4:2.9,0.6:0.8
+class Border(OfStored, Asked, Stored, Results):
+    """Follow a bifurcation of a branch over two parameters: where a window begins or ends."""
+
+    calls = "border"
+    over: str = option(
+        f"what varies, that of the branch first, each {CONTINUED}", "eta,e", value="NAME,NAME"
+    )
+    limits: Any = option("between which each is followed, in its own unit", value="A:B,C:D")
+    bifurcation: Bifurcation = option("its number, or all of them in one picture", 0, value="N|all")
+    examples = """
+  {program} border --start branch.nc --bifurcation 0 --over eta,e --limits 2.4:2.9,0.6:0.8
   {program} border --start beam.nc --over hz,e --limits 14:18,0.6:0.8
   {program} border --start branch.nc --bifurcation all --limits 2.4:2.9,0.6:0.8
 --start is what the command branch has written, with the numbers of its bifurcations;
-structure and excitation are those of that branch.""",
-    (
-        structure_group("--start"),
-        Group(
-            "question",
-            f"""
-            --over NAME,NAME = eta,e  what varies, that of the branch first, each {CONTINUED}
-            --limits A:B,C:D  between which each is followed, in its own unit
-            """,
-            """
-            --start FILE  NetCDF file of a branch
-            --bifurcation N|all = 0  its number, or all of them in one picture
-            """,
-            "longest most",
-            readers={"start": read_earlier_result, "bifurcation": parse_bifurcation},
-        ),
-        *result_groups(),
-    ),
-    run_border,
-    ask_border,
-    border_summary,
-)
+structure and excitation are those of that branch."""
 
-COMMANDS = (LYAPUNOV, POINCARE, ATTRACTORS, BASIN, ORBIT, MANIFOLD, BRANCH, BORDER)
+    def ask(self) -> tuple[Structure, Question]:
+        for name, expected in (("start", "a file of the command branch"), ("limits", "A:B,C:D")):
+            if getattr(self, name) is None:
+                raise InputError(f"--{name} is missing; expected {expected}")
+        over, limits = self.over, self.limits
+        names, ranges = ([part.strip() for part in text.split(",")] for text in (over, limits))
+        if len(names) != 2:
+            raise InputError(f"--over {over}: expected two names, such as eta,e or hz,e")
+        pairs = [parse_varied(*pair) for pair in zip(names, ranges, strict=False)]
+        if len(ranges) != 2:
+            raise InputError(f"--limits {limits}: expected A:B,C:D, a range for each of {over}")
+        structure, question = read_structure_and_question(self)
+        both = {
+            "over": tuple(name for name, _ in pairs),
+            "limits": tuple(ends for _, ends in pairs),
+        }
+        return structure, {**question, **both}
+
+    def __call__(self) -> None:
+        import orchestrate
+
+        structure, question = self.ask()
+        if question["bifurcation"] != "all":
+            self.answer(structure, question)
+            return
+        if self.store is not None:
+            raise InputError("--store: of one bifurcation; expected it without --bifurcation all")
+        curves: list[xr.Dataset] = []
+        for number in range(question["start"].sizes.get("bifurcation", 0)):
+            one = {**question, "bifurcation": number}
+            if any(is_on_curve(curve, one) for curve in curves):
+                print(f"number {number} is on a curve that was followed")
+                continue
+            try:
+                curves.append(self.answer(structure, one, picture=False))
+            except InputError as reason:
+                print(f"number {number} is not followed: {reason}")
+        if not curves:
+            raise InputError(f"--start {self.start}: no bifurcation that can be followed")
+        name = result_name("border_all", str(self.start), structure, question)
+        shown = [with_units(curve, self.display_units(question)) for curve in curves]
+        files = Files.from_options(self, name, fresh=True)
+        files.write_pictures(partial(orchestrate.plot, *shown))
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        names = [str(name) for name in data.attrs["over"]]
+        yield f"{data.attrs['kind']}: {data.sizes['point']} points"
+        for name in names:
+            reach = format_range(data, name, float(data[name].min()), float(data[name].max()))
+            ends = (format_parameter(data, name, data[name][i]) for i in (0, -1))
+            yield f"from {' to '.join(ends)}, within {reach}"
+        if data.sizes["codimension_two"]:
+            rows = columns_of(data, "kind", "codimension_two_")
+            for name in names:
+                rows |= parameter_column(data, name, data[f"codimension_two_{name}"].values)
+            yield from table(rows, data.sizes["codimension_two"])
+        yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"

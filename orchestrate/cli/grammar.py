@@ -5,12 +5,11 @@ What is wrong is an :class:`InputError` that names the option, its text and what
 
 from __future__ import annotations
 
-import argparse
 import math
 import re
 from collections.abc import Callable, Collection, Iterable
 from decimal import Decimal, InvalidOperation
-from typing import TypeVar
+from typing import Annotated, Any, TypeVar
 
 from ..errors import InputError
 from ..model.ranges import expected_one_of, known_units, number_with_unit
@@ -44,15 +43,30 @@ def plain_int(text: str) -> int:
     return int(text)
 
 
-plain_float.__name__, plain_int.__name__ = "float", "int"  # what argparse calls them in its errors
-
-
 def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]) -> Parsed:
     """Call ``reader`` on an option's text; turn its ``ValueError`` into an ``InputError``."""
     try:
         return reader(text)
     except ValueError:
         raise InputError(f"{option} {text}: expected {expected}") from None
+
+
+def read_float(option: str, text: str) -> float:
+    """Parse an option's text as a number."""
+    return parse(option, text, "a number", plain_float)
+
+
+def read_int(option: str, text: str) -> int:
+    """Parse an option's text as a whole number."""
+    return parse(option, text, "a whole number", plain_int)
+
+
+def read_choice(choices: Collection[Any], option: str, text: str) -> Any:
+    """Return that one of several choices which the text is."""
+    for choice in choices:
+        if text == str(choice):
+            return choice
+    raise InputError(f"{option} {text}: {expected_one_of(text, map(str, choices))}")
 
 
 def floats(
@@ -74,14 +88,21 @@ def floats(
 parse_ends = floats("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,))
 parse_number_or_ends = floats("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
 parse_state = floats("X1,X2,V1,V2, four numbers in m and m/s", ",", (4,))
+Ends = Annotated[tuple[float, ...] | None, parse_ends]
 parse_numbers = floats("a number, or a list such as 0.5,1,2")
 parse_rates = floats("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
+
+
+State = Annotated[tuple[float, ...] | None, parse_state]  # x1, x2, v1, v2
 
 
 def positive_number(option: str, text: str) -> float:
     """Parse an option's text as one number > 0."""
     reader = floats(f"a number > 0, such as {option} 0.5", counts=(1,), positive=True)
     return reader(option, text)[0]
+
+
+Positive = Annotated[float | None, positive_number]
 
 
 def parse_rate(option: str, text: str) -> float:
@@ -110,6 +131,9 @@ def parse_plane_side(option: str, text: str) -> AxisSpec:
     return parse(option, text, "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60", split)
 
 
+PlaneSide = Annotated[AxisSpec | None, parse_plane_side]
+
+
 def parse_breakpoints(option: str, text: str) -> tuple[tuple[float, float], ...]:
     """Parse ``HZ:VALUE,HZ:VALUE,...`` into pairs of frequency and value."""
 
@@ -128,6 +152,11 @@ def parse_columns(option: str, text: str) -> dict[str, str | int]:
     return {name: int(column) if column.isdecimal() else column for name, column in pairs.items()}
 
 
+Breakpoints = Annotated[tuple[tuple[float, float], ...] | None, parse_breakpoints]
+ChannelColumns = Annotated[dict[str, str | int] | None, parse_columns]
+Orders = Annotated[float | tuple[float, ...] | None, parse_orders]
+
+
 def read_pairs(option: str, texts: Iterable[str], expected: str) -> dict[str, str]:
     """Return ``NAME=VALUE`` texts as a dict; raise where a part is missing or a name repeats."""
     pairs: dict[str, str] = {}
@@ -139,16 +168,24 @@ def read_pairs(option: str, texts: Iterable[str], expected: str) -> dict[str, st
     return pairs
 
 
-def with_option_names(message: str, chosen: argparse.Namespace) -> str:
-    """Return a message in which keywords are options: ``--unit`` for ``unit=`` without a value."""
+def with_option_names(message: str, chosen: object) -> str:
+    """Return a message in which keywords are options: ``--unit g`` for ``unit = g``."""
+    options = vars(chosen)
 
-    def option(keyword: re.Match[str]) -> str:
+    def given(keyword: re.Match[str]) -> str:  # at the beginning: what is wrong
+        name, missing = keyword["name"], keyword["missing"]
+        if name not in options or (options[name] is None) != bool(missing):
+            return keyword[0]
+        return f"--{name.replace('_', '-')} {'is missing' if missing else ''}"
+
+    def named(keyword: re.Match[str]) -> str:  # what to do
         name = keyword["name"]
         spelling = f"--{name.replace('_', '-')}{' ' if keyword['quoted'] else ''}"
-        return spelling if name in vars(chosen) else keyword[0]
+        return spelling if name in options else keyword[0]
 
+    message = re.sub(r"^(?P<name>[a-z_]\w*) = (?P<missing>None)?", given, message)
     pattern = r"(?<![\w-])(?P<name>[a-z_]\w*)=((?=[\s,;:.)]|$)|(?=(?P<quoted>\")))"
-    return re.sub(pattern, option, message)
+    return re.sub(pattern, named, message)
 
 
 # -- ranges and lists -----------------------------------------------------------------------------
@@ -173,6 +210,14 @@ def parse_values(option: str, text: str, zero: bool = False) -> tuple[tuple[floa
             raise InputError(f"{option} {text}: {RANGE}, and at most {MAX_VALUES} values")
         numbers = [first + i * step for i in range(int((last - first) / step) + 1)]
     return tuple(map(float, numbers)), is_range
+
+
+def parse_list(option: str, text: str) -> tuple[float, ...]:
+    """Parse ``FIRST:LAST:STEP`` or ``A,B,...``; return the numbers."""
+    return parse_values(option, text)[0]
+
+
+Listed = Annotated[tuple[float, ...] | None, parse_list]
 
 
 def parse_listed(name: str, text: str) -> tuple[tuple[float, ...], bool]:

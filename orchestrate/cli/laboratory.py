@@ -2,195 +2,190 @@
 
 from __future__ import annotations
 
-import argparse
+import inspect
 import warnings
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..lazy import xr
 from ..units import text_of, with_units
-from .answer import answer, read_earlier_result
-from .grammar import floats, parse_breakpoints, positive_number, read_pairs
+from .answer import Asked
+from .face import Command, Options, Question, option, option_names
+from .grammar import (
+    Breakpoints,
+    Ends,
+    Listed,
+    floats,
+    parse_breakpoints,
+    positive_number,
+    read_pairs,
+)
 from .options import (
-    BESIDE,
-    START,
-    join_option_names,
-    option_name,
-    read_structure_options,
-    structure_group,
+    Beside,
+    OfStructure,
 )
 from .output import (
-    COLUMNS,
-    FORMAT,
-    OUTPUT,
-    READING,
-    UNITS,
     Files,
+    Formats,
+    InColumns,
+    InFolder,
+    InUnits,
+    Reading,
+    Results,
+    Stored,
     digest,
     parse_endings,
-    print_units_note,
-    read_record_units,
-    result_groups,
     unit_note,
 )
-from .table import Command, Group, Question, Structure, parse_options, values_of
+from .stored import read_earlier_result
 from .text import Columns, columns_of, extents, impact_lines, table
 
-KINDS = {  # of excitation: the class, its own options, and which of them it needs
-    "swept_sine": ("SweptSine", ("duration", "rate", "spacing", "g", "acceleration"), ""),
-    "stepped_sine": ("SteppedSine", ("settle_cycles", "measured_cycles", "g", "acceleration"), ""),
-    "random": ("Random", ("duration", "seed"), "duration"),
-    "shock": ("Shock", ("duration", "length", "delay", "g", "acceleration"), "length"),
-    "record": ("Sampled", ("unit", "column", "scale"), ""),
+if TYPE_CHECKING:
+    from ..model import Structure
+
+KINDS = {  # of excitation: the class, or the reader, whose arguments are its options
+    "swept_sine": "SweptSine",
+    "stepped_sine": "SteppedSine",
+    "random": "Random",
+    "shock": "Shock",
+    "record": "read_record",
 }
-EXCITATION = """
---swept-sine FIRST:LAST  frequencies, Hz; downwards too
---stepped-sine FIRST:LAST:STEP  frequencies, Hz; or a list A,B,...
---random PSD  density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz
---shock SHAPE  half-sine, sawtooth or trapezoid
---record FILE  measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc
---g LEVEL  peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too
---acceleration LEVEL  peak acceleration, m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too
---duration S  of all, s
---rate X  of a swept sine: Hz/s, or octaves/min where --spacing log
---spacing WORD  of a swept sine: linear or log (default: linear)
---settle-cycles N  of a stepped sine: cycles at each frequency before it is measured (default: 100)
---measured-cycles N  of a stepped sine: cycles at each frequency that are measured (default: 50)
---seed N  of random vibration (default: 0)
---length S  of a shock's pulse, s
---delay S  quiet before a shock, s (default: 0)
---unit UNIT  of a record: m/s2, g ... (default: what the file says)
---column NAME  of a record: the box's, by name or number from 0 (default: by usual names, or 1)
---scale X  of a record in a WAV file: m/s2 at its full scale
-"""
+
+LEVELS = ("g", "acceleration")
 
 
-def ask_shake(arguments: argparse.Namespace) -> tuple[Structure, Question]:
-    """Return structure and keywords of ``shake``."""
-    from .. import Shaker
-
-    structure, shaker = read_structure_options(arguments), arguments.shaker
-    return structure, {
-        "excitation": read_excitation(arguments),
-        **arguments.row.keywords(arguments),
-        "shaker": None if shaker is None else Shaker.from_file(shaker),
-    }
-
-
-def read_excitation(arguments: argparse.Namespace) -> Any:
-    """Return the excitation that the options describe, such as a ``SweptSine``."""
+def arguments_of(function: str) -> dict[str, bool]:
+    """Return the arguments of a public function or class, and whether each is needed."""
     import orchestrate
 
-    kind = excitation_kind(arguments)
-    if kind == "record":
-        return read_record_excitation(arguments)
-    values = {one.name: one.value(arguments) for one in parse_options(EXCITATION)}
-    settings = {name: values[name] for name in (kind, *KINDS[kind][1]) if values[name] is not None}
-    main = settings.pop(kind)
-    level = {} if kind == "random" else {"acceleration": read_level(arguments)}
-    settings = {n: v for n, v in settings.items() if n not in ("g", "acceleration")} | level
-    if kind == "swept_sine":
-        settings |= {"first": main[0], "last": main[1]}
-    elif kind == "stepped_sine":
-        settings["frequencies"] = main[0]
-    elif kind == "random":
-        settings["psd"] = main
-    else:
-        if not isinstance(level["acceleration"], float):
-            raise InputError("--shock: expected one number for its peak, no profile")
-        settings |= {"shape": main, "peak": settings.pop("acceleration")}
-    return getattr(orchestrate, KINDS[kind][0])(**settings)
+    parameters = inspect.signature(getattr(orchestrate, function)).parameters.values()
+    return {one.name: one.default is inspect.Parameter.empty for one in parameters}
 
 
-def read_record_excitation(arguments: argparse.Namespace) -> Any:
-    """Return the box's acceleration of a measured file as an excitation."""
-    from .. import Sampled, read_record
+class OfExcitation(Options):
+    """Options of an excitation."""
 
-    column = arguments.column
-    columns = None
-    if column is not None:
-        columns = {"box_acceleration": int(column) if column.isdecimal() else column}
-    record = read_record(
-        arguments.record, unit=arguments.unit, channels=columns, scale=arguments.scale
+    heading, rank = "the box's acceleration", 1
+    remark = "one of the first five"
+    takes = (
+        "SweptSine: rate spacing; SteppedSine: settle_cycles measured_cycles; "
+        "Random: seed; Shock: length delay; read_record: unit scale"
     )
-    if note := unit_note(record.attrs):
-        print(f"{arguments.record}: {note}")
-    return Sampled.from_record(record)
+    if_given = True
+    swept_sine: Ends = option("frequencies, Hz; downwards too", value="FIRST:LAST")
+    stepped_sine: Listed = option("frequencies, Hz; or a list A,B,...", value="FIRST:LAST:STEP")
+    random: Breakpoints = option("density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz", value="PSD")
+    shock: str | None = option("half-sine, sawtooth or trapezoid", value="SHAPE")
+    record: Any = option("measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc", value="FILE")
+    g: str | None = option(
+        "peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too",
+        value="LEVEL",
+    )
+    acceleration: str | None = option(
+        "peak acceleration, m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too", value="LEVEL"
+    )
+    duration: float | None = option("of all, s")
+    column: str | None = option(
+        "of a record: the box's, by name or number from 0 (default: by usual names, or 1)",
+        value="NAME",
+    )
+
+    def read_excitation(self) -> Any:
+        """Return the excitation that the options describe, such as a ``SweptSine``."""
+        import orchestrate
+
+        kind = self.excitation_kind()
+        settings = self.given(OfExcitation)
+        main = settings.pop(kind)
+        if kind == "record":
+            if column := settings.pop("column", None):
+                column = int(column) if column.isdecimal() else column
+                settings["channels"] = {"box_acceleration": column}
+            record = orchestrate.read_record(main, **settings)
+            if note := unit_note(record.attrs):
+                print(f"{main}: {note}")
+            return orchestrate.Sampled.from_record(record)
+        if kind != "random":
+            level = self.read_level()
+            settings = {name: settings[name] for name in settings if name not in LEVELS}
+            settings["peak" if kind == "shock" else "acceleration"] = level
+            if kind == "shock" and not isinstance(level, float):
+                raise InputError("--shock: expected one number for its peak, no profile")
+        names = {"stepped_sine": "frequencies", "random": "psd", "shock": "shape"}
+        settings |= {names[kind]: main} if kind in names else {"first": main[0], "last": main[1]}
+        return getattr(orchestrate, KINDS[kind])(**settings)
+
+    def excitation_kind(self) -> str:
+        """Return which kind of excitation is chosen; raise for options of another kind."""
+        given = self.given(OfExcitation)
+        chosen = [name for name in KINDS if name in given]
+        if len(chosen) != 1:
+            words = option_names(chosen, " and ") or "nothing"
+            names = option_names(KINDS)
+            raise InputError(f"excitation: {words} given; expected one of {names}")
+        takes = {name: arguments_of(called) for name, called in KINDS.items()}
+        sines = ["swept_sine", "stepped_sine", "shock"]
+        owners = {**dict.fromkeys(LEVELS, sines), "column": ["record"]}
+        for name in given.keys() - KINDS.keys():
+            own = owners.get(name) or [one for one in KINDS if name in takes[one]]
+            if chosen[0] not in own:
+                words = option_names(own, " or ")
+                raise InputError(f"{option_names([name])}: expected with {words} alone")
+        for name in ("duration", "length"):
+            if takes[chosen[0]].get(name) and name not in given:
+                raise InputError(f"{option_names(chosen)}: expected --{name} with it, in s")
+        return chosen[0]
+
+    def read_level(self) -> Any:
+        """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
+        from ..constants import GRAVITY
+
+        chosen = [name for name in LEVELS if getattr(self, name) is not None]
+        if len(chosen) != 1:
+            words = option_names(chosen, " and ") or "nothing"
+            raise InputError(f"level: {words} given; expected one of --g and --acceleration")
+        text, unit = getattr(self, chosen[0]), GRAVITY if chosen[0] == "g" else 1.0
+        if ":" not in text:
+            return unit * positive_number(f"--{chosen[0]}", text)
+        return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{chosen[0]}", text))
 
 
-def excitation_kind(arguments: argparse.Namespace) -> str:
-    """Return which kind of excitation is chosen; raise for options of another kind."""
-    chosen = [name for name in KINDS if getattr(arguments, name) is not None]
-    if len(chosen) != 1:
-        names = [option_name(name) for name in KINDS]
-        words = " and ".join(map(option_name, chosen)) or "nothing"
-        raise InputError(f"excitation: {words} given; expected one of {', '.join(names)}")
-    (kind,) = chosen
-    _, own, needed = KINDS[kind]
-    for name in (one.name for one in parse_options(EXCITATION) if one.name not in KINDS):
-        if getattr(arguments, name) is not None and name not in own:
-            owners = [option_name(other) for other, row in KINDS.items() if name in row[1]]
-            raise InputError(f"{option_name(name)}: expected with {' or '.join(owners)} alone")
-    if needed and getattr(arguments, needed) is None:
-        raise InputError(f"{option_name(kind)}: expected --{needed} with it, in s")
-    return kind
+class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
+    """As in the laboratory: motion and impacts under sines, random, shock or a record."""
 
-
-def read_level(arguments: argparse.Namespace) -> Any:
-    """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
-    from ..constants import GRAVITY
-
-    chosen = [name for name in ("g", "acceleration") if getattr(arguments, name) is not None]
-    if len(chosen) != 1:
-        words = join_option_names(chosen, " and ") or "nothing"
-        raise InputError(f"level: {words} given; expected one of --g and --acceleration")
-    text, unit = getattr(arguments, chosen[0]), GRAVITY if chosen[0] == "g" else 1.0
-    if ":" not in text:
-        return unit * positive_number(f"--{chosen[0]}", text)
-    return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{chosen[0]}", text))
-
-
-def shake_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield the ranges of accelerations and gap, the impacts, and how long a transient lasts."""
-    yield from extents(data, "box_acceleration a1_abs a2_abs x_rel")
-    if "transient_time" in data:
-        yield f"a linear transient decays within {float(data.transient_time):.3g} s"
-    elif data.control_aborted.notnull():
-        end = float(data.control_aborted)
-        yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
-    yield from impact_lines(data)
-
-
-SHAKE = Command(
-    "shake",
-    "as in the laboratory: motion and impacts under sines, random, shock or a record",
-    """  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
+    calls = "shake"
+    shaker: str | None = option("its electrodynamic shaker, level controlled", value="FILE")
+    examples = """
+  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
   {program} shake --structure beam --stepped-sine 10:14:0.1 --settle-cycles 150 --g 0.02
   {program} shake --structure beam --random 5:0.1,100:0.1 --duration 30 --seed 1
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --shaker shaker_1kN
   {program} shake --structure beam --shock half-sine --length 0.011 --g 5
-  {program} shake --structure beam --record base.csv --unit g""",
-    (
-        structure_group(),
-        Group("the box's acceleration", EXCITATION, description="one of the first five"),
-        Group("what moves it", "--shaker FILE  its electrodynamic shaker, level controlled"),
-        Group(
-            "the record",
-            BESIDE,
-            ("--sample-rate HZ  of the record (default: what the excitation needs)", START),
-            "accuracy",
-        ),
-        *result_groups(),
-    ),
-    answer,
-    ask_shake,
-    shake_summary,
-)
+  {program} shake --structure beam --record base.csv --unit g"""
+
+    def ask(self) -> tuple[Structure, Question]:
+        from .. import Shaker
+
+        structure, shaker = self.read_structure(), self.shaker
+        return structure, {
+            "excitation": self.read_excitation(),
+            **self.keywords(),
+            "shaker": None if shaker is None else Shaker.from_file(shaker),
+        }
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield from extents(data, "box_acceleration a1_abs a2_abs x_rel")
+        if "transient_time" in data:
+            yield f"a linear transient decays within {float(data.transient_time):.3g} s"
+        elif data.control_aborted.notnull():
+            end = float(data.control_aborted)
+            yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
+        yield from impact_lines(data)
+
 
 MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 
@@ -238,140 +233,16 @@ def columns_of_analysis(name: str, data: xr.Dataset) -> Columns:
     return columns | {"largest amplitude": peak_cells(data, data[variable], "m/s2")}
 
 
-@dataclass(frozen=True)
-class Analysis:
-    """One analysis that ``--show`` names."""
-
-    function: str  # of the public face
-    options: tuple[str, ...]  # of the command that it takes
-    text: str  # what it shows
-
-
-SPECTRAL, SWEPT = ("resolution", "window"), ("orders", "periods")
-ANALYSES = {
-    "frf": Analysis("frf", (*SPECTRAL, "overlap"), "frequency response and coherence"),
-    "psd": Analysis("psd", (*SPECTRAL, "overlap"), "power spectral density"),
-    "orders": Analysis("track_orders", SWEPT, "orders of a swept sine"),
-    "harmonics": Analysis("harmonics", ("highest", "periods"), "harmonics and their distortion"),
-    "spectrogram": Analysis("spectrogram", SPECTRAL, "spectra over the time"),
-    "shock": Analysis("shock_spectrum", ("damping",), "shock response spectrum"),
-    "density": Analysis("probability_density", ("bins",), "probability density, skewness"),
+ANALYSES = {  # that --show names: the public function, and what it shows
+    "frf": ("frf", "frequency response and coherence"),
+    "psd": ("psd", "power spectral density"),
+    "orders": ("track_orders", "orders of a swept sine"),
+    "harmonics": ("harmonics", "harmonics and their distortion"),
+    "spectrogram": ("spectrogram", "spectra over the time"),
+    "shock": ("shock_spectrum", "shock response spectrum"),
+    "density": ("probability_density", "probability density, skewness"),
 }
-SETTINGS = """
---resolution HZ  distance of the lines, Hz, of frf, psd and spectrogram
---window WORD  hann (default), flattop, boxcar and others
---overlap X  part of a segment, of frf and psd
---orders ORDERS  orders 1 to N, or a list of them such as 0.5,1,2 (default: 3)
---highest X  order of harmonics (default: 5)
---periods X  of the excitation, in a window of orders and harmonics (default: 16)
---damping X  of the oscillators of shock (default: 0.05)
---bins X  of density (default: 100)
-"""
-SHOWN = ", ".join(f"{name} ({one.text})" for name, one in ANALYSES.items())
-
-
-def run_analyse(arguments: argparse.Namespace) -> None:
-    """Run ``analyse``: compute the chosen analyses of all records; print, store and draw them."""
-    from ..files import open_folder
-    from ..running.store import write_netcdf
-    from ..show.analysis import draw
-
-    names = parse_endings("--show", arguments.show, tuple(ANALYSES))
-    Files.from_options(arguments, "", fresh=True)  # before records are read
-    settings = settings_by_analysis(arguments, names)
-    paths = paths_by_label(arguments)
-    records = {label: read_cut_record(arguments, path) for label, path in paths.items()}
-    for label, record in records.items():
-        if note := unit_note(record.attrs):
-            print(f"{paths[label]}: {note}")
-    warn_without_sensor(arguments, records)
-    units = read_record_units(arguments)
-    reading = [getattr(arguments, name) for name in ("from", "to", "sensor")]
-    reading += values_of(arguments, (COLUMNS, READING)).items()
-    for name in names:
-        results = {
-            label: analyse(ANALYSES[name], record, paths[label], settings[name])
-            for label, record in records.items()
-        }
-        shown = {label: with_units(data, units) for label, data in results.items()}
-        for label, data in shown.items():
-            print(f"{f'{label}: ' if label else ''}{ANALYSES[name].text}")
-            print(*table(columns_of_analysis(name, data)), sep="\n")
-        print_units_note(arguments, *shown.values())
-        read = {label: str(path) for label, path in paths.items()}
-        stem = f"analyse_{name}_{arguments.record.stem}_{digest(read, settings[name], *reading)}"
-        open_folder(arguments.output)
-        for label, data in results.items():
-            words = "".join(letter if letter.isalnum() else "-" for letter in label)
-            ending = f"_{words}" if len(results) > 1 else ""
-            files = Files.from_options(arguments, f"{stem}{ending}", fresh=True)
-            write_netcdf(data, files.result)
-            files.write(shown[label])
-        (label, first), *others = shown.items()
-        picture = Files.from_options(arguments, stem, fresh=True)
-        picture.write_pictures(partial(draw, first, label, dict(others)))
-
-
-def warn_without_sensor(arguments: argparse.Namespace, records: Mapping[str, xr.Dataset]) -> None:
-    """Warn if simulated accelerations without impulses are compared with measured ones."""
-    simulated = [label for label, record in records.items() if "impulse" in record]
-    if arguments.sensor is None and 0 < len(simulated) < len(records):
-        warnings.warn(
-            f"{', '.join(simulated)}: accelerations between impacts, compared with a record whose "
-            "sensors feel the impulses too; --sensor HZ:RATE compares like with like",
-            stacklevel=2,
-        )
-
-
-def settings_by_analysis(
-    arguments: argparse.Namespace, names: tuple[str, ...]
-) -> dict[str, dict[str, Any]]:
-    """Return a dict of keywords for each analysis; raise for an option that none of them takes."""
-    chosen = values_of(arguments, SETTINGS)
-    for one in chosen:
-        owners = [name for name, analysis in ANALYSES.items() if one in analysis.options]
-        if not set(owners) & set(names):
-            raise InputError(f"--{one}: expected with --show {' or '.join(owners)} alone")
-    return {name: {o: chosen[o] for o in ANALYSES[name].options if o in chosen} for name in names}
-
-
-def paths_by_label(arguments: argparse.Namespace) -> dict[str, Path]:
-    """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""
-    label = arguments.label or (arguments.record.stem if arguments.beside else "")
-    beside = read_pairs("--beside", arguments.beside, "LABEL=FILE, such as bonded=whole.nc")
-    if label in beside:
-        expected = "expected another label"
-        raise InputError(f"--beside {label}={beside[label]}: a second record {label}; {expected}")
-    return {label: arguments.record, **{name: Path(path) for name, path in beside.items()}}
-
-
-def read_cut_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
-    """Read a record file and keep its samples between ``--from`` and ``--to``."""
-    record = read_record_file(arguments, path)
-    begin, end = (getattr(arguments, name) for name in ("from", "to"))
-    if "time" not in record.coords or begin is end is None:
-        return record
-    part = record.sel(time=slice(begin, end))
-    if not part.sizes["time"]:
-        ends = f"{float(record.time[0]):.6g} to {float(record.time[-1]):.6g} s"
-        raise InputError(f"{path}: nothing between --from and --to; it has {ends}")
-    return part
-
-
-def read_record_file(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
-    """Read a record from a file of any format; apply ``--sensor`` to a simulated one."""
-    from .. import read_record
-
-    if path.suffix.lower() == ".nc":
-        stored = read_earlier_result("FILE" if path == arguments.record else "--beside", path)
-        units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
-        if arguments.sensor is not None and "impulse" in stored:
-            return apply_sensor(stored, arguments.sensor)
-        return stored if units <= {"m/s2"} else read_record(path)
-    reading = values_of(arguments, (COLUMNS, READING))
-    if path.suffix.lower() != ".wav":  # the scale is of the others
-        reading.pop("scale", None)
-    return read_record(path, reading.pop("columns", None), **reading)
+SHOWN = ", ".join(f"{name} ({text})" for name, (_, text) in ANALYSES.items())
 
 
 def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:
@@ -383,55 +254,157 @@ def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:
     return measure(history, Sensor(bandwidth=bandwidth, sample_rate=rate[0] if rate else None))
 
 
-def analyse(
-    analysis: Analysis, record: xr.Dataset, path: Path, settings: Mapping[str, Any]
-) -> xr.Dataset:
+def analyse(name: str, record: xr.Dataset, path: Path, settings: Mapping[str, Any]) -> xr.Dataset:
     """Call the public function of an analysis on a record; errors begin with the file's name."""
     import orchestrate
 
     try:
-        result: xr.Dataset = getattr(orchestrate, analysis.function)(record, **settings)
+        result: xr.Dataset = getattr(orchestrate, ANALYSES[name][0])(record, **settings)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return result
 
 
-ANALYSE = Command(
-    "analyse",
-    "what an analyser shows of a record: responses, spectra, orders, shock spectra",
-    """  {program} analyse results/shake.nc --show frf,psd --resolution 0.5
+class Settings(Options):
+    """Settings of analyses."""
+
+    heading = "settings"
+    takes = (
+        "frf: resolution window overlap; track_orders: orders periods; harmonics: highest; "
+        "shock_spectrum: damping; probability_density: bins"
+    )
+    if_given = True
+
+
+class AnalysedRecords(Options):
+    """Options of the records of an analysis."""
+
+    heading, rank = "records", 0
+    record: Path = option(
+        "a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .wav or "
+        ".nc",
+        position=True,
+        needed=True,
+    )
+    show: str = option(SHOWN, "frf,psd", value="A,B,...")
+    label: str | None = option("what the record is, for the picture", value="WORDS")
+    beside: list[str] = option(
+        "another record in the same picture; may be repeated", (), value="LABEL=FILE"
+    )
+    sensor: str | None = option(
+        "of results of shake what accelerometers of this bandwidth read, with the impulses of "
+        "impacts; RATE: samples a second (default: accelerations between impacts)",
+        value="HZ[:RATE]",
+    )
+    begin: float | None = option("time it begins at, s", name="--from")
+    to: float | None = option("time it ends at, s")
+
+
+class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, InFolder, Command):
+    """What an analyser shows of a record: responses, spectra, orders, shock spectra."""
+
+    examples = """
+  {program} analyse results/shake.nc --show frf,psd --resolution 0.5
   {program} analyse swept.nc --label delaminated --beside bonded=whole.nc --show orders,harmonics
   {program} analyse swept.nc --sensor 2000 --beside measured=bench.csv --show orders
   {program} analyse measured.csv --unit g --columns time=0,box_acceleration=3,acceleration1=4
   {program} analyse run.wav --scale 500 --show spectrogram,density --from 2 --to 30
-  {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv""",
-    (
-        Group(
-            options=f"""
-            record FILE  a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .lvm,
-                .tdms, .wav, .nc
-            --show A,B,... = frf,psd  {SHOWN}
-            """
-        ),
-        Group(
-            "records",
-            """
-            --label WORDS  what the record is, for the picture
-            --beside LABEL=FILE ...  another record in the same picture; may be repeated
-            --sensor HZ[:RATE]  of results of shake what accelerometers of this bandwidth read, with
-                the impulses of impacts; RATE: samples a second (default: accelerations between
-                impacts)
-            --from S  time it begins at, s
-            --to S  time it ends at, s
-            """,
-        ),
-        Group("how to read records", (COLUMNS, READING)),
-        Group("settings", SETTINGS),
-        UNITS,
-        Group("files", FORMAT),
-        Group("results", OUTPUT),
-    ),
-    run_analyse,
-)
+  {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv"""
 
-COMMANDS = (SHAKE, ANALYSE)
+    def __call__(self) -> None:
+        from ..files import open_folder
+        from ..running.store import write_netcdf
+        from ..show.analysis import draw
+
+        names = parse_endings("--show", self.show, tuple(ANALYSES))
+        Files.from_options(self, "", fresh=True)  # before records are read
+        settings = self.settings_by_analysis(names)
+        paths = self.paths_by_label()
+        records = {label: self.read_cut_record(path) for label, path in paths.items()}
+        for label, record in records.items():
+            if note := unit_note(record.attrs):
+                print(f"{paths[label]}: {note}")
+        self.warn_without_sensor(records)
+        units = self.read_record_units()
+        reading: list[Any] = [self.begin, self.to, self.sensor]
+        reading += self.given(InColumns, Reading).items()
+        for name in names:
+            results = {
+                label: analyse(name, record, paths[label], settings[name])
+                for label, record in records.items()
+            }
+            shown = {label: with_units(data, units) for label, data in results.items()}
+            for label, data in shown.items():
+                print(f"{f'{label}: ' if label else ''}{ANALYSES[name][1]}")
+                print(*table(columns_of_analysis(name, data)), sep="\n")
+            self.print_units_note(*shown.values())
+            read = {label: str(path) for label, path in paths.items()}
+            stem = f"analyse_{name}_{self.record.stem}_{digest(read, settings[name], *reading)}"
+            open_folder(self.output)
+            for label, data in results.items():
+                words = "".join(letter if letter.isalnum() else "-" for letter in label)
+                ending = f"_{words}" if len(results) > 1 else ""
+                files = Files.from_options(self, f"{stem}{ending}", fresh=True)
+                write_netcdf(data, files.result)
+                files.write(shown[label])
+            (label, first), *others = shown.items()
+            picture = Files.from_options(self, stem, fresh=True)
+            picture.write_pictures(partial(draw, first, label, dict(others)))
+
+    def warn_without_sensor(self, records: Mapping[str, xr.Dataset]) -> None:
+        """Warn if simulated accelerations without impulses are compared with measured ones."""
+        simulated = [label for label, record in records.items() if "impulse" in record]
+        if self.sensor is None and 0 < len(simulated) < len(records):
+            warnings.warn(
+                f"{', '.join(simulated)}: accelerations between impacts, compared with a record "
+                "whose sensors feel the impulses too; --sensor HZ:RATE compares like with like",
+                stacklevel=2,
+            )
+
+    def settings_by_analysis(self, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+        """Return each analysis's keywords; raise for an option that none of them takes."""
+        chosen = self.given(Settings)
+        takes = {name: arguments_of(function) for name, (function, _) in ANALYSES.items()}
+        for one in chosen:
+            owners = [name for name in takes if one in takes[name]]
+            if not set(owners) & set(names):
+                raise InputError(f"--{one}: expected with --show {' or '.join(owners)} alone")
+        return {name: {o: chosen[o] for o in chosen if o in takes[name]} for name in names}
+
+    def paths_by_label(self) -> dict[str, Path]:
+        """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""
+        label = self.label or (self.record.stem if self.beside else "")
+        beside = read_pairs("--beside", self.beside, "LABEL=FILE, such as bonded=whole.nc")
+        if label in beside:
+            expected = "expected another label"
+            raise InputError(
+                f"--beside {label}={beside[label]}: a second record {label}; {expected}"
+            )
+        return {label: self.record, **{name: Path(path) for name, path in beside.items()}}
+
+    def read_cut_record(self, path: Path) -> xr.Dataset:
+        """Read a record file and keep its samples between ``--from`` and ``--to``."""
+        record = self.read_record_file(path)
+        begin, end = self.begin, self.to
+        if "time" not in record.coords or begin is end is None:
+            return record
+        part = record.sel(time=slice(begin, end))
+        if not part.sizes["time"]:
+            ends = f"{float(record.time[0]):.6g} to {float(record.time[-1]):.6g} s"
+            raise InputError(f"{path}: nothing between --from and --to; it has {ends}")
+        return part
+
+    def read_record_file(self, path: Path) -> xr.Dataset:
+        """Read a record from a file of any format; apply ``--sensor`` to a simulated one."""
+        from .. import read_record
+
+        if path.suffix.lower() == ".nc":
+            stored = read_earlier_result("FILE" if path == self.record else "--beside", path)
+            units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
+            if self.sensor is not None and "impulse" in stored:
+                return apply_sensor(stored, self.sensor)
+            return stored if units <= {"m/s2"} else read_record(path)
+        reading = self.given(InColumns, Reading)
+        if path.suffix.lower() != ".wav":  # the scale is of the others
+            reading.pop("scale", None)
+        return read_record(path, reading.pop("columns", None), **reading)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
 import logging
 import math
 import warnings
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..constants import TURN
 from ..lazy import xr
 from ..units import text_of
-from .table import Structure
+
+if TYPE_CHECKING:
+    from ..model import Structure
 
 FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
 NEAR = 0.1  # of a frequency: so far beside its own ones a structure is still asked about
@@ -40,9 +41,7 @@ def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -
         yield from clearance_notes(structure, question, shown)
 
 
-def print_frequency_notes(
-    arguments: argparse.Namespace, structure: Structure, question: Question
-) -> None:
+def print_frequency_notes(arguments: Any, structure: Structure, question: Question) -> None:
     """Print which structure is used by default; warn if frequencies are far from its own."""
     frequency = question.get("frequency")
     values = (
@@ -65,9 +64,7 @@ def print_frequency_notes(
         )
 
 
-def warn_of_other_unit(
-    arguments: argparse.Namespace, structure: Structure, values: tuple[float, ...]
-) -> None:
+def warn_of_other_unit(arguments: Any, structure: Structure, values: tuple[float, ...]) -> None:
     """Warn if frequencies would fit the structure in the other unit: Hz for rad/s or reverse."""
     low, high = (1.0 - NEAR) * min(values), (1.0 + NEAR) * max(values)
     own = [TURN * f for f in (structure.f1, structure.f2)]

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 import textwrap
 from collections.abc import Callable, Mapping
+from copy import copy
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
+from .face import Options, option, option_names
 from .grammar import (
+    Positive,
     is_single_number,
     parse_changes,
     parse_ends,
@@ -19,8 +21,9 @@ from .grammar import (
     parse_one_or_more,
     positive_number,
 )
-from .output import result_groups
-from .table import Group, Structure
+
+if TYPE_CHECKING:
+    from ..model import Structure
 
 SETS = Path(__file__).resolve().parents[1] / "model" / "sets"
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
@@ -38,8 +41,6 @@ ASSUMED = {  # what a beam needs beside what is set, with the names that set it 
 CONTINUED = (  # what a continuation varies, for help texts
     "eta, hz, rpm, frequency, amplitude, box_acceleration or a parameter of the structure"
 )
-START = "--start X1,X2,V1,V2  state at the start, m and m/s (default: rest)"
-BESIDE = "--beside  the same of the bonded structure, beside it"
 
 
 def parameter_help(name: str, width: int = 94, indent: int = 24) -> str:
@@ -70,11 +71,6 @@ QUANTITIES = f"""quantities:
 """
 
 
-def option_name(name: str) -> str:
-    """Return the command-line option of an argument: ``--max-points`` for ``max_points``."""
-    return f"--{name.replace('_', '-')}"
-
-
 def list_shipped_sets() -> str:
     """Return a text with the shipped parameter sets, one line each, for the help."""
     lines = []
@@ -85,72 +81,181 @@ def list_shipped_sets() -> str:
     return "\n".join(lines)
 
 
-# -- tables of options ----------------------------------------------------------------------------
+# -- groups of options ----------------------------------------------------------------------------
 
 
-def structure_group(stored: str = "") -> Group:
-    """Return ``--structure`` and ``--set``; ``stored``: the option of a result that has one."""
-    default, usual = (
-        ("", f" (default: that of {stored}, else paper)") if stored else (" = paper", "")
+class OfStructure(Options):
+    """Options of the structure."""
+
+    heading, rank = "structure", 0
+    structure: Any = option(
+        "TOML file with a [structure], or the name of a set", "paper", value="SET|FILE"
     )
-    return Group(
-        "structure",
-        f"""
-        --structure SET|FILE{default}  TOML file with a [structure], or the name of a set{usual}
-        --set NAME=VALUE ...  one of its parameters, SI ({" ".join(STRUCTURE)}), of each half
-            (f1 f2 in Hz, zeta1 zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated
-        """,
+    set: list[str] = option(
+        f"one of its parameters, SI ({' '.join(STRUCTURE)}), of each half (f1 f2 in Hz, zeta1 "
+        "zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
+        (),
+        value="NAME=VALUE",
     )
 
+    def read_structure(self) -> Structure:
+        """Return the ``Structure`` of ``--structure`` with the changes of ``--set``."""
+        from ..model import Structure
 
-def box_group(several: bool = True, usual: str = "") -> Group:
-    """Return the options of the box's harmonic motion."""
-    values = "VALUES" if several else "VALUE"
-    form = ", FIRST:LAST:STEP with both ends or a list A,B,..." if several else ""
-    levels = "; several levels at one frequency" if several else ""
-    default = f" (default: {usual})" if usual else ""
-    return Group(
-        "the box's motion",
-        f"""
-        --hz {values}  frequency in Hz{form}
-        --rpm {values}  the same in turns per minute
-        --frequency {values}  the same as Omega in rad/s
-        --eta {values}  the same as frequency ratio Omega/omega{default}
-        --amplitude A  amplitude a in m (default with --eta: 1/eta^2 m)
-        --g G  the same as peak acceleration in g, held at all frequencies{levels}
-        """,
-        description="one frequency and one amplitude of these, or the [excitation] of the file of "
-        "--structure",
+        changes = parse_changes(self.set)
+        structure = Structure.from_file(self.structure).replace(**changes)
+        print_assumptions(structure, self.structure, changes)
+        return structure
+
+
+class OfStored(OfStructure):
+    """The same, of a command that may begin with a stored result."""
+
+    structure: Any = option(
+        "TOML file with a [structure], or the name of a set (default: that of the stored result, "
+        "else paper)",
+        value="SET|FILE",
     )
 
 
-def response_groups(
-    question: Group, several: bool = True, usual: str = "", stored: str = ""
-) -> tuple[Group, ...]:
-    """Return the groups of a command on responses to harmonic excitation."""
-    return structure_group(stored), box_group(several, usual), question, *result_groups()
+class OfBox(Options):
+    """Options of the box's harmonic motion."""
+
+    heading, rank = "the box's motion", 1
+    remark = (
+        "one frequency and one amplitude of these, or the [excitation] of the file of --structure; "
+        "where several values are taken: FIRST:LAST:STEP with both ends, or a list A,B,..."
+    )
+    hz: str | None = option("frequency in Hz", value="VALUES")
+    rpm: str | None = option("the same in turns per minute", value="VALUES")
+    frequency: str | None = option("the same as Omega in rad/s", value="VALUES")
+    eta: Any = option("the same as frequency ratio Omega/omega", value="VALUES")
+    amplitude: Positive = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
+    g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
+
+    def read_excitation(
+        self, structure: Structure, si: bool = False, one: bool = False
+    ) -> dict[str, Any]:
+        """Return frequency and amplitude of the box's motion as keywords of the public API."""
+        from ..constants import GRAVITY
+        from ..model.sections import TO_RAD_S
+
+        name, amplitude = self.frequency_option(), self.read_amplitude()
+        if not self.is_shaken() and (described := self.excitation_from_file()):
+            return described
+        if name is None:
+            raise InputError(
+                f"frequency: nothing given; expected one of {option_names(FREQUENCIES)}"
+            )
+        text = getattr(self, name)
+        values = parse_one_or_more(f"--{name}", text, one)
+        if name == "eta" and amplitude is None:
+            if si and not math.isclose(structure.omega, 1.0):
+                raise InputError(
+                    f"--eta {text}: omega is {structure.omega:g} rad/s; expected --amplitude in m "
+                    "or --g with it (1/eta^2 m is the paper's, for omega = 1 rad/s)"
+                )
+            return {"eta": values}
+        if amplitude is None:
+            raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
+        omega = structure.omega
+        frequencies = apply_to_each(
+            TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values
+        )
+        if self.g is None:
+            return {"frequency": frequencies, "amplitude": amplitude}
+        held = apply_to_each(lambda value: amplitude * GRAVITY / (value * value), frequencies)
+        return {"frequency": frequencies, "amplitude": held}
+
+    def excitation_from_file(self) -> dict[str, Any] | None:
+        """Return frequency and amplitude from the structure's file, or None; set ``--phase``."""
+        from ..model.files import read
+
+        excitation: Any = read(self.structure).get("excitation")
+        if excitation is None:
+            return None
+        if getattr(self, "phase", None) == 0.0:
+            self.phase = excitation.phase
+        return {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
+
+    def frequency_option(self) -> str | None:
+        """Return which option gives the frequency, None if none does."""
+        return self.one_of(*FREQUENCIES)
+
+    def read_amplitude(self) -> float | None:
+        """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is given."""
+        given = self.one_of("amplitude", "g") == "g"
+        return positive_number("--g", self.g) if given else self.amplitude
+
+    def is_shaken(self) -> bool:
+        """Return whether an option gives a frequency or an amplitude of the box."""
+        return self.frequency_option() is not None or self.read_amplitude() is not None
+
+    def excitation_by_level(self, structure: Structure, one: bool = False) -> dict[str, Any]:
+        """Return the box's frequency and its level (m/s2), each a number or a tuple."""
+        from ..constants import GRAVITY
+
+        self.one_of("amplitude", "g")
+        levels = parse_one_or_more("--g", self.g)
+        plain = copy(self)
+        plain.g, plain.amplitude = None, 1.0
+        frequency = plain.read_excitation(structure, one=one)["frequency"]
+        return {"frequency": frequency, "level": apply_to_each(lambda peak: peak * GRAVITY, levels)}
 
 
-def over_options(twice: bool = False) -> str:
-    """Return ``--over`` and ``--values``, which may be repeated if ``twice``."""
-    more, where = (" ...", "; twice at") if twice else ("", ", at")
-    return f"""
-    --over NAME{more}  a parameter of the structure that varies, as for --set{where} one frequency
-    --values VALUES{more}  its values, FIRST:LAST:STEP or a list A,B,...
-    """
+class Over(Options):
+    """Options of a parameter that varies."""
+
+    over: Any = option(
+        "a parameter of the structure that varies, as for --set, at one frequency", value="NAME"
+    )
+    values: Any = option("its values, FIRST:LAST:STEP or a list A,B,...", value="VALUES")
+
+    def read_over(self) -> tuple[tuple[float, ...], bool] | None:
+        """Return the values of ``--over``, and whether they are a range; None without it."""
+        if (self.over is None) != (self.values is None):
+            raise InputError("--over and --values: expected both, or none of them")
+        return parse_listed(self.over, self.values) if self.over else None
+
+    def varied_arguments(
+        self, structure: Structure, usual: str | None = None
+    ) -> tuple[dict[str, Any], bool]:
+        """Return excitation and varied parameter as keywords, and whether a range was given."""
+        if self.over is None and self.g is not None and not is_single_number(self.g):
+            box = self.excitation_by_level(structure, one=True)
+            levels = {"over": "level", "values": box["level"]}
+            return {"frequency": box["frequency"], **levels}, ":" in self.g
+        if (values := self.read_over()) is not None:
+            self.check_over(self.over)
+            fixed = self.read_excitation(structure, one=True)
+            return {**fixed, "over": self.over, "values": values[0]}, values[1]
+        if usual is not None and not self.is_shaken():
+            self.eta = usual
+        excitation = self.read_excitation(structure)
+        return excitation, ":" in str(getattr(self, self.frequency_option() or "eta"))
+
+    def check_over(
+        self,
+        over: str,
+    ) -> None:
+        """Raise unless a parameter of a structure may vary with these options."""
+        if over in FREQUENCIES:
+            raise InputError(f"--over {over}: expected --{over} VALUES instead")
+        if over in ("amplitude", "g", "level"):
+            raise InputError(f"--over {over}: expected --g VALUES at one frequency instead")
+        scaled = self.read_amplitude() is not None and self.eta is not None
+        if scaled and over in ("m1", "k1", "omega"):
+            expected = option_names(UNITS, " or ")
+            raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
+
+
+class Beside(Options):
+    """The option of both structures."""
+
+    beside: bool = option("the same of the bonded structure, beside it")
 
 
 # -- structures -----------------------------------------------------------------------------------
-
-
-def read_structure_options(arguments: argparse.Namespace) -> Structure:
-    """Return the ``Structure`` of ``--structure`` with the changes of ``--set``."""
-    from ..model import Structure
-
-    changes = parse_changes(arguments.set)
-    structure = Structure.from_file(arguments.structure).replace(**changes)
-    print_assumptions(structure, arguments.structure, changes)
-    return structure
 
 
 def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
@@ -178,133 +283,12 @@ def format_assumed(name: str, value: float) -> str:
 # -- the box's motion -----------------------------------------------------------------------------
 
 
-def read_excitation(
-    arguments: argparse.Namespace, structure: Structure, si: bool = False, one: bool = False
-) -> dict[str, Any]:
-    """Return frequency and amplitude of the box's motion as keywords of the public API."""
-    from ..constants import GRAVITY
-    from ..model.sections import TO_RAD_S
-
-    name, amplitude = frequency_option(arguments), read_amplitude(arguments)
-    if not is_shaken(arguments) and (described := excitation_from_file(arguments)):
-        return described
-    if name is None:
-        raise InputError(
-            f"frequency: nothing given; expected one of {join_option_names(FREQUENCIES)}"
-        )
-    text = getattr(arguments, name)
-    values = parse_one_or_more(f"--{name}", text, one)
-    if name == "eta" and amplitude is None:
-        if si and not math.isclose(structure.omega, 1.0):
-            raise InputError(
-                f"--eta {text}: omega is {structure.omega:g} rad/s; expected --amplitude in m or "
-                "--g with it (1/eta^2 m is the paper's, for omega = 1 rad/s)"
-            )
-        return {"eta": values}
-    if amplitude is None:
-        raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
-    omega = structure.omega
-    frequencies = apply_to_each(
-        TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values
-    )
-    if arguments.g is None:
-        return {"frequency": frequencies, "amplitude": amplitude}
-    held = apply_to_each(lambda value: amplitude * GRAVITY / (value * value), frequencies)
-    return {"frequency": frequencies, "amplitude": held}
-
-
-def read_question(arguments: argparse.Namespace) -> tuple[Structure, dict[str, Any]]:
-    """Return the structure, and all keywords of a public function at one frequency."""
-    structure = read_structure_options(arguments)
-    excitation = read_excitation(arguments, structure, si=True, one=True)
-    return structure, {**excitation, **arguments.row.keywords(arguments)}
-
-
-def excitation_from_file(arguments: argparse.Namespace) -> dict[str, Any] | None:
-    """Return frequency and amplitude from the structure's TOML file, or None; set ``--phase``."""
-    from ..model.files import read
-
-    excitation: Any = read(arguments.structure).get("excitation")
-    if excitation is None:
-        return None
-    if getattr(arguments, "phase", None) == 0.0:
-        arguments.phase = excitation.phase
-    return {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
-
-
-def one_of(arguments: argparse.Namespace, *names: str) -> str | None:
-    """Return which of some options is given, None if none is; raise if several are."""
-    given = [name for name in names if getattr(arguments, name) not in (None, False)]
-    if len(given) > 1:
-        raise InputError(f"{' and '.join(map(option_name, given))}: expected one of them")
-    return given[0] if given else None
-
-
-def frequency_option(arguments: argparse.Namespace) -> str | None:
-    """Return which option gives the frequency, None if none does."""
-    return one_of(arguments, *FREQUENCIES)
-
-
-def read_amplitude(arguments: argparse.Namespace) -> float | None:
-    """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is given."""
-    name = one_of(arguments, "amplitude", "g")
-    return None if name is None else positive_number(f"--{name}", getattr(arguments, name))
-
-
-def is_shaken(arguments: argparse.Namespace) -> bool:
-    """Return whether an option gives a frequency or an amplitude of the box."""
-    return frequency_option(arguments) is not None or read_amplitude(arguments) is not None
-
-
-def read_over(arguments: argparse.Namespace) -> tuple[tuple[float, ...], bool] | None:
-    """Return the values of ``--over``, and whether they are a range; None without it."""
-    if (arguments.over is None) != (arguments.values is None):
-        raise InputError("--over and --values: expected both, or none of them")
-    return parse_listed(arguments.over, arguments.values) if arguments.over else None
-
-
-def join_option_names(names: Any, joint: str = ", ") -> str:
-    """Join names as options in a text: ``--eta, --hz``."""
-    return joint.join(f"--{name}" for name in names)
-
-
 def apply_to_each(change: Callable[[float], float], values: float | tuple[float, ...]) -> Any:
     """Return a function's value for one number, or a tuple of values for a tuple."""
     return tuple(map(change, values)) if isinstance(values, tuple) else change(values)
 
 
 # -- a parameter that varies ----------------------------------------------------------------------
-
-
-def varied_arguments(
-    arguments: argparse.Namespace, structure: Structure, usual: str | None = None
-) -> tuple[dict[str, Any], bool]:
-    """Return excitation and varied parameter as keywords, and whether a range was given."""
-    if arguments.over is None and arguments.g is not None and not is_single_number(arguments.g):
-        box = excitation_by_level(arguments, structure, one=True)
-        levels = {"over": "level", "values": box["level"]}
-        return {"frequency": box["frequency"], **levels}, ":" in arguments.g
-    if (values := read_over(arguments)) is not None:
-        check_over(arguments.over, arguments)
-        fixed = read_excitation(arguments, structure, one=True)
-        return {**fixed, "over": arguments.over, "values": values[0]}, values[1]
-    if usual is not None and not is_shaken(arguments):
-        arguments.eta = usual
-    excitation = read_excitation(arguments, structure)
-    return excitation, ":" in str(getattr(arguments, frequency_option(arguments) or "eta"))
-
-
-def excitation_by_level(
-    arguments: argparse.Namespace, structure: Structure, one: bool = False
-) -> dict[str, Any]:
-    """Return the box's frequency and its level (m/s2) from ``--g``, each a number or a tuple."""
-    from ..constants import GRAVITY
-
-    one_of(arguments, "amplitude", "g")
-    levels = parse_one_or_more("--g", arguments.g)
-    plain = argparse.Namespace(**{**vars(arguments), "g": None, "amplitude": "1"})
-    frequency = read_excitation(plain, structure, one=one)["frequency"]
-    return {"frequency": frequency, "level": apply_to_each(lambda peak: peak * GRAVITY, levels)}
 
 
 def parse_varied(name: str, limits: str) -> tuple[str, tuple[float, float]]:
@@ -318,15 +302,3 @@ def parse_varied(name: str, limits: str) -> tuple[str, tuple[float, float]]:
         to_rad_s = TO_RAD_S[UNITS[name]]
         return "frequency", (to_rad_s(first), to_rad_s(last))
     return name, (first, last)
-
-
-def check_over(over: str, arguments: argparse.Namespace) -> None:
-    """Raise unless ``--over`` names a structure's parameter that may vary with these options."""
-    if over in FREQUENCIES:
-        raise InputError(f"--over {over}: expected --{over} VALUES instead")
-    if over in ("amplitude", "g", "level"):
-        raise InputError(f"--over {over}: expected --g VALUES at one frequency instead")
-    scaled = read_amplitude(arguments) is not None and arguments.eta is not None
-    if scaled and over in ("m1", "k1", "omega"):
-        expected = join_option_names(UNITS, " or ")
-        raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import json
 import os
@@ -16,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..lazy import xr
-from .grammar import floats
-from .table import Group
+from .face import Options, option
+from .grammar import ChannelColumns, floats
 
 if TYPE_CHECKING:
     from ..model import Structure
@@ -32,73 +31,139 @@ OWN_NAME = re.compile(rf"[a-z-]+_(.+)_[0-9a-f]{{{DIGITS}}}")  # of a result's fi
 
 # -- options --------------------------------------------------------------------------------------
 
-COLUMNS = """
---columns A=X,B=Y  columns by name or number from 0: CHANNEL=COLUMN,... with the channels time,
-    box_acceleration, acceleration1, acceleration2
-"""
-READING = """
---unit UNIT  g, mm/s ..., or by channel: base=V,face1=mm/s,time=us (default: what the file says)
---sensitivity VALUE  of voltages: "100 mV/g", or by channel "base=100 mV/g,face1=50 mV/(mm/s)"
---sample-rate HZ  where the file has no times
---scale FACTOR  by channel, such as face1=-1; of WAV files m/s2 at the full scale
---delay SECONDS  by which channels are late, such as face1=0.002
---resample  make uneven times equal, by splines
-"""
-UNITS = Group(
-    "units",
-    """
-    --units A,B,...  of prints, pictures, tables and their names: Hz, rpm, rad/s or eta; m, mm or
-        um; m/s2 or g; s or periods, a list such as Hz,mm,g (default: as the question is asked; nc
-        is in SI)
-    """,
-)
-STORE = """
---store FILE.nc  the result's own file (default: a name of its own for each question in --output)
-"""
-FORMAT = f"""
---format A,B,... = nc  also as {", ".join(FORMATS[1:])}, a list; nc is always written (default: nc)
---plot A,B,... = png  pictures: {", ".join(PLOTS)}, a list, or none (default: png)
---size W:H  shape of the pictures for slides, such as 16:9, with larger letters
-"""
-OUTPUT = "--output FOLDER = results  folder of the results (default: results)"
+
+class Reading(Options):
+    """How record files are read, as keywords of ``read_record``."""
+
+    heading = "how to read records"
+    takes = "read_record: unit sensitivity sample_rate scale delay resample"
+    if_given = True
+
+    def read_record_units(self) -> Units:
+        """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
+        from ..units import FACTORS, Units
+
+        own = self.unit if self.unit in FACTORS["acceleration"] else ""
+        return self.read_units().with_defaults(Units(acceleration=own))
 
 
-def running_group(output: str = OUTPUT, several: bool = False) -> Group:
-    """Return the options of how results are computed; of ``several`` FMUs or of one."""
-    repeat, again = (" ...", "; may be repeated") if several else ("", "")
-    return Group(
-        "results and running",
-        f"""
-        {output}
-        --force  compute anew what is there already
-        --keep-stale  take results that older code or another FMU has made
-        --jobs N  processes at once (default: all cores)
-        --cluster ADDRESS  compute on the workers of a Dask scheduler, such as tcp://host:8786
-        --fmu FILE{repeat}  own FMU (default: the one of the present sources){again}
-        --build-folder FOLDER  where FMUs are looked for and exported to
-        """,
+class InColumns(Options):
+    """The option of a record's columns."""
+
+    heading = "how to read records"
+    columns: ChannelColumns = option(
+        "columns by name or number from 0: CHANNEL=COLUMN,... with the channels time, "
+        "box_acceleration, acceleration1, acceleration2",
+        value="A=X,B=Y",
     )
 
 
-def result_groups(store: bool = True, several: bool = False) -> tuple[Group, ...]:
-    """Return the groups of units, files and running, which end most commands' options."""
-    files = Group("files", (STORE if store else "", FORMAT))
-    return UNITS, files, running_group(several=several)
+class InUnits(Options):
+    """The option of display units."""
+
+    heading, rank = "units", 3
+    units: str | None = option(
+        "of prints, pictures, tables and their names: Hz, rpm, rad/s or eta; m, mm or um; m/s2 or "
+        "g; s or periods, a list such as Hz,mm,g (default: as the question is asked; nc is in SI)",
+        value="A,B,...",
+    )
+
+    def read_units(self) -> Units:
+        """Return the display units of ``--units``; none chosen where a command lacks the option."""
+        from ..units import Units
+
+        return Units.from_text(getattr(self, "units", None) or "", "--units")
+
+    def print_units_note(self, *answers: xr.Dataset) -> None:
+        """Print a note if ``--units`` changes none of the numbers of some results."""
+        from ..units import scale_of
+
+        kinds = {
+            str(array.attrs.get("units", "1"))
+            for data in answers
+            for array in data.variables.values()
+            if array.dtype.kind == "f"
+        }
+        units = self.read_units()
+        changed = any(scale_of(data, kind)[1] != kind for data in answers for kind in kinds)
+        if units.words and not changed and kinds.isdisjoint(units.words):
+            words = ", ".join(sorted(kinds - {"1"}))
+            print(f"--units {units}: these have no such numbers, only {words}")
+
+    def refuse_units(self, reason: str) -> None:
+        """Raise if ``--units`` is given to a command whose output has no units."""
+        if str(self.read_units()):
+            raise InputError(f"--units {self.units}: {reason}; expected the command without it")
 
 
-def read_units(arguments: argparse.Namespace) -> Units:
-    """Return the display units of ``--units``; none chosen where a command lacks the option."""
-    from ..units import Units
+class Formats(Options):
+    """Options of the files beside a result."""
 
-    return Units.from_text(getattr(arguments, "units", None) or "", "--units")
+    heading, rank = "files", 4
+    format: str = option(
+        f"also as {', '.join(FORMATS[1:])}, a list; nc is always written", "nc", value="A,B,..."
+    )
+    plot: str = option(f"pictures: {', '.join(PLOTS)}, a list, or none", "png", value="A,B,...")
+    size: str | None = option(
+        "shape of the pictures for slides, such as 16:9, with larger letters", value="W:H"
+    )
 
 
-def read_record_units(arguments: argparse.Namespace) -> Units:
-    """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
-    from ..units import FACTORS, Units
+class Stored(Options):
+    """The option of a result's own file."""
 
-    own = arguments.unit if arguments.unit in FACTORS["acceleration"] else ""
-    return read_units(arguments).with_defaults(Units(acceleration=own))
+    heading, rank = "files", 4
+    store: Path | None = option(
+        "the result's own file (default: a name of its own for each question in --output)",
+        value="FILE.nc",
+    )
+
+
+class InFolder(Options):
+    """The option of the folder of results."""
+
+    heading, rank = "results and running", 5
+    output: Path = option("folder of the results", Path("results"), value="FOLDER")
+
+
+class HowRun(Options):
+    """Options of how results are computed."""
+
+    heading, rank = "results and running", 5
+    force: bool = option("compute anew what is there already")
+    keep_stale: bool = option("take results that older code or another FMU has made")
+    jobs: int | None = option("processes at once (default: all cores)")
+    cluster: str | None = option(
+        "compute on the workers of a Dask scheduler, such as tcp://host:8786", value="ADDRESS"
+    )
+    fmu: Path | None = option("own FMU (default: the one of the present sources)")
+    build_folder: Path | None = option("where FMUs are looked for and exported to", value="FOLDER")
+
+    def running(self, store: Path | None = None) -> Running:
+        """Return ``jobs``, ``cluster``, ``force``, ``fmu`` and ``store`` as keywords of the API."""
+        running: Running = {
+            "jobs": self.jobs,
+            "cluster": self.cluster,
+            "force": self.force,
+            "keep_stale": self.keep_stale,
+            "fmu": user_fmus(self.fmu) if isinstance(self.fmu, list) else self.fmu,
+            "build_folder": self.build_folder,
+        }
+        if store is not None:
+            running["store"] = store
+        return running
+
+
+class Results(InUnits, Formats, InFolder, HowRun):
+    """Options of units, files and running, which end most commands' options."""
+
+
+class OfBoth(Results):
+    """The same of a command that runs both FMUs."""
+
+    fmu: list[Path] = option(  # type: ignore[assignment]
+        "own FMU (default: the one of the present sources); may be repeated", ()
+    )
 
 
 def unit_note(attributes: Mapping[Any, Any]) -> str:
@@ -106,44 +171,6 @@ def unit_note(attributes: Mapping[Any, Any]) -> str:
     own = attributes.get("unit_in_file", "")
     used = attributes.get("unit", "")
     return f"--unit {used} was used, although the file says {own}" if own else ""
-
-
-def refuse_units(arguments: argparse.Namespace, reason: str) -> None:
-    """Raise if ``--units`` is given to a command whose output has no units."""
-    if str(read_units(arguments)):
-        raise InputError(f"--units {arguments.units}: {reason}; expected the command without it")
-
-
-def print_units_note(arguments: argparse.Namespace, *answers: xr.Dataset) -> None:
-    """Print a note if ``--units`` changes none of the numbers of some results."""
-    from ..units import scale_of
-
-    kinds = {
-        str(array.attrs.get("units", "1"))
-        for data in answers
-        for array in data.variables.values()
-        if array.dtype.kind == "f"
-    }
-    units = read_units(arguments)
-    changed = any(scale_of(data, kind)[1] != kind for data in answers for kind in kinds)
-    if units.words and not changed and kinds.isdisjoint(units.words):
-        words = ", ".join(sorted(kinds - {"1"}))
-        print(f"--units {units}: these have no such numbers, only {words}")
-
-
-def read_running_options(arguments: argparse.Namespace, store: Path | None = None) -> Running:
-    """Return ``jobs``, ``cluster``, ``force``, ``fmu`` and ``store`` as keywords of the API."""
-    running: Running = {
-        "jobs": arguments.jobs,
-        "cluster": arguments.cluster,
-        "force": arguments.force,
-        "keep_stale": arguments.keep_stale,
-        "fmu": user_fmus(arguments.fmu) if isinstance(arguments.fmu, list) else arguments.fmu,
-        "build_folder": arguments.build_folder,
-    }
-    if store is not None:
-        running["store"] = store
-    return running
 
 
 def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
@@ -225,7 +252,7 @@ class Files:
 
     @classmethod
     def from_options(
-        cls, arguments: argparse.Namespace, name: str, over: str = "", fresh: bool | None = None
+        cls, arguments: Any, name: str, over: str = "", fresh: bool | None = None
     ) -> Files:
         """Return the ``Files`` of a result by the options; raise if they cannot be written."""
         formats = parse_endings("--format", arguments.format, FORMATS)
@@ -240,7 +267,7 @@ class Files:
 
             resumed = journal_path(result, anew=True).exists()
             fresh = arguments.force or resumed or not result.exists()
-        units = str(read_units(arguments)).replace(", ", "-").replace("/", "_")
+        units = str(arguments.read_units()).replace(", ", "-").replace("/", "_")
         text = getattr(arguments, "size", None)
         size = SIZE("--size", text) if text else None
         files = cls(

@@ -2,37 +2,27 @@
 
 from __future__ import annotations
 
-import argparse
 import itertools
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
 
 from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
 from ..units import is_in_ratios, text_of, with_units
-from .answer import OVERLAY, answer, answer_question, is_curve
-from .drive import DRIVE, drive_units, read_drive_options
+from .answer import Asked, Overlay, is_curve
+from .drive import OfMotor, OfVoltage
+from .face import Question, option
 from .grammar import is_single_number, parse_changes, parse_listed
 from .options import (
-    BESIDE,
-    START,
-    box_group,
-    check_over,
-    excitation_by_level,
-    frequency_option,
-    is_shaken,
-    one_of,
-    over_options,
-    read_excitation,
-    read_question,
-    read_structure_options,
-    response_groups,
-    varied_arguments,
+    Beside,
+    OfBox,
+    OfStructure,
+    Over,
 )
-from .output import Files, digest, read_running_options, result_groups
-from .table import Command, Group, Question, Structure
+from .output import Files, OfBoth, Results, Stored, digest
 from .text import (
     MOST_ROWS,
     Columns,
@@ -51,75 +41,23 @@ from .text import (
     varied_parameter,
 )
 
-
-def simulate_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield the ranges of displacements, gap and accelerations, and the impacts."""
-    yield from extents(data, "x1 x2 x_rel a1_abs a2_abs")
-    yield from impact_lines(data)
+if TYPE_CHECKING:
+    from ..model import Structure
 
 
-SIMULATE = Command(
-    "simulate",
-    "a motion in time: both masses, gap, contact force, impacts, phase plane and spectrum",
-    """  {program} simulate --eta 0.4 --transient 500 --periods 2      the paper's Figure 5
+class Simulate(OfStructure, OfBox, Beside, Asked, Stored, Results):
+    """A motion in time: both masses, gap, contact force, impacts, phase plane and spectrum."""
+
+    calls = "simulate"
+    examples = """
+  {program} simulate --eta 0.4 --transient 500 --periods 2      the paper's Figure 5
   {program} simulate --eta 1.047 --beside                       the undamaged structure beside it
   {program} simulate --structure beam --hz 12.5 --g 0.02
-  {program} simulate --eta 1.2 --start 0,0.5,0,0                from a gap of 0.5 m""",
-    response_groups(
-        Group("question", BESIDE, START, "periods transient points phase"), several=False
-    ),
-    answer,
-    read_question,
-    simulate_summary,
-)
+  {program} simulate --eta 1.2 --start 0,0.5,0,0                from a gap of 0.5 m"""
 
-
-def run_resonance(arguments: argparse.Namespace) -> None:
-    """Run ``resonance``: curves over the frequency, at one level or at several."""
-    structure = read_structure_options(arguments)
-    several = arguments.g is not None and not is_single_number(arguments.g)
-    if several:
-        excitation = excitation_by_level(arguments, structure)
-    else:
-        excitation = read_excitation(arguments, structure, si=True)
-    question = {**excitation, **arguments.row.keywords(arguments)}
-    function = "resonance_levels" if several else "resonance"
-    answer_question(arguments, structure, question, function=function)
-
-
-def resonance_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield peaks and jumps, or the largest responses at each level; and the threshold."""
-    from .. import model
-
-    sizes = "x1_max x2_max a1_max a2_max x_rel_max"
-    if "level" in data.dims:
-        yield from table(level_columns(data), data.sizes["level"])
-    else:
-        name = varied_parameter(data)
-        if data.sizes[name] == 1:
-            yield from table_of_one(data, name)
-            return
-        peaks = data.isel(peak=data.peak_irregular.values == 0)
-        irregular = data.sizes["peak"] - peaks.sizes["peak"]
-        for of, part, columns in (("peak", peaks, sizes), ("jump", data, "before after")):
-            if not part.sizes[of]:
-                yield f"no {of} in this range"
-                continue
-            rows = columns_of(part, "structure direction", f"{of}_")
-            rows |= parameter_column(data, name, part[f"{of}_{name}"].values)
-            yield "peaks" if of == "peak" else "jumps of the largest gap"
-            yield from table(rows | columns_of(part, columns, f"{of}_", ".4g"))
-        if irregular:
-            yield f"peaks of irregular responses, left out: {irregular}"
-    if "lowest_threshold" in data:
-        event = data.lowest_threshold.attrs["event"]
-        level = format_parameter(data, "level", float(data.lowest_threshold), ".3g")
-        where = format_parameter(data, "frequency", data.lowest_threshold_frequency, ".4g")
-        yield f"in this range it first {event} at {where}: {level}"
-    if data.attrs.get("clearance", 0.0) < 0.0:
-        at_rest = model.Structure.from_attributes(data.attrs).as_delaminated().at_rest
-        ends = " and ".join(text_of(data, abs(x), "m", ".4g") for x in at_rest)
-        yield f"x1 and x2 count from the box's middle: the preload alone holds them {ends} from it"
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield from extents(data, "x1 x2 x_rel a1_abs a2_abs")
+        yield from impact_lines(data)
 
 
 def level_columns(data: xr.Dataset) -> Columns:
@@ -142,72 +80,66 @@ def level_columns(data: xr.Dataset) -> Columns:
     return rows
 
 
-RESONANCE = Command(
-    "resonance",
-    "resonance curves: amplitude and peak acceleration, bonded against delaminated; at several "
-    "levels (--g FIRST:LAST:STEP), with the level at which a preloaded structure first opens",
-    """  {program} resonance --structure beam --hz 8:20:0.05 --g 0.02
+class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
+    """Resonance curves: amplitude and peak acceleration, bonded against delaminated; at several
+    levels (--g FIRST:LAST:STEP), with the level at which a preloaded structure first opens.
+    """
+
+    calls = "resonance"
+    examples = """
+  {program} resonance --structure beam --hz 8:20:0.05 --g 0.02
   {program} resonance --structure beam --rpm 500:1200:5 --amplitude 3e-5 --format nc,csv
   {program} resonance --structure beam --set clearance=-2e-5 --hz 8:20:0.05 --g 0.02,0.1,0.5
-  {program} resonance --eta 0.3:4:0.005 --set e=0.3             the paper's structure""",
-    response_groups(Group("question", OVERLAY, "", "direction transient samples prominence jump")),
-    run_resonance,
-    summary=resonance_summary,
-    has_picture=is_curve,
-)
+  {program} resonance --eta 0.3:4:0.005 --set e=0.3             the paper's structure"""
+    has_picture = staticmethod(is_curve)
+
+    def __call__(self) -> None:
+        structure = self.read_structure()
+        several = self.g is not None and not is_single_number(self.g)
+        if several:
+            excitation = self.excitation_by_level(structure)
+        else:
+            excitation = self.read_excitation(structure, si=True)
+        question = {**self.keywords(), **excitation}
+        function = "resonance_levels" if several else "resonance"
+        self.answer(structure, question, function=function)
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        from .. import model
+
+        sizes = "x1_max x2_max a1_max a2_max x_rel_max"
+        if "level" in data.dims:
+            yield from table(level_columns(data), data.sizes["level"])
+        else:
+            name = varied_parameter(data)
+            if data.sizes[name] == 1:
+                yield from table_of_one(data, name)
+                return
+            peaks = data.isel(peak=data.peak_irregular.values == 0)
+            irregular = data.sizes["peak"] - peaks.sizes["peak"]
+            for of, part, columns in (("peak", peaks, sizes), ("jump", data, "before after")):
+                if not part.sizes[of]:
+                    yield f"no {of} in this range"
+                    continue
+                rows = columns_of(part, "structure direction", f"{of}_")
+                rows |= parameter_column(data, name, part[f"{of}_{name}"].values)
+                yield "peaks" if of == "peak" else "jumps of the largest gap"
+                yield from table(rows | columns_of(part, columns, f"{of}_", ".4g"))
+            if irregular:
+                yield f"peaks of irregular responses, left out: {irregular}"
+        if "lowest_threshold" in data:
+            event = data.lowest_threshold.attrs["event"]
+            level = format_parameter(data, "level", float(data.lowest_threshold), ".3g")
+            where = format_parameter(data, "frequency", data.lowest_threshold_frequency, ".4g")
+            yield f"in this range it first {event} at {where}: {level}"
+        if data.attrs.get("clearance", 0.0) < 0.0:
+            at_rest = model.Structure.from_attributes(data.attrs).as_delaminated().at_rest
+            ends = " and ".join(text_of(data, abs(x), "m", ".4g") for x in at_rest)
+            middle = "x1 and x2 count from the box's middle"
+            yield f"{middle}: the preload alone holds them {ends} from it"
+
 
 HANGING = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor hangs at the resonance
-
-
-def run_spectra(arguments: argparse.Namespace) -> None:
-    """Run ``spectra``: spectra on a motor, or harmonic ones if a frequency is given."""
-    of_motor = one_of(arguments, "eta0", "voltage")
-    if not is_shaken(arguments):
-        answer_motor_spectra(arguments)
-        return
-    if of_motor is not None:
-        frequency = frequency_option(arguments) or "amplitude or --g"
-        raise InputError(f"--{frequency}: expected without --{of_motor}, which is the motor's")
-    from ..model import Structure
-
-    arguments.structure = arguments.structure or "paper"
-    structure = Structure.from_file(arguments.structure).replace(**parse_changes(arguments.set))
-    excitation = read_excitation(arguments, structure, si=True)
-    answer_question(arguments, structure, {**excitation, **arguments.row.keywords(arguments)})
-
-
-def answer_motor_spectra(arguments: argparse.Namespace) -> None:
-    """Compute spectra of a motor-driven structure (Figure 3); print, store and draw them."""
-    structure, drive = read_drive_options(arguments)
-    eta0 = HANGING.get(arguments.drive) if arguments.eta0 is None else arguments.eta0
-    voltage = arguments.voltage
-    if voltage is None and eta0 is not None:
-        voltage = eta0 * drive.volts(structure)
-    digits = digest(structure.parameters(), drive.parameters(), voltage)
-    stem = Path(arguments.drive).stem
-    files = Files.from_options(arguments, f"spectra_{stem}_{digits}")
-
-    import orchestrate
-
-    running = read_running_options(arguments, files.result)
-    data = orchestrate.drive_spectra(structure, drive, voltage=voltage, **running)
-    data = with_units(data, drive_units(arguments))
-    for kind in map(str, data.kind.values):
-        part = data.sel(kind=kind, mass=1)
-        speed = text_of(data, part.speed, "rad/s", ".5g")
-        print(line_ratio(data, f"{kind} at {speed}", part.acceleration))
-    words = str(data.attrs["title"])
-    title = f"{stem}: {words[0].lower()}{words[1:]}, absolute acceleration of mass 1"
-    files.write(data, partial(orchestrate.plot, data, title=title))
-
-
-def spectra_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield each spectrum's largest line, by structure and frequency."""
-    name = str(data.acceleration.dims[0])
-    for value in data[name].values:
-        for kind in map(str, data.kind.values):
-            part = data.acceleration.sel({"kind": kind, "mass": 1, name: value})
-            yield line_ratio(data, f"{kind} at {format_parameter(data, name, float(value))}", part)
 
 
 def line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> str:
@@ -219,65 +151,68 @@ def line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> str:
     return f"{name}: largest line {line}, {share:.2g} of it above the excitation"
 
 
-SPECTRA = Command(
-    "spectra",
-    "acceleration spectra, bonded beside delaminated (Figure 3)",
-    """  {program} spectra                      Figure 3: quick, the motor hangs at the resonance
+class Spectra(OfMotor, OfVoltage, OfBox, Asked, Stored, OfBoth):
+    """Acceleration spectra, bonded beside delaminated (Figure 3)."""
+
+    calls = "spectra"
+    examples = """
+  {program} spectra                      Figure 3: quick, the motor hangs at the resonance
   {program} spectra --drive beam --voltage 6.5
   {program} spectra --eta 0.4,1.047      shaken harmonically instead, at these frequency ratios
-  {program} spectra --structure beam --hz 12.5 --g 0.02 --format nc,csv""",
-    (
-        *DRIVE,
-        Group(
-            "shaken by the motor",
-            """
-            --eta0 X  voltage as no-load speed over omega (default: 1.53 for quick, 1.45 for beam,
-                else between the jumps of the averaged theory)
-            --voltage X  the same in V
-            """,
-        ),
-        box_group(usual="none: shaken by the motor"),
-        Group("question", declared="transient periods points"),
-        *result_groups(several=True),
-    ),
-    run_spectra,
-    summary=spectra_summary,
-)
+  {program} spectra --structure beam --hz 12.5 --g 0.02 --format nc,csv"""
+
+    def __call__(self) -> None:
+        of_motor = self.one_of("eta0", "voltage")
+        if not self.is_shaken():
+            self.answer_motor_spectra()
+            return
+        if of_motor is not None:
+            frequency = self.frequency_option() or "amplitude or --g"
+            raise InputError(f"--{frequency}: expected without --{of_motor}, which is the motor's")
+        from ..model import Structure
+
+        self.structure = self.structure or "paper"
+        structure = Structure.from_file(self.structure).replace(**parse_changes(self.set))
+        excitation = self.read_excitation(structure, si=True)
+        self.answer(structure, {**self.keywords(), **excitation})
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        name = str(data.acceleration.dims[0])
+        for value in data[name].values:
+            for kind in map(str, data.kind.values):
+                part = data.acceleration.sel({"kind": kind, "mass": 1, name: value})
+                yield line_ratio(
+                    data, f"{kind} at {format_parameter(data, name, float(value))}", part
+                )
+
+    def answer_motor_spectra(self) -> None:
+        """Compute spectra of a motor-driven structure (Figure 3); print, store and draw them."""
+        structure, drive = self.read_structure_and_drive()
+        eta0 = HANGING.get(self.drive) if self.eta0 is None else self.eta0
+        voltage = self.voltage
+        if voltage is None and eta0 is not None:
+            voltage = eta0 * drive.volts(structure)
+        digits = digest(structure.parameters(), drive.parameters(), voltage)
+        stem = Path(self.drive).stem
+        files = Files.from_options(self, f"spectra_{stem}_{digits}")
+
+        import orchestrate
+
+        running = self.running(files.result)
+        data = orchestrate.drive_spectra(structure, drive, voltage=voltage, **running)
+        data = with_units(data, self.drive_units())
+        for kind in map(str, data.kind.values):
+            part = data.sel(kind=kind, mass=1)
+            speed = text_of(data, part.speed, "rad/s", ".5g")
+            print(line_ratio(data, f"{kind} at {speed}", part.acceleration))
+        words = str(data.attrs["title"])
+        title = f"{stem}: {words[0].lower()}{words[1:]}, absolute acceleration of mass 1"
+        files.write(data, partial(orchestrate.plot, data, title=title))
+
 
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6
 DIFFERENT = 0.01  # of the largest gap: where up and down differ by more, they are different motions
 WORDS = {"repeated": "repeat", "irregular": "irregular", "undecided": "undecided"}
-
-
-def ask_sweep(arguments: argparse.Namespace) -> tuple[Structure, Question]:
-    """Return structure and keywords of ``sweep``; by default the paper's Figure 6."""
-    structure = read_structure_options(arguments)
-    excitation, is_range = varied_arguments(arguments, structure, usual=PAPER_RANGE)
-    direction = arguments.direction or ("up" if is_range else "given")
-    return structure, {**excitation, "direction": direction, **arguments.row.keywords(arguments)}
-
-
-def sweep_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield a sweep's largest gap and amplitudes, counts, widest windows and hysteresis."""
-    name = varied_parameter(data)
-    if data.sizes[name] == 1:
-        yield from table_of_one(data, name)
-        return
-    top = data.isel(data.xi_rel_max.argmax(...))
-    yield f"largest gap: {format_largest_gap(top)} at {format_parameter(data, name, top[name])}"
-    for mass in (1, 2) if not is_in_ratios(data) else ():
-        displacement = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
-        acceleration = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
-        yield f"mass {mass}: largest displacement {displacement}, acceleration {acceleration}"
-    yield count_line(data)
-    yield from window_lines(data.sortby(name), name)
-    if has_flag(data.multiplicity_decided, "undecided").any():
-        yield "undecided: slow to converge or nearly periodic; --transient 5000 decides most"
-    if "direction" in data.dims:
-        up, down = (data.xi_rel_max.sel(direction=word) for word in ("up", "down"))
-        differ = abs(up - down) > DIFFERENT * data.xi_rel_max.max("direction")
-        where = f"at {format_ranges(data, name, differ.values)}" if differ.any() else "nowhere"
-        yield f"up and down differ by more than {DIFFERENT:.0%} of the largest gap {where}"
 
 
 def count_line(data: xr.Dataset) -> str:
@@ -328,95 +263,110 @@ def window_marks(data: xr.Dataset) -> list[tuple[str, float]]:
     ]
 
 
-SWEEP = Command(
-    "sweep",
-    "follow responses along the frequency or another parameter: an orbit diagram",
-    """  {program} sweep                                           the paper's Figure 6
+class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
+    """Follow responses along the frequency or another parameter: an orbit diagram."""
+
+    calls = "sweep"
+    eta: Any = option(
+        "the same as frequency ratio Omega/omega (default: 0.1:8.0:0.001 where no frequency is "
+        "given)",
+        value="VALUES",
+    )
+    direction: Literal["up", "down", "both"] | None = option(
+        "order of the values, each started from the end of the last (default: up for a range, a "
+        "list as it stands)"
+    )
+    examples = """
+  {program} sweep                                           the paper's Figure 6
   {program} sweep --set e=0.3                               Figure 11
   {program} sweep --eta 1.0:1.5:0.0005 --direction both     up and down: non-unique responses
   {program} sweep --over e --values 0.05:0.95:0.003 --eta 1.2
   {program} sweep --structure beam --hz 8:20:0.05 --g 0.02 --format nc,csv
   {program} sweep --eta 2.4:2.8:0.002 --overlay branch.nc   with what branch has written
-Repeat the command to resume an interrupted run. A finished result is left as it is.""",
-    response_groups(
-        Group(
-            "question",
-            (
-                over_options(),
-                """
-                --direction {up,down,both}  order of the values, each started from the end of the
-                    last (default: up for a range, a list as it stands)
-                """,
-                OVERLAY,
-            ),
-            START.replace("state at the start", "state that the first value starts from"),
-            "transient samples tolerance",
-        ),
-        usual=f"{PAPER_RANGE} where no frequency is given",
-    ),
-    answer,
-    ask_sweep,
-    sweep_summary,
-    has_picture=is_curve,
-)
+Repeat the command to resume an interrupted run. A finished result is left as it is."""
+    has_picture = staticmethod(is_curve)
+
+    def ask(self) -> tuple[Structure, Question]:
+        structure = self.read_structure()
+        excitation, is_range = self.varied_arguments(structure, usual=PAPER_RANGE)
+        direction = self.direction or ("up" if is_range else "given")
+        return structure, {**self.keywords(), **excitation, "direction": direction}
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        name = varied_parameter(data)
+        if data.sizes[name] == 1:
+            yield from table_of_one(data, name)
+            return
+        top = data.isel(data.xi_rel_max.argmax(...))
+        yield f"largest gap: {format_largest_gap(top)} at {format_parameter(data, name, top[name])}"
+        for mass in (1, 2) if not is_in_ratios(data) else ():
+            displacement = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
+            acceleration = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
+            yield f"mass {mass}: largest displacement {displacement}, acceleration {acceleration}"
+        yield count_line(data)
+        yield from window_lines(data.sortby(name), name)
+        if has_flag(data.multiplicity_decided, "undecided").any():
+            yield "undecided: slow to converge or nearly periodic; --transient 5000 decides most"
+        if "direction" in data.dims:
+            up, down = (data.xi_rel_max.sel(direction=word) for word in ("up", "down"))
+            differ = abs(up - down) > DIFFERENT * data.xi_rel_max.max("direction")
+            where = f"at {format_ranges(data, name, differ.values)}" if differ.any() else "nowhere"
+            yield f"up and down differ by more than {DIFFERENT:.0%} of the largest gap {where}"
 
 
-def ask_map(arguments: argparse.Namespace) -> tuple[Structure, Question]:
-    """Return structure and keywords of ``map``; exactly two parameters are lists."""
-    structure = read_structure_options(arguments)
-    if len(arguments.over) != len(arguments.values):
-        raise InputError("--over and --values: give exactly one --values for each --over")
-    for name in arguments.over:
-        check_over(name, arguments)
-    chosen = excitation_by_level if arguments.g is not None else read_excitation
-    excitation: Question = chosen(arguments, structure, one=len(arguments.over) == 2)
-    for name, text in zip(arguments.over, arguments.values, strict=True):
-        if name in excitation or (name == "level" and "amplitude" in excitation):
-            raise InputError(f"--over {name}: twice; expected two parameters")
-        excitation[name] = parse_listed(name, text)[0]
-    if sum(isinstance(value, tuple) for value in excitation.values()) != 2:
-        raise InputError(
-            "map: expected two parameters that vary: a range of frequencies and one of levels "
-            "(--g) or --over with --values, or --over with --values twice at one frequency"
-        )
-    return structure, {**excitation, **arguments.row.keywords(arguments)}
+class Map(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
+    """Responses over two parameters: impacts per period, multiplicity, largest gap, exponent."""
 
-
-def map_summary(data: xr.Dataset) -> Iterator[str]:
-    """Yield a map's counts, shares of periods, largest gap and where, impacts, chaotic share."""
-    yield count_line(data)
-    kinds = data.multiplicity.values[has_flag(data.multiplicity_decided, "repeated").values]
-    counts = {n: int((kinds == n).sum()) for n in sorted(set(kinds.tolist()))}
-    shares = [format_share(count, kinds.size, f"after {int(n)} T") for n, count in counts.items()]
-    if shares:
-        yield f"they repeat: {', '.join(shares[:4])}"
-    top = data.isel(data.xi_rel_max.argmax(...))
-    names = map(str, data.xi_rel_max.dims)
-    where = ", ".join(format_parameter(data, name, top[name]) for name in names)
-    yield f"largest gap: {format_largest_gap(top)} at {where}"
-    yield from extents(data, "impacts_per_period")
-    if "exponent" in data:
-        chaotic = int(has_flag(data.verdict, "chaotic").sum())
-        yield format_share(chaotic, data.exponent.size, "chaotic")
-
-
-MAP = Command(
-    "map",
-    "responses over two parameters: impacts per period, multiplicity, largest gap, exponent",
-    """  {program} map --eta 0.4:2.2:0.05 --over e --values 0.1:0.9:0.05
+    calls = "map"
+    over: list[str] = option(
+        "a parameter of the structure that varies, as for --set; twice at one frequency",
+        (),
+        value="NAME",
+    )
+    values: list[str] = option(
+        "its values, FIRST:LAST:STEP or a list A,B,...; one for each --over", (), value="VALUES"
+    )
+    examples = """
+  {program} map --eta 0.4:2.2:0.05 --over e --values 0.1:0.9:0.05
   {program} map --eta 1.2 --over e --values 0.1:0.9:0.1 --over D --values 0.005,0.02,0.05
   {program} map --structure beam --hz 8:20:0.25 --amplitude 1e-4 --over e --values 0.3,0.5,0.7
   {program} map --structure beam --set clearance=2e-5 --hz 8:20:0.25 --g 0.002:0.05:0.002
   {program} map --eta 2.4:2.9:0.02 --over e --values 0.6:0.8:0.02 --overlay border.nc
-Each point starts from rest. The picture has a panel for each quantity.""",
-    response_groups(
-        Group(
-            "question",
-            (over_options(twice=True), OVERLAY.replace("branches", "borders")),
-            declared="exponent transient settle samples periods tolerance longest",
-        )
-    ),
-    answer,
-    ask_map,
-    map_summary,
-)
+Each point starts from rest. The picture has a panel for each quantity."""
+
+    def ask(self) -> tuple[Structure, Question]:
+        structure = self.read_structure()
+        if len(self.over) != len(self.values):
+            raise InputError("--over and --values: give exactly one --values for each --over")
+        for name in self.over:
+            self.check_over(name)
+        chosen = self.excitation_by_level if self.g is not None else self.read_excitation
+        excitation: Question = chosen(structure, one=len(self.over) == 2)
+        for name, text in zip(self.over, self.values, strict=True):
+            if name in excitation or (name == "level" and "amplitude" in excitation):
+                raise InputError(f"--over {name}: twice; expected two parameters")
+            excitation[name] = parse_listed(name, text)[0]
+        if sum(isinstance(value, tuple) for value in excitation.values()) != 2:
+            raise InputError(
+                "map: expected two parameters that vary: a range of frequencies and one of levels "
+                "(--g) or --over with --values, or --over with --values twice at one frequency"
+            )
+        return structure, {**self.keywords(), **excitation}
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield count_line(data)
+        kinds = data.multiplicity.values[has_flag(data.multiplicity_decided, "repeated").values]
+        counts = {n: int((kinds == n).sum()) for n in sorted(set(kinds.tolist()))}
+        shares = [
+            format_share(count, kinds.size, f"after {int(n)} T") for n, count in counts.items()
+        ]
+        if shares:
+            yield f"they repeat: {', '.join(shares[:4])}"
+        top = data.isel(data.xi_rel_max.argmax(...))
+        names = map(str, data.xi_rel_max.dims)
+        where = ", ".join(format_parameter(data, name, top[name]) for name in names)
+        yield f"largest gap: {format_largest_gap(top)} at {where}"
+        yield from extents(data, "impacts_per_period")
+        if "exponent" in data:
+            chaotic = int(has_flag(data.verdict, "chaotic").sum())
+            yield format_share(chaotic, data.exponent.size, "chaotic")

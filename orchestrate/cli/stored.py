@@ -2,31 +2,34 @@
 
 from __future__ import annotations
 
-import argparse
+import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..errors import InputError
+from ..errors import InputError, StoreError
 from ..lazy import xr
 from ..model.ranges import STRUCTURE
 from .grammar import parse_changes
-from .options import print_assumptions, read_structure_options
-from .table import Structure
+from .options import print_assumptions
+
+if TYPE_CHECKING:
+    from ..model import Structure
 
 MOST_NAMED = 3  # parameters that a line on two structures names
 READING = (KeyError, TypeError, ValueError)  # of attributes
 
 
-def read_structure_and_question(arguments: argparse.Namespace) -> tuple[Structure, dict[str, Any]]:
+def read_structure_and_question(arguments: Any) -> tuple[Structure, dict[str, Any]]:
     """Return the structure and the keywords of a command that may begin with a stored result."""
     if arguments.start is None:
         arguments.structure = arguments.structure or "paper"
-        return read_structure_options(arguments), arguments.row.keywords(arguments)
+        return arguments.read_structure(), arguments.keywords()
     changes = parse_changes(arguments.set)
-    asked = read_structure_options(arguments) if arguments.structure else None
-    question = arguments.row.keywords(arguments)
-    stored = structure_of("--start", arguments.start, question["start"])
+    asked = arguments.read_structure() if arguments.structure else None
+    data = read_earlier_result("--start", arguments.start)
+    stored, question = structure_of("--start", arguments.start, data), arguments.keywords()
+    question["start"] = data
     if asked is None:
         asked = stored.replace(**changes)
         print_assumptions(asked, "", changes)
@@ -68,3 +71,22 @@ def explain_difference(stored: Structure, asked: Structure) -> str:
     ]
     left = len(texts) - MOST_NAMED
     return "; ".join(texts[:MOST_NAMED] + [f"and {left} more parameters"] * (left > 0))
+
+
+def read_earlier_result(option: str, path: Path) -> xr.Dataset:
+    """Read the NetCDF result of an earlier command; raise naming the option if it is none."""
+    from ..running.store import load_foreign
+
+    if not path.is_file():
+        raise InputError(f"{option} {path}: no such file; expected a result of an earlier command")
+    try:
+        data = load_foreign(path)
+    except StoreError as error:
+        expected = "" if "expected" in str(error) else "; expected a NetCDF file"
+        raise InputError(f"{option} {error}{expected}") from None
+    try:
+        json.loads(data.attrs.get("identity", '{"question": ""}'))["question"]
+    except (ValueError, TypeError, KeyError, RecursionError):
+        expected = "expected a result of an earlier command"
+        raise InputError(f"{option} {path}: its identity is damaged; {expected}") from None
+    return data

@@ -31,7 +31,6 @@ What may be left out has the default of its class.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -125,10 +124,8 @@ Described._reader = read_section
 
 def parse(path: Path) -> dict[str, Any]:
     """Return a TOML file's tables as nested dicts; syntax errors raise ``InputError``."""
-    if sys.version_info >= (3, 11):
-        import tomllib
-    else:
-        import tomli as tomllib
+    import tomllib
+
     try:
         return tomllib.loads(read_text(path, MAX_BYTES))
     except OSError as error:

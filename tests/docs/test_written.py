@@ -64,10 +64,8 @@ def test_python_runs(page, folder, small):
 
 def test_commands_are_read(capsys):
     for words in SHOWN:
-        try:
-            cli.make_parser().parse_args(cli.join_negative_values(words))
-        except SystemExit as ended:
-            assert ended.code == 0 or not words, capsys.readouterr().err
+        if words:
+            cli.parse_arguments(words)
 
 
 @pytest.mark.parametrize(

@@ -106,7 +106,7 @@ BAD = {  # options, and what the line says
     "input of no file": ("plain", [A, F, "--input", "command=no.csv"], "no.csv: no such file"),
     "input of no numbers": ("plain", [A, F, "--input", "command=column.csv"], "line 3"),
     "input backwards": ("plain", [A, F, "--input", "command=back.csv"], "back.csv"),
-    "step of zero": ("plain", [A, F, "--step", "0"], "step = 0.0 s"),
+    "step of zero": ("plain", [A, F, "--step", "0"], "--step 0.0 s"),
     "duration below zero": ("plain", [A, F, "--duration", "-1"], "duration"),
     "too many steps": ("plain", [A, F, "--step", "1e-12"], "duration/step"),
     "a rest of a step": ("equal", [A, F, "--step", "0.03"], "takes steps of one length alone"),

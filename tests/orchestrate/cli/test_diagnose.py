@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate.cli import main
-from orchestrate.cli.options import read_structure_options
+from orchestrate.cli import main, parse_arguments
+from orchestrate.cli.diagnosis import Sweep
 
 from .commands import ROOT
 
@@ -208,15 +208,9 @@ def test_another_guess_has_files_of_its_own(run):
     assert xr.load_dataset(signs).exceeds.sel(sign="order_2").item() == 1
     names = set()
     for setting in ("e=0.4", "e=0.6"):
-        from orchestrate.cli import diagnosis, make_parser
-
         words = ["diagnose", str(folder / "parted.csv"), "--structure", "beam", "--set", setting]
-        arguments = make_parser().parse_args(words)
-        names.add(
-            diagnosis.file_stem(
-                diagnosis.Sweep(arguments.records[0]), read_structure_options(arguments), arguments
-            )
-        )
+        command = parse_arguments(words)
+        names.add(command.file_stem(Sweep(command.records[0]), command.read_structure()))
     assert len(names) == 2
 
 

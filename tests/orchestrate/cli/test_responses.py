@@ -120,7 +120,7 @@ def test_a_sweep_is_summed_up_in_a_table_of_ten_lines():
     """Made-up: twelve windows of which the shortest are left out; impacts divide windows too."""
     kinds = np.repeat([1, 0, 1, 2, 1, 0, 1, 0, 1, 0, 1, 0], [9, 2, 20, 6, 8, 3, 7, 1, 5, 1, 4, 1])
     impacts = np.where(np.arange(len(kinds)) < 21, 1.0, 2.0)
-    lines = list(responses.sweep_summary(made_sweep(kinds, impacts)))
+    lines = list(responses.Sweep().summary(made_sweep(kinds, impacts)))
     assert "67 responses: 53 repeat (79 %), 8 irregular (12 %), 6 undecided (9 %)" in lines
     first = next(i for i, line in enumerate(lines) if "widest windows" in line)
     rows = [line for line in lines[first:] if line.startswith("  ")]

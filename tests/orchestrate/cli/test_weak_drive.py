@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import zipfile
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 import xarray as xr
 
 from orchestrate import Drive, Structure, couple
-from orchestrate.cli import drive, weak_drive
+from orchestrate.cli import weak_drive
 from orchestrate.show import weak_drive as figures
 
 from .test_responses import shows_something
@@ -115,8 +114,8 @@ def test_a_motor_of_one_s_own(ask, folder, motor):
     assert len(found) == 4 and len(list(folder.glob("*.png"))) == 1
     assert any(abs(float(data.voltage[-1]) - 6.0) < 1e-9 for data in found.values())
     assert all(name.startswith("couple_motor_beam_") for name in found)
-    files = argparse.Namespace(drive=motor, structure="beam")
-    title = drive.picture_title(files, found, "6.5 V")
+    command = weak_drive.Couple(drive=motor, structure="beam")
+    title = command.picture_title(found, "6.5 V")
     assert title.startswith("motor, beam: 6.5 V; $f_1$ = 11.94 Hz") and "clearance 20 µm" in title
 
 
@@ -185,12 +184,12 @@ def test_a_jump_that_no_ramp_has_and_an_undecided_one():
     jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[1e-4, np.nan], [np.nan] * 2]
     made = {"jumps": jumps, "standard_error": errors, "decided": decided}
     data = xr.Dataset({name: (tuple(each), values) for name, values in made.items()}, each)
-    _, up, down, hint = weak_drive.jump_voltage_lines({"": data})
+    _, up, down, hint = weak_drive.JumpVoltages().summary({"": data})
     assert up.split() == ["up", "1.50000", "+-", "0.00010", "none"]
     assert down.split() == ["down", "undecided", "none"] and "drive-branch" in hint
-    assert len(list(weak_drive.jump_voltage_lines({"": data.isel(jump=[0])}))) == 2
+    assert len(list(weak_drive.JumpVoltages().summary({"": data.isel(jump=[0])}))) == 2
     data.decided[:, 1] = ""  # the ramps went up alone, as by --one-way
-    assert len(list(weak_drive.jump_voltage_lines({"": data}))) == 2
+    assert len(list(weak_drive.JumpVoltages().summary({"": data}))) == 2
 
 
 def test_the_weak_drive_as_a_package(ask, tmp_path):

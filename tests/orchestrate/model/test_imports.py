@@ -10,7 +10,7 @@ import orchestrate.model
 loaded = {name.partition(".")[0] for name in set(sys.modules) - before}
 print(*sorted(loaded - sys.stdlib_module_names))
 """
-LIGHT = {"orchestrate", "fmu_src", "tomli"}  # tomli: the standard library's from Python 3.11 on
+LIGHT = {"orchestrate", "fmu_src"}
 
 
 def test_it_needs_the_standard_library_alone():

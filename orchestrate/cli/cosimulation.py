@@ -1,0 +1,146 @@
+"""The command ``cosimulate``: the oscillator with a drive of anybody's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from ..lazy import xr
+from ..units import text_of
+from .answer import Asked
+from .face import Options, Question, option
+from .grammar import plain_float, read_pairs
+from .options import OfStructure
+from .output import Results, Stored
+from .text import extents
+
+if TYPE_CHECKING:
+    from ..model import Structure
+
+LISTED = ("parameter", "structuralParameter", "input", "output")
+PAIR = "NAME=VALUE"
+
+
+def split_at_commas(texts: Sequence[str] | None) -> tuple[str, ...]:
+    """Return an option's words, split at commas too."""
+    return tuple(word for word in ",".join(texts or ()).split(",") if word)
+
+
+def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
+    """Return values by name: numbers, true or false; of inputs also files with time and value."""
+    from .. import Course
+
+    found: dict[str, Any] = {}
+    for name, text in read_pairs(option, texts, PAIR).items():
+        try:
+            found[name] = text == "true" if text in ("true", "false") else plain_float(text)
+        except ValueError:
+            if option != "--input":
+                raise InputError(
+                    f"{option} {name}={text}: expected a number, true or false"
+                ) from None
+            found[name] = Course.from_csv(text)
+    return found
+
+
+def variable_lines(drive: Path) -> Iterator[str]:
+    """Yield the drive's parameters, inputs and outputs, and what could be connected."""
+    from ..fmu.description import describe
+    from ..weak_drive.connection import MOTION, proposals
+
+    description = describe(drive)
+    yield f"{description.name}, FMI {description.fmi_version}"
+    for causality in LISTED:
+        for name, variable in description.variables.items():
+            if variable.causality == causality:
+                value = "" if variable.start is None else str(variable.start)
+                about = f"{value:>8} {variable.unit or 'no unit':10} {variable.description or ''}"
+                yield f"  {causality:10} {name:28} {about}".rstrip()
+    if likely := proposals(description):
+        links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
+        yield f"likely: --connect {links}   (by unit and name; a run checks the sign of the force)"
+    else:
+        outputs = " ".join(f"{ours}=OUTPUT" for ours in MOTION)
+        yield (
+            f"units and names do not tell which are the box's: --connect {outputs} box_force=INPUT "
+            "(one motion is enough, all are more exact)"
+        )
+
+
+class OfDrive(Options):
+    """Options of the drive of a co-simulation."""
+
+    heading, rank = "the drive", 1
+    drive: Path = option("FMI 2.0 or 3.0", value="FMU", needed=True)
+    listed: bool = option("show its variables, propose connections, and end", name="--list")
+    connect: list[str] = option(
+        "box_acceleration (or box_velocity, box_position) and box_force, by names of the drive; a "
+        "minus before a name turns its sign",
+        (),
+        value="OURS=THEIRS",
+        many=True,
+    )
+    unit: list[str] = option(
+        "units of connected variables that it does not state, or not rightly",
+        (),
+        value="NAME=UNIT",
+        many=True,
+    )
+    parameter: list[str] = option("its start values", (), value="NAME=VALUE", many=True)
+    input: list[str] = option(
+        "its other inputs: a number, or a CSV file with time in s and value",
+        (),
+        value="NAME=VALUE",
+        many=True,
+    )
+    record: list[str] = option(
+        "variables of the drive that are stored", (), value="NAME", many=True
+    )
+
+
+class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
+    """Both FMUs together: the oscillator and a drive of anybody's."""
+
+    calls = "cosimulate"
+    examples = """
+  {program} cosimulate --drive shaker.fmu --list
+  {program} cosimulate --structure beam --drive shaker.fmu --duration 2 --step 1e-3
+      --connect box_acceleration=table_acc box_force=-force --input volts=3 --record amperes
+  {program} cosimulate --structure beam --drive shaker.fmu --connect box_velocity=v box_force=f
+      --input volts=volts.csv --duration 2 --step 1e-3"""
+
+    def __call__(self) -> None:
+        if self.listed:
+            for line in variable_lines(self.drive):
+                print(line)
+        else:
+            super().__call__()
+
+    def ask(self) -> tuple[Structure, Question]:
+        structure = self.read_structure()
+        if self.structure == "paper" and not self.set:
+            raise InputError(
+                "--structure is missing; expected one in SI units, as the drive has them"
+            )
+        question = self.keywords()
+        for name in ("duration", "step"):
+            if question[name] is None:
+                raise InputError(f"--{name} is missing; expected seconds, such as --{name} 0.01")
+        return structure, question | {
+            "drive": str(self.drive),
+            "connect": read_pairs("--connect", split_at_commas(self.connect), PAIR),
+            "units": read_pairs("--unit", split_at_commas(self.unit), "NAME=UNIT"),
+            "parameters": read_values("--parameter", self.parameter),
+            "inputs": read_values("--input", self.input),
+            "record": split_at_commas(self.record),
+        }
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield from extents(data, "x1 x2")
+        yield f"impacts: {data.sizes['impact']} in {float(data.time[-1]):.6g} s"
+        worst = text_of(data, data.coupling_error.max(), "m", ".2g")
+        yield f"coupling error of the displacements: {worst} (from a second run with half the step)"
+        if data.attrs["inputs_at_start"]:
+            yield f"no input was given for {data.attrs['inputs_at_start']}, which stays so"

@@ -1,0 +1,379 @@
+"""A command is a class whose options are its attributes; groups of options are its bases.
+
+cyclopts reads the options by their types. Options that are arguments of the command's public
+function have type, default, choices and help from its signature and docstring: a new argument of
+the function is an option of the command.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import re
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
+
+import cyclopts
+from cyclopts import Parameter
+from cyclopts.exceptions import (
+    CycloptsError,
+    MissingArgumentError,
+    UnknownOptionError,
+    UnusedCliTokensError,
+)
+
+from ..errors import InputError
+from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest
+from .grammar import (
+    SET_NAMES,
+    Ends,
+    Orders,
+    PlaneSide,
+    State,
+    read_choice,
+    read_float,
+    read_int,
+)
+
+LINK = re.compile(r"As (?:in|for) :\w+:`orchestrate\.(\w+)`")
+MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
+MAPPING = re.compile(r'\{"(\w+)": "?([^"}]*)"?\}')  # on the command line NAME=VALUE
+KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of options are read, named
+    "array_like or xarray.Dataset": (State, "X1,X2,V1,V2"),
+    "array_like of 4 floats": (State, "X1,X2,V1,V2"),
+    "(str, float, float, int)": (PlaneSide, "NAME,FIRST,LAST,COUNT"),
+    "(float, float)": (Ends, "FIRST:LAST"),
+    "int or sequence of float": (Orders, "N|A,B,..."),
+    "int": (int, "N"),
+    "float or mapping": (str, "X|CHANNEL=X,..."),
+    "float": (float, "X"),
+    "bool": (bool, ""),
+    "str or mapping": (str, "WORD|CHANNEL=WORD,..."),
+    "str": (str, "WORD"),
+    "path": (Path, "PATH"),
+    "xarray.Dataset": (Path, "FILE.nc"),
+    "array_like": (float, "X"),
+}
+OF_BOX = ("eta", "frequency", "amplitude", "level")
+READERS: dict[Any, Callable[[str, str], Any]] = {int: read_int, float: read_float}
+STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *SET_NAMES)
+Question = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option of a command; its type is the annotation of the attribute."""
+
+    help: str
+    default: Any = None
+    value: str = ""  # what the help calls it, where its type does not tell
+    name: str = ""  # where it is not the attribute's
+    position: bool = False  # no flag: the value stands by itself
+    needed: bool = False
+    many: bool = False  # several values after one flag
+    usual: Any = None  # what is taken where it is not given, where that is not the default
+
+    @property
+    def words(self) -> str:
+        """The help, with the default where it does not say so."""
+        usual = self.default if self.usual is None else self.usual
+        said = usual in (None, False, (), "") or "default" in self.help
+        return self.help if said else f"{self.help} (default: {usual})"
+
+    def parameter(self, attribute: str, kind: Any, group: cyclopts.Group) -> inspect.Parameter:
+        """The parameter that cyclopts reads."""
+        read, choices = reader_of(kind)
+        flag = self.name or option_names([attribute])
+        details = Parameter(
+            name=None if self.position else flag,
+            help=self.words,
+            metavar="{" + ",".join(choices) + "}" if choices else self.value or name_of_value(kind),
+            group=group,
+            negative=(),
+            show_default=False,
+            show_choices=False,
+            required=self.needed,
+            consume_multiple=self.many or None,
+            allow_repeating=True,  # the last one counts
+            converter=converter(read) if read else None,
+            n_tokens=1 if read else None,
+        )
+        position = inspect.Parameter.POSITIONAL_ONLY
+        return inspect.Parameter(
+            attribute,
+            position if self.position else inspect.Parameter.KEYWORD_ONLY,
+            default=inspect.Parameter.empty if self.needed else self.default,
+            annotation=Annotated[kind, details],
+        )
+
+
+def option(help: str, default: Any = None, **details: Any) -> Any:
+    """Return an option, as ``Any``: as an attribute it has the value's type."""
+    return Option(help, default, **details)
+
+
+def option_names(names: Iterable[str], joint: str = ", ") -> str:
+    """Join attributes as options in a text: ``--eta, --max-points``."""
+    return joint.join(f"--{name.replace('_', '-')}" for name in names)
+
+
+def name_of_value(kind: Any) -> str:
+    """Return what the help calls a value of a type."""
+    known = {int: "N", float: "X", Path: "FILE"}
+    return next((known[one] for one in (kind, *get_args(kind)) if one in known), "TEXT")
+
+
+def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, tuple[str, ...]]:
+    """Return what reads a text of a type, by an option's name and the text; and its choices."""
+    for one in (kind, *get_args(kind)):
+        if get_origin(one) is Annotated:
+            return next(read for read in get_args(one) if inspect.isfunction(read)), ()
+        if get_origin(one) is Literal:
+            choices = get_args(one)
+            return functools.partial(read_choice, choices), tuple(map(str, choices))
+        if one in READERS:
+            return READERS[one], ()
+    return None, ()
+
+
+def converter(read: Callable[[str, str], Any]) -> Callable[..., Any]:
+    """Return a reader in the form of cyclopts' converters."""
+    return lambda _, tokens: read(tokens[-1].keyword or "", tokens[-1].value)
+
+
+class Options:
+    """A group of options.
+
+    Of itself only, not of its bases: ``heading`` stands above its options in the help with a
+    ``remark``, ``rank`` orders the groups. ``takes`` are options that are arguments of public
+    functions, as ``"function: name name; other: name"``, by default of the one that the command
+    calls, and of that ``"*"``: all whose types can be read, but those of other groups. With
+    ``if_given`` they are None where they are not given.
+    """
+
+    takes = ""
+    if_given = False
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Options that come from functions, or from groups beside this one."""
+
+    def one_of(self, *names: str) -> str | None:
+        """Return which of some options is given, None if none is; raise if several are."""
+        given = [name for name in names if getattr(self, name) not in (None, False)]
+        if len(given) > 1:
+            raise InputError(f"{option_names(given, ' and ')}: expected one of them")
+        return given[0] if given else None
+
+
+class Debugging(Options):
+    """The option of all commands."""
+
+    heading, rank = "mistakes of the program", 6
+    debug: bool = option("show where in the program an error occurred")
+
+
+class Command(Debugging):
+    """A command; calling it runs it, and its docstring stands in the list of commands."""
+
+    calls = ""  # the public function, whose keywords are the options of the class itself
+    examples = ""
+
+    def __init__(self, **values: Any) -> None:
+        self.command_line = ""
+        for name, (one, _, _) in self.options().items():
+            default = list(one.default) if isinstance(one.default, tuple) else one.default
+            setattr(self, name, values.get(name, default))
+
+    def __call__(self) -> None:
+        """Run the command."""
+        raise NotImplementedError
+
+    def ask(self) -> tuple[Any, ...]:
+        """Return structure, drive where it has one, and keywords of the public function."""
+        raise NotImplementedError
+
+    def summary(self, data: Any) -> Iterable[str]:
+        """Return the lines that are printed of the result."""
+        raise NotImplementedError
+
+    @classmethod
+    @functools.cache
+    def options(cls) -> dict[str, tuple[Option, Any, type[Options]]]:
+        """Return each option, its type and the group that it stands in, by the attribute."""
+        hints = get_type_hints(cls, include_extras=True)
+        found: dict[str, tuple[Option, Any, type[Options]]] = {}
+        for group in reversed(cls.__mro__):
+            for name, one in vars(group).items():
+                if isinstance(one, Option):
+                    if hints[name] is bool:
+                        one = replace(one, default=False)
+                    found[name] = one, hints[name], found[name][2] if name in found else group
+            own = vars(group)
+            takes = own.get("takes", "*" if own.get("calls") else "")
+            others = [name for name in arguments_read(cls.calls) if name not in found]
+            takes = takes.replace("*", " ".join(others))
+            taken = options_of_functions(takes, cls.calls, own.get("if_given"))
+            found |= {name: (one, kind, group) for name, one, kind in taken}
+        return dict(sorted(found.items(), key=lambda row: vars(row[1][2]).get("rank", 2)))
+
+    @classmethod
+    def flags(cls) -> list[str]:
+        """Return the names of all options that have one."""
+        rows = cls.options().items()
+        return [one.name or option_names([name]) for name, (one, _, _) in rows if not one.position]
+
+    @classmethod
+    def name(cls) -> str:
+        """Return the name on the command line."""
+        return cyclopts.default_name_transform(cls.__name__)
+
+    def given(self, *groups: type[Options]) -> Question:
+        """Return the values of those options of groups that are given, by name."""
+        names = [name for name, (_, _, of) in self.options().items() if of in groups]
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+    def keywords(self) -> Question:
+        """Return the values of options that are arguments of the public function, by name."""
+        import orchestrate
+
+        arguments = inspect.signature(getattr(orchestrate, self.calls)).parameters
+        names = [name for name, (_, _, of) in self.options().items() if of is type(self)]
+        return {name: getattr(self, name) for name in names if name in arguments}
+
+    @classmethod
+    def app(cls) -> cyclopts.App:
+        """Return the cyclopts application of the command."""
+        groups: dict[str, cyclopts.Group] = {}
+        parameters = []
+        for name, (one, kind, of) in cls.options().items():
+            heading = vars(of).get("heading", "question")
+            remark = vars(of).get("remark", "")
+            group = cyclopts.Group(heading, help=remark, sort_key=len(groups))
+            group = groups.setdefault(heading, group)
+            parameters.append(one.parameter(name, kind, group))
+        parameters.sort(key=lambda one: one.kind)
+
+        def make(*positions: Any, **values: Any) -> Command:
+            names = [one.name for one in parameters]
+            return cls(**dict(zip(names, positions, strict=False)), **values)
+
+        make.__annotations__ = {}  # of the options' own names alone
+        make.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        return cyclopts.App(name=cls.name(), help=cls.__doc__, default_command=make)
+
+
+# -- options from a public function ----------------------------------------------------------------
+
+
+@functools.cache
+def documentation_of(function: str) -> dict[str, tuple[str, str]]:
+    """Return type and description of each argument of a public function, by name."""
+    import docstring_parser
+
+    import orchestrate
+
+    found = {}
+    text = inspect.getdoc(getattr(orchestrate, function)) or ""
+    for one in docstring_parser.parse(text, docstring_parser.DocstringStyle.NUMPYDOC).params:
+        for name in one.arg_name.split(", "):
+            meaning = " ".join((one.description or "").split())
+            linked = LINK.match(meaning)
+            found[name] = (
+                documentation_of(linked[1])[name] if linked else (one.type_name or "", meaning)
+            )
+    return found
+
+
+@functools.cache
+def arguments_read(function: str) -> list[str]:
+    """Return a public function's arguments that the command line can read by their types."""
+    import orchestrate
+
+    if not function:
+        return []
+    typed = documentation_of(function)
+    arguments = inspect.signature(getattr(orchestrate, function)).parameters.values()
+    return [
+        one.name
+        for one in arguments
+        if one.kind == one.KEYWORD_ONLY
+        and one.name not in (*OF_BOX, "over", "values")
+        and one.default is not True
+        and typed[one.name][0].startswith(("{", *KINDS))
+        and typed[one.name][0].partition(",")[0] != "array_like"  # of one number, where named
+    ]
+
+
+def options_of_functions(
+    takes: str, usual_function: str, if_given: bool | None
+) -> Iterator[tuple[str, Option, Any]]:
+    """Yield name, option and type of arguments of public functions."""
+    import orchestrate
+
+    for part in filter(None, takes.split("; ")):
+        function, _, names = part.rpartition(": ")
+        function = function or usual_function
+        parameters = inspect.signature(getattr(orchestrate, function)).parameters
+        for name in names.split():
+            typed, meaning = documentation_of(function)[name]
+            if typed.startswith("{"):
+                kind, value = Literal[tuple(re.findall(r'"(\w+)"', typed))], ""
+            else:
+                kind, value = next(KINDS[one] for one in KINDS if typed.startswith(one))
+            usual = parameters[name].default if name in parameters else None
+            usual = None if usual is inspect.Parameter.empty else usual
+            default = None if if_given else usual
+            words = help_text(meaning)
+            if ";" in takes:
+                words = f"{cyclopts.default_name_transform(function)}: {words}"
+            yield name, Option(words, default, value, usual=usual), kind
+
+
+def help_text(meaning: str) -> str:
+    """Return the first sentence of an argument's description, and the default, as help."""
+    plain = (
+        MARKUP.sub(lambda match: match[1] or match[2], meaning)
+        .removeprefix("Whether ")
+        .removeprefix("to ")
+    )
+    plain = MAPPING.sub(r"\1=\2", plain)
+    first, *others = plain.rstrip(".").split(". ")
+    usual = "".join(f"; b{one[1:]}" for one in others if one.startswith("By default"))
+    begins = first[:1] if first.startswith(("Hz", "V ")) else first[:1].lower()
+    return f"{begins}{first[1:]}{usual}"
+
+
+# -- mistakes --------------------------------------------------------------------------------------
+
+
+def explain(error: CycloptsError, command: type[Command]) -> str:
+    """Return a mistake of the command line in one line."""
+    lists = f"({command.name()} --help lists them)"
+    if isinstance(error.__cause__, InputError):
+        return str(error.__cause__)
+    if isinstance(error, UnknownOptionError):
+        flag = (error.token.keyword or error.token.value).partition("=")[0]
+        near = suggestion(flag, error, command)
+        return f"{flag}: no option of {command.name()}{near} {lists}"
+    if isinstance(error, UnusedCliTokensError):
+        words = " ".join(error.unused_tokens or ())
+        return f"{words}: no option of {command.name()} {lists}"
+    name = error.argument.name if error.argument else ""
+    if isinstance(error, MissingArgumentError):
+        return f"{error.keyword}: expected one value" if error.keyword else f"{name} is missing"
+    return " ".join(str(error).split())
+
+
+def suggestion(flag: str, error: UnknownOptionError, command: type[Command]) -> str:
+    """Return what is probably meant by an unknown option, as words of a message; or nothing."""
+    name = flag.lstrip("-").replace("-", "_")
+    if name in STRUCTURE_NAMES and "--set" in command.flags():
+        words = error.root_input_tokens or []
+        after = words[words.index(flag) + 1 :] if flag in words else []
+        return f"; did you mean --set {name}={''.join(after[:1]) or 'VALUE'}?"
+    near = closest(flag, command.flags()) if flag.startswith("--") else ""
+    return f"; did you mean {near}?" if near else ""
