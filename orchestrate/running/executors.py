@@ -20,7 +20,7 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from pathlib import Path
@@ -194,12 +194,22 @@ def initialize_worker(parent: int, _: str) -> None:
     """Set up a worker process: no Ctrl-C, no report of a crash, an end when its parent ends."""
     os.environ.setdefault("PYTHONFAULTHANDLER", "0")  # or loky's report of a crash has many lines
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if sys.platform == "win32":  # there a process does not learn of it
-        return
 
     def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(0.5)
+        wait_for_end(parent)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
+
+
+def wait_for_end(parent: int) -> None:
+    """Return when the parent process has ended; on Windows its number stays a child's parent."""
+    if sys.platform == "win32":
+        import _winapi
+
+        with suppress(OSError):  # it has ended before
+            process = _winapi.OpenProcess(_winapi.SYNCHRONIZE, False, parent)
+            _winapi.WaitForSingleObject(process, _winapi.INFINITE)
+        return
+    while os.getppid() == parent:
+        time.sleep(0.5)
