@@ -31,6 +31,7 @@ COMMANDS: dict[str, type[Command]] = {
     kind.name(): kind
     for kind in (
         *(pages.Build, responses.Simulate, laboratory.Shake, laboratory.Analyse),
+        laboratory.Channels,
         *(diagnosis.Diagnose, diagnosis.Plan, responses.Resonance, responses.Spectra),
         *(responses.Sweep, responses.Map, dynamics.Lyapunov, dynamics.Poincare),
         *(dynamics.Attractors, dynamics.Basin, dynamics.Orbit, dynamics.Manifold),

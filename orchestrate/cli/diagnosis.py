@@ -19,6 +19,7 @@ from .grammar import Listed, with_option_names
 from .options import OfStructure
 from .output import (
     Files,
+    InColumns,
     Reading,
     Results,
     digest,
@@ -39,12 +40,6 @@ LINES = {  # attributes of a verdict that are printed below it, and what stands 
     "record_unit_note": "unit",
     "record_converted": "converted",
     "record_time_base": "times",
-}
-CHANNELS = {  # in the order of --columns, and what they are called towards the user
-    "time": "time",
-    "box_acceleration": "base",
-    "acceleration1": "face 1",
-    "acceleration2": "face 2",
 }
 
 
@@ -76,11 +71,6 @@ class DiagnosedRecords(Options):
         "repeated",
         (),
     )
-    columns: str | None = option(
-        "of time, base, face 1 and face 2, by name or number from 0, without time where "
-        "--sample-rate is given (default: by usual names)",
-        value="A,B,...",
-    )
     participation: str | None = option(
         "of the sensors on face 1 and face 2: the beam's mode there over that of a mass on a "
         "spring, 1.57 at the tip of a cantilever (default: fitted)",
@@ -88,7 +78,7 @@ class DiagnosedRecords(Options):
     )
 
 
-class Diagnose(DiagnosedRecords, OfStructure, Reading, Command, Results):
+class Diagnose(DiagnosedRecords, OfStructure, InColumns, Reading, Command, Results):
     """Whether a measured beam is delaminated: a verdict, its evidence, a report."""
 
     structure: Any = option(
@@ -101,7 +91,7 @@ class Diagnose(DiagnosedRecords, OfStructure, Reading, Command, Results):
   {program} diagnose record.csv --structure beam.toml
   {program} diagnose left.csv right.uff --structure beam.toml --set e=0.4 --jobs 2
   {program} diagnose up.csv --other down.csv --other louder.csv --structure beam.toml
-  {program} diagnose export.txt --columns 0,3,4 --unit g --structure beam.toml
+  {program} diagnose export.txt --channels 0,3,4 --unit g --structure beam.toml
   {program} diagnose laser.csv --unit face=mm/s --sensitivity "base=100 mV/g" --structure beam.toml
 
 what it needs:
@@ -157,7 +147,7 @@ what it gives:
         guess: Structure,
     ) -> str:
         """Return the name of a record's results, unique for content, guess and reading."""
-        read_as = [self.columns, self.participation, *self.given(Reading).items()]
+        read_as = [self.channels, self.participation, *self.given(Reading).items()]
         number = f"_sweep{sweep.number}" if sweep.number else ""
         part = digest(file_checksum(sweep.path), guess.parameters(), read_as)
         return f"diagnose_{sweep.path.stem}{number}_{part}"
@@ -189,26 +179,12 @@ what it gives:
         """Read a record from a file; raise if it has no acceleration of either face."""
         from .. import read_record
 
-        columns = self.parse_columns()
-        record = read_record(path, columns, **self.given(Reading))
+        record = read_record(path, **self.given(InColumns, Reading))
         if "acceleration1" not in record and "acceleration2" not in record:
             taken = record.attrs.get("columns", "no columns")
-            text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"
+            text = "expected a face's beside the base's: --channels 0,1,2 or base=Table,face1=Beam"
             raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
         return record
-
-    def parse_columns(self) -> dict[str, str | int] | None:
-        """Return the columns of ``--columns A,B,...`` by channel; None if it is not given."""
-        if self.columns is None:
-            return None
-        texts = [text.strip() for text in self.columns.split(",")]
-        names = list(CHANNELS)[self.sample_rate is not None :]
-        if not 2 <= len(texts) <= len(names) or not all(texts):
-            words = ", ".join(CHANNELS[name] for name in names)
-            expected = f"expected columns of {words}, the last one if it is there"
-            raise InputError(f"--columns {self.columns}: {expected}")
-        numbers = (int(text) if text.isdecimal() else text for text in texts)
-        return dict(zip(names, numbers, strict=False))
 
     def participation_by_sensor(self) -> dict[str, float] | None:
         """Parse ``--participation G,...`` into a dict by face; None if it is not given."""
@@ -217,7 +193,7 @@ what it gives:
         from ..laboratory.sensors import PARTICIPATION
 
         texts = self.participation.split(",")
-        faces = list(CHANNELS)[2:]
+        faces = ("acceleration1", "acceleration2")
         try:
             factors = [PARTICIPATION.check(float(text)) for text in texts]
             return dict(zip(faces[: len(texts)], factors, strict=True))

@@ -70,6 +70,7 @@ class Option:
     default: Any = None
     value: str = ""  # what the help calls it, where its type does not tell
     name: str = ""  # where it is not the attribute's
+    also: str = ""  # a name of before
     position: bool = False  # no flag: the value stands by itself
     needed: bool = False
     many: bool = False  # several values after one flag
@@ -87,7 +88,7 @@ class Option:
         read, choices = reader_of(kind)
         flag = self.name or option_names([attribute])
         details = Parameter(
-            name=None if self.position else flag,
+            name=None if self.position else (flag, self.also) if self.also else flag,
             help=self.words,
             metavar="{" + ",".join(choices) + "}" if choices else self.value or name_of_value(kind),
             group=group,

@@ -146,14 +146,7 @@ def parse_breakpoints(option: str, text: str) -> tuple[tuple[float, float], ...]
     return parse(option, text, "HZ:VALUE,HZ:VALUE,... such as 10:0.5,200:0.5", split)
 
 
-def parse_columns(option: str, text: str) -> dict[str, str | int]:
-    """Parse ``CHANNEL=COLUMN,...`` into a dict from channel to column name or number."""
-    pairs = read_pairs(option, text.split(","), "CHANNEL=COLUMN,... such as acceleration1=4")
-    return {name: int(column) if column.isdecimal() else column for name, column in pairs.items()}
-
-
 Breakpoints = Annotated[tuple[tuple[float, float], ...] | None, parse_breakpoints]
-ChannelColumns = Annotated[dict[str, str | int] | None, parse_columns]
 Orders = Annotated[float | tuple[float, ...] | None, parse_orders]
 
 

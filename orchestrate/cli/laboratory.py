@@ -265,6 +265,36 @@ def analyse(name: str, record: xr.Dataset, path: Path, settings: Mapping[str, An
     return result
 
 
+class Channels(InColumns, Command):
+    """List the columns of a record, and as which channels they are read; write that as a file."""
+
+    record: Path = option("as for analyse", position=True, needed=True)
+    sample_rate: float | None = option("Hz, where the file has no times")
+    output: Path | None = option(
+        "where to write how the columns are read, as TOML: to complete with units, sensitivities, "
+        "delays and sensors, and to give as --channels",
+        value="FILE.toml",
+    )
+    examples = """
+  {program} channels run.csv
+  {program} channels run.csv --channels base=Table,face1=3 --output setup.toml
+  {program} channels run.csv --channels setup.toml"""
+
+    def __call__(self) -> None:
+        from .. import channels
+
+        given = {"sample_rate": self.sample_rate, "output": self.output}
+        found = channels(self.record, self.channels, **given)
+        names = ("role", "known", "quantity", "unit")
+        rows = {name: found[name].values.tolist() for name in names}
+        rms = ["" if value != value else f"{value:.4g}" for value in found.rms.values]
+        print(*table({"column": found.column.values.tolist(), **rows, "rms": rms}), sep="\n")
+        if rate := found.attrs["sample_rate"]:
+            print(f"{rate:.6g} samples a second")
+        if self.output is not None:
+            print(self.output)
+
+
 class Settings(Options):
     """Settings of analyses."""
 
@@ -307,7 +337,7 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
   {program} analyse results/shake.nc --show frf,psd --resolution 0.5
   {program} analyse swept.nc --label delaminated --beside bonded=whole.nc --show orders,harmonics
   {program} analyse swept.nc --sensor 2000 --beside measured=bench.csv --show orders
-  {program} analyse measured.csv --unit g --columns time=0,box_acceleration=3,acceleration1=4
+  {program} analyse measured.csv --unit g --channels time=0,base=3,face1=4
   {program} analyse run.wav --scale 500 --show spectrogram,density --from 2 --to 30
   {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv"""
 
@@ -407,4 +437,4 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
         reading = self.given(InColumns, Reading)
         if path.suffix.lower() != ".wav":  # the scale is of the others
             reading.pop("scale", None)
-        return read_record(path, reading.pop("columns", None), **reading)
+        return read_record(path, **reading)

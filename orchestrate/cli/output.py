@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..lazy import xr
 from .face import Options, option
-from .grammar import ChannelColumns, floats
+from .grammar import floats
 
 if TYPE_CHECKING:
     from ..model import Structure
@@ -51,10 +51,12 @@ class InColumns(Options):
     """The option of a record's columns."""
 
     heading = "how to read records"
-    columns: ChannelColumns = option(
-        "columns by name or number from 0: CHANNEL=COLUMN,... with the channels time, "
-        "box_acceleration, acceleration1, acceleration2",
-        value="A=X,B=Y",
+    channels: str | None = option(
+        "columns by name or number from 0: CHANNEL=COLUMN,... with the channels time, base, face1, "
+        "face2, force; A,B,... in that order without the force; or the file that the command "
+        "channels writes (default: by usual names)",
+        value="FILE.toml|A=X,...|X,...",
+        also="--columns",
     )
 
 

@@ -129,7 +129,7 @@ class Explore(OfStored, InColumns, Reading, InUnits, Command):
             if reading:
                 raise InputError(f"{option_names(list(reading)[:1])}: expected with --record alone")
             return None
-        return read_record(self.record, reading.pop("columns", None), **reading)
+        return read_record(self.record, **reading)
 
     def read_diagram(self, drawn: Structure | None) -> Any:
         """Return the sweep of RESULT, or the structure: given, of ``--branches``, or usual."""

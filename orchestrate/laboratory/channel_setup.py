@@ -37,12 +37,16 @@ class ChannelSetup:
             return cls()
         if isinstance(channels, str) and "=" in channels:
             return cls(by_channel("channels", channels, (), ("time", *CHANNELS)))
+        if isinstance(channels, str) and "," in channels:
+            return cls([text.strip() for text in channels.split(",")])
+        text = "expected a TOML file, base=...,face1=..., or a list of columns"
         if isinstance(channels, (str, os.PathLike)):
+            if not Path(channels).is_file():
+                raise InputError(f"channels = {str(channels)!r}: no such file; {text}")
             return cls.from_mapping(str(channels), parse(Path(channels)))
         if isinstance(channels, Mapping):
             return cls.from_mapping("channels", channels)
         if not isinstance(channels, Sequence):
-            text = "expected a TOML file, a mapping, a list of columns, or base=...,face1=..."
             raise InputError(f"channels = {channels!r}: {text}")
         return cls(channels)
 

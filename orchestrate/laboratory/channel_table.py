@@ -69,7 +69,7 @@ def channels(
     >>> _ = path.write_text("Zeit [ms];Tisch [g];oben [g]\n0;0,1;0\n1;0,3;2\n2;-0,2;0\n3;0;-1\n")
     >>> found = channels(path)
     >>> found.role.values.tolist(), found.known.values.tolist()[1:]
-    (['time', 'base', 'face 1'], ['by its name', 'by its order'])
+    (['time', 'base', 'face 1'], ['by its name', 'what is left'])
     """
     path = Path(path)
     kind = file_kind(path)
@@ -144,7 +144,8 @@ def write_setup(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
         lines.append(f"sample_rate = {float(found.attrs['sample_rate'])!r}  # Hz")
     for place, role in enumerate(found.role.values.tolist()):
         one = found.isel(column=place)
-        label = f"{one.column.item()}, {one.quantity.item()}, rms {one.rms.item():.4g}"
+        rms = "" if np.isnan(one.rms.item()) else f", rms {one.rms.item():.4g}"
+        label = f"{one.column.item()}, {one.quantity.item()}{rms}"
         if not role:
             lines.append(f"\n# not read: {label} {one.unit.item()}".rstrip())
             continue

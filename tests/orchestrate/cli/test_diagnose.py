@@ -39,8 +39,8 @@ MISTAKES = """
     lost.csv : lost.csv: no such file; expected a record
     FILE GUESS --participation 99 : --participation 99: expected -10 to 10
     FILE --structure lost.toml : lost.toml
-    FILE GUESS --columns 0 : --columns 0 | time, base, face 1
-    FILE GUESS --columns 0,1 : no acceleration of a face in time | base | --columns
+    FILE GUESS --channels 0 : channels = '0' | base=...,face1=
+    FILE GUESS --columns 0,1 : no acceleration of a face in time | base | --channels
     FILE FILE GUESS --other FILE : --other: of one beam
     FILE GUESS --unit furlong : furlong | give it by --unit
 """

@@ -86,7 +86,6 @@ MISTAKES = {  # options of each command, then what its line says
         README.md --show orders --orders one : --orders one: expected
         README.md --plot gif : --plot gif | png
         lost.csv : lost.csv: no such file; expected a record
-        LICENSE --unit g --columns x : --columns x: expected CHANNEL=
     """,
     "map": """
         --over e --values 0.3,0.7 : frequency: nothing given
