@@ -227,7 +227,7 @@ def test_other_datasets_of_universal_files_are_skipped_with_a_line(tmp_path, cap
 def test_without_pyuff_a_line_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyuff", None)
     (tmp_path / "a.uff").write_text("    -1\n    58\n    -1\n")
-    with pytest.raises(InputError, match=r"pip install 'vibroimpact\[laboratory\]'"):
+    with pytest.raises(InputError, match="pip install pyuff"):
         read_uff(tmp_path / "a.uff")
 
 
@@ -761,7 +761,7 @@ def test_labviews_text_is_read_and_no_pickle_beside_it(tmp_path, monkeypatch):
     assert np.allclose(data.box_acceleration, G * np.array([0.1, 0.2, -0.3, 0.0, 0.5]))
     assert np.allclose(data.acceleration1, G * np.array([-0.1, 2.0, 3.5, 4.0, 1.0]))
     monkeypatch.setitem(sys.modules, "lvm_read", None)
-    with pytest.raises(InputError, match=r"expected the package lvm_read: pip install 'vibroimp"):
+    with pytest.raises(InputError, match="expected the package lvm_read: pip install lvm_read"):
         read_lvm(path)
 
 
