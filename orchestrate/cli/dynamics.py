@@ -49,10 +49,10 @@ if TYPE_CHECKING:
     from ..model import Structure
 
 
-def ask_along_parameter(arguments: Any) -> tuple[Structure, Question]:
+def ask_along_parameter(arguments: Any, si: bool = False) -> tuple[Structure, Question]:
     """Return structure and keywords of a function along a parameter."""
     structure = arguments.read_structure()
-    excitation, _ = arguments.varied_arguments(structure)
+    excitation, _ = arguments.varied_arguments(structure, si=si)
     return structure, {**arguments.keywords(), **excitation}
 
 
@@ -87,7 +87,11 @@ decided with so few --periods."""
         data = data.sortby(name)
         if data.sizes[name] <= MOST_ROWS:
             rows = parameter_column(data, name, data[name].values)
-            yield from table(rows | columns_of(data, "exponent standard_error verdict"))
+            rows |= columns_of(data, "exponent standard_error verdict")
+            if "exponents" in data:
+                each = data.exponents.transpose(name, "order").values
+                rows["all exponents"] = [", ".join(f"{x:.5g}" for x in row) for row in each]
+            yield from table(rows)
         else:
             top = data.isel(data.exponent.argmax(...))
             yield (
@@ -147,7 +151,7 @@ value is carried to its neighbours, so along a range it is found as far as it ex
 alone may miss one whose basin is small."""
 
     def ask(self) -> tuple[Structure, Question]:
-        return ask_along_parameter(self)
+        return ask_along_parameter(self, si=True)  # states are printed in m and m/s
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         name = varied_parameter(data)

@@ -218,7 +218,7 @@ class Over(Options):
         return parse_listed(self.over, self.values) if self.over else None
 
     def varied_arguments(
-        self, structure: Structure, usual: str | None = None
+        self, structure: Structure, usual: str | None = None, si: bool = False
     ) -> tuple[dict[str, Any], bool]:
         """Return excitation and varied parameter as keywords, and whether a range was given."""
         if self.over is None and self.g is not None and not is_single_number(self.g):
@@ -227,11 +227,11 @@ class Over(Options):
             return {"frequency": box["frequency"], **levels}, ":" in self.g
         if (values := self.read_over()) is not None:
             self.check_over(self.over)
-            fixed = self.read_excitation(structure, one=True)
+            fixed = self.read_excitation(structure, si, one=True)
             return {**fixed, "over": self.over, "values": values[0]}, values[1]
         if usual is not None and not self.is_shaken():
             self.eta = usual
-        excitation = self.read_excitation(structure)
+        excitation = self.read_excitation(structure, si)
         return excitation, ":" in str(getattr(self, self.frequency_option() or "eta"))
 
     def check_over(

@@ -204,6 +204,8 @@ def parse_endings(option: str, text: str, known: tuple[str, ...]) -> tuple[str, 
 
 def check_output(folder: Path, option: str = "--output") -> None:
     """Raise unless a folder is writable or could be made; it is not made yet."""
+    if folder.suffix[1:] in ("html", *FORMATS, *PLOTS) and not folder.is_dir():
+        raise InputError(f"{option} {folder}: the name of a file; expected a folder")
     existing = next(
         (existing for existing in (folder, *folder.parents) if existing.exists()), Path()
     )

@@ -212,6 +212,7 @@ class Spectra(OfMotor, OfVoltage, OfBox, Asked, Stored, OfBoth):
 
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6
 DIFFERENT = 0.01  # of the largest gap: where up and down differ by more, they are different motions
+UNDECIDED = "; undecided: slow to converge or nearly periodic, --transient 5000 decides most"
 WORDS = {"repeated": "repeat", "irregular": "irregular", "undecided": "undecided"}
 
 
@@ -303,10 +304,9 @@ Repeat the command to resume an interrupted run. A finished result is left as it
             displacement = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
             acceleration = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
             yield f"mass {mass}: largest displacement {displacement}, acceleration {acceleration}"
-        yield count_line(data)
+        undecided = has_flag(data.multiplicity_decided, "undecided").any()
+        yield f"{count_line(data)}{UNDECIDED if undecided else ''}"
         yield from window_lines(data.sortby(name), name)
-        if has_flag(data.multiplicity_decided, "undecided").any():
-            yield "undecided: slow to converge or nearly periodic; --transient 5000 decides most"
         if "direction" in data.dims:
             up, down = (data.xi_rel_max.sel(direction=word) for word in ("up", "down"))
             differ = abs(up - down) > DIFFERENT * data.xi_rel_max.max("direction")

@@ -434,7 +434,11 @@ def drive_branch_lines(results: Runs) -> Iterator[str]:
     """Yield tables of the bifurcations and of the branches."""
     (data,) = results.values()
     if count := data.sizes["bifurcation"]:
-        yield from table(columns_of(data, "structure kind voltage speed", "bifurcation_"), count)
+        order = sorted(range(count), key=lambda i: float(data.bifurcation_voltage[i]))
+        order.sort(key=lambda i: str(data.bifurcation_structure[i].item()))  # within a structure
+        rows = data.isel(bifurcation=order)
+        yield from table(columns_of(rows, "structure kind voltage speed", "bifurcation_"), count)
+        yield "at which of them a motor that follows its voltage jumps: jump-voltages, or couple"
     else:
         yield "no bifurcations"
     legs = [data.sel(structure=name, leg=leg) for name in data.structure for leg in data.leg]

@@ -102,6 +102,7 @@ MISTAKES = {  # options of each command, then what its line says
     """,
     "attractors": """
         --eta 1 --scale 0 : --scale 0.0
+        --structure beam --eta 1.32 : --eta 1.32 | --amplitude in m or --g
     """,
     "basin": """
         --eta 1:2:0.5 : --eta 1:2:0.5 | 3 values
@@ -217,6 +218,12 @@ def test_what_is_no_command(ask, line):
     assert (done.code, done.out) == (2, "")
     assert not usage or usage[0].startswith("usage: ")
     assert "error: " in last and all(word.strip() in last for word in words.split("|")), last
+
+
+@pytest.mark.parametrize("command", [("sweep", "--eta", "1"), ("couple",), ("paper", "--quick")])
+def test_output_named_like_a_file(ask, tmp_path, command):
+    ask(*command, output=tmp_path / "rep.html").complaint("rep.html", "expected a folder")
+    assert not (tmp_path / "rep.html").exists()
 
 
 @pytest.mark.parametrize("command", [("sweep", "--eta", "1"), ("couple",), ("paper", "--quick")])

@@ -89,8 +89,9 @@ TRIVIAL = [
     ),
     (
         ("sweep", "--set", "e=0.86", "--eta", "0.827,0.9", "--transient", "240", "--samples", "60"),
-        "undecided: slow to converge or nearly periodic; --transient 5000 decides most",
+        "undecided (50 %); undecided: slow to converge or nearly periodic, --transient 5000",
     ),
+    (("lyapunov", "--eta", "2.9", "--periods", "50", "--spectrum"), "all exponents"),
     (("lyapunov", "--eta", "1", "--set", "bonded=true", "--periods", "20"), "there are no impacts"),
 ]
 

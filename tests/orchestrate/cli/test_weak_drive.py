@@ -177,6 +177,29 @@ def test_drive_branch(ask, folder):
     assert shows_something(next(folder.glob("*.png")))
 
 
+def test_bifurcations_of_a_drive_are_listed_by_structure_and_voltage():
+    at, names = "bifurcation", ["delaminated", "bonded", "bonded"]
+    made = {
+        "structure": names,
+        "kind": ["fold"] * 3,
+        "voltage": [1.5, 1.7, 1.6],
+        "speed": [1.0] * 3,
+    }
+    data = xr.Dataset({f"{at}_{name}": (at, values) for name, values in made.items()})
+    legs = {"voltage": [[[1.0]]], "speed": [[[1.0]]], "stable": [[[True]]]}
+    data = data.assign(
+        {name: (("structure", "leg", "point"), value) for name, value in legs.items()}
+    )
+    data["end"] = ("structure", "leg"), [["limit"]]
+    data = data.assign_coords(structure=["bonded"], leg=["lowest speed"])
+    listed = [line.split() for line in weak_drive.drive_branch_lines({"": data})][1:4]
+    assert [row[:1] + row[2:3] for row in listed] == [
+        ["bonded", "1.6"],
+        ["bonded", "1.7"],
+        ["delaminated", "1.5"],
+    ]
+
+
 def test_a_jump_that_no_ramp_has_and_an_undecided_one():
     """Made-up: a jump up of one of two structures, an undecided one down."""
     each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
