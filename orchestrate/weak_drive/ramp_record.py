@@ -90,7 +90,7 @@ class RampRecord:
                 rows.append(float(there[0]) if there.size else math.nan)
             if math.isnan(rows[0]):
                 continue
-            lead = np.where(past, done, math.inf)[: int(rows[0]) + 1]
+            lead = np.where(past, np.minimum(done, 1.0), math.inf)[: int(rows[0]) + 1]
             begun = lead.min() + DONE[0] * (1.0 - lead.min())  # the slip grows on before it falls
             begin = float(np.flatnonzero(lead <= begun)[-1])
             return [leg[0] + 0.5 * (width - 1) + row for row in (begin, *rows)]

@@ -299,6 +299,12 @@ def test_where_a_ramp_shows_a_jump():
     assert jump_labels(["up", "down", "up"]) == ["up", "down", "up 2"]
 
 
+def test_a_ramp_that_is_past_a_jump_before_its_voltage():
+    """By an earlier one, its slip is below that after the jump from the first row on."""
+    _, ramp = record_of([(0, 0.01), (2000, 0.005)])
+    assert np.isfinite(ramp.rows_shown(1.26, 1.2601, 1.23, 1.2401)).all()
+
+
 SETTLED = hysteresis.HysteresisSettings()
 
 
