@@ -29,7 +29,7 @@ def deviate(m, time):
     """Write a matrix for each impact that maps a deviation before it to that before the next one,
     displacements in m, velocities in m per unit of tau; and how long contact lasts.
     """
-    m[at.SIDE] = 1.0
+    m[at.SIDE] = 1.0  # impacts at the inner end
     derive(m)
     m[at.CUBIC_SET] = 1.0
     begin_segment(m)

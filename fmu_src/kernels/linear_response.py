@@ -6,15 +6,17 @@ In the subset of Python that :mod:`fmu_src.export.translation` translates, over 
 import math
 
 # given, then found
-M1, M2, K1, K2, D1, D2, CLEARANCE, BONDED, OMEGA, BOX_FREQUENCY, BOX_AMPLITUDE = range(11)
-GAP_OFFSET, REST_1, REST_2, THRESHOLD, MUST_IMPACT, TRAITS = range(11, 17)
+M1, M2, K1, K2, D1, D2, CLEARANCE, BONDED, WALL, STROKE = range(10)
+OMEGA, BOX_FREQUENCY, BOX_AMPLITUDE, PUSHED = range(10, 14)
+GAP_OFFSET, REST_1, REST_2, THRESHOLD, MUST_IMPACT, TRAITS = range(14, 20)
 LEVEL_ROUNDING = 1e-12  # of the level at which the linear response opens or touches
 NEVER = float("inf")
 
 
 def describe(m, time):
     """Write the gap between unloaded springs, the places of rest, the threshold, and whether the
-    excitation exceeds it, so that no response without impacts exists.
+    excitation exceeds it, so that no response without impacts exists: not known with a wall, a
+    stroke, or what pushes beside the box's harmonic motion.
     """
     offset = m[CLEARANCE]
     if m[BONDED] != 0.0:
@@ -23,8 +25,13 @@ def describe(m, time):
     m[GAP_OFFSET] = offset
     m[REST_1] = 0.0 - preload / m[K1]
     m[REST_2] = preload / m[K2]
+    if m[WALL] != 0.0:
+        m[REST_1] = min(0.0, offset)
+        m[REST_2] = 0.0
     m[THRESHOLD] = threshold(m, offset)
     m[MUST_IMPACT] = 0.0
+    if m[WALL] != 0.0 or m[STROKE] != 0.0 or m[PUSHED] != 0.0:
+        return 0
     if offset != 0.0 and m[BOX_AMPLITUDE] > m[THRESHOLD] * (1.0 + LEVEL_ROUNDING):
         m[MUST_IMPACT] = 1.0
     return 0

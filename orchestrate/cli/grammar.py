@@ -290,6 +290,6 @@ def check_name(name: str) -> None:
     from ..model.ranges import DRIVE
     from ..model.structure import PARAMETERS
 
-    known = (*PARAMETERS, "bonded", "preload", *SET_NAMES)
+    known = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)
     if name not in (*known, *DRIVE):
         raise InputError(f"--set {name}: no parameter; {expected_one_of(name, known)}")

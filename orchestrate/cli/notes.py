@@ -35,7 +35,7 @@ def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -
         yield f"{nothing}: the response is proportional to the level; one level is enough"
     elif structure.bonded:
         yield "bonded: both masses move as one, there are no impacts"
-    elif structure.alike:
+    elif not structure.wall and structure.alike:
         yield "both oscillators are alike: masses that start together never part"
     else:
         yield from clearance_notes(structure, question, shown)
@@ -67,13 +67,14 @@ def print_frequency_notes(arguments: Any, structure: Structure, question: Questi
 def warn_of_other_unit(arguments: Any, structure: Structure, values: tuple[float, ...]) -> None:
     """Warn if frequencies would fit the structure in the other unit: Hz for rad/s or reverse."""
     low, high = (1.0 - NEAR) * min(values), (1.0 + NEAR) * max(values)
-    own = [TURN * f for f in (structure.f1, structure.f2)]
+    f = [getattr(structure, f"f{half}") for half in structure.halves]
+    own = [TURN * each for each in f]
     if math.isclose(structure.omega, 1.0) or any(low <= omega <= high for omega in own):
         return
     for name, (factor, unit, other) in OTHER_UNIT.items():
         text = getattr(arguments, name, None)
         if text and any(low <= factor * omega <= high for omega in own):
-            numbers = f"{structure.f1:.4g} and {structure.f2:.4g} Hz"
+            numbers = " and ".join(f"{each:.4g}" for each in f) + " Hz"
             warnings.warn(
                 f"--{name} {text}: these are {unit}, and the structure's own frequencies are "
                 f"{numbers}; is {other} meant?",
@@ -92,7 +93,9 @@ def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset)
         question, names = {**question, "level": question["values"]}, names | {"level"}
     elif question.get("over") is not None or "clearance" in question:
         return
-    if structure.bonded or not structure.clearance or names not in COMPLETE:
+    if structure.bonded or structure.wall or structure.stroke:
+        return
+    if not structure.clearance or names not in COMPLETE:
         return
     ratio = threshold_over_level(structure, {name: np.ravel(question[name]) for name in names})
     if ratio <= 1.0:

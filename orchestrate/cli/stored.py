@@ -62,7 +62,7 @@ def explain_difference(stored: Structure, asked: Structure) -> str:
     """Return which parameters of two structures differ, as a text; empty if none does."""
     pairs = [
         (name, float(getattr(stored, name)), float(getattr(asked, name)))
-        for name in (*STRUCTURE, "bonded")
+        for name in (*STRUCTURE, "bonded", "wall")
     ]
     texts = [
         f"{name} = {there:.6g} there, {here:.6g} here"

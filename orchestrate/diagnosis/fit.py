@@ -19,7 +19,7 @@ from ..model import Structure
 from ..model.arguments import checked_word
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
-from ..running.job import Table
+from ..running.job import Table, refuse_family
 from ..running.options import Running
 from ..running.runner import answer
 from .curve_evidence import CurveData
@@ -206,6 +206,7 @@ def is_curve(record: xr.Dataset) -> bool:
 def delaminated_guess(guess: Structure) -> Structure:
     """Check that both halves of the guess have a spring, and return it as delaminated."""
     structure = checked_structure(guess)
+    refuse_family("the diagnosis", structure)
     if not (structure.k1 > 0.0 and structure.k2 > 0.0):
         text = "expected k1 > 0 and k2 > 0"
         raise InputError(f"guess: k1 = {structure.k1!r} N/m, k2 = {structure.k2!r} N/m; {text}")

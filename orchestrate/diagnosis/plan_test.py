@@ -22,6 +22,7 @@ from ..laboratory.swept_sine import SweptSine
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..response.labels import variable, yes_or_no
+from ..running.job import refuse_family
 from ..running.options import Running
 from .opening import largest_opening_force, sweep_rate
 from .undamaged import SoundStructure
@@ -154,6 +155,7 @@ def plan_test(
     >>> float(plan.distance_harmonics.max("frequency").values.argmax()), bool(plan.counts)
     (1.0, True)
     """
+    refuse_family("plan_test", structure)
     if structure.bonded:
         raise InputError("structure: bonded; expected a guess of the delaminated one")
     if frequencies is None:

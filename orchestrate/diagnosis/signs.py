@@ -17,6 +17,7 @@ from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer
 from ..response.labels import flags, variable
+from ..running.job import refuse_family
 from .drive_signs import drive_signs, is_drive_run
 from .indicators import INDICATORS
 from .orders import sensor_channels
@@ -180,6 +181,7 @@ def sound_structure(
     structure: Structure | None, own: ResponseSigns, channels: Channels
 ) -> SoundStructure:
     """Return the sound structure: the bonded guess, or the oscillator nearest to the record."""
+    refuse_family("signs", structure)
     force = channels.box_label == FORCE
     if structure is not None and not (force and own.curves):
         return SoundStructure.from_structure(structure)

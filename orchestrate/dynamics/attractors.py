@@ -31,6 +31,7 @@ from .clusters import (
 from .decision import MotionDecider
 from .global_continuation import MatchedAttractors, continue_attractors, instance_pair
 
+Floats = NDArray[np.float64]
 ATTRACTOR = "attractor: periodic first, then by periods, impacts per period, largest gap"
 OF_ATTRACTORS = {
     "multiplicity": "excitation periods after which it repeats; 0: irregular",
@@ -61,6 +62,7 @@ class AttractorsJob(SeriesQuestion):
 
     settings: SettlingRun
     replaced: ClassVar[tuple[str, ...]] = RUN_LENGTHS
+    takes_family: ClassVar[bool] = True
     chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"
@@ -217,7 +219,19 @@ def random_starts(
     draws = np.random.default_rng(list(seed)).uniform(-scale, scale, (count, 4))
     omega, x1, gap = structure.omega, draws[:, 0] + structure.at_rest[0], np.abs(draws[:, 1])
     v1, rate = draws[:, 2] * omega, draws[:, 3] * omega
-    return np.column_stack([x1, x1 + gap - structure.gap_offset, v1, v1 + rate])
+    return starts_by_gap(structure, x1, gap, v1, rate)
+
+
+def starts_by_gap(
+    structure: Structure, x1: Floats, gap: Floats, v1: Floats, rate: Floats
+) -> Floats:
+    """Return start states by mass 1 and the gap: inside the stroke, and with mass 2 at a wall."""
+    if structure.stroke:
+        gap = np.mod(gap, structure.stroke)
+    if structure.wall:
+        x1, v1, rate = structure.gap_offset - gap, v1, -v1
+    x2 = x1 + gap - structure.gap_offset
+    return np.column_stack([x1, 0.0 * x2 if structure.wall else x2, v1, v1 + rate])
 
 
 class SizeFromRest(NamedTuple):
@@ -249,9 +263,8 @@ def starts_in_both_boxes(
     around, gap = 0.7 * size.displacement, 3.0 * (size.gap or point.length)
     x1 = size.state[0] + around * draws[:, 0]
     v1 = size.state[2] + frequency * around * draws[:, 2]
-    x2 = x1 + gap * np.abs(draws[:, 1]) - point.structure.gap_offset
-    v2 = v1 + frequency * gap * draws[:, 3]
-    states[1::2] = np.column_stack([x1, x2, v1, v2])[1::2]
+    own = x1, gap * np.abs(draws[:, 1]), v1, frequency * gap * draws[:, 3]
+    states[1::2] = starts_by_gap(point.structure, *own)[1::2]
     return states
 
 
@@ -262,6 +275,9 @@ def attractors(
     eta: Values = None,
     frequency: Values = None,
     amplitude: Values = None,
+    box_acceleration: Values = 0.0,
+    force1: Values = 0.0,
+    force2: Values = 0.0,
     over: str | None = None,
     values: ArrayLike | None = None,
     starts: Annotated[int | None, whole(1)] = None,
@@ -279,7 +295,7 @@ def attractors(
     Parameters
     ----------
     structure : Structure
-    eta, frequency, amplitude, over, values
+    eta, frequency, amplitude, box_acceleration, force1, force2, over, values
         As in :func:`orchestrate.sweep`.
     starts : int, optional
         Random starts at each value: by default 60, and 600 where there is one value alone.
@@ -337,7 +353,8 @@ def attractors(
     unit circle, and if the response comes nearer to it as they say. So multiplicity and impacts are
     those of the orbit, and two attractors are two orbits. What has not repeated after ``longest``
     periods is irregular, a torus or chaos; how many of these there are depends on
-    ``alike_irregular``. An FMU of FMI 2.0 reports no impacts: there states that repeat decide.
+    ``alike_irregular``. An FMU of FMI 2.0 reports no impacts: there states that repeat decide,
+    as with a wall, a stroke, a force or a constant acceleration, which Newton's method has not.
 
     Global continuation (Datseris, Rossi and Wagemakers, Chaos 33, 073151, 2023): every attractor
     is carried to both neighbouring values, its state as a further start, or its orbit by Newton's

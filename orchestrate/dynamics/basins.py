@@ -18,13 +18,13 @@ from ..fmu import (
     Instance,
     begin,
     finder,
-    gap_between,
     stroboscopic_samples,
 )
 from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
 from ..model.arguments import checked_integer
 from ..model.outcomes import ABSENT
+from ..model.ranges import PUSHES
 from ..response.labels import make_dataset, si_state_coordinate, variable
 from ..response.questions import (
     OF_EXCITATION,
@@ -33,6 +33,7 @@ from ..response.questions import (
     State,
     checked_point,
     checked_state,
+    outside_gap,
     require_delaminated,
 )
 from ..response.signatures import as_given, question
@@ -96,13 +97,16 @@ class Plane(NamedTuple):
             at = (*structure.at_rest, 0.0, 0.0)
         columns = dict(zip(STATE, np.array(at)[:, None] + np.zeros(x.size), strict=True))
         phase = given.get("phase", np.full(x.size, self.point.excitation.phase))
+        if structure.wall:
+            columns |= {"x2": np.zeros(x.size), "v2": np.zeros(x.size)}
         if "x_rel" in given:  # from here on, as the difference x2 - x1
             given["x_rel"] = given["x_rel"] - structure.gap_offset
         columns |= {name: values for name, values in given.items() if name in STATE}
         for name, (one, two) in GAPS.items():
             if name in given:
+                fixed = {two: columns[two]} if structure.wall else {}
                 columns[one], columns[two] = masses_from_gap(
-                    given, name, columns[one], columns[two]
+                    {**given, **fixed}, name, columns[one], columns[two]
                 )
         return np.column_stack([columns[name] for name in STATE]), phase
 
@@ -128,7 +132,8 @@ class BasinJob(Question):
     y: PlaneAxis
     known: tuple[tuple[float, ...], ...]  # states on attractors that are known, at phase 0
     settings: SettlingRun
-    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, "phase", *RUN_LENGTHS)
+    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *PUSHES, "phase", *RUN_LENGTHS)
+    takes_family: ClassVar[bool] = True
     chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"
@@ -136,8 +141,12 @@ class BasinJob(Question):
     def __post_init__(self) -> None:
         super().__post_init__()
         require_delaminated(self.structure)
-        gaps = gap_between(self.plane().starts()[0], self.structure.gap_offset)
-        if not (gaps >= 0.0).any():
+        states = self.plane().starts()[0]
+        if self.structure.wall and states[:, 1::2].any():
+            raise InputError(
+                "x and y: mass 2 is a wall; expected of x1 and x_rel, v1 and v_rel one"
+            )
+        if outside_gap(states, self.structure).all():
             raise InputError(
                 "x and y: the masses overlap at every start; expected some with x2 >= x1"
             )
@@ -162,7 +171,7 @@ class BasinJob(Question):
             decider = MotionDecider(*instances, point, self.settings)
             rows = [ABSENT_ROW] * len(items)
             states = np.array([state for state, _ in items])
-            apart = np.flatnonzero(gap_between(states, self.structure.gap_offset) >= 0.0)
+            apart = np.flatnonzero(~outside_gap(states, self.structure))
             starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in apart.tolist()]
             for i, row in zip(apart.tolist(), settled_rows(decider, starts), strict=True):
                 rows[i] = row
@@ -233,6 +242,9 @@ def basin(
     eta: float | None = None,
     frequency: float | None = None,
     amplitude: float | None = None,
+    box_acceleration: float = 0.0,
+    force1: float = 0.0,
+    force2: float = 0.0,
     x: tuple[str, float, float, int] | None = None,
     y: tuple[str, float, float, int] | None = None,
     at: ArrayLike | None = None,
@@ -248,7 +260,7 @@ def basin(
     Parameters
     ----------
     structure : Structure
-    eta, frequency, amplitude
+    eta, frequency, amplitude, box_acceleration, force1, force2
         As in :func:`orchestrate.simulate`.
     x, y : (str, float, float, int), optional
         Sides of the plane: coordinate, its first and last value, and how many. Coordinates are
@@ -295,7 +307,8 @@ def basin(
     >>> found.attractor_of.dims, found.multiplicity.values.tolist()
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
-    point = checked_point(structure, eta, frequency, amplitude)
+    pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
+    point = checked_point(structure, eta, frequency, amplitude, **pushes)
     run = SettlingRun.by(settings, transient=transient, settle=settle, samples=samples)
     known: KnownAttractors | None = None
     if x is None or y is None:
@@ -341,7 +354,8 @@ def find_known_attractors(
     structure, excitation = point
     search: Any = {name: getattr(settings, name) for name in RUN_LENGTHS} | {"settings": settings}
     search |= {name: running[name] for name in running.keys() & {"fmu", "build_folder"}}
-    search |= {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
+    box = ("frequency", "amplitude", *PUSHES)
+    search |= {name: getattr(excitation, name) for name in box}
     known = attractors(structure, starts=24, **search, jobs=1, progress=False).isel(frequency=0)
     states, samples = tuple(map(tuple, known.state.values.tolist())), []
     with Instance(finder(running)(OSCILLATOR).path) as instance:

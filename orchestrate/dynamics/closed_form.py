@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from ..model import Excitation, Structure
 
 Floats = NDArray[np.float64]
@@ -24,6 +25,12 @@ def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
     if not np.any(contact):
         return MASSES
     return np.where(np.reshape(contact, (-1, 1)), 2, np.arange(2))
+
+
+def has_closed_form(point: tuple[Structure, Excitation]) -> bool:
+    """Return whether formulas of orbits and deviations hold: no wall, stroke, force or gravity."""
+    structure, excitation = point
+    return not (structure.wall or structure.stroke or any(excitation.pushes))
 
 
 @dataclass(frozen=True)
@@ -57,6 +64,8 @@ class ClosedForm:
         omega, m1, m2 = structure.omega, structure.m1, structure.m2
         both, springs = m1 + m2, structure.k1 + structure.k2
         unit = omega * omega
+        if not has_closed_form((structure, excitation)):
+            raise InputError("wall, stroke, force1, force2: orbits and their borders have none yet")
         eta = excitation.frequency / omega
         dampers = np.array(
             [structure.d1 / m1, structure.d2 / m2, (structure.d1 + structure.d2) / both]

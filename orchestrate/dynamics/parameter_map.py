@@ -25,7 +25,7 @@ from ..model.ranges import expected_one_of
 from ..response.labels import column_variables, flags, make_dataset, parameter_variable
 from ..response.multiplicity import DECIDED, Decision
 from ..response.questions import (
-    EXCITATION_PARAMETERS,
+    QUANTITIES,
     Point,
     Question,
     check_excitation_form,
@@ -62,7 +62,8 @@ class MapJob(Question):
 
     # parameters of the excitation and the structure; two of them are lists
     given: tuple[tuple[str, Numbers], ...]
-    replaced: ClassVar[tuple[str, ...]] = tuple(EXCITATION_PARAMETERS)
+    replaced: ClassVar[tuple[str, ...]] = tuple(QUANTITIES)
+    takes_family: ClassVar[bool] = True
     chunk_size: ClassVar[int] = 120
 
     def __post_init__(self) -> None:
@@ -162,7 +163,7 @@ def map_points(
 ) -> tuple[Point, ...]:
     """Return structure and excitation of each grid point, row by row; raise if not two lists."""
     values = dict(arguments)
-    check_excitation_form(values.keys() & EXCITATION_PARAMETERS.keys())
+    check_excitation_form(values.keys())
     lists = {name: value for name, value in arguments if isinstance(value, tuple)}
     if len(lists) != 2:
         names = ", ".join(lists) or "none"
@@ -182,6 +183,9 @@ def map(
     frequency: ArrayLike | None = None,
     amplitude: ArrayLike | None = None,
     level: ArrayLike | None = None,
+    box_acceleration: ArrayLike = 0.0,
+    force1: ArrayLike = 0.0,
+    force2: ArrayLike = 0.0,
     transient: Transient = 300,
     settle: Positive = 300.0,
     samples: Annotated[int, whole(4)] = 60,
@@ -201,6 +205,8 @@ def map(
         As in :func:`orchestrate.sweep`.
     level : array_like, optional
         In place of the amplitude: peak acceleration a Omega^2 of the box, m/s2.
+    box_acceleration, force1, force2
+        As in :func:`orchestrate.sweep`, numbers or lists.
     transient, settle
         As in :func:`orchestrate.attractors`.
     samples : int
@@ -257,7 +263,9 @@ def map(
                 f"{name}: no parameter; {expected_one_of(name, (*PARAMETERS, *known))}"
             )
     box = {"eta": eta, "frequency": frequency, "amplitude": amplitude, "level": level}
-    asked: dict[str, Any] = {**box, **others}
+    pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
+    pushed = {name: value for name, value in pushes.items() if not np.array_equal(value, 0.0)}
+    asked: dict[str, Any] = {**box, **pushed, **others}
     numbers = {n: excitation_numbers(n, value) for n, value in asked.items() if n not in running}
     given = tuple((name, value) for name, value in numbers.items() if value is not None)
     start = checked_state("start", start, checked_structure(structure))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
-from ..fmu import OSCILLATOR, EventInstance, Impacts, Instance, begin
+from ..fmu import OSCILLATOR, EventInstance, Impacts, Instance, begin, gap_between
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Transient, checked_number
@@ -35,6 +35,8 @@ Floats = NDArray[np.float64]
 class PoincareJob(OneMotionQuestion):
     """Job of :func:`orchestrate.poincare`: the Poincaré section of one motion."""
 
+    takes_family: ClassVar[bool] = True
+
     def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
         """Simulate the motion after its transient; return states and times of the section."""
         point, period = items[0], self.excitation.period
@@ -54,7 +56,9 @@ class PoincareJob(OneMotionQuestion):
                 times = release_times(impacts, point, self.periods * period)
                 return {"time": times, "rows": states_at_times(plain, point, start, times)}
         rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
-        rows = np.column_stack([impacts.state, np.zeros(len(rate)), rate])
+        gap, stroke = gap_between(impacts.state, point.structure.gap_offset), self.structure.stroke
+        gap = np.where(gap > 0.5 * stroke, stroke, 0.0)  # 0 without a stroke
+        rows = np.column_stack([impacts.state, gap, rate])
         more = {"impact_velocity": impacts.closing, "sticks": impacts.sticks}
         return {"time": impacts.time, "rows": rows, **more}
 
@@ -108,6 +112,9 @@ def poincare(
     eta: float | None = None,
     frequency: float | None = None,
     amplitude: float | None = None,
+    box_acceleration: float = 0.0,
+    force1: float = 0.0,
+    force2: float = 0.0,
     at: Literal["phase", "impacts", "releases"] = "phase",
     phase: float = 0.0,
     transient: Transient = 500,
@@ -124,6 +131,8 @@ def poincare(
         Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m.
     frequency, amplitude : float, optional
         The physical form instead: rad/s and m.
+    box_acceleration, force1, force2
+        As in :func:`orchestrate.simulate`.
     at : {"phase", "impacts", "releases"}
         Where states are taken. At one phase of the box, once an excitation period; just after each
         impact; or where each permanent contact that an impact began ends.
@@ -164,7 +173,8 @@ def poincare(
     >>> section.sizes["point"], float(abs(section.v_rel).max() < 1e-12)
     (3, 1.0)
     """
-    _, excitation = checked_point(structure, eta, frequency, amplitude)
+    pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
+    _, excitation = checked_point(structure, eta, frequency, amplitude, **pushes)
     phase = math.fmod(checked_number("phase", phase, "a number, rad"), TURN) % TURN
     start = checked_state("start", start, structure)
     return as_given(excitation=excitation, phase=phase, start=start)

@@ -13,11 +13,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..errors import InputError
 from ..fmu import Impacts
 from ..fmu.c_library import loaded_loop
 from ..fmu.oscillator import DEVIATING
 from ..response.questions import Point
-from .closed_form import ClosedForm, Floats
+from .closed_form import ClosedForm, Floats, has_closed_form
 
 
 @functools.cache
@@ -48,6 +49,9 @@ class Call(NamedTuple):
 def call_of(impacts: Impacts, end: float, point: Point) -> Call:
     """Return a call about non-dimensional impacts up to an end in tau."""
     structure, excitation = point
+    if not has_closed_form(point):
+        text = "exponents and releases do not know them yet; expected none"
+        raise InputError(f"wall, stroke, box_acceleration, force1, force2: {text}")
     values = [float(getattr(structure, name)) for name in DEVIATING]
     numbers = np.array([*values, excitation.amplitude, excitation.frequency, 0.0])
     states, omega = point.from_faces(impacts.state), structure.omega

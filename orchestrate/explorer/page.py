@@ -22,6 +22,7 @@ from ..fmu.webassembly import WebKernel, loop_tables, web_kernel
 from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.ranges import STRUCTURE
+from ..running.job import refuse_family
 from ..units import Units, units_of
 from ..version import __version__
 from .branches import branch_json
@@ -54,6 +55,7 @@ def explore(
     A ``record``, as :func:`orchestrate.read_record` returns it, is drawn over the spectrum.
     """
     asked = units if isinstance(units, Units) else Units.from_text(units)
+    refuse_family("the explorer", data)
     if data is None or isinstance(data, Structure):
         chosen = first_diagram(data or Structure(), asked)
     else:

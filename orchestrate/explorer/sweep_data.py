@@ -17,6 +17,8 @@ from ..fmu import OSCILLATOR
 from ..fmu.webassembly import kernel_digest
 from ..lazy import xr
 from ..model import Excitation, Structure
+from ..model.ranges import PUSHES
+from ..running.job import refuse_family
 from ..running.store import load
 from ..units import Units
 
@@ -70,6 +72,9 @@ def read_sweep(data: xr.Dataset) -> SweepData:
 def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     """Return a sweep dataset of a direction as ``SweepData``, after :func:`check_sweep`."""
     structure = Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
+    refuse_family("the explorer", structure)
+    if any(name in data.coords or data.attrs.get(name, 0.0) != 0.0 for name in PUSHES):
+        raise InputError(f"{', '.join(PUSHES)}: the explorer does not know them yet; expected none")
     directions = ("up", "down") if direction == "both" else (direction,)
     (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
     data = data.sortby(parameter)

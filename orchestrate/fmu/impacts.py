@@ -32,5 +32,7 @@ class Impacts:
         """Return each impact's impulse on each mass, N s, (n,) (15); plastic if contact begins."""
         m1, m2 = structure.m1, structure.m2
         restitution = np.where(self.sticks, 0.0, structure.restitution(speed * self.closing))
+        if structure.wall:
+            return np.asarray((1.0 + restitution) * m1 * self.closing)
         impulse: NDArray[np.float64] = (1.0 + restitution) * m1 * m2 / (m1 + m2) * self.closing
         return impulse

@@ -29,9 +29,20 @@ READ = (
     *("impact_count", "contact_count", "in_contact"),
 )
 PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max")
-TRAITS = ("m1", "m2", "k1", "k2", "d1", "d2", "clearance", "bonded")  # of a structure, for loops
+TRAITS = (
+    "m1",
+    "m2",
+    "k1",
+    "k2",
+    "d1",
+    "d2",
+    "clearance",
+    "bonded",
+    "wall",
+    "stroke",
+)  # of a structure
 FOUND = ("gap_offset", "rest_1", "rest_2", "threshold", "must_impact")  # what follows from them
-TRAIT_NAMES = (*TRAITS, "omega", "frequency", "amplitude", *FOUND)
+TRAIT_NAMES = (*TRAITS, "omega", "frequency", "amplitude", "pushed", *FOUND)
 DEVIATING = (*TRAITS[:6], "e", "gamma", "bonded", "clearance", "e_slope")  # of deviations' growth
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
 COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
@@ -174,14 +185,17 @@ def empty(count: int) -> Floats:
     return np.empty((count, len(STATE)))
 
 
-def traits(structure: Structure, frequency: float = 1.0, amplitude: float = 0.0) -> Any:
+def traits(
+    structure: Structure, frequency: float = 1.0, amplitude: float = 0.0, pushed: bool = False
+) -> Any:
     """Return what a structure under an excitation is for the loops: numbers in C.
 
     They end with the gap between unloaded springs, the places of rest x1 and x2, the amplitude at
-    which the linear response opens or touches, and whether it does: then every motion impacts.
+    which the linear response opens or touches, and whether it does: then every motion impacts. That
+    is not known with a wall, a stroke, or what pushes beside the box's harmonic motion.
     """
     numbers = (getattr(structure, name) for name in TRAITS)
-    memory = (c_double * len(TRAIT_NAMES))(*numbers, structure.omega, frequency, amplitude)
+    memory = (c_double * len(TRAIT_NAMES))(*numbers, structure.omega, frequency, amplitude, pushed)
     library().describe_linear_response(memory)
     return memory
 

@@ -15,7 +15,7 @@ from os import PathLike
 
 from ..errors import InputError
 from .described import Described
-from .ranges import EXCITATION, RATIO_QUANTITIES, construct_or_explain, exact_inverse
+from .ranges import EXCITATION, PUSHES, RATIO_QUANTITIES, construct_or_explain, exact_inverse
 from .structure import Structure
 
 
@@ -27,7 +27,7 @@ def frequency_ratio(frequency: float, omega: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Excitation(Described):
-    """Harmonic motion of the box, ``a sin(Omega t + phase)``.
+    """Harmonic motion of the box, ``a sin(Omega t + phase)``, and what pushes beside it.
 
     Parameters
     ----------
@@ -37,6 +37,10 @@ class Excitation(Described):
         a, m.
     phase : float
         Phase at time 0, rad.
+    box_acceleration : float
+        Constant acceleration of the box beside the harmonic one, m/s2: gravity.
+    force1, force2 : float
+        Amplitudes F of harmonic forces on the masses, N: ``F sin(Omega t + phase)``.
 
     Raises
     ------
@@ -54,24 +58,30 @@ class Excitation(Described):
     frequency: float
     amplitude: float
     phase: float = EXCITATION["phase"].default
+    box_acceleration: float = 0.0
+    force1: float = 0.0
+    force2: float = 0.0
 
     def __post_init__(self) -> None:
         for name, quantity in EXCITATION.items():
             object.__setattr__(self, name, quantity.check(getattr(self, name)))
 
     @classmethod
-    def nondimensional(cls, eta: float, structure: Structure, phase: float = 0.0) -> Excitation:
+    def nondimensional(
+        cls, eta: float, structure: Structure, phase: float = 0.0, **pushes: float
+    ) -> Excitation:
         """Return the box motion of frequency eta*omega and amplitude 1/eta^2 m (x = xi).
 
         Examples
         --------
-        >>> Excitation.nondimensional(0.5, Structure())
-        Excitation(frequency=0.5, amplitude=4.0, phase=0.0)
+        >>> Excitation.nondimensional(0.5, Structure()).amplitude
+        4.0
         """
         eta = RATIO_QUANTITIES["eta"].check(eta)
         frequency, amplitude = eta * structure.omega, 1.0 / (eta * eta)
         return construct_or_explain(
-            {"eta": eta}, lambda: cls(frequency=frequency, amplitude=amplitude, phase=phase)
+            {"eta": eta},
+            lambda: cls(frequency=frequency, amplitude=amplitude, phase=phase, **pushes),
         )
 
     @classmethod
@@ -96,10 +106,21 @@ class Excitation(Described):
         return frequency_ratio(self.frequency, structure.omega)
 
     def length(self, structure: Structure) -> float:
-        """Return the unit of length of xi (3), a eta^2, m; 1 where only rounding differs."""
+        """Return the unit of length of xi (3), a eta^2, m; 1 where only rounding differs.
+
+        Without box motion it is the largest static displacement by what pushes.
+        """
+        if self.amplitude == 0.0:
+            softness = 1.0 / structure.omega**2, 1.0 / structure.k1, 1.0 / structure.k2
+            return max(abs(push) * s for push, s in zip(self.pushes, softness, strict=True))
         eta = self.eta(structure)
         length = self.amplitude * (eta * eta)
         return 1.0 if math.isclose(length, 1.0, rel_tol=2e-15) else length
+
+    @property
+    def pushes(self) -> tuple[float, ...]:
+        """Return the box's constant acceleration, m/s2, and both forces, N."""
+        return tuple(getattr(self, name) for name in PUSHES)
 
     def check(self, structure: Structure, least: float = 1e-12) -> None:
         """Raise ``InputError`` if an oscillator would be driven at its resonance almost undamped.
@@ -142,11 +163,12 @@ class Excitation(Described):
         return dataclasses.replace(self, **changes)
 
     def inputs(self) -> dict[str, float]:
-        """Return the FMU's input and start values by name: box amplitude, frequency and phase."""
+        """Return the FMU's input and start values by name."""
         return {
             "box_amplitude": self.amplitude,
             "box_frequency": self.frequency,
             "phase_start": self.phase,
+            **dict(zip(PUSHES.values(), self.pushes, strict=True)),
         }
 
 
@@ -155,5 +177,8 @@ def oscillators(structure: Structure) -> Iterator[tuple[str, float, float, dict[
     s = structure
     if not s.bonded:
         yield "mass 1", s.k1, s.m1, {"d1": s.d1}
+    if s.wall:
+        return
+    if not s.bonded:
         yield "mass 2", s.k2, s.m2, {"d2": s.d2}
     yield "both masses together", s.k1 + s.k2, s.m1 + s.m2, {"d1": s.d1, "d2": s.d2}

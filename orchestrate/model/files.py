@@ -151,6 +151,8 @@ def write(
         tables["structure"] = structure.parameters()
     if excitation is not None:
         phase, amplitude = excitation.phase, excitation.amplitude
+        if any(excitation.pushes):
+            raise InputError(f"{excitation}: a file has the box's motion alone, no forces")
         frequency = {"frequency_rad_s": excitation.frequency}
         tables["excitation"] = {**frequency, "amplitude": amplitude, "phase": phase}
     if drive is not None:

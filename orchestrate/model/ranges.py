@@ -7,7 +7,7 @@ import math
 import numbers
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal, InvalidOperation
 from typing import Any, TypeVar
 
@@ -112,9 +112,10 @@ def quantities_of(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Q
     }
 
 
-STRUCTURE = quantities_of(oscillator.VARIABLES, oscillator.STRUCTURE)
+STRUCTURE = quantities_of(oscillator.VARIABLES, (*oscillator.STRUCTURE, "stroke"))
 MECHANICS = oscillator.MECHANICS
-ADDED = tuple(variable.name for variable in oscillator.ADDED)  # files made before have none of them
+# files made before have none of them
+ADDED = (*(variable.name for variable in oscillator.ADDED), "stroke")
 # with one of these a motion is not in proportion to the shaking
 OF_LENGTH = tuple(name for name, quantity in STRUCTURE.items() if quantity.dimension["m"])
 DRIVE = quantities_of(
@@ -136,7 +137,14 @@ SHAKER = quantities_of(
 )
 
 SMALLEST, LARGEST = STRUCTURE["m1"].minimum, STRUCTURE["m1"].maximum
-INPUTS = quantities_of(oscillator.VARIABLES, ("box_amplitude", "box_frequency", "phase_start"))
+PUSHES = {  # beside the box's harmonic motion, by the FMU's inputs
+    "box_acceleration": "box_acceleration",
+    "force1": "force1_amplitude",
+    "force2": "force2_amplitude",
+}
+INPUTS = quantities_of(
+    oscillator.VARIABLES, ("box_amplitude", "box_frequency", "phase_start", *PUSHES.values())
+)
 EXCITATION = {
     quantity.name: quantity
     for quantity in (
@@ -149,6 +157,7 @@ EXCITATION = {
             INPUTS["phase_start"].minimum,
             INPUTS["phase_start"].maximum,
         ),
+        *(replace(INPUTS[name], name=short) for short, name in PUSHES.items()),
     )
 }
 

@@ -27,7 +27,7 @@ from .ranges import (
     expected_one_of,
 )
 from .shaker import Shaker
-from .structure import Structure
+from .structure import FLAGS, Structure
 
 TO_RAD_S: dict[str, Callable[[float], float]] = {
     "hz": lambda value: TURN * value,
@@ -35,7 +35,7 @@ TO_RAD_S: dict[str, Callable[[float], float]] = {
     "rpm": lambda value: TURN * value / 60.0,
 }
 COMMON_NUMBERS = tuple(name for name in STRUCTURE if name not in MECHANICS)
-COMMON_KEYS = (*COMMON_NUMBERS, "bonded")
+COMMON_KEYS = (*COMMON_NUMBERS, *FLAGS)
 OMEGAS = tuple(f"omega_{unit}" for unit in TO_RAD_S)
 HALVES = ("f1_hz", "f2_hz", "zeta1", "zeta2")
 RATIOS = ("mu", "kappa", "D", "D1", "D2", *OMEGAS)
@@ -166,8 +166,7 @@ def read_structure(section: Section) -> Structure:
     values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
     if section.at_most_one(("clearance", "preload")) == "preload":
         values["clearance"] = -section.number("preload")
-    if "bonded" in section.values:
-        values["bonded"] = section.flag("bonded")
+    values |= {name: section.flag(name) for name in FLAGS if name in section.values}
     if section.present(HALVES):
         section.uses_second_form(HALVES, (*MECHANICS[2:], *RATIOS))
         section.need(("m1", "m2", *HALVES))

@@ -31,6 +31,8 @@ Values = TypeVar("Values", float, "NDArray[np.float64]")
 SI = tuple(STRUCTURE)
 RATIOS = ("mu", "kappa", "D", "D1", "D2", "omega")
 HALVES = ("f1", "f2", "zeta1", "zeta2")
+OF_MASS_2 = ("m2", "k2", "d2", "mu", "kappa", "D2", "f2", "zeta2")
+FLAGS = ("bonded", "wall")
 PARAMETERS = (*SI, *RATIOS, *HALVES)
 ALTERNATIVES = {  # names that set the same value
     "mu": ("m2",),
@@ -102,7 +104,7 @@ def format_short(value: float) -> str:
 def with_table(kind: type[Described]) -> type[Described]:
     """Give a class fields for the parameters of the variable table that it does not write out."""
     types, text, before = kind.__annotations__, kind.__doc__ or "", "    bonded : bool"
-    last = {"bonded": types.pop("bonded")}
+    last = {name: types.pop(name) for name in FLAGS if name in types}
     for name in [name for name in STRUCTURE if name not in types]:
         quantity = STRUCTURE[name]
         types[name] = "float"
@@ -138,19 +140,26 @@ class Structure(Described):
     e_slope : float
         Decrease of the coefficient of restitution with the closing speed v, s/m: it is
         e/(1 + e_slope v), see :meth:`restitution`; 0 for e at all speeds.
+    stroke : float
+        Largest gap, m: there the faces strike on their other side, with the same e (a play, a mass
+        between two stops); 0 for no limit. A bonded structure ignores it.
     bonded : bool
         The undamaged structure: both masses glued for good.
+    wall : bool
+        Mass 2 is a rigid wall fixed to the box: m2, k2, d2 have no effect, and what is made of them
+        (``mu``, ``kappa``, ``f2``, ...) is refused.
 
     Raises
     ------
     InputError
-        Where a value is no number in its range.
+        Where a value is no number in its range, or values contradict each other.
 
     See Also
     --------
     Structure.nondimensional : the same by the paper's numbers.
     Structure.from_halves : the same by natural frequencies and damping ratios.
     Structure.from_bonded : from a measurement of the undamaged beam.
+    Structure.one_mass : one mass against a wall, or between two.
 
     Examples
     --------
@@ -174,12 +183,61 @@ class Structure(Described):
     gamma: float = STRUCTURE["gamma"].default
     clearance: float = STRUCTURE["clearance"].default
     e_slope: float = STRUCTURE["e_slope"].default
+    stroke: float = STRUCTURE["stroke"].default
     bonded: bool = False
+    wall: bool = False
 
     def __post_init__(self) -> None:
         for name, quantity in STRUCTURE.items():
             object.__setattr__(self, name, quantity.check(getattr(self, name)))
-        object.__setattr__(self, "bonded", checked_flag("bonded", self.bonded))
+        for name in FLAGS:
+            object.__setattr__(self, name, checked_flag(name, getattr(self, name)))
+        if self.wall and self.bonded:
+            raise InputError("bonded = True with wall = True: expected one of both at most")
+        if 0.0 < self.stroke < self.clearance and not self.bonded:
+            raise InputError(
+                f"stroke = {self.stroke!r} m: expected at least clearance = {self.clearance!r} m"
+            )
+
+    @classmethod
+    def one_mass(
+        cls,
+        *,
+        m: float = STRUCTURE["m1"].default,
+        k: float = STRUCTURE["k1"].default,
+        d: float = STRUCTURE["d1"].default,
+        clearance: float = STRUCTURE["clearance"].default,
+        stroke: float = 0.0,
+        **added: float,
+    ) -> Structure:
+        """Make one mass on a spring and a damper in front of a wall, or between two.
+
+        Parameters
+        ----------
+        m, k, d : float
+            Mass, stiffness and damping, kg, N/m, N s/m.
+        clearance : float
+            Distance to the wall at rest, m, which is where x1 = clearance; below zero the mass
+            rests on the wall, pressed to it by ``-k clearance``.
+        stroke : float
+            Free way between the wall and another one opposite, where x1 = clearance - stroke, m; 0:
+            there is none.
+        **added
+            ``e`` and others, as in :class:`Structure`.
+
+        Examples
+        --------
+        >>> mass = Structure.one_mass(m=2.0, k=50.0, d=0.1, e=0.8, clearance=-0.01)
+        >>> mass.omega, mass.at_rest, mass.preload
+        (5.0, (-0.01, 0.0), 0.5)
+        """
+        alike = {"m1": m, "m2": m, "k1": k, "k2": k, "d1": d, "d2": d}
+        return cls(**alike, clearance=clearance, stroke=stroke, wall=True, **added)
+
+    def needs_mass_2(self, name: str) -> None:
+        """Raise ``InputError`` if mass 2, of which a parameter is made, is a wall."""
+        if self.wall:
+            raise InputError(f"{name}: mass 2 is a wall (wall = True); expected a mass")
 
     @classmethod
     def nondimensional(
@@ -399,10 +457,10 @@ class Structure(Described):
         """
         older = {name: STRUCTURE[name].default for name in ADDED}
         numbers = {name: float({**older, **attributes}[name]) for name in STRUCTURE}
-        bonded = float(attributes.get("bonded", 0.0))
-        if bonded not in (0.0, 1.0):
-            raise ValueError(f"bonded = {bonded}")
-        return cls(**numbers, bonded=bool(bonded))
+        flags = {name: float(attributes.get(name, 0.0)) for name in FLAGS}
+        if not {*flags.values()} <= {0.0, 1.0}:
+            raise ValueError(f"{flags}")
+        return cls(**numbers, **{name: bool(flag) for name, flag in flags.items()})
 
     @property
     def omega(self) -> float:
@@ -412,11 +470,13 @@ class Structure(Described):
     @property
     def mu(self) -> float:
         """Mass ratio m2/m1 (2)."""
+        self.needs_mass_2("mu")
         return exact_inverse(self.m2 / self.m1, lambda mu: mu * self.m1, self.m2)
 
     @property
     def kappa(self) -> float:
         """Stiffness ratio k2/k1 (2)."""
+        self.needs_mass_2("kappa")
         return exact_inverse(self.k2 / self.k1, lambda kappa: kappa * self.k1, self.k2)
 
     @property
@@ -429,6 +489,7 @@ class Structure(Described):
     @property
     def D2(self) -> float:
         """Damping ratio d2/(2 omega m2) of mass 2 (8)."""
+        self.needs_mass_2("D2")
         omega, m1, mu = self.omega, self.m1, self.mu
         ratio = self.d2 / (2.0 * omega * self.m2)
         return exact_inverse(ratio, lambda D: damping_from_ratio(D, omega, m1) * mu, self.d2)
@@ -441,6 +502,7 @@ class Structure(Described):
     @property
     def f2(self) -> float:
         """Natural frequency of mass 2 alone, Hz."""
+        self.needs_mass_2("f2")
         return natural_frequency(self.k2, self.m2)
 
     @property
@@ -456,6 +518,7 @@ class Structure(Described):
     @property
     def D3(self) -> float:
         """Damping ratio of both masses together, in contact (8)."""
+        self.needs_mass_2("D3")
         return (self.d1 + self.d2) / (2.0 * self.omega * (self.m1 + self.m2))
 
     @property
@@ -486,12 +549,14 @@ class Structure(Described):
     @property
     def preload(self) -> float:
         """Force pressing the masses together at rest, N: -clearance k1 k2/(k1 + k2), or 0."""
+        if self.wall:
+            return max(0.0, -self.clearance) * self.k1
         return max(0.0, -self.gap_offset) * self.k2 / (1.0 + self.kappa)
 
     @property
     def at_rest(self) -> tuple[float, float]:
         """Return displacements x1, x2 at rest, m: -F/k1 and F/k2 with the preload F."""
-        return 0.0 - self.preload / self.k1, self.preload / self.k2
+        return 0.0 - self.preload / self.k1, 0.0 if self.wall else self.preload / self.k2
 
     @property
     def has_scale(self) -> bool:
@@ -537,9 +602,11 @@ class Structure(Described):
             raise InputError(
                 f"{name}: no parameter of a structure; {expected_one_of(name, PARAMETERS)}"
             )
+        if name in OF_MASS_2:
+            self.needs_mass_2(name)
         if name != "D":
             return float(getattr(self, name))
-        if self.D1 != self.D2:
+        if not self.wall and self.D1 != self.D2:
             raise InputError(f"D: D1 = {self.D1!r} and D2 = {self.D2!r}; expected D1 or D2")
         return self.D1
 
@@ -559,8 +626,11 @@ class Structure(Described):
         >>> Structure().replace(kappa=2.0, e=0.3).label()
         'e0.3_D0.005_kappa2'
         """
-        known = (*PARAMETERS, "bonded")
+        known = (*PARAMETERS, *FLAGS)
+        wall = changes.get("wall", self.wall)
         for name in changes:
+            if name in OF_MASS_2 and wall is True:
+                dataclasses.replace(self, wall=True, bonded=False).needs_mass_2(name)
             if name not in known:
                 raise InputError(
                     f"{name}: no parameter of a structure; {expected_one_of(name, known)}"
@@ -603,6 +673,8 @@ class Structure(Described):
 
     def _by_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
         """Return the SI values that change if ratios of the paper (mu, kappa, D, omega) are set."""
+        if self.wall:
+            return dataclasses.replace(self, wall=False)._by_ratios(ratios)
         both = {"D1": ratios["D"], "D2": ratios["D"]} if "D" in ratios else {}
         all_ratios = {**ratios, **both}
         omega, mu = all_ratios.get("omega", self.omega), all_ratios.get("mu", self.mu)
@@ -626,8 +698,17 @@ class Structure(Described):
 
     def _pair(self, letter: str) -> str:
         """Return a letter and its parameter of both halves, for a label: ``k1.0-2.0``."""
-        first, second = (format_short(self.get(f"{letter}{half}")) for half in (1, 2))
-        return f"{letter}{first}-{second}"
+        return letter + "-".join(format_short(self.get(f"{letter}{half}")) for half in self.halves)
+
+    @property
+    def halves(self) -> str:
+        """Return the numbers of the masses, of a wall that of the first alone."""
+        return "1" if self.wall else "12"
+
+    @property
+    def kind(self) -> str:
+        """Return what it is in a word or some: bonded, delaminated, or against a wall."""
+        return "bonded" if self.bonded else "against a wall" if self.wall else "delaminated"
 
     def _described(self) -> dict[str, str]:
         """Return texts of the halves' masses, frequencies and damping, of e, and of what is set."""
@@ -639,7 +720,9 @@ class Structure(Described):
         texts = {}
         for words, (letter, unit) in halves.items():
             scale = 100.0 if letter == "zeta" else 1.0
-            pair = [f"{scale * float(getattr(self, f'{letter}{half}')):.4g}" for half in "12"]
+            pair = [
+                f"{scale * float(getattr(self, f'{letter}{half}')):.4g}" for half in self.halves
+            ]
             texts[words] = " and ".join(pair) + unit
         texts["e"] = f"{self.e:g}"
         added = {name: getattr(self, name) for name in ADDED if getattr(self, name)}
@@ -647,8 +730,9 @@ class Structure(Described):
 
     def __str__(self) -> str:
         """Return the structure in a line, frequencies in Hz and damping ratios in per cent."""
-        kind = "bonded" if self.bonded else "delaminated"
-        return f"{kind}: " + ", ".join(f"{name} {text}" for name, text in self._described().items())
+        return f"{self.kind}: " + ", ".join(
+            f"{name} {text}" for name, text in self._described().items()
+        )
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Print the line of ``str`` in IPython."""
@@ -656,7 +740,7 @@ class Structure(Described):
 
     def _repr_html_(self) -> str:
         """Return a table for notebooks."""
-        rows = {"structure": "bonded" if self.bonded else "delaminated", **self._described()}
+        rows = {"structure": self.kind, **self._described()}
         cells = (f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in rows.items())
         return f"<table>{''.join(cells)}</table>"
 
@@ -664,13 +748,14 @@ class Structure(Described):
         """Return a short text of the parameters for file names and titles, unique per structure."""
         default = type(self)()
         if (self.m1, self.k1) == (1.0, 1.0):
-            damping_ratios = dict.fromkeys((format_short(self.D1), format_short(self.D2)))
+            damping_ratios = dict.fromkeys(format_short(self.get(f"D{i}")) for i in self.halves)
             parts = [f"e{format_short(self.e)}", f"D{'-'.join(damping_ratios)}"]
-            names: tuple[str, ...] = ("mu", "kappa", "gamma", *ADDED)
+            names: tuple[str, ...] = (*(() if self.wall else ("mu", "kappa")), "gamma", *ADDED)
         else:
             masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
             halves = [self._pair(letter) for letter in ("f", "zeta")]
-            numbers = self._by_halves({name: self.get(name) for name in HALVES})
+            own = [name for name in HALVES if name[-1] in self.halves]
+            numbers = self._by_halves({name: self.get(name) for name in own})
             exact = all(getattr(self, name) == value for name, value in numbers.items())
             shorter = exact and len("".join(halves)) < len("".join(si))
             parts = [f"e{format_short(self.e)}", masses, *(halves if shorter else si)]
@@ -678,4 +763,4 @@ class Structure(Described):
         for name in names:
             if self.get(name) != default.get(name):
                 parts.append(f"{name}{format_short(self.get(name))}")
-        return "_".join([*parts, *(["bonded"] if self.bonded else [])])
+        return "_".join([*parts, *(name for name in FLAGS if getattr(self, name))])

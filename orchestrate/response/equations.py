@@ -1,7 +1,7 @@
 """Accelerations of both masses from their states by the equations of motion (6).
 
-Springs, dampers and the other mass make a mass's absolute acceleration. That relative to the box is
-the same minus the box's acceleration, which adds ``a Omega^2 sin(phase)``.
+Springs, dampers, forces and the other mass make a mass's absolute acceleration. That relative to
+the box is the same minus the box's acceleration, which adds ``a Omega^2 sin(phase)``.
 """
 
 from __future__ import annotations
@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..fmu import gap_between, library, traits
-from ..model import Structure
+from ..model import Excitation, Structure
+from .questions import Point
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -23,10 +24,36 @@ def in_touch(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
     return touching
 
 
+def acceleration_of_box(excitation: Excitation, phase: Floats) -> Floats:
+    """Return the box's acceleration at phases, m/s2."""
+    box: Floats = -excitation.amplitude * excitation.frequency**2 * np.sin(phase)
+    return box + excitation.box_acceleration if excitation.box_acceleration else box
+
+
+def accelerations_under(
+    states: Floats, point: Point, phase: Floats, touching: Flags | None = None
+) -> Floats:
+    """Return both masses' absolute accelerations, as accelerometers read between impacts."""
+    structure, excitation = point
+    s, forces = structure, (excitation.force1, excitation.force2)
+    if not (s.wall or s.stroke or any(forces)):
+        return absolute_accelerations(states, structure, touching)
+    if touching is None:
+        gap = gap_between(states, s.gap_offset)
+        touching = (gap == 0.0) | ((s.stroke > 0.0) & np.isclose(gap, s.stroke, 1e-14, 0.0))
+        touching &= states[:, 2] == states[:, 3]
+    loads = np.outer(np.sin(phase), forces) - states[:, :2] * (s.k1, s.k2)
+    loads -= states[:, 2:] * (s.d1, s.d2)
+    apart, both = loads / (s.m1, s.m2), loads.sum(axis=1) / (s.m1 + s.m2)
+    if s.wall:
+        apart[:, 1] = both = acceleration_of_box(excitation, phase)
+    return np.where(touching[:, None], both[:, None], apart)
+
+
 def absolute_accelerations(
     states: Floats, structure: Structure, touching: Flags | None = None
 ) -> Floats:
-    """Return both masses' absolute accelerations, as accelerometers read between impacts."""
+    """Return the same without forces, wall or stroke, whatever the excitation."""
     together = in_touch(states, structure.gap_offset) if touching is None else touching
     rows, flags = np.ascontiguousarray(states, dtype=float), np.ascontiguousarray(together)
     felt, numbers = np.empty((len(rows), 2)), traits(structure)

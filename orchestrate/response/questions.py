@@ -21,8 +21,15 @@ from ..fmu import REST, finder, gap_between
 from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
 from ..model.arguments import Numbers, checked_numbers, unmasked
-from ..model.ranges import COMPLETE, EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
-from ..running.job import Job, brief
+from ..model.ranges import (
+    COMPLETE,
+    EXCITATION,
+    LEVEL,
+    PUSHES,
+    RATIO_QUANTITIES,
+    expected_one_of,
+)
+from ..running.job import Job, brief, refuse_family
 from ..running.runner import answer
 from .labels import Variable, parameter_variable, variable
 
@@ -32,8 +39,10 @@ EXCITATION_PARAMETERS = {
     **{name: EXCITATION[name] for name in ("frequency", "amplitude")},
     "level": LEVEL,
 }
+QUANTITIES = {**EXCITATION_PARAMETERS, **{name: EXCITATION[name] for name in PUSHES}}
 KEPT_POINTS = 2**14  # of a series, from one use to the next
 OF_EXCITATION = ("eta", "frequency", "amplitude")
+ABOVE_ZERO = EXCITATION_PARAMETERS.keys() - {"amplitude"}  # with a force the box may be at rest
 FORMS = "expected eta=, or frequency= with amplitude="
 
 
@@ -148,18 +157,20 @@ def make_series(
     amplitude: Numbers | None,
     over: str | None = None,
     values: Numbers | None = None,
+    pushes: tuple[tuple[str, Numbers], ...] = (),
 ) -> Series:
     """Return the operating points along the parameter whose argument is a list of values."""
-    excitation_values = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
+    excitation_values: dict[str, Any] = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
+    excitation_values |= dict(pushes)
     excitation = {name: value for name, value in excitation_values.items() if value is not None}
     varied = varied_values(over, values, excitation)
-    check_excitation_form(excitation.keys() | (varied.keys() & EXCITATION_PARAMETERS.keys()))
+    check_excitation_form(excitation.keys() | varied.keys())
     for name in list(excitation):
         value = excitation[name]
         if isinstance(value, tuple):
             varied[name] = value
             del excitation[name]
-    listed = (name for name in EXCITATION_PARAMETERS if name in varied)
+    listed = (name for name in QUANTITIES if name in varied)
     name = over or next(listed, None) or next(iter(excitation))
     varied = varied or {name: (excitation[name],)}
     check_lengths(name, over, varied)
@@ -194,7 +205,7 @@ def varied_values(
                 "values: expected with over=, the name of the parameter that takes them"
             )
         return {}
-    known = (*EXCITATION_PARAMETERS, *PARAMETERS)
+    known = (*QUANTITIES, *PARAMETERS)
     if over not in known:
         raise InputError(f"over = {over!r}: no parameter; {expected_one_of(over, known)}")
     if values is None:
@@ -206,7 +217,7 @@ def varied_values(
 
 def check_excitation_form(names: Any) -> None:
     """Raise unless the argument names make one complete form of excitation."""
-    if set(names) not in COMPLETE:
+    if EXCITATION_PARAMETERS.keys() & set(names) not in COMPLETE:
         present = (
             " and ".join(f"{name}=" for name in EXCITATION_PARAMETERS if name in names) or "nothing"
         )
@@ -228,17 +239,20 @@ def check_lengths(name: str, over: str | None, varied: Mapping[str, tuple[float,
 
 def make_point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
     """Return the operating point for a structure with parameters changed and an excitation."""
-    changes = {
-        name: value for name, value in arguments.items() if name not in EXCITATION_PARAMETERS
-    }
+    changes = {name: value for name, value in arguments.items() if name not in QUANTITIES}
+    pushes = {name: arguments[name] for name in PUSHES if name in arguments}
     changed = structure.replace(**changes) if changes else structure
     if "eta" in arguments:
-        excitation = Excitation.nondimensional(arguments["eta"], changed)
+        excitation = Excitation.nondimensional(arguments["eta"], changed, **pushes)
     else:
         frequency, amplitude = arguments["frequency"], arguments.get("amplitude", 0.0)
         if "level" in arguments:
             amplitude = arguments["level"] / frequency**2
-        excitation = Excitation(frequency=frequency, amplitude=amplitude)
+        excitation = Excitation(frequency=frequency, amplitude=amplitude, **pushes)
+    if excitation.force2:
+        changed.needs_mass_2("force2")
+    if not (excitation.amplitude or any(excitation.pushes)):
+        raise InputError("amplitude = 0.0: nothing shakes; expected a number > 0, or a force")
     return Point(changed, excitation)
 
 
@@ -247,9 +261,10 @@ def checked_point(
     eta: ArrayLike | None,
     frequency: ArrayLike | None,
     amplitude: ArrayLike | None,
+    **pushes: ArrayLike | None,
 ) -> Point:
     """Return the operating point of scalar excitation arguments; raise if incomplete or lists."""
-    arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
+    arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude, **pushes}
     given = {name: value for name, value in arguments.items() if value is not None}
     values = {name: excitation_numbers(name, value) for name, value in given.items()}
     check_excitation_form(values)
@@ -269,23 +284,35 @@ def checked_structure(structure: object) -> Structure:
     return structure
 
 
-def require_delaminated(structure: object) -> Structure:
-    """Return the argument unchanged; raise ``InputError`` unless it is a delaminated structure."""
+def require_delaminated(structure: object, asked: str = "") -> Structure:
+    """Return the argument unchanged; raise ``InputError`` unless it is a delaminated structure.
+
+    ``asked``: the function that asks, where it knows neither a wall nor a stroke.
+    """
     if checked_structure(structure).bonded:
         raise InputError("bonded = True: expected a delaminated structure (bonded = false)")
+    if asked:
+        refuse_family(asked, structure)
     return structure  # type: ignore[return-value]
 
 
 def excitation_numbers(name: str, value: ArrayLike | None) -> Numbers | None:
     """Return numbers, an excitation's checked for their range; None if not given."""
-    quantity = EXCITATION_PARAMETERS.get(name)
+    quantity = QUANTITIES.get(name)
     if quantity is None:
         return checked_numbers(name, value)
-    return checked_numbers(name, value, quantity.check, " > 0")
+    return checked_numbers(name, value, quantity.check, " > 0" if name in ABOVE_ZERO else "")
 
 
 # the type of `eta`, `frequency`, `amplitude` as one number or a list; units as in `Quantity`
 Values = Annotated[ArrayLike | None, excitation_numbers]
+
+
+def outside_gap(states: NDArray[np.float64], structure: Structure) -> NDArray[np.bool_]:
+    """Return whether states overlap, or have a gap beyond the stroke."""
+    gap, rounding = gap_between(states, structure.gap_offset), 1.0 + 1e-14
+    beyond = gap > structure.stroke * rounding if structure.stroke else False
+    return np.asarray((gap < 0.0) | beyond)
 
 
 def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[np.float64]:
@@ -293,6 +320,8 @@ def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> 
     expected = "expected x1, x2 in m, v1, v2 in m/s with x2 >= x1"
     if structure.gap_offset:
         expected += f" - clearance, clearance = {structure.clearance!r} m"
+    if structure.stroke:
+        expected += f", and a gap of at most stroke = {structure.stroke!r} m"
     given = unmasked(name, REST if value is None else value)
     try:
         rows = np.atleast_2d(np.asarray(given, dtype=float))
@@ -302,11 +331,14 @@ def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> 
     if rows.ndim != 2 or rows.shape[1] != 4 or not len(rows):
         raise InputError(f"{name}: shape {rows.shape}; {expected}")
     with np.errstate(invalid="ignore"):
-        overlapping = (gap_between(rows, structure.gap_offset) < 0.0) & rows.any(axis=1)
+        overlapping = outside_gap(rows, structure) & rows.any(axis=1)
     wrong = ~np.isfinite(rows).all(axis=1) | overlapping
     if structure.bonded:
         expected = "expected x2 = x1 and v2 = v1 of a bonded structure"
         wrong |= (rows[:, 0] != rows[:, 1]) | (rows[:, 2] != rows[:, 3])
+    if structure.wall:
+        expected = f"expected x2 = 0 and v2 = 0 of a wall, and {expected.removeprefix('expected ')}"
+        wrong |= rows[:, 1::2].any(axis=1)
     if wrong.any():
         state = tuple(rows[wrong.argmax()].tolist())
         raise InputError(f"{name} = {state!r}: {expected}")
@@ -378,8 +410,9 @@ class Question(Job, ABC):
         for name, value in self.parameters().items():
             inside = isinstance(value, dict) and "sha256" not in value and name != "structure"
             arguments.update(value if inside else {name: value})
-        if not arguments.get("phase"):
-            arguments.pop("phase", None)
+        for name in ("phase", *PUSHES):
+            if not arguments.get(name):
+                arguments.pop(name, None)
         texts = [f"Structure{brief(arguments.pop('structure'))}"]
         pairs = [(name, value) for name, value in arguments.items() if value not in (None, "")]
         texts += [f"{name}={brief(value)}" for name, value in pairs]
@@ -396,7 +429,7 @@ class OneMotionQuestion(Question, ABC):
     """Base of questions about one motion, under one excitation."""
 
     excitation: Excitation
-    replaced: ClassVar[tuple[str, ...]] = OF_EXCITATION
+    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *PUSHES)
     item_columns: ClassVar[tuple[str, ...]] = ()  # times, crossings
 
     def items(self) -> Sequence[Point]:
@@ -412,16 +445,23 @@ class SeriesQuestion(Question, ABC):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        name = self.over if self.over in EXCITATION_PARAMETERS else "values"
+        name = self.over if self.over in QUANTITIES else "values"
         object.__setattr__(self, "values", excitation_numbers(str(name), self.values))
+        if not self.takes_family and self.over in (*PUSHES, "stroke"):
+            raise InputError(f"over = {self.over!r}: {self.asked} does not know it yet")
         _ = self.series  # what is wrong is said before any work
 
     @property
     def series(self) -> Series:
         """Return the operating points along the parameter."""
-        return make_series(
-            self.structure, self.eta, self.frequency, self.amplitude, self.over, self.values
-        )
+        arguments = self.eta, self.frequency, self.amplitude, self.over, self.values
+        return make_series(self.structure, *arguments, self.pushes)
+
+    @property
+    def pushes(self) -> tuple[tuple[str, Numbers], ...]:
+        """Return what pushes beside the box's harmonic motion by name, where it is not zero."""
+        given = ((name, getattr(self, name, 0.0)) for name in PUSHES if name != self.over)
+        return tuple((name, value) for name, value in given if value != 0.0)
 
     def count(self) -> int:
         return len(self.series.values)

@@ -38,6 +38,7 @@ class ResonanceJob(SweepJob):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self.structure.needs_mass_2("bonded")
         if self.direction == "given":
             raise InputError("direction = 'given': expected one of up, down, both")
 
@@ -76,7 +77,7 @@ class ResonanceJob(SweepJob):
     def threshold(self) -> dict[str, Variable]:
         """Return dataset variables of the contact threshold; empty without a clearance."""
         structure = self.structure.as_delaminated()
-        if structure.gap_offset == 0.0:
+        if structure.gap_offset == 0.0 or structure.stroke or self.pushes:  # unknown there
             return {}
         return threshold_variables(structure, self.series.name, self.series.frequencies)
 
@@ -231,6 +232,9 @@ def resonance(
     eta: Values = None,
     frequency: Values = None,
     amplitude: Values = None,
+    box_acceleration: Values = 0.0,
+    force1: Values = 0.0,
+    force2: Values = 0.0,
     direction: Direction = "both",
     transient: Transient = 500,
     samples: Count = 60,
@@ -246,7 +250,7 @@ def resonance(
     ----------
     structure : Structure
         ``bonded`` is ignored: results are returned for both, bonded and delaminated.
-    eta, frequency, amplitude
+    eta, frequency, amplitude, box_acceleration, force1, force2
         As in :func:`orchestrate.sweep`.
     direction : {"up", "down", "both"}
         Order of the frequencies, each started from the end of the last.

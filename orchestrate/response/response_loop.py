@@ -154,4 +154,5 @@ class ResponseLoop:
 
 def traits_of(point: Point) -> Any:
     """Return what a point is for the loops."""
-    return traits(point.structure, point.excitation.frequency, point.excitation.amplitude)
+    excitation, pushed = point.excitation, any(point.excitation.pushes)
+    return traits(point.structure, excitation.frequency, excitation.amplitude, pushed)

@@ -15,9 +15,9 @@ from ..model import Structure
 from ..model.arguments import Count, Transient
 from ..running.job import Table
 from ..running.options import Running
-from .equations import absolute_accelerations
+from .equations import acceleration_of_box, accelerations_under
 from .labels import Variable, make_dataset, variable, yes_or_no
-from .questions import OF_EXCITATION, OneMotionQuestion, Point, checked_point, checked_state
+from .questions import OneMotionQuestion, Point, checked_point, checked_state
 from .signatures import as_given, question
 
 OUTPUTS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force", "phase")
@@ -42,7 +42,8 @@ class SimulateJob(OneMotionQuestion):
     """Job of :func:`orchestrate.simulate`: one motion in time."""
 
     result: ClassVar[str] = "motion"
-    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, "phase")
+    replaced: ClassVar[tuple[str, ...]] = (*OneMotionQuestion.replaced, "phase")
+    takes_family: ClassVar[bool] = True
 
     def grid(self) -> NDArray[np.float64]:
         """Return the equally spaced times, s, at which the motion is sampled."""
@@ -69,9 +70,9 @@ class SimulateJob(OneMotionQuestion):
         self, rows: NDArray[np.float64], touching: NDArray[np.bool_]
     ) -> dict[str, NDArray[np.float64]]:
         """Return accelerations of box and masses, absolute and relative, from samples."""
-        excitation, phase = self.excitation, rows[:, OUTPUTS.index("phase")]
-        box = -excitation.amplitude * excitation.frequency**2 * np.sin(phase)
-        first, second = absolute_accelerations(rows[:, :4], self.structure, touching).T
+        point, phase = self.items()[0], rows[:, OUTPUTS.index("phase")]
+        box = acceleration_of_box(point.excitation, phase)
+        first, second = accelerations_under(rows[:, :4], point, phase, touching).T
         return {
             "box_acceleration": box,
             **{"a1_abs": first, "a2_abs": second},
@@ -125,6 +126,9 @@ def simulate(
     eta: float | None = None,
     frequency: float | None = None,
     amplitude: float | None = None,
+    box_acceleration: float = 0.0,
+    force1: float = 0.0,
+    force2: float = 0.0,
     periods: Count = 20,
     transient: Transient = 0,
     points: Count = 200,
@@ -142,6 +146,9 @@ def simulate(
         Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m, so that xi of (3) is x in m.
     frequency, amplitude : float, optional
         The physical form instead: rad/s and m.
+    box_acceleration, force1, force2 : float
+        Constant acceleration of the box, m/s2, and amplitudes of forces on the masses, N, as in
+        :func:`orchestrate.sweep`.
     periods : int
         Excitation periods kept.
     transient : int
@@ -185,6 +192,7 @@ def simulate(
     >>> motion.sizes["time"], motion.sizes["impact"], int(motion.sticks.sum())
     (401, 60, 2)
     """
-    _, excitation = checked_point(structure, eta, frequency, amplitude)
+    pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
+    _, excitation = checked_point(structure, eta, frequency, amplitude, **pushes)
     start = checked_state("start", start, structure)
     return as_given(excitation=excitation.replace(phase=phase), start=start)

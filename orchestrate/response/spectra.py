@@ -11,11 +11,12 @@ import functools
 from collections.abc import Mapping, Sequence
 from ctypes import c_double, c_size_t, c_void_p
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..constants import TURN
 from ..errors import InputError
 from ..fmu import OSCILLATOR, REST, Instance, begin, sampled
 from ..fmu.c_library import loaded_loop
@@ -24,7 +25,7 @@ from ..model import Excitation, Structure
 from ..model.arguments import Count, Positive, Transient, whole
 from ..running.job import Table
 from ..running.options import Running
-from .equations import absolute_accelerations
+from .equations import accelerations_under
 from .labels import make_dataset, variable
 from .questions import Point, SeriesQuestion, Values
 from .signatures import as_given, question
@@ -74,8 +75,11 @@ def acceleration_spectrum(states: Floats, periods: int, excitation: Excitation) 
 class SpectraJob(SeriesQuestion):
     """Job of :func:`orchestrate.spectra`: spectra of responses, bonded and delaminated."""
 
+    takes_family: ClassVar[bool] = True
+
     def __post_init__(self) -> None:
         super().__post_init__()
+        self.structure.needs_mass_2("bonded")
         if self.highest > self.points / 2:
             raise InputError(
                 f"highest = {self.highest:g}: expected at most points/2 = {self.points / 2:g}"
@@ -106,7 +110,8 @@ class SpectraJob(SeriesQuestion):
         if self.transient:
             instance.step(0.0, first)
         states = sampled(instance, first, last, count)
-        accelerations = absolute_accelerations(states, point.structure)
+        phase = TURN * np.arange(1, count + 1) / self.points
+        accelerations = accelerations_under(states, point, phase)
         shown, interval = len(self.orders()), span / self.points
         with_impulses = acceleration_spectrum(states, self.periods, point.excitation)
         _, between = amplitude_spectrum(accelerations.T, interval)
@@ -139,6 +144,9 @@ def spectra(
     eta: Values = None,
     frequency: Values = None,
     amplitude: Values = None,
+    box_acceleration: Values = 0.0,
+    force1: Values = 0.0,
+    force2: Values = 0.0,
     periods: Count = 64,
     points: Annotated[int, whole(2)] = 1024,
     transient: Transient = 2000,
@@ -151,7 +159,7 @@ def spectra(
     ----------
     structure : Structure
         ``bonded`` is ignored: results are returned for both, bonded and delaminated.
-    eta, frequency, amplitude
+    eta, frequency, amplitude, box_acceleration, force1, force2
         As in :func:`orchestrate.sweep`.
     periods : int
         Excitation periods in the record, which make the lines' distance.

@@ -57,6 +57,7 @@ HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a g
 class SweepJob(StartedSeriesQuestion):
     """Job of :func:`orchestrate.sweep`: responses along one parameter, up, down or both."""
 
+    takes_family: ClassVar[bool] = True
     chunk_size: ClassVar[int] = 100
     in_threads: ClassVar[bool] = True
     bulk: ClassVar[tuple[str, ...]] = ("gap",)
@@ -234,6 +235,9 @@ def sweep(
     eta: Values = None,
     frequency: Values = None,
     amplitude: Values = None,
+    box_acceleration: Values = 0.0,
+    force1: Values = 0.0,
+    force2: Values = 0.0,
     over: str | None = None,
     values: ArrayLike | None = None,
     direction: Direction = "up",
@@ -253,6 +257,12 @@ def sweep(
         Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m, so that xi of (3) is x in m.
     frequency, amplitude : array_like, optional
         The physical form instead: rad/s and m, one amplitude or one for each frequency.
+    box_acceleration : array_like, optional
+        Constant acceleration of the box beside the harmonic one, m/s2: gravity. One number or one
+        for each frequency, as forces.
+    force1, force2 : array_like, optional
+        Amplitudes F of harmonic forces F sin(phase) on the masses, N. With forces the amplitude may
+        be 0: xi then counts in units of the largest static displacement by what pushes.
     over : str, optional
         Parameter that takes ``values``, such as ``"e"``, ``"D"``, ``"k2"``, ``"amplitude"``; by
         default what is given as a list.

@@ -39,7 +39,8 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
 
 def exceeds_threshold(structure: Structure, excitation: Excitation) -> bool:
     """Return whether the linear response opens or touches, so that no response can stay linear."""
-    return bool(traits(structure, excitation.frequency, excitation.amplitude)[-1])
+    pushed = any(excitation.pushes)
+    return bool(traits(structure, excitation.frequency, excitation.amplitude, pushed)[-1])
 
 
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:
@@ -146,7 +147,7 @@ def contact_threshold(
     >>> level.event, (level.threshold_acceleration / 9.80665).values.round(3)
     ('opens', array([0.209, 0.006]))
     """
-    require_delaminated(structure)
+    require_delaminated(structure, "contact_threshold")
     given = {"eta": eta, "frequency": frequency}
     checked = {name: excitation_numbers(name, values) for name, values in given.items()}
     arguments = {name: values for name, values in checked.items() if values is not None}

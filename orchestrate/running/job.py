@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..errors import InputError
 from ..lazy import xr
 from ..model.arguments import checks_of
 
@@ -46,6 +47,7 @@ class Job(ABC):
     gathers: ClassVar[bool] = False  # the last item starts from all others, in a chunk of its own
     last_weight: ClassVar[int] = 1  # of a gathering job's last item, in the progress bar
     warmup_items: ClassVar[int] = 0  # after which a sequential job has forgotten its beginning
+    takes_family: ClassVar[bool] = False  # whether its rules hold with a wall or a stroke
     in_threads: ClassVar[bool] = False  # whether its work is in the FMU, past Python
     bulk: ClassVar[tuple[str, ...]] = ()  # columns that a store on disk gives as `StoredRows`
     # columns of a chunk's table that have a row an item, None for all; the others have as many rows
@@ -57,6 +59,14 @@ class Job(ABC):
         """Check the fields whose types have a check, and set them to what it returns."""
         for name, check in checks_of(type(self)).items():
             object.__setattr__(self, name, check(name, getattr(self, name)))
+
+    def check_family(self) -> None:
+        """Raise ``InputError`` if a structure has a wall or a stroke that the job does not know."""
+        for field in fields(self) if not self.takes_family else ():
+            value = getattr(self, field.name)
+            if isinstance(value, Job):
+                value.check_family()
+            refuse_family(self.asked or type(self).__name__, value)
 
     def count(self) -> int:
         """Return the number of items."""
@@ -124,6 +134,14 @@ class Job(ABC):
         if self.gathers:
             chunks.append(Chunk(len(chunks), count, count + 1, len(chunks) - 1))
         return chunks
+
+
+def refuse_family(asked: str, structure: Any) -> None:
+    """Raise ``InputError`` if a structure has a wall or a stroke; ``asked``: by which function."""
+    for name in ("wall", "stroke"):
+        value = getattr(structure, name, None)
+        if isinstance(value, (bool, float)) and value and not structure.bonded:
+            raise InputError(f"{name} = {value!r}: {asked} does not know it yet; expected none")
 
 
 def last_entries(table: Table) -> Table:

@@ -58,6 +58,8 @@ class Runner:
     def __init__(
         self, jobs: Sequence[Job], options: RunOptions, find: FmuFinder, foreign: str = ""
     ) -> None:
+        for job in jobs:
+            job.check_family()
         self.jobs, self.options = jobs, options
         self.in_threads = all(job.in_threads for job in jobs)
         self.fmus: dict[str, Fmu] = {model: find(model) for job in jobs for model in job.models}

@@ -77,7 +77,7 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
     bonded = bool(known.get("bonded"))
     added = [] if bonded else [name for name in ADDED if known.get(name) and name not in shown]
     texts += [format_added_parameter(name, known[name], data) for name in added]
-    texts.append("bonded" if bonded else "")
+    texts.append("bonded" if bonded else "against a wall" if known.get("wall") else "")
     excitation = format_excitation(data, known).items()
     return join([*texts, *(words for name, words in excitation if name not in shown)])
 
@@ -203,17 +203,19 @@ def paper_ratios(known: Mapping[str, float]) -> dict[str, float]:
     omega = omega_of(known)
     D1, D2 = (round(known[d] / (2.0 * omega * m), 12) for d, m in (("d1", m1), ("d2", m2)))
     damping = {"D": D1} if D1 == D2 else {"D1": D1, "D2": D2}
+    if known.get("wall"):
+        return {"D": D1, "omega": omega}
     return {**damping, "mu": m2 / m1, "kappa": k2 / k1, "omega": omega}
 
 
 def format_halves(known: Mapping[str, float]) -> str:
     """Format each half's natural frequency and damping ratio, and the mass ratio."""
     frequencies, damping = [], []
-    for half in "12":
+    for half in "1" if known.get("wall") else "12":
         m, k, d = (known[letter + half] for letter in "mkd")
         frequencies.append(f"$f_{half}$ = {math.sqrt(k / m) / (2.0 * math.pi):.4g} Hz")
         damping.append(rf"$\zeta_{half}$ = {50.0 * d / math.sqrt(k * m):.4g} %")
-    mu = known["m2"] / known["m1"]
+    mu = known["m2"] / known["m1"]  # 1 of one mass
     masses = "" if mu == USUAL_VALUES["mu"] else format_parameters({"mu": mu})
     return join([*frequencies, *damping, masses])
 

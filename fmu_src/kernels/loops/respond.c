@@ -84,6 +84,10 @@ static bool is_any(const double *state) {
 /* A start as the FMU takes it, from the places of rest: of a preload, unless it is at rest, which all zeros are. */
 EXPORT void to_rest(const double *state, const double *traits, double *start) {
     for (int i = 0; i < STATES; i++) start[i] = state[i];
+    if (traits[WALL] != 0.0) {  /* mass 2 stays where it is */
+        if (traits[GAP_OFFSET] < 0.0 && is_any(state)) start[X1] = gap_between(state, traits[GAP_OFFSET]) == 0.0 ? 0.0 : state[X1] - traits[REST_1];
+        return;
+    }
     if (traits[GAP_OFFSET] >= 0.0 || !is_any(state)) return;
     start[X1] = state[X1] - traits[REST_1];
     start[X2] = gap_between(state, traits[GAP_OFFSET]) == 0.0 ? start[X1] : state[X2] - traits[REST_2];
@@ -115,8 +119,10 @@ static void round_to_bits(double *first, double *second) {
 
 /* A state to 44 bits (13 digits) of the larger face and velocity: what converged from two sides differs in its last digits for good; rounded, it is the same,
    and parts of a sweep that are begun elsewhere join it. */
-static void round_state(const double *state, double offset, double *end) {
+static void round_state(const double *state, const double *traits, double *end) {
+    double offset = traits[GAP_OFFSET];
     for (int i = 0; i < STATES; i++) end[i] = state[i];
+    if (traits[WALL] != 0.0 || traits[STROKE] != 0.0) return;  /* rounded, a face might be beyond the other one */
     round_to_bits(&end[V1], &end[V2]);
     if (offset != 0.0) end[X2] = state[X1] + gap_between(state, offset);
     round_to_bits(&end[X1], &end[X2]);
@@ -186,7 +192,9 @@ static void start_of(const Task *task, size_t i, double *start) {
     const double *given = task->is_chain && i ? task->ends + STATES * (i - 1) : task->starts + (task->is_chain ? 0 : STATES * i);
     double offset = task->traits[TRAITS * i + GAP_OFFSET], gap = i ? task->traits[TRAITS * (i - 1) + GAP_OFFSET] : task->gap;
     for (int j = 0; j < STATES; j++) start[j] = given[j];
+    bool is_wall = task->traits[TRAITS * i + WALL] != 0.0;
     if (task->is_chain && (i || task->has_gap) && gap != offset && is_any(start)) for (int j = 0; j < STATES; j++) start[j] += j == X2 ? gap - offset : 0.0;
+    if (is_wall) start[X1] -= start[X2], start[X2] = 0.0;
 }
 
 /* Some periods of the transient, with the work that they are. The last step, which begins after half of it, ends where one over all would, to the last bit. */
@@ -249,7 +257,7 @@ static bool finish(Oscillator *o, const Task *task, size_t i) {
     if (!sample_periods(o, task->periods[i], (size_t)task->transients[i], task->samples, states, task->largest + i)) return false;
     if (!get_integer(fmi, o->impact_count, &counts[AFTER]) || !get_integer(fmi, o->contact_count, &counts[CONTACTS_AFTER])) return false;
     task->impacts[i] = (double)(counts[AFTER] - counts[BEFORE]) / (double)task->samples;
-    round_state(last, task->traits[TRAITS * i + GAP_OFFSET], task->ends + STATES * i);
+    round_state(last, task->traits + TRAITS * i, task->ends + STATES * i);
     if (task->loose != 0.0) {
         counts[NEARLY] = apply_rule(task, i, task->loose, kernel_repeat);
         task->deviations[i] = task->memory[DEVIATION];

@@ -1,0 +1,283 @@
+"""Forces on the masses, gravity, a wall and a stroke in Python: against an independent solver and
+closed forms; what does not know them refuses them by name.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate import Excitation, InputError, Structure
+from orchestrate.dynamics.attractors import random_starts
+from orchestrate.dynamics.closed_form import ClosedForm
+from orchestrate.explorer.page import explore
+from orchestrate.model import write
+from orchestrate.response.questions import Point
+from orchestrate.response.response_loop import traits_of
+
+from ...fmu.event_driven import Motion
+
+OWN = Structure(m1=0.8, m2=1.1, k1=5.0, k2=7.5, d1=0.3, d2=0.4, e=0.6, clearance=0.05)
+WALL = Structure.one_mass(m=0.8, k=5.0, d=0.3, e=0.6, clearance=0.05)
+KINDS = {
+    "two masses": OWN,
+    "pressed": OWN.replace(clearance=-0.05),
+    "wall": WALL,
+    "pressed wall": WALL.replace(clearance=-0.05),
+    "play": OWN.replace(stroke=0.15),
+    "wall and play": WALL.replace(stroke=0.15),
+}
+BOX = {"frequency": 2.3, "amplitude": 0.1}
+PUSHES = {"box_acceleration": -0.3, "force1": 0.4}
+QUICK = {"progress": False, "jobs": 1}
+FAR = OWN.replace(clearance=50.0)
+
+pytestmark = pytest.mark.usefixtures("exported")
+
+
+def solver(structure, phase=0.0):
+    """The motion from rest by the independent solver, with what pushes."""
+    wall = structure.wall
+    pushes = {"box_acceleration": PUSHES["box_acceleration"], "force1_amplitude": PUSHES["force1"]}
+    values = structure.parameters() | {f"box_{name}": value for name, value in BOX.items()} | pushes
+    values |= {"phase_start": phase, "x1_start": 0.0, "x2_start": 0.0}
+    return Motion(values | {"force2_amplitude": 0.0 if wall else -0.2})
+
+
+def pushes_of(structure):
+    return PUSHES | ({} if structure.wall else {"force2": -0.2})
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_simulate_is_the_motion_of_an_independent_solver(kind):
+    structure = KINDS[kind]
+    motion = orchestrate.simulate(structure, **BOX, **pushes_of(structure), periods=4, phase=0.4)
+    exact = solver(structure, 0.4)
+    rows, felt = [], []
+    for time in motion.time.values:
+        x1, v1, x2, v2 = exact.run(time).state
+        rows.append([x1, x2, v1, v2])
+        one, two = exact.accelerations(time, (x1, v1, x2, v2))
+        if exact.mode == "contact":
+            one = two = np.average([one, two], weights=exact.share)
+        felt.append(np.add([one, two], exact.box(time)))
+    found = np.array([motion[name].values for name in ("x1", "x2", "v1", "v2")]).T
+    np.testing.assert_allclose(found, rows, atol=1e-8)
+    np.testing.assert_allclose(motion.impact_time, exact.impacts, rtol=1e-8)
+    assert len(exact.impacts) >= 3
+    found = np.array([motion.a1_abs.values, motion.a2_abs.values]).T
+    np.testing.assert_allclose(found, felt, atol=1e-6)
+    np.testing.assert_allclose(motion.a2 + motion.box_acceleration, motion.a2_abs, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_sweep_and_map_have_the_samples_of_that_motion(kind):
+    """From rest, both directions of a chain apart: its second value begins where the first ends."""
+    structure, asked = KINDS[kind], {"transient": 2, "samples": 4}
+    found = orchestrate.sweep(structure, **BOX, **pushes_of(structure), **asked, **QUICK)
+    exact, gaps = solver(structure), []
+    for period in range(3, 7):
+        exact.run(period * 2.0 * np.pi / BOX["frequency"])
+        gaps.append(exact.gap(0.0, exact.state))
+    length = BOX["amplitude"] * BOX["frequency"] ** 2 / structure.omega**2
+    np.testing.assert_allclose(found.xi_rel.values[0] * length, gaps, atol=1e-8)
+    values = [PUSHES["force1"], 0.1]
+    over = {**pushes_of(structure), "force1": values}
+    chain = orchestrate.sweep(structure, **BOX, **over, **asked, direction="given", **QUICK)
+    assert (chain.xi_rel.values[0] == found.xi_rel.values[0]).all()
+    assert chain.force1.values.tolist() == values
+    plane = orchestrate.map(structure, **BOX, **over, e=[0.6, 0.7], transient=60, **QUICK)
+    other = orchestrate.sweep(structure, **BOX, **over, transient=200, direction="down", **QUICK)
+    if (plane.multiplicity.values[0, 0], other.multiplicity.values[0]) == (1, 1):
+        expected = float(other.xi_rel_max[0])
+        assert float(plane.xi_rel_max[0, 0]) == pytest.approx(expected, rel=1e-3)
+
+
+def test_apart_the_response_to_forces_and_gravity_is_linear():
+    """Without box motion too: the static deflection and a harmonic, in units of the former."""
+    w, force, gravity = BOX["frequency"], 0.4, -0.3
+    reach = force / abs(complex(FAR.k1 - FAR.m1 * w * w, FAR.d1 * w))
+    sag = 0.3 * FAR.m1 / FAR.k1
+    asked = {"frequency": [w], "amplitude": 0.0, "force1": force}
+    one = orchestrate.sweep(FAR, **asked, box_acceleration=gravity, **QUICK)
+    assert float(one.x1_max[0]) == pytest.approx(sag + reach, rel=1e-4)
+    assert float(one.x2_max[0]) == pytest.approx(0.3 * FAR.m2 / FAR.k2, rel=1e-9)
+    unit = max(force / FAR.k1, 0.3 / FAR.omega**2)
+    assert float(one.xi1_max[0]) == pytest.approx((sag + reach) / unit, rel=1e-4)
+    both = orchestrate.resonance(FAR, **asked, direction="up", transient=200, **QUICK)
+    masses, springs = FAR.m1 + FAR.m2, FAR.k1 + FAR.k2
+    glued = force / abs(complex(springs - masses * w * w, (FAR.d1 + FAR.d2) * w))
+    assert both.x1_max.values.ravel() == pytest.approx([glued, reach], rel=1e-4)
+    assert "threshold_amplitude" not in both
+    lines = orchestrate.spectra(
+        FAR, **asked, periods=8, points=64, highest=8.0, **QUICK
+    ).acceleration
+    felt = lines.isel(frequency=0).sel(order=1.0)
+    assert felt.sel(mass=1, kind="delaminated").item() == pytest.approx(reach * w * w, rel=1e-6)
+    assert felt.sel(mass=1, kind="sampled").item() == pytest.approx(reach * w * w, rel=1e-6)
+    assert felt.sel(mass=2, kind="bonded").item() == pytest.approx(glued * w * w, rel=1e-6)
+
+
+def test_a_mass_that_falls_on_a_wall_bounces_as_a_ball():
+    height, gravity, e = 0.2, 9.81, 0.5
+    ball = Structure.one_mass(m=2.0, k=1e-9, d=0.0, e=e, clearance=height, gamma=1e-9)
+    fall = {"frequency": 6.0, "amplitude": 0.0, "box_acceleration": -gravity}
+    motion = orchestrate.simulate(ball, **fall, periods=1)
+    first = np.sqrt(2.0 * height / gravity)
+    times = first * (1.0 + 2.0 * np.cumsum(np.append(0.0, e ** np.arange(1.0, 6.0))))
+    assert motion.impact_time.values[:6] == pytest.approx(times, rel=1e-8)
+    closing = gravity * first * e ** np.arange(6.0)
+    assert motion.impulse.values[:6] == pytest.approx(2.0 * (1.0 + e) * closing, rel=1e-8)
+    assert bool(motion.in_contact[-1]) and float(motion.x1[-1]) == height
+    assert float(motion.contact_force[-1]) == pytest.approx(2.0 * gravity, rel=1e-8)
+
+
+def test_one_mass_rests_at_its_clearance_from_the_wall():
+    nothing = {"frequency": 1.0, "amplitude": 0.0, "box_acceleration": 1e-12, "periods": 1}
+    for clearance, gap in ((0.3, 0.3), (0.0, 0.0), (-0.2, 0.0)):
+        mass = Structure.one_mass(m=2.0, k=50.0, d=0.1, clearance=clearance, stroke=0.5)
+        motion = orchestrate.simulate(mass, **nothing)
+        assert motion.x_rel.values == pytest.approx(gap, abs=1e-12)
+        assert mass.at_rest == (motion.x1.values[0], 0.0) == (min(clearance, 0.0), 0.0)
+        assert motion.contact_force.values[0] == pytest.approx(mass.preload, abs=1e-11)
+    assert (mass.D1, mass.omega, mass.replace(D=0.1).D1) == (0.005, 5.0, 0.1)
+    assert mass.replace(omega=3.0).k1 == 18.0 and mass.replace(f1=1.0).get("D") == mass.D1
+    assert "wall" in mass.label() and "wall" in str(mass)
+    assert Structure.from_attributes(mass.parameters()) == mass
+
+
+@pytest.mark.parametrize("name", ["mu", "kappa", "D2", "D3", "f2", "zeta2", "omega_2", "alike"])
+def test_a_wall_has_no_second_mass(name):
+    with pytest.raises(InputError, match="mass 2 is a wall"):
+        getattr(WALL, name)
+    for change in ("m2", "k2", "d2", "mu", "kappa", "D2", "f2", "zeta2"):
+        with pytest.raises(InputError, match=f"^{change}: mass 2 is a wall"):
+            WALL.replace(**{change: 1.0})
+        with pytest.raises(InputError, match=f"^{change}: mass 2 is a wall"):
+            WALL.get(change)
+
+
+def test_structures_in_files_and_what_contradicts_itself(tmp_path):
+    path = write(tmp_path / "mass.toml", structure=WALL.replace(stroke=0.2))
+    assert Structure.from_file(path) == WALL.replace(stroke=0.2)
+    with pytest.raises(InputError, match="bonded = True with wall = True"):
+        WALL.as_bonded()
+    with pytest.raises(InputError, match=r"stroke = 0.1 m: expected at least clearance = 0.2 m"):
+        Structure(stroke=0.1, clearance=0.2)
+    with pytest.raises(InputError, match="wall = 1.0"):
+        Structure(wall=1.0)
+    with pytest.raises(InputError, match="force1=0.3"):
+        write(path, excitation=Excitation(frequency=1.0, amplitude=1.0, force1=0.3))
+
+
+def test_starts_lie_where_the_masses_can_be():
+    for structure in (KINDS["play"], KINDS["wall and play"]):
+        states = random_starts(50, 3.0, (1, 2), structure)
+        gaps = states[:, 1] - states[:, 0] + structure.clearance
+        assert (gaps >= 0.0).all() and (gaps <= 0.15).all() and np.ptp(gaps) > 0.1
+        assert not structure.wall or not states[:, 1::2].any()
+    sweep = {**BOX, "force1": 0.1, **QUICK}
+    with pytest.raises(InputError, match="x2 = 0 and v2 = 0 of a wall"):
+        orchestrate.sweep(WALL, **sweep, start=[0.0, 0.1, 0.0, 0.0])
+    with pytest.raises(InputError, match=r"at most stroke = 0.15 m"):
+        orchestrate.sweep(KINDS["play"], **sweep, start=[0.0, 0.3, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("kind", ["two masses", "wall and play"])
+def test_attractors_basins_and_sections_agree(kind):
+    """By states that repeat, without Newton's method, whose formulas know none of it."""
+    structure = KINDS[kind]
+    asked = {**BOX, **pushes_of(structure), **QUICK}
+    found = orchestrate.attractors(structure, **asked, starts=6).isel(frequency=0)
+    assert np.isnan(found.multiplier).all()
+    plane = {"x": ("x_rel", 0.0, 0.2, 4), "y": ("v_rel", -0.5, 0.5, 3)}
+    basin = orchestrate.basin(structure, **asked, **plane)
+    outside = basin.attractor_of.values == -1
+    assert (outside == (basin.x_rel.values > (structure.stroke or 1.0))).all()
+    assert basin.multiplicity.values.tolist() == found.multiplicity.values.tolist()
+    section = orchestrate.poincare(structure, **asked, periods=8, at="impacts")
+    assert section.x_rel.isin([0.0, structure.stroke]).all() and section.sizes["point"] >= 8
+    assert (section.x_rel == 0.15).any() == bool(structure.stroke)
+
+
+def test_impacts_have_to_come_only_where_that_is_known():
+    touching = {"frequency": [2.3], "amplitude": 5.0, **QUICK}
+    box = Excitation(frequency=2.3, amplitude=5.0)
+    assert traits_of(Point(OWN, box))[-1] == 1.0
+    for structure, pushed in ((OWN, box.replace(force1=0.1)), (WALL, box), (KINDS["play"], box)):
+        assert traits_of(Point(structure, pushed))[-1] == 0.0
+    assert (orchestrate.sweep(OWN, **touching).impacts_per_period > 0.0).all()
+
+
+SINE = orchestrate.SweptSine(first=0.05, last=0.5, duration=20.0, acceleration=1.0)
+DRIVE = orchestrate.Drive.from_file("quick")
+REFUSING = {
+    "lyapunov": lambda s: orchestrate.lyapunov(s, eta=1.0),
+    "impact_statistics": lambda s: orchestrate.impact_statistics(s, eta=1.0),
+    "orbit": lambda s: orchestrate.orbit(s, eta=1.3),
+    "orbit ": lambda s: orchestrate.branch(s, eta=1.3, over="eta", limits=(1.2, 1.4)),
+    "contact_threshold": lambda s: orchestrate.contact_threshold(s, eta=1.0),
+    "shake": lambda s: orchestrate.shake(s, SINE, sample_rate=4.0),
+    "cosimulate": lambda s: orchestrate.cosimulate(s, DRIVE, duration=1.0, step=0.1),
+    "exponents": lambda s: orchestrate.map(s, eta=[1.0, 2.0], e=[0.5, 0.6], exponent=True),
+    "releases": lambda s: orchestrate.poincare(s, eta=1.0, at="releases"),
+    "couple": lambda s: orchestrate.couple(s, DRIVE, voltage=(1.0, 2.0), rate=0.1),
+    "passage": lambda s: orchestrate.passage(s, DRIVE, voltage=(1.0, 2.0)),
+    "capture": lambda s: orchestrate.capture(s, DRIVE, voltage=(1.0, 2.0)),
+    "jump_voltages": lambda s: orchestrate.jump_voltages(s, DRIVE, voltage=(1.0, 2.0)),
+    "drive_spectra": lambda s: orchestrate.drive_spectra(s, DRIVE),
+    "drive_branch": lambda s: orchestrate.drive_branch(s, DRIVE),
+    "plan_test": lambda s: orchestrate.plan_test(s),
+    "explorer": lambda s: explore(s, output="/nowhere/a.html"),
+}
+
+
+@pytest.mark.parametrize("asked", REFUSING)
+@pytest.mark.parametrize("structure", [WALL, Structure(stroke=1.0)], ids=["wall", "stroke"])
+def test_what_does_not_know_them_refuses_them_by_name(asked, structure):
+    with pytest.raises(InputError, match="wall" if structure.wall else "stroke") as raised:
+        REFUSING[asked](structure)
+    assert "\n" not in str(raised.value)
+
+
+def test_diagnosis_refuses_them_by_name():
+    from orchestrate.diagnosis.fit import delaminated_guess
+    from orchestrate.diagnosis.signs import sound_structure
+
+    for check in (delaminated_guess, lambda s: sound_structure(s, None, None)):
+        with pytest.raises(InputError, match="wall = True"):
+            check(WALL)
+
+
+def test_forces_without_a_formula_are_refused_by_name():
+    pushed = Excitation(frequency=1.0, amplitude=1.0, force1=0.1)
+    with pytest.raises(InputError, match="force1"):
+        ClosedForm.from_structure(Structure(), pushed)
+    with pytest.raises(InputError, match="force1"):
+        orchestrate.poincare(Structure(), eta=1.0, force1=0.1, at="releases", periods=4)
+    with pytest.raises(InputError, match="force1"):
+        orchestrate.map(
+            Structure(), eta=[1.0, 2.0], e=[0.5, 0.6], force1=0.1, exponent=True, periods=9
+        )
+    for name in ("force1", "stroke", "box_acceleration"):
+        with pytest.raises(InputError, match=f"over = '{name}': lyapunov"):
+            orchestrate.lyapunov(Structure(), over=name, values=[0.1], eta=1.0)
+    for name in ("wall", "force1"):
+        with pytest.raises(InputError, match=name):
+            orchestrate.branch(Structure(), eta=1.3, over=name, limits=(0.1, 1.0))
+    with pytest.raises(InputError, match="force2: mass 2 is a wall"):
+        orchestrate.simulate(WALL, **BOX, force2=1.0)
+    for function in (orchestrate.resonance, orchestrate.spectra):
+        with pytest.raises(InputError, match="mass 2 is a wall"):
+            function(WALL, eta=[1.0])
+    with pytest.raises(InputError, match=r"amplitude = 0.0: nothing shakes"):
+        orchestrate.sweep(OWN, frequency=[1.0], amplitude=0.0)
+
+
+def test_at_zero_they_change_no_bit():
+    zeros = dict.fromkeys(("box_acceleration", "force1", "force2"), 0.0)
+    for structure in (OWN, Structure()):
+        asked = {"eta": [0.5, 1.3], "transient": 20, "samples": 8, **QUICK}
+        plain, pushed = (orchestrate.sweep(structure, **asked, **more) for more in ({}, zeros))
+        assert all((plain[name] == pushed[name]).all() for name in plain)
