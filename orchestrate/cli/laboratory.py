@@ -283,8 +283,9 @@ class Channels(InColumns, Command):
     def __call__(self) -> None:
         from .. import channels
 
-        given = {"sample_rate": self.sample_rate, "output": self.output}
-        found = channels(self.record, self.channels, **given)
+        found = channels(
+            self.record, self.channels, sample_rate=self.sample_rate, output=self.output
+        )
         names = ("role", "known", "quantity", "unit")
         rows = {name: found[name].values.tolist() for name in names}
         rms = ["" if value != value else f"{value:.4g}" for value in found.rms.values]

@@ -15,7 +15,12 @@ import orchestrate as o
 from .. import draws
 
 SLOW = ("border", "detect", "detect_all", "fit", "couple_all", "jump_voltages")  # 1 s or more
-NOT_COMPARED = ("channels", "plot", "report", "write_ssp")  # they draw and write: nothing is computed
+NOT_COMPARED = (
+    "channels",
+    "plot",
+    "report",
+    "write_ssp",
+)  # they draw and write: nothing is computed
 SHORT: dict[str, Any] = {"transient": 50, "samples": 60}  # of fewer no repetition is decided
 FAST: dict[str, Any] = {"rate": 4e-4, "back": False, "settle": 50.0, "step": 0.2}
 PAPER = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D of its sweeps
