@@ -271,7 +271,7 @@ def test_forces_without_a_formula_are_refused_by_name():
     for function in (orchestrate.resonance, orchestrate.spectra):
         with pytest.raises(InputError, match="mass 2 is a wall"):
             function(WALL, eta=[1.0])
-    with pytest.raises(InputError, match=r"amplitude = 0.0: expected finite numbers > 0, or a force"):
+    with pytest.raises(InputError, match=r"amplitude = 0.0: .*, or a force"):
         orchestrate.sweep(OWN, frequency=[1.0], amplitude=0.0)
 
 
