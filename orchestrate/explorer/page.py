@@ -38,7 +38,8 @@ EXPONENT = {  # the usual rule of exponents; periods at first, periods and impac
     **{"blocks": BLOCKS, "batches": BATCHES, "sigmas": SIGMAS, "wander": WANDER},
     **{"periods": 400, "longest": 12_800, "most": 100_000},
 }
-FLAG = {"bonded": [0.0, 1.0]}  # a range too
+# ranges too; a wall and a stroke are not on the page
+FLAGS = {"bonded": [0.0, 1.0], "wall": [0.0, 0.0], "stroke": [0.0, 0.0]}
 
 
 def explore(
@@ -164,7 +165,7 @@ def page_data(chosen: SweepData) -> dict[str, Any]:
     return {
         "structure": structure_numbers(chosen.structure),
         "usual": structure_numbers(Structure()),
-        "ranges": {name: [q.minimum, q.maximum] for name, q in STRUCTURE.items()} | FLAG,
+        "ranges": {name: [q.minimum, q.maximum] for name, q in STRUCTURE.items()} | FLAGS,
         "units": {
             name: {"label": quantity.unit.replace(".", " "), **quantity.dimension}
             for name, quantity in STRUCTURE.items()

@@ -208,7 +208,7 @@ class Structure(Described):
         d: float = STRUCTURE["d1"].default,
         clearance: float = STRUCTURE["clearance"].default,
         stroke: float = 0.0,
-        **added: float,
+        **added: Any,
     ) -> Structure:
         """Make one mass on a spring and a damper in front of a wall, or between two.
 
@@ -231,7 +231,7 @@ class Structure(Described):
         >>> mass.omega, mass.at_rest, mass.preload
         (5.0, (-0.01, 0.0), 0.5)
         """
-        alike = {"m1": m, "m2": m, "k1": k, "k2": k, "d1": d, "d2": d}
+        alike: dict[str, Any] = {"m1": m, "m2": m, "k1": k, "k2": k, "d1": d, "d2": d}
         return cls(**alike, clearance=clearance, stroke=stroke, wall=True, **added)
 
     def needs_mass_2(self, name: str) -> None:
@@ -253,7 +253,7 @@ class Structure(Described):
         *,
         m1: float = 1.0,
         omega: float = 1.0,
-        **added: float,
+        **added: Any,
     ) -> Structure:
         """Make a structure from mu, kappa, D and omega of the paper, (2) and (8).
 
@@ -311,7 +311,7 @@ class Structure(Described):
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
         bonded: bool = False,
-        **added: float,
+        **added: Any,
     ) -> Structure:
         """Make a structure from mass, natural frequency and damping ratio of each half alone.
 
@@ -370,7 +370,7 @@ class Structure(Described):
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
         bonded: bool = False,
-        **added: float,
+        **added: Any,
     ) -> Structure:
         """Make a structure by splitting the undamaged beam's mode between two layers by thickness.
 
@@ -456,11 +456,12 @@ class Structure(Described):
             Where there is none, or it is no number.
         """
         older = {name: STRUCTURE[name].default for name in ADDED}
-        numbers = {name: float({**older, **attributes}[name]) for name in STRUCTURE}
+        numbers: dict[str, Any] = {name: float({**older, **attributes}[name]) for name in STRUCTURE}
         flags = {name: float(attributes.get(name, 0.0)) for name in FLAGS}
         if not {*flags.values()} <= {0.0, 1.0}:
             raise ValueError(f"{flags}")
-        return cls(**numbers, **{name: bool(flag) for name, flag in flags.items()})
+        own: dict[str, Any] = {name: bool(flag) for name, flag in flags.items()}
+        return cls(**numbers, **own)
 
     @property
     def omega(self) -> float:

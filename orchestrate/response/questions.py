@@ -252,7 +252,7 @@ def make_point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
     if excitation.force2:
         changed.needs_mass_2("force2")
     if not (excitation.amplitude or any(excitation.pushes)):
-        raise InputError("amplitude = 0.0: nothing shakes; expected a number > 0, or a force")
+        raise InputError("amplitude = 0.0: expected finite numbers > 0, or a force")
     return Point(changed, excitation)
 
 

@@ -192,9 +192,16 @@ static void start_of(const Task *task, size_t i, double *start) {
     const double *given = task->is_chain && i ? task->ends + STATES * (i - 1) : task->starts + (task->is_chain ? 0 : STATES * i);
     double offset = task->traits[TRAITS * i + GAP_OFFSET], gap = i ? task->traits[TRAITS * (i - 1) + GAP_OFFSET] : task->gap;
     for (int j = 0; j < STATES; j++) start[j] = given[j];
-    bool is_wall = task->traits[TRAITS * i + WALL] != 0.0;
+    const double *traits = task->traits + TRAITS * i;
+    bool is_wall = traits[WALL] != 0.0;
     if (task->is_chain && (i || task->has_gap) && gap != offset && is_any(start)) for (int j = 0; j < STATES; j++) start[j] += j == X2 ? gap - offset : 0.0;
     if (is_wall) start[X1] -= start[X2], start[X2] = 0.0;
+    if (!task->is_chain || !is_any(start) || (!is_wall && traits[STROKE] == 0.0)) return;
+    double apart = gap_between(start, offset), inside = apart < 0.0 ? 0.0 : apart;  /* by rounding, or of another stroke */
+    if (traits[STROKE] != 0.0 && inside > traits[STROKE]) inside = traits[STROKE];
+    if (inside == apart) return;
+    if (is_wall) start[X1] = offset - inside;
+    else start[X2] = start[X1] + inside - offset;
 }
 
 /* Some periods of the transient, with the work that they are. The last step, which begins after half of it, ends where one over all would, to the last bit. */

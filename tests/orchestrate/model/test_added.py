@@ -23,7 +23,7 @@ FORMS = [
 
 def test_its_fields_are_the_rows_of_the_table(monkeypatch):
     fields = [field.name for field in dataclasses.fields(Structure)]
-    assert fields == [*STRUCTURE, "bonded"]
+    assert fields == [*STRUCTURE, "bonded", "wall"]
     row = Quantity("drag", "N.s/m", "Drag of the air", 0.0, 1.0, 0.25)
     monkeypatch.setitem(STRUCTURE, "drag", row)
 

@@ -18,6 +18,7 @@ ETA = st.floats(1e-3, 1e3)
 def test_where_omega_is_1_the_fmu_gets_what_it_always_got(eta):
     excitation = Excitation.nondimensional(eta, Structure())
     expected = {"box_amplitude": 1.0 / (eta * eta), "box_frequency": eta, "phase_start": 0.0}
+    expected |= dict.fromkeys(("box_acceleration", "force1_amplitude", "force2_amplitude"), 0.0)
     assert excitation.inputs() == expected
     assert excitation.eta(Structure()) == eta
     assert excitation.period == 2.0 * math.pi / eta

@@ -17,7 +17,13 @@ QUICK = {
         **{"m1": 0.2727272727272727, "m2": 0.2727272727272727},
         **{"k1": 0.2727272727272727, "k2": 0.3272727272727272},
         **{"d1": 0.010909090909090908, "d2": 0.010909090909090908},
-        **{"e": 0.7, "gamma": 3.6515e-4, "bonded": False, **dict.fromkeys(ADDED, 0.0)},
+        **{
+            "e": 0.7,
+            "gamma": 3.6515e-4,
+            "bonded": False,
+            "wall": False,
+            **dict.fromkeys(ADDED, 0.0),
+        },
     },
     "drive": {
         **{"box_mass": 1.0, "box_stiffness": 0.010000000000000002, "box_damping": 0.01},
@@ -29,7 +35,13 @@ QUICK = {
 BEAM = {
     "structure": {
         **{"m1": 1.5, "m2": 1.5, "k1": 8437.5, "k2": 10125.0, "d1": 1.125, "d2": 1.125},
-        **{"e": 0.7, "gamma": 3.6515e-4, "bonded": False, **dict.fromkeys(ADDED, 0.0)},
+        **{
+            "e": 0.7,
+            "gamma": 3.6515e-4,
+            "bonded": False,
+            "wall": False,
+            **dict.fromkeys(ADDED, 0.0),
+        },
     },
     "drive": {
         **{"box_mass": 5.5, "box_stiffness": 309.375, "box_damping": 4.125},

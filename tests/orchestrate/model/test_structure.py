@@ -32,7 +32,7 @@ def test_the_operations_of_the_paper_s_sweeps():
     """To the last bit what sweeps by the paper's numbers have always given to the FMU."""
     structure = Structure.nondimensional(e=0.3, D=0.013, mu=0.7, kappa=1.3)
     expected = {"m1": 1.0, "m2": 0.7, "k1": 1.0, "k2": 1.3, "d1": 2.0 * 0.013}
-    rest = {"d2": 2.0 * 0.013 * 0.7, "e": 0.3, "gamma": 3.6515e-4, "bonded": False}
+    rest = {"d2": 2.0 * 0.013 * 0.7, "e": 0.3, "gamma": 3.6515e-4, "bonded": False, "wall": False}
     assert structure.parameters() == {**expected, **rest, **dict.fromkeys(ADDED, 0.0)}
 
 

@@ -271,7 +271,7 @@ def test_forces_without_a_formula_are_refused_by_name():
     for function in (orchestrate.resonance, orchestrate.spectra):
         with pytest.raises(InputError, match="mass 2 is a wall"):
             function(WALL, eta=[1.0])
-    with pytest.raises(InputError, match=r"amplitude = 0.0: nothing shakes"):
+    with pytest.raises(InputError, match=r"amplitude = 0.0: .*, or a force"):
         orchestrate.sweep(OWN, frequency=[1.0], amplitude=0.0)
 
 
@@ -281,3 +281,16 @@ def test_at_zero_they_change_no_bit():
         asked = {"eta": [0.5, 1.3], "transient": 20, "samples": 8, **QUICK}
         plain, pushed = (orchestrate.sweep(structure, **asked, **more) for more in ({}, zeros))
         assert all((plain[name] == pushed[name]).all() for name in plain)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.7])
+@pytest.mark.parametrize("wall", [False, True])
+def test_chains_over_clearance_and_stroke_go_on_inside_the_gap(wall, e):
+    """Ends at a face go on there, within rounding, and those beyond a smaller stroke at its end."""
+    structure = (Structure.one_mass(stroke=2.0) if wall else Structure(stroke=2.0)).replace(e=e)
+    asked = {"eta": 1.3, "transient": 20, "samples": 8, "direction": "both", **QUICK}
+    for over in ({"clearance": np.linspace(-1.0, 2.0, 31)}, {"stroke": np.linspace(0.1, 3.0, 31)}):
+        ((name, values),) = over.items()
+        found = orchestrate.sweep(structure, over=name, values=values, **asked)
+        gaps, stroke = found.xi_rel_max.values, values if name == "stroke" else 2.0
+        assert (gaps >= 0.0).all() and (gaps <= np.multiply(stroke, 1.0 + 1e-14)).all()
