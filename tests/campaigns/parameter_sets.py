@@ -197,7 +197,7 @@ def set_clearance(rng: Chance, values: Values) -> None:
 
 def set_added_parameters(rng: Chance, values: Values) -> None:
     """Set the parameters that are not in the paper to sizes that matter, or any."""
-    for name in ADDED:
+    for name in (one for one in ADDED if one != "stroke"):  # sets that once fell have none
         if name != "clearance" and rng.random() < 0.4:
             quantity = STRUCTURE[name]
             spread = rng.one_of(rng.power(-3.0, 2.0), rng.power(-30.0, 30.0))

@@ -122,7 +122,8 @@ def test_a_sweep_is_summed_up_in_a_table_of_ten_lines():
     kinds = np.repeat([1, 0, 1, 2, 1, 0, 1, 0, 1, 0, 1, 0], [9, 2, 20, 6, 8, 3, 7, 1, 5, 1, 4, 1])
     impacts = np.where(np.arange(len(kinds)) < 21, 1.0, 2.0)
     lines = list(responses.Sweep().summary(made_sweep(kinds, impacts)))
-    assert "67 responses: 53 repeat (79 %), 8 irregular (12 %), 6 undecided (9 %)" in lines
+    counts = "67 responses: 53 repeat (79 %), 8 irregular (12 %), 6 undecided (9 %); undecided"
+    assert any(line.startswith(counts) and "--transient 5000" in line for line in lines)
     first = next(i for i, line in enumerate(lines) if "widest windows" in line)
     rows = [line for line in lines[first:] if line.startswith("  ")]
     assert len(rows) == 10
@@ -130,7 +131,6 @@ def test_a_sweep_is_summed_up_in_a_table_of_ten_lines():
     assert rows[2].split() == ["eta", "=", "1.11", "to", "1.2", "after", "1", "T", "1"]
     assert rows[3].split() == ["eta", "=", "1.21", "to", "1.3", "after", "1", "T", "2"]
     assert "undecided" in rows[4]
-    assert lines[-1].startswith("undecided: ") and "--transient 5000" in lines[-1]
     assert not any("permanent contact" in line for line in lines)
 
 
