@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from abc import abstractmethod
+from collections.abc import Collection, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -49,6 +50,10 @@ class Asked(Command):
         structure = self.read_structure()
         excitation = self.read_excitation(structure, si=True, one=True)
         return structure, {**self.keywords(), **excitation}
+
+    @abstractmethod
+    def summary(self, data: Any) -> Iterable[str]:
+        """Return the lines that are printed of the result."""
 
     def has_picture(self, question: Question) -> bool:
         """Return whether a question has a picture."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -132,6 +133,12 @@ class OfMotor(Motor):
         asked = {state: with_units(data, units) for state, data in results.items()}
         return asked, dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
 
+    def common_files(self, base: str, files: Iterable[Files]) -> Files:
+        """Return the ``Files`` of the picture of both structures, or of the one of ``--only``."""
+        only = getattr(self, "only", None)
+        name = f"{base}_{only}" if only else base
+        return Files.from_options(self, name, fresh=any(one.fresh for one in files))
+
 
 class Only(Options):
     """The option of one structure of both."""
@@ -141,14 +148,7 @@ class Only(Options):
     def structures_by_name(self, structure: Structure) -> dict[str, Structure]:
         """Return the bonded and the delaminated structure, or the one ``--only`` names."""
         both = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
-        only = getattr(self, "only", None)
-        return {only: both[only]} if only else both
-
-    def common_files(self, base: str, files: Iterable[Files]) -> Files:
-        """Return the ``Files`` of the picture of both structures, or of the one of ``--only``."""
-        only = getattr(self, "only", None)
-        name = f"{base}_{only}" if only else base
-        return Files.from_options(self, name, fresh=any(one.fresh for one in files))
+        return {self.only: both[self.only]} if self.only else both
 
 
 class Stepped(Options):
@@ -364,9 +364,17 @@ def times_in_seconds(arguments: Any, structure: Structure, *names: str) -> dict[
 class Driven(Command):
     """A command that asks for each structure, or for both at once."""
 
+    @abstractmethod
+    def ask(self) -> tuple[Structure, Drive, Question]:
+        """Return structure, drive and keywords of the public function."""
+
+    @abstractmethod
+    def summary(self, results: Runs) -> Iterable[str]:
+        """Return the lines that are printed of the results."""
+
+    @abstractmethod
     def words(self, results: Runs, question: Question) -> str:
         """Return a part of the picture's title."""
-        raise NotImplementedError
 
     def draw(self, results: Runs, title: str) -> Any:
         """Return the figure."""

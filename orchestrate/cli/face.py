@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import inspect
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -177,7 +178,7 @@ class Debugging(Options):
     debug: bool = option("show where in the program an error occurred")
 
 
-class Command(Debugging):
+class Command(Debugging, ABC):
     """A command; calling it runs it, and its docstring stands in the list of commands."""
 
     calls = ""  # the public function, whose keywords are the options of the class itself
@@ -189,17 +190,9 @@ class Command(Debugging):
             default = list(one.default) if isinstance(one.default, tuple) else one.default
             setattr(self, name, values.get(name, default))
 
+    @abstractmethod
     def __call__(self) -> None:
         """Run the command."""
-        raise NotImplementedError
-
-    def ask(self) -> tuple[Any, ...]:
-        """Return structure, drive where it has one, and keywords of the public function."""
-        raise NotImplementedError
-
-    def summary(self, data: Any) -> Iterable[str]:
-        """Return the lines that are printed of the result."""
-        raise NotImplementedError
 
     @classmethod
     @functools.cache

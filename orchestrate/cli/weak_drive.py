@@ -26,7 +26,7 @@ from .drive import (
     format_title,
     times_in_seconds,
 )
-from .face import Question, option
+from .face import Command, Question, option
 from .grammar import parse_rates
 from .options import Over
 from .output import Files, OfBoth, Stored, digest, user_fmus
@@ -119,7 +119,7 @@ def jump_cells(at: xr.Dataset, volts: float) -> tuple[str, ...]:
     return direction, f"{voltage:.5f} +- {error:.5f}", f"{voltage / volts:.5f}", shown, decided
 
 
-class Couple(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Driven, OfBoth):
+class Couple(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Command, OfBoth):
     """The weak drive: structure and motor coupled, the voltage up and down (Figure 2)."""
 
     calls, takes = "couple", "tolerance"
@@ -166,7 +166,7 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
             running = self.running(store)
             branches = orchestrate.drive_branch(structure, drive, **running)
             branches = with_units(branches, self.drive_units())
-            print(*drive_branch_lines({"": branches}), sep="\n")
+            print(*drive_branch_lines(branches), sep="\n")
         print(*couple_lines(shown, drive.volts(structure)), sep="\n")
         for one, data in zip(files, asked.values(), strict=True):
             one.write(data)
@@ -430,9 +430,8 @@ def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
     return ", ".join(speeds)
 
 
-def drive_branch_lines(results: Runs) -> Iterator[str]:
+def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     """Yield tables of the bifurcations and of the branches."""
-    (data,) = results.values()
     if count := data.sizes["bifurcation"]:
         order = sorted(range(count), key=lambda i: float(data.bifurcation_voltage[i]))
         order.sort(key=lambda i: str(data.bifurcation_structure[i].item()))  # within a structure
@@ -470,3 +469,6 @@ Branches go round their folds. Repeat the command to resume an interrupted run."
     def words(self, results: Runs, _: Question) -> str:
         voltage = results[""].voltage
         return f"stationary motions, {float(voltage.min()):.4g} V to {float(voltage.max()):.4g} V"
+
+    def summary(self, results: Runs) -> Iterator[str]:
+        return drive_branch_lines(results[""])

@@ -192,7 +192,7 @@ def test_bifurcations_of_a_drive_are_listed_by_structure_and_voltage():
     )
     data["end"] = ("structure", "leg"), [["limit"]]
     data = data.assign_coords(structure=["bonded"], leg=["lowest speed"])
-    listed = [line.split() for line in weak_drive.drive_branch_lines({"": data})][1:4]
+    listed = [line.split() for line in weak_drive.DriveBranch().summary({"": data})][1:4]
     assert [row[:1] + row[2:3] for row in listed] == [
         ["bonded", "1.6"],
         ["bonded", "1.7"],
