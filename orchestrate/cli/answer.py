@@ -12,6 +12,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
 from .face import Command, Options, Question, option
+from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
 from .output import (
     Files,
@@ -19,7 +20,6 @@ from .output import (
     importing_matplotlib,
     result_name,
 )
-from .stored import read_earlier_result
 
 if TYPE_CHECKING:
     from ..model import Structure

@@ -208,7 +208,7 @@ class Basin(OfStructure, OfBox, Asked, Stored, Results):
     examples = """
   {program} basin --eta 1.315
   {program} basin --eta 1.315 --x x_rel,0,1.3,60 --y v_rel,-1.3,1.3,60
-  {program} basin --eta 1.32 --x phase,0,6.28,40 --y v1,-2,2,40
+  {program} basin --eta 1.32 --x phase,0,6.28,40 --y v1,-2,2,40 --at attractors.nc
   {program} basin --structure beam --hz 15.8 --g 0.02 --x x_rel,0,1e-3,40 --y v_rel,-0.1,0.1,40
 Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not varied is that of
 --at, such as a state that the command attractors has found."""

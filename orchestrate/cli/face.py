@@ -42,7 +42,7 @@ LINK = re.compile(r"As (?:in|for) :\w+:`orchestrate\.(\w+)`")
 MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
 MAPPING = re.compile(r'\{"(\w+)": "?([^"}]*)"?\}')  # on the command line NAME=VALUE
 KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of options are read, named
-    "array_like or xarray.Dataset": (State, "X1,X2,V1,V2"),
+    "array_like or xarray.Dataset": (State, "X1,X2,V1,V2|FILE.nc"),
     "array_like of 4 floats": (State, "X1,X2,V1,V2"),
     "(str, float, float, int)": (PlaneSide, "NAME,FIRST,LAST,COUNT"),
     "(float, float)": (Ends, "FIRST:LAST"),

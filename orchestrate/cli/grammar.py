@@ -5,13 +5,16 @@ What is wrong is an :class:`InputError` that names the option, its text and what
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Callable, Collection, Iterable
 from decimal import Decimal, InvalidOperation
+from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from ..errors import InputError
+from ..errors import InputError, StoreError
+from ..lazy import xr
 from ..model.ranges import expected_one_of, known_units, number_with_unit
 
 Parsed = TypeVar("Parsed")
@@ -93,7 +96,33 @@ parse_numbers = floats("a number, or a list such as 0.5,1,2")
 parse_rates = floats("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
 
 
-State = Annotated[tuple[float, ...] | None, parse_state]  # x1, x2, v1, v2
+def read_earlier_result(option: str, path: Path) -> xr.Dataset:
+    """Read the NetCDF result of an earlier command; raise naming the option if it is none."""
+    from ..running.store import load_foreign
+
+    if not path.is_file():
+        raise InputError(f"{option} {path}: no such file; expected a result of an earlier command")
+    try:
+        data = load_foreign(path)
+    except StoreError as error:
+        expected = "" if "expected" in str(error) else "; expected a NetCDF file"
+        raise InputError(f"{option} {error}{expected}") from None
+    try:
+        json.loads(data.attrs.get("identity", '{"question": ""}'))["question"]
+    except (ValueError, TypeError, KeyError, RecursionError):
+        expected = "expected a result of an earlier command"
+        raise InputError(f"{option} {path}: its identity is damaged; {expected}") from None
+    return data
+
+
+def read_state(option: str, text: str) -> tuple[float, ...] | xr.Dataset:
+    """Parse x1, x2, v1, v2; or read the result of an earlier command that has states."""
+    if text.endswith(".nc"):
+        return read_earlier_result(option, Path(text))
+    return parse_state(option, text)
+
+
+State = Annotated[Any, read_state]  # x1, x2, v1, v2, or a dataset
 
 
 def positive_number(option: str, text: str) -> float:

@@ -21,6 +21,7 @@ from .grammar import (
     floats,
     parse_breakpoints,
     positive_number,
+    read_earlier_result,
     read_pairs,
 )
 from .options import (
@@ -40,7 +41,6 @@ from .output import (
     parse_endings,
     unit_note,
 )
-from .stored import read_earlier_result
 from .text import Columns, columns_of, extents, impact_lines, table
 
 if TYPE_CHECKING:

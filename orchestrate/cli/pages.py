@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..lazy import xr
 from .face import Command, option, option_names
-from .grammar import parse_changes
+from .grammar import parse_changes, read_earlier_result
 from .options import OfStored
 from .output import (
     HowRun,
@@ -19,7 +19,7 @@ from .output import (
     Reading,
     check_output,
 )
-from .stored import print_difference, read_earlier_result, structure_of
+from .stored import print_difference, structure_of
 
 if TYPE_CHECKING:
     from ..model import Structure

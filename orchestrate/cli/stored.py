@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import InputError, StoreError
+from ..errors import InputError
 from ..lazy import xr
 from ..model.ranges import STRUCTURE
-from .grammar import parse_changes
+from .grammar import parse_changes, read_earlier_result
 from .options import print_assumptions
 
 if TYPE_CHECKING:
@@ -71,22 +70,3 @@ def explain_difference(stored: Structure, asked: Structure) -> str:
     ]
     left = len(texts) - MOST_NAMED
     return "; ".join(texts[:MOST_NAMED] + [f"and {left} more parameters"] * (left > 0))
-
-
-def read_earlier_result(option: str, path: Path) -> xr.Dataset:
-    """Read the NetCDF result of an earlier command; raise naming the option if it is none."""
-    from ..running.store import load_foreign
-
-    if not path.is_file():
-        raise InputError(f"{option} {path}: no such file; expected a result of an earlier command")
-    try:
-        data = load_foreign(path)
-    except StoreError as error:
-        expected = "" if "expected" in str(error) else "; expected a NetCDF file"
-        raise InputError(f"{option} {error}{expected}") from None
-    try:
-        json.loads(data.attrs.get("identity", '{"question": ""}'))["question"]
-    except (ValueError, TypeError, KeyError, RecursionError):
-        expected = "expected a result of an earlier command"
-        raise InputError(f"{option} {path}: its identity is damaged; {expected}") from None
-    return data

@@ -247,7 +247,7 @@ def basin(
     force2: float = 0.0,
     x: tuple[str, float, float, int] | None = None,
     y: tuple[str, float, float, int] | None = None,
-    at: ArrayLike | None = None,
+    at: ArrayLike | xr.Dataset | None = None,
     phase: float = 0.0,
     transient: int = 400,
     settle: float = 300.0,
@@ -268,10 +268,11 @@ def basin(
         in rad. By default 80 values each of the gap and of its velocity, in which all attractors
         lie that 24 random starts lead to (:func:`orchestrate.attractors`, ``seed=0``), as far as
         the motions' largest gap.
-    at : array_like of 4 floats, optional
-        x1, x2 in m, v1, v2 in m/s: what the coordinates that are not varied are. Where a gap or its
-        velocity is varied alone, the mean of both masses stays that of ``at``. By default rest;
-        where neither side is given either, the mean of the attractors' states at phase 0.
+    at : array_like or xarray.Dataset, optional
+        x1, x2 in m, v1, v2 in m/s: what the coordinates that are not varied are; of a result of
+        :func:`orchestrate.attractors` the mean of its states. Where a gap or its velocity is varied
+        alone, the mean of both masses stays that of ``at``. By default rest; where neither side is
+        given either, the mean of the attractors' states at phase 0.
     phase
         As in :func:`orchestrate.simulate`.
     transient, settle, samples, settings
@@ -315,6 +316,8 @@ def basin(
         known = find_known_attractors(point, run, running)
         if x is None and y is None and at is None:
             at = known.samples.mean(axis=0)
+    if hasattr(at, "data_vars"):
+        at = mean_state(at)  # type: ignore[arg-type]
     sides = (
         known.default_axis("x_rel") if x is None and known else checked_axis("x", x),
         known.default_axis("v_rel") if y is None and known else checked_axis("y", y),
@@ -329,6 +332,19 @@ def basin(
         known=known.states if known else (),
         settings=run,
     )
+
+
+def mean_state(found: xr.Dataset) -> Floats:
+    """Return the mean of a state on each attractor of :func:`attractors`, at one parameter."""
+    over = [name for name in found.get("state", xr.DataArray()).dims if name != "coordinate"]
+    if "attractor" not in over or any(
+        found.sizes[name] > 1 for name in over if name != "attractor"
+    ):
+        raise InputError(
+            f"at: a dataset over {', '.join(map(str, found.sizes))}; expected a result of "
+            "attractors at one frequency"
+        )
+    return np.nanmean(found.state.values.reshape(-1, len(STATE)), axis=0)
 
 
 class KnownAttractors(NamedTuple):

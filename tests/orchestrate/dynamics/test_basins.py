@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, basin, run_to_phase_zero
@@ -115,6 +116,18 @@ def returns_after(instance, excitation, state, transient):
         points.append(instance.get(*STATE))
     apart = np.abs(np.array(points[1:]) - points[0]).max(axis=1)
     return next((n for n, most in enumerate(apart, 1) if most < 1e-6), 0)
+
+
+@pytest.mark.usefixtures("exported")
+def test_the_plane_may_lie_at_the_mean_of_attractors_that_were_found():
+    known = attractors(PAPER, eta=ETA, starts=6, seed=0)
+    at = known.state.isel(eta=0).mean("attractor")
+    plane = {"x": ("x1", -0.1, 0.1, 2), "y": ("v2", -0.1, 0.1, 2)}
+    xr.testing.assert_equal(
+        basin(PAPER, eta=ETA, at=known, **plane), basin(PAPER, eta=ETA, at=at.values, **plane)
+    )
+    with pytest.raises(InputError, match="a dataset over sample"):
+        basin(PAPER, eta=ETA, at=xr.Dataset({"x": ("sample", [1.0])}), **plane)
 
 
 @pytest.mark.parametrize(
