@@ -13,6 +13,7 @@ from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
+from ..constants import GRAVITY
 from ..errors import InputError, StoreError
 from ..lazy import xr
 from ..model.ranges import expected_one_of, known_units, number_with_unit
@@ -175,7 +176,13 @@ def parse_breakpoints(option: str, text: str) -> tuple[tuple[float, float], ...]
     return parse(option, text, "HZ:VALUE,HZ:VALUE,... such as 10:0.5,200:0.5", split)
 
 
-Breakpoints = Annotated[tuple[tuple[float, float], ...] | None, parse_breakpoints]
+def parse_density(option: str, text: str) -> tuple[tuple[float, float], ...]:
+    """Parse a density over frequency in (m/s2)^2/Hz, or in g2/Hz with that unit behind it."""
+    squared = 1.0 if text == (number := text.removesuffix("g2/Hz")) else GRAVITY**2
+    return tuple((f, squared * value) for f, value in parse_breakpoints(option, number))
+
+
+Density = Annotated[tuple[tuple[float, float], ...] | None, parse_density]
 Orders = Annotated[float | tuple[float, ...] | None, parse_orders]
 
 

@@ -15,7 +15,7 @@ from ..units import text_of, with_units
 from .answer import Asked
 from .face import Command, Options, Question, option, option_names
 from .grammar import (
-    Breakpoints,
+    Density,
     Ends,
     Listed,
     floats,
@@ -55,6 +55,7 @@ KINDS = {  # of excitation: the class, or the reader, whose arguments are its op
 }
 
 LEVELS = ("g", "acceleration")
+LEVEL_OF = {"shock": "peak", "random": "rms"}  # the argument that the level is, if another
 
 
 def arguments_of(function: str) -> dict[str, bool]:
@@ -77,11 +78,15 @@ class OfExcitation(Options):
     if_given = True
     swept_sine: Ends = option("frequencies, Hz; downwards too", value="FIRST:LAST")
     stepped_sine: Listed = option("frequencies, Hz; or a list A,B,...", value="FIRST:LAST:STEP")
-    random: Breakpoints = option("density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz", value="PSD")
+    random: Density = option(
+        "density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz, or in g2/Hz with that behind it",
+        value="PSD",
+    )
     shock: str | None = option("half-sine, sawtooth or trapezoid", value="SHAPE")
     record: Any = option("measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc", value="FILE")
     g: str | None = option(
-        "peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too",
+        "peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too; "
+        "of random its rms, to which the density is scaled",
         value="LEVEL",
     )
     acceleration: str | None = option(
@@ -108,12 +113,12 @@ class OfExcitation(Options):
             if note := unit_note(record.attrs):
                 print(f"{main}: {note}")
             return orchestrate.Sampled.from_record(record)
-        if kind != "random":
+        has_level = any(settings.pop(name, None) is not None for name in LEVELS)
+        if kind != "random" or has_level:
             level = self.read_level()
-            settings = {name: settings[name] for name in settings if name not in LEVELS}
-            settings["peak" if kind == "shock" else "acceleration"] = level
-            if kind == "shock" and not isinstance(level, float):
-                raise InputError("--shock: expected one number for its peak, no profile")
+            settings[LEVEL_OF.get(kind, "acceleration")] = level
+            if kind in LEVEL_OF and not isinstance(level, float):
+                raise InputError(f"{option_names([kind])}: expected one number for its level")
         names = {"stepped_sine": "frequencies", "random": "psd", "shock": "shape"}
         settings |= {names[kind]: main} if kind in names else {"first": main[0], "last": main[1]}
         return getattr(orchestrate, KINDS[kind])(**settings)
@@ -127,8 +132,8 @@ class OfExcitation(Options):
             names = option_names(KINDS)
             raise InputError(f"excitation: {words} given; expected one of {names}")
         takes = {name: arguments_of(called) for name, called in KINDS.items()}
-        sines = ["swept_sine", "stepped_sine", "shock"]
-        owners = {**dict.fromkeys(LEVELS, sines), "column": ["record"]}
+        leveled = ["swept_sine", "stepped_sine", "shock", "random"]
+        owners = {**dict.fromkeys(LEVELS, leveled), "column": ["record"]}
         for name in given.keys() - KINDS.keys():
             own = owners.get(name) or [one for one in KINDS if name in takes[one]]
             if chosen[0] not in own:
@@ -163,6 +168,7 @@ class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
   {program} shake --structure beam --stepped-sine 10:14:0.1 --settle-cycles 150 --g 0.02
   {program} shake --structure beam --random 5:0.1,100:0.1 --duration 30 --seed 1
+  {program} shake --structure beam --random 5:1e-3,100:1e-3g2/Hz --g 0.3 --duration 30
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --shaker shaker_1kN
   {program} shake --structure beam --shock half-sine --length 0.011 --g 5
   {program} shake --structure beam --record base.csv --unit g"""

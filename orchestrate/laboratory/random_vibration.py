@@ -33,17 +33,23 @@ class Random(signals.ExcitationSignal):
         s.
     seed : int
         Of the phases.
+    rms : float, optional
+        Root mean square of the acceleration, m/s2, to which ``psd`` is scaled; by default it is
+        taken as it is.
 
     Examples
     --------
     >>> shaking = Random(psd=[(20.0, 0.5), (200.0, 0.5)], duration=8.0, seed=1)
     >>> round(shaking.rms, 2)  # m/s2; sqrt(0.5 (200 - 20)) is 9.49
     9.49
+    >>> round(Random(psd=[(20.0, 1.0), (200.0, 1.0)], duration=8.0, rms=3.0).psd[0][1], 3)  # 9/180
+    0.05
     """
 
     psd: signals.Profile
     duration: float
     seed: int = 0
+    rms: float = None  # type: ignore[assignment]  # it is known once all is checked
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "psd", signals.checked_profile("psd", self.psd, signals.DENSITY))
@@ -51,10 +57,17 @@ class Random(signals.ExcitationSignal):
         whole = isinstance(self.seed, (int, np.integer)) and not isinstance(self.seed, bool)
         if not whole or self.seed < 0:
             raise InputError(f"seed = {self.seed!r}: expected a whole number >= 0")
-        if not self._amplitudes().any():
+        amplitudes = self._amplitudes()
+        if not amplitudes.any():
             band = f"{self.psd[0][0]:g} to {self.psd[-1][0]:g} Hz"
             text = f"no multiple of 1/duration lies within {band}; expected a longer one"
             raise InputError(f"duration = {self.duration!r} s: {text}")
+        rms = float(np.sqrt(0.5 * (amplitudes**2).sum()))
+        if self.rms is not None:
+            signals.check_fields(self, rms=signals.LEVEL)
+            scaled = tuple((f, value * (self.rms / rms) ** 2) for f, value in self.psd)
+            object.__setattr__(self, "psd", scaled)
+        object.__setattr__(self, "rms", self.rms or rms)
 
     @property
     def label(self) -> str:
@@ -63,11 +76,6 @@ class Random(signals.ExcitationSignal):
     @property
     def usual_rate(self) -> float:
         return 10.0 * self.psd[-1][0]
-
-    @property
-    def rms(self) -> float:
-        """Root mean square, m/s2."""
-        return float(np.sqrt(0.5 * (self._amplitudes() ** 2).sum()))
 
     def _amplitudes(self) -> Floats:
         """Return the amplitudes of the sines at 0, 1, 2 ... over the duration, m/s2."""

@@ -125,6 +125,8 @@ def test_help_takes_no_time_whatever_the_encoding(tmp_path, command, seconds, en
         (grammar.parse_state, "0,0.5,-1,0", (0.0, 0.5, -1.0, 0.0)),
         (grammar.parse_plane_side, "x_rel, 0,0.8,60", ("x_rel", 0.0, 0.8, 60)),
         (grammar.parse_breakpoints, "10:0.5,200:1", ((10.0, 0.5), (200.0, 1.0))),
+        (grammar.parse_density, "1:3", ((1.0, 3.0),)),
+        (grammar.parse_density, "10:2g2/Hz", ((10.0, 2.0 * 9.80665**2),)),
         (grammar.parse_one_or_more, "1:2:0.5", (1.0, 1.5, 2.0)),
     ],
 )

@@ -134,6 +134,16 @@ def sines(shaking):
     return np.sqrt(2.0 * density / shaking.duration), 2.0 * math.pi * f, phases
 
 
+@given(st.floats(1e-6, 1e6))
+def test_random_vibration_has_the_rms_asked_for(rms):
+    shaking = Random(psd=PROFILE, duration=2.0, rms=rms)
+    amplitudes, *_ = sines(shaking)
+    assert shaking.rms == rms
+    assert np.sqrt(0.5 * (amplitudes**2).sum()) == pytest.approx(rms, rel=1e-9)
+    ratios = np.array(shaking.psd)[:, 1] / np.array(PROFILE)[:, 1]
+    np.testing.assert_allclose(ratios, ratios[0])
+
+
 @settings(deadline=None)
 @given(st.floats(0.5, 8.0), st.integers(0, 1000), ACCURACY)
 def test_random_vibration_within_its_bound(duration, seed, accuracy):
@@ -235,6 +245,7 @@ SWEEP = {"first": 20.0, "last": 90.0, "duration": 2.0, "acceleration": 4.9}
         (SteppedSine, {"acceleration": [(9, 1), (20, 1)]}, "is of 9 to 20 Hz; expected 8 to 40"),
         (Random, {"psd": 3.0}, "psd = 3.0: expected pairs (Hz, value)"),
         (Random, {"psd": [(20, 0.0), (30, 1.0)]}, "psd at 20 Hz = 0.0: expected a number > 0"),
+        (Random, {"rms": -1.0}, "rms = -1.0 m/s2: expected"),
         (Random, {"seed": -1}, "seed = -1: expected a whole number >= 0"),
         (Random, {"duration": 1e-3}, "no multiple of 1/duration lies within 20 to 200 Hz"),
         (Random, {"duration": 1e7}, "duration = 10000000.0 s: expected at most"),
