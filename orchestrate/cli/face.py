@@ -34,6 +34,7 @@ from .grammar import (
     PlaneSide,
     State,
     read_choice,
+    read_earlier_result,
     read_float,
     read_int,
 )
@@ -235,8 +236,13 @@ class Command(Debugging, ABC):
         import orchestrate
 
         arguments = inspect.signature(getattr(orchestrate, self.calls)).parameters
-        names = [name for name, (_, _, of) in self.options().items() if of is type(self)]
-        return {name: getattr(self, name) for name in names if name in arguments}
+        found: Question = {}
+        for name, (_, kind, of) in self.options().items():
+            if of is type(self) and name in arguments:
+                found[name] = getattr(self, name)
+                if kind is State and isinstance(found[name], Path):
+                    found[name] = read_earlier_result(option_names([name]), found[name])
+        return found
 
     @classmethod
     def app(cls) -> cyclopts.App:

@@ -116,14 +116,12 @@ def read_earlier_result(option: str, path: Path) -> xr.Dataset:
     return data
 
 
-def read_state(option: str, text: str) -> tuple[float, ...] | xr.Dataset:
-    """Parse x1, x2, v1, v2; or read the result of an earlier command that has states."""
-    if text.endswith(".nc"):
-        return read_earlier_result(option, Path(text))
-    return parse_state(option, text)
+def read_state(option: str, text: str) -> tuple[float, ...] | Path:
+    """Parse x1, x2, v1, v2; or the file of an earlier command's result that has states."""
+    return Path(text) if text.endswith(".nc") else parse_state(option, text)
 
 
-State = Annotated[Any, read_state]  # x1, x2, v1, v2, or a dataset
+State = Annotated[Any, read_state]  # x1, x2, v1, v2, or a file
 
 
 def positive_number(option: str, text: str) -> float:

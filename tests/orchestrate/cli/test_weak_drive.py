@@ -150,7 +150,6 @@ def test_capture(ask, folder):
     assert all(shows_something(picture) for picture in folder.glob("*.png"))
 
 
-@pytest.mark.slow
 def test_passage(ask, folder):
     options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--around", "60", "--one-way", *SHORT)
     done = ask("passage", *options, "--revolutions", "4", "--only", "delaminated").success()
@@ -159,7 +158,6 @@ def test_passage(ask, folder):
     assert shows_something(picture)
 
 
-@pytest.mark.slow
 def test_jump_voltages(ask, folder):
     options = ("--eta0", "1.5:1.66", "--rate", "4e-4,3e-4", "--one-way", "--jobs", "1", *SHORT)
     done = ask("jump-voltages", *options).success()
@@ -169,7 +167,6 @@ def test_jump_voltages(ask, folder):
     assert shows_something(next(folder.glob("*.png")))
 
 
-@pytest.mark.slow
 def test_drive_branch(ask, folder):
     options = ("--speed", "1.29:1.32", "--longest", "0.3", "--jobs", "1")
     done = ask("drive-branch", *options).success()
