@@ -96,11 +96,9 @@ class CoupleJob(CoupledRun):
         return "voltages held at jumps" if first == self.steps() else ""
 
     def decide_jumps(self, fmus: Fmus, table: Table, every: int) -> Table:
-        """Hold voltages over each ramp; return its jumps, in rows."""
-        slots = self.hysteresis.slots
-        rows = np.full((1, len(DIRECTIONS), slots, len(Jump._fields)), math.nan)
+        """Hold voltages over each ramp; return its jumps, a row each: 1 for up, and its fields."""
         if self.control is not None:
-            return {"jump_rows": rows}
+            return {"jump_rows": np.empty((0, 1 + len(Jump._fields)))}
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
 
             def start_run(schedule: Schedule) -> Run:
@@ -113,17 +111,17 @@ class CoupleJob(CoupledRun):
             units = self.scheme.h, self.structure.omega, volts, self.hold
             loop = HysteresisLoop(start_run, self.schedule, *units, self.hysteresis, growth_rate)
             loop.add_checkpoints(table, every, self.steps())
-            for i, up in enumerate((True, False)):
-                jumps = loop.decide(RampRecord(self, table, up))[:slots]
-                rows[0, i, : len(jumps)] = np.array(jumps).reshape(-1, rows.shape[-1])
-        return {"jump_rows": rows}
+            rows = [
+                (float(up), *jump)
+                for up in (True, False)
+                for jump in loop.decide(RampRecord(self, table, up))
+            ]
+        return {"jump_rows": np.array(rows).reshape(-1, 1 + len(Jump._fields))}
 
     def jumps(self, table: Table) -> list[list[Jump]]:
         """Return the jumps of both directions; the first sure one stands for all."""
-        every = [
-            [Jump(int(row[0]), *row[1:]) for row in rows[np.isfinite(rows[:, 0])].tolist()]
-            for rows in table["jump_rows"][-1]
-        ]
+        rows = table["jump_rows"].tolist()
+        every = [[Jump(int(row[1]), *row[2:]) for row in rows if row[0] == up] for up in (1.0, 0.0)]
         return [sorted(jumps, key=lambda jump: jump.outcome != LOST) for jumps in every]
 
     def dataset(self, table: Table) -> xr.Dataset:

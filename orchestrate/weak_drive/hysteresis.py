@@ -71,7 +71,6 @@ class HysteresisSettings(SettledSettings):
     errors: float = 3.0  # standard errors that are taken off a difference of speeds
     parts: tuple[float, ...] = (0.5, 0.25, 0.75)  # of a step: where a speed between is sought
     left: float = 0.1  # of the way between two motions' speeds: with less to go, the first is left
-    slots: int = 12  # jumps of a direction that are stored, by their voltages
 
 
 class HeldPoint(NamedTuple):
