@@ -227,7 +227,13 @@ class ArclengthStepper(Generic[AnyCurve]):
                     offset = (root.unknowns - self.root.unknowns) / self.curve.scale
                     return root, float(offset @ self.root.tangent), True
             self.length *= 0.5
-        return *self.step(accepts), False
+        low, high = np.transpose(limits)
+
+        def inside(root: Root) -> bool:
+            limited = root.unknowns[first : first + len(limits)]
+            return bool(((low <= limited) & (limited <= high)).all()) and accepts(root)
+
+        return *self.step(inside), False
 
     def next_limit(
         self, first: int, limits: Sequence[tuple[float, float]]

@@ -11,6 +11,7 @@ import xarray as xr
 
 import orchestrate
 
+from ..dynamics.clusters import AttractorSettings
 from ..dynamics.lyapunov import CHAOTIC, NEUTRAL
 from ..dynamics.stable_windows import StableWindow, stable_windows
 from ..model import Drive, Structure
@@ -255,7 +256,8 @@ class Datasets:
 
     def settling(self) -> dict[str, Any]:
         """Return as keywords how long responses from many starts are run."""
-        return {"transient": self.size.settle, "longest": self.size.settle_most}
+        settings = AttractorSettings(longest=self.size.settle_most)
+        return {"transient": self.size.settle, "settings": settings}
 
     def attractors(self) -> xr.Dataset:
         """Return coexisting attractors from random starts."""

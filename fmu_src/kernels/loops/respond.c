@@ -196,7 +196,7 @@ static void start_of(const Task *task, size_t i, double *start) {
     bool is_wall = traits[WALL] != 0.0;
     if (task->is_chain && (i || task->has_gap) && gap != offset && is_any(start)) for (int j = 0; j < STATES; j++) start[j] += j == X2 ? gap - offset : 0.0;
     if (is_wall) start[X1] -= start[X2], start[X2] = 0.0;
-    if (!task->is_chain || !is_any(start) || (!is_wall && traits[STROKE] == 0.0)) return;
+    if (!task->is_chain || !is_any(start)) return;
     double apart = gap_between(start, offset), inside = apart < 0.0 ? 0.0 : apart;  /* by rounding, or of another stroke */
     if (traits[STROKE] != 0.0 && inside > traits[STROKE]) inside = traits[STROKE];
     if (inside == apart) return;

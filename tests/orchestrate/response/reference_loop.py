@@ -33,6 +33,8 @@ def respond(instance, points, starts, settings):
             start, offset = results.ends[i - 1] if i else start, point.structure.gap_offset
             if gap is not None and gap != offset and np.any(start):
                 start = np.add(start, (0.0, gap - offset, 0.0, 0.0))
+                if gap_between(start, offset) < 0.0:  # by rounding
+                    start[1] = start[0] - offset
             gap = offset
         begin(instance, *point, start)
         sample(instance, point, transients[i], settings.samples, results, i)

@@ -16,6 +16,7 @@ from orchestrate.model import write
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import traits_of
 
+from ...draws import draw_structure
 from ...fmu.event_driven import Motion
 
 OWN = Structure(m1=0.8, m2=1.1, k1=5.0, k2=7.5, d1=0.3, d2=0.4, e=0.6, clearance=0.05)
@@ -281,6 +282,17 @@ def test_at_zero_they_change_no_bit():
         asked = {"eta": [0.5, 1.3], "transient": 20, "samples": 8, **QUICK}
         plain, pushed = (orchestrate.sweep(structure, **asked, **more) for more in ({}, zeros))
         assert all((plain[name] == pushed[name]).all() for name in plain)
+
+
+def test_a_chain_over_the_clearance_goes_on_in_contact():
+    """The faces' distance, 0 but for rounding, counts from another clearance at every value."""
+    random, asked = np.random.default_rng(0), {"transient": 30, "samples": 8, **QUICK}
+    for _ in range(60):
+        structure, eta = draw_structure(random)
+        values = [*-random.uniform(0.5, 9.0, 3), 0.0, *-random.uniform(0.5, 9.0, 3), 0.0]
+        more = {"over": "clearance", "values": values, "direction": "given"}
+        found = orchestrate.sweep(structure.replace(e=0.2), eta=eta, **more, **asked)
+        assert (found.xi_rel.values >= 0.0).all()
 
 
 @pytest.mark.parametrize("e", [0.0, 0.7])

@@ -216,4 +216,5 @@ def late_jumps(ends, errors, jumps: bool = True) -> xr.Dataset:
     made = {"voltage": (("rate", *each), late)}
     made["jumps"] = (tuple(each), [[end, nan] for end in ends])
     made["standard_error"] = (tuple(each), [[error, nan] for error in errors])
+    made["decided"] = (tuple(each), [["by held voltages", ""]] * 2)
     return xr.Dataset(made, {"rate": rates, **each})
