@@ -32,7 +32,7 @@ class Running(TypedDict, total=False):
         ``"tcp://host:8786"``, or by a client of it; or any executor of ``jobs`` workers.
     progress : bool
         Whether what takes longer than a second shows a progress bar; true by default. A function
-        to be called is not taken: messages of :mod:`logging` and the bar are what there is.
+        to be called is not taken: log messages and the bar are what there is.
     store : path, optional
         NetCDF file of the result. What is computed goes there step by step: the same call goes on
         where it was interrupted, and reads the file when it is finished. Without it all is kept in

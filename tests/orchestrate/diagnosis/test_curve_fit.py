@@ -89,7 +89,7 @@ def test_order_1_of_one_face_alone_does_not_state_the_halves():
     curve = orchestrate.resonance_curve(frequency=hertz, level=LEVEL, amplitude1=ratio, unit="1")
     answer = orchestrate.fit(curve, guess(), **LIMIT)
     assert np.isnan(answer.value).all() and "order 2 is not in the curve" in answer.attrs["reason"]
-    with pytest.raises(orchestrate.InputError, match="record: .* without time"):
+    with pytest.raises(orchestrate.InputError, match="record: no acceleration of the base"):
         orchestrate.detect(curve, guess())
 
 
@@ -117,6 +117,7 @@ def test_intervals_of_curves_hold_the_truth():
             frequency=hertz, level=LEVEL, amplitude1=sizes[0], amplitude2=sizes[1]
         )
         answer = orchestrate.fit(curve, guess(), **LIMIT)
+        answer = answer.sel(parameter=["f1", "f2", "zeta1", "zeta2", "e"])
         inside.append(abs(answer.value.values - truth) < 1.96 * answer.standard_error.values)
     assert np.mean(inside) >= 0.9
 
