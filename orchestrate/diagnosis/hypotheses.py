@@ -140,7 +140,7 @@ class NonlinearSpring(Sound):
             for share in (1.0, 0.5):
                 f = evidence.resonance / math.sqrt(1.0 + 0.75 * cube * share)
                 start = {"f": f, "square": 0.0, "cube": cube}
-                found += [{**start, "log_zeta": math.log(zeta)} for zeta in (0.01, 0.004)]
+                found += [{**start, "log_zeta": math.log(zeta)} for zeta in (0.03, 0.01, 0.004)]
         return found
 
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
