@@ -21,7 +21,6 @@ def values_of(quantity: Quantity) -> st.SearchStrategy[float]:
     return LOSS if quantity.minimum == 0.0 else st.one_of(st.just(0.0), st.floats(-1e3, 1e3))
 
 
-
 def structure(stroke: float, **values: float) -> Structure:
     """Structure whose stroke, where it has one, is wider than its clearance by so much."""
     return Structure(**values, stroke=stroke and stroke + max(0.0, values["clearance"]))

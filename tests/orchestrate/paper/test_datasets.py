@@ -1,6 +1,9 @@
 """The paper's datasets through the FMU: small ones, each of a call of the public functions."""
 
+import contextlib
+import inspect
 from dataclasses import replace
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -9,6 +12,7 @@ import orchestrate
 from orchestrate.paper.cases import CASES
 from orchestrate.paper.datasets import Datasets
 from orchestrate.paper.resolution import QUICK
+from orchestrate.running.options import Running
 
 pytestmark = pytest.mark.usefixtures("exported")
 RUNNING = {"jobs": 1, "progress": False}
@@ -26,6 +30,24 @@ def swept(etas, structure=DAMPED, **more):
     """A short sweep upwards."""
     settings = {"transient": 60, "samples": 20, **RUNNING, **more}
     return orchestrate.sweep(structure, eta=etas, **settings)
+
+
+def test_questions_are_such_as_their_functions_take(data):
+    """A keyword that a function has no more is seen when it is called: in a run, after minutes."""
+    asked, wrong = set(), []
+
+    def get(name, function, *what, **keywords):
+        known = {*inspect.signature(function).parameters, *Running.__annotations__}
+        asked.add(function.__name__)
+        wrong.extend((name, keyword) for keyword in keywords.keys() - known)
+        return MagicMock()  # an answer of which anything can be asked
+
+    data.get = get
+    for name, method in inspect.getmembers(data, inspect.ismethod):
+        if name != "get" and not inspect.signature(method).parameters:
+            with contextlib.suppress(Exception):  # of what is no number
+                method()
+    assert not wrong and {"sweep", "attractors"} <= asked, (wrong, asked)
 
 
 def test_a_response_is_run_on_until_it_repeats(data):
