@@ -39,7 +39,7 @@ export class App {
   constructor({ table, compiled, worker, diagram }) {
     this.table = table;
     showIn(table.shown);
-    useLibrary(new Library(compiled.oscillator));
+    useLibrary(new Library(compiled));
     const [unit, value] = table.level;
     /** @type {View} */
     this.usual = {
