@@ -44,8 +44,8 @@ def test_every_number_of_the_memory_is_that_of_the_fmu(kernel, exported, case):
     for n in range(periods):
         for one in both:
             one.step(n * period(frequency), (n + 1) * period(frequency))
-        web, native = (one.bytes() for one in both)
-        assert web == native, f"period {n}: slots {differing(web, native)}"
+        mine, theirs = (one.bytes() for one in both)
+        assert mine == theirs, f"period {n}: slots {differing(mine, theirs)}"
         if case == "cubic" and n == 2:  # to the value that it has
             for one in both:
                 one.set(box_snap=CUBIC["box_snap"])
