@@ -154,7 +154,7 @@ export class App {
     toDefault(input("branches"));
     this.player.reset();
     this.drive.reset();
-    this.basin.forget();
+    this.basin.reset();
     this.restore(this.first);
     this.refreshMotion();
   }
@@ -316,7 +316,7 @@ export class App {
   }
 
   showOthers() {
-    at("basin-figure").scrollIntoView({ block: "center" });
+    this.basin.wanted = true;
     this.computeBasin();
   }
 
