@@ -229,7 +229,7 @@ def test_a_link_restores_the_view(chromium, page):
 def test_the_basin_fills_and_a_click_or_a_key_on_it_starts_there(browser):
     from selenium.webdriver.common.keys import Keys
 
-    browser.run("explorer.choose(1.3)")
+    browser.run("explorer.choose(1.3, true)")
     browser.chosen()
     browser.click("others")
     browser.until("return document.getElementById('basins').dataset.complete === 'true'")
