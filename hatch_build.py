@@ -1,10 +1,10 @@
 """The build backend: hatchling, and a wheel that carries the FMUs and runs without compilers.
 
 For a wheel, not for an editable installation, ``build/FORM/NAME.fmu`` of the source tree becomes
-``orchestrate/fmu/fmus/FORM/NAME.fmu``, and ``build/wasm/NAME.wasm``, the kernel for web pages,
-``orchestrate/fmu/fmus/wasm/NAME.wasm``; so do ``build/libraries/PLATFORM/``, compiled from the
-package's own C sources. What is not there, or was made of other sources, is made first; what cannot
-be made is left out, and said to be.
+``orchestrate/fmu/fmus/FORM/NAME.fmu``, and ``build/wasm/models.wasm``, models and loops for web
+pages, ``orchestrate/fmu/fmus/wasm/models.wasm``; so do ``build/libraries/PLATFORM/``, compiled from
+the package's own C sources. What is not there, or was made of other sources, is made first; what
+cannot be made is left out, and said to be.
 """
 
 from __future__ import annotations
@@ -66,16 +66,15 @@ class CustomBuildHook(BuildHookInterface):
                     lambda path=path, token=token: guid_inside(path) == token,
                     lambda form=form, name=name: forms.export(name, form, build),
                 )
-        for name, folder in forms.MODELS.items():
-            path = build / "wasm" / f"{name}.wasm"
-            self.include(
-                {path: f"{PLACE}/wasm/{name}.wasm"},
-                lambda path=path, folder=folder: (
-                    path.is_file()
-                    and webassembly.guid_inside(path.read_bytes()) == webassembly.guid(folder)
-                ),
-                lambda path=path, folder=folder: write(path, webassembly.export(folder)),
-            )
+        module = build / "wasm" / "models.wasm"
+        self.include(
+            {module: f"{PLACE}/wasm/{module.name}"},
+            lambda: (
+                module.is_file()
+                and webassembly.guid_inside(module.read_bytes()) == webassembly.guid()
+            ),
+            lambda: write(module, webassembly.export()),
+        )
         for source in sorted(c_library.LOOPS.glob("*.c")):
             token = c_library.guid(source)
             for platform in platforms.PLATFORMS:

@@ -13,7 +13,7 @@ from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
 from orchestrate.errors import InputError
 from orchestrate.fmu.c_library import SOURCES, library
-from orchestrate.fmu.webassembly import WEB_MODELS, web_kernel
+from orchestrate.fmu.webassembly import web_kernel
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build"
@@ -42,11 +42,16 @@ def refresh(build):
         made = list(threads.map(lambda name: refresh_model(name, build), forms.MODELS))
         for source in SOURCES:
             library(source, build)
-    return {place: reason for reasons in made for place, reason in reasons.items()}
+    reasons = {place: reason for reasons in made for place, reason in reasons.items()}
+    try:
+        web_kernel(build)
+    except InputError as reason:
+        reasons["wasm"] = CannotExport(str(reason))
+    return reasons
 
 
 def refresh_model(name, build):
-    """One model in all forms and for the web; returns as :func:`refresh`."""
+    """One model in all forms; returns as :func:`refresh`."""
     reasons = {}
     for form in forms.FORMS:
         if guid_inside(build / form / f"{name}.fmu") != forms.guid(name, form):
@@ -54,11 +59,6 @@ def refresh_model(name, build):
                 forms.export(name, form, build)
             except CannotExport as reason:
                 reasons[f"{form}/{name}"] = reason
-    try:
-        if name in WEB_MODELS:
-            web_kernel(name, build)
-    except InputError as reason:
-        reasons[f"wasm/{name}"] = CannotExport(str(reason))
     return reasons
 
 

@@ -47,7 +47,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "paper": BELOW_ANSWERS | {"__init__", "response", "dynamics", "weak_drive", "show"},
     "__init__": BELOW_ANSWERS
     | {"response", "dynamics", "laboratory", "diagnosis", "weak_drive", "show"},
-    "explorer": BELOW_ANSWERS | {"response", "dynamics", "laboratory"},
+    "explorer": BELOW_ANSWERS | {"response", "dynamics", "laboratory", "weak_drive"},
     "cli": BELOW_ANSWERS
     | {"__init__", "laboratory", "weak_drive", "diagnosis", "show", "paper"}
     | {"explorer"},
@@ -222,7 +222,7 @@ PAGE = {  # modules of the explorer's page by what they are for; a new one needs
         *("pen", "picture", "scale", "theme", "waveform"),
     },
     "units of a structure that is entered": {"excitation", "structure", "units"},
-    "calls of the compiled loops": {"kernel", "model"},
+    "calls of the compiled loops": {"coupled", "kernel", "model"},
     "what is asked, in which order": {
         *("basin", "diagram", "motion", "payload", "regions", "requests", "response", "tasks"),
         *("worker", "worker_pool"),
@@ -232,7 +232,6 @@ PAGE = {  # modules of the explorer's page by what they are for; a new one needs
         *("field", "files", "inspector", "link", "main", "opening", "player", "saving", "shaking"),
         *("tables", "tour_part", "words_of"),
     },
-    "computed by the page itself": {"coupled"},
 }
 FUNCTIONS_OF_PAGE = {  # of Math: axes, dots, swinging box, clicks, natural frequencies
     **{"scale": {"log", "log10"}, "diagram": {"log10"}, "animation": {"sin"}},

@@ -1,7 +1,7 @@
-"""Compile a model's FMI 3.0 sources and the loops to a WebAssembly module, for web pages.
+"""Compile FMI 3.0 sources of models and the loops to one WebAssembly module, for web pages.
 
-It exports its memory, functions of ``runtime/web/web.c`` and of the loops, ``malloc`` and ``free``,
-and the kernel's entry points ``kernel_NAME(address of a memory, time)``. It imports nothing.
+It exports its memory, functions of the loops, ``malloc`` and ``free``, and of each model, with its
+folder's name before them, functions of FMI and of ``runtime/web/web.c``. It imports nothing.
 WebAssembly fixes every operation of floats to the last bit, so the numbers are those of every form.
 """
 
@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import re
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
-from ..runtime.table import Model
 from .archive import guid_of, read_folder
-from .c_library import LOOPS, compiled_files
+from .c_library import HEADER, LOOPS, compiled_files
 from .compiler import CLANG_FLAGS, FLAGS, run, ziglang
 from .description_fmi3 import ARRAY_BASE
 from .model_header import model_header
@@ -25,37 +25,43 @@ TARGET = ("-target", "wasm32-wasi", "-mcpu=mvp+bulk_memory+nontrapping_fptoint")
 LINK_FLAGS = ("-mexec-model=reactor", "-Wl,--no-entry", "-Wl,--strip-all")
 SECTION = "guid"  # name of the custom section that bears the GUID
 WEB = ROOT / "runtime" / "web"
-IN_PAGES = ("respond.c", "play.c", "spectrum.c", "exponent.c")  # loops
-EXPORTED = (
-    *("malloc", "free", "open_fmu", "close_fmu", "memory_of", "message"),
-    *("begin", "respond", "sample_evenly", "memory_size", "describe_linear_response", "play"),
-    *("find_gaps", "find_accelerations", "carry_state", "nearest_state", "spectrum_size"),
-    *("acceleration_spectrum", "exponent_size", "largest_exponent", "wander_floor"),
-    "classify_exponent",
+IN_PAGES = ("respond.c", "play.c", "spectrum.c", "exponent.c", "couple.c")  # loops
+MODELS = ("oscillator", "motor_shaker")  # folders
+OF_MODELS = (  # exported of each
+    *("open_fmu", "close_fmu", "message", "state_functions", "fmi3Reset", "fmi3DoStep"),
+    *("fmi3EnterInitializationMode", "fmi3ExitInitializationMode"),
+    *("fmi3SetFloat64", "fmi3SetInt32", "fmi3SetBoolean", "fmi3GetFloat64", "fmi3GetInt32"),
+    *(f"fmi3{verb}FMUState" for verb in ("Get", "Set", "Free", "Serialize", "Deserialize")),
+    "fmi3SerializedFMUStateSize",
+)
+OF_LOOPS = (
+    *("malloc", "free", "begin", "respond", "sample_evenly", "memory_size", "play", "couple"),
+    *("describe_linear_response", "find_gaps", "find_accelerations", "carry_state"),
+    *("nearest_state", "spectrum_size", "acceleration_spectrum", "exponent_size"),
+    *("largest_exponent", "wander_floor", "classify_exponent", "sizes_of_couple"),
 )
 
 
-def guid(folder: str) -> str:
+def guid() -> str:
     """Return the GUID that a module of the present sources bears, in braces."""
     files = {**exporter_files("export/webassembly.py"), **read_folder(LOOPS), **read_folder(WEB)}
-    return guid_of({**files, "model": model_digest(folder).encode()})
+    return guid_of({**files, **{name: model_digest(name).encode() for name in MODELS}})
 
 
-def sources(model: Model, folder: str) -> Files:
-    """Return the C files of a module by name."""
-    header = model_header(model, guid(folder), model_digest(folder))
+def sources(folder: str) -> Files:
+    """Return a model's C files by name."""
+    header = model_header(load_model(folder), guid(), model_digest(folder))
     shim = {**shim_sources("fmi3"), **fmi_headers("fmi3"), "model.h": header}
-    loops = {k: v for name in IN_PAGES for k, v in compiled_files(LOOPS / name).items()}
-    return {"kernel.c": kernel_source(folder), **shim, **loops, **read_folder(WEB)}
+    return {
+        "kernel.c": kernel_source(folder),
+        **shim,
+        **read_folder(WEB),
+        HEADER: (LOOPS / HEADER).read_bytes(),
+    }
 
 
-def export(folder: str) -> bytes:
-    """Compile a model.
-
-    Parameters
-    ----------
-    folder : str
-        The model's, below ``fmu_src/models``.
+def export() -> bytes:
+    """Compile the models and the loops.
 
     Returns
     -------
@@ -68,23 +74,33 @@ def export(folder: str) -> bytes:
         Where ziglang is missing or fails, or a source was edited meanwhile.
     """
     compiler = [*ziglang("cc"), *TARGET]
-    model = load_model(folder)
-    files = sources(model, folder)
-    units = [name for name in files if name.endswith(".c")]
-    names = (*EXPORTED, *(f"kernel_{name}" for name in model.entries))
-    exported = [f"-Wl,--export={name}" for name in names]
+    names = [*OF_LOOPS, *(f"{model}_{name}" for model in MODELS for name in OF_MODELS)]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:
-        for name, content in files.items():
-            (Path(place) / name).write_bytes(content)
-        for unit in units:
-            flags = [*FLAGS, *(CLANG_FLAGS if unit == "kernel.c" else ())]
-            run([*compiler, *flags, "-c", unit, "-o", f"{unit}.o"], place, "WebAssembly")
-        objects = [f"{unit}.o" for unit in units]
-        run(
-            [*compiler, *LINK_FLAGS, *exported, *objects, "-o", "kernel.wasm"], place, "WebAssembly"
-        )
+        objects = []
+        for model in MODELS:
+            flags = [*FLAGS, f"-DFMI3_FUNCTION_PREFIX={model}_"]
+            objects += compile_units(compiler, flags, Path(place) / model, sources(model))
+        loops = {k: v for name in IN_PAGES for k, v in compiled_files(LOOPS / name).items()}
+        objects += compile_units(compiler, FLAGS, Path(place) / "loops", loops)
+        exported = [f"-Wl,--export={name}" for name in names]
+        linked = [*compiler, *LINK_FLAGS, *exported, *objects, "-o", "kernel.wasm"]
+        run(linked, place, "WebAssembly")
         check_unedited()
-        return (Path(place) / "kernel.wasm").read_bytes() + custom_section(SECTION, guid(folder))
+        return (Path(place) / "kernel.wasm").read_bytes() + custom_section(SECTION, guid())
+
+
+def compile_units(
+    compiler: Sequence[str], flags: Sequence[str], folder: Path, files: Files
+) -> list[str]:
+    """Write files to a new folder and compile the C units among them; return their objects."""
+    folder.mkdir()
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
+    units = [name for name in files if name.endswith(".c")]
+    for unit in units:
+        own = [*flags, *(CLANG_FLAGS if unit == "kernel.c" else ())]
+        run([*compiler, *own, "-c", unit, "-o", f"{unit}.o"], str(folder), "WebAssembly")
+    return [str(folder / f"{unit}.o") for unit in units]
 
 
 def custom_section(name: str, text: str) -> bytes:
@@ -100,24 +116,6 @@ def guid_inside(module: bytes) -> str:
     return found[1].decode() if found else ""
 
 
-def slots(folder: str) -> dict[str, int]:
-    """Return the size of a model's memory and the slot of each of its variables: of a series its
-    first.
-
-    ``SET`` is the flag to be raised when an input between ``CUBIC`` and before ``CUBIC_END`` is
-    set.
-    """
-    model = load_model(folder)
-    found = {"SIZE": model.memory_size, "TIME": model.time_slot, "STOP": model.stop_slot}
-    cubic = [slot for slot, flag in model.set_flags.items() if flag == model.set_slot]
-    found |= {"SET": model.set_slot, "CUBIC": min(cubic), "CUBIC_END": max(cubic) + 1}
-    for variable in model.variables:
-        name, _, element = variable.name.partition("[")
-        if element in ("", "1]"):
-            found[name] = variable.slot
-    return found
-
-
 def references(folder: str) -> dict[str, int]:
     """Return the value references of a model's variables, as FMI 3.0 has them."""
     model = load_model(folder)
@@ -128,9 +126,3 @@ def references(folder: str) -> dict[str, int]:
 def array_sizes(folder: str) -> dict[str, int]:
     """Return how many numbers each array of a model has."""
     return {array.name: array.size for array in load_model(folder).arrays}
-
-
-def starts(folder: str) -> dict[str, float]:
-    """Return the start values of a model's variables, where they are not zero."""
-    given = {v.name: float(v.start) for v in load_model(folder).variables if v.start is not None}
-    return {name: value for name, value in given.items() if value != 0.0}

@@ -1,4 +1,4 @@
-"""Write the explorer's HTML page: JavaScript, kernels and a sweep's states in one file."""
+"""Write the explorer's HTML page: JavaScript, kernel and a sweep's states in one file."""
 
 from __future__ import annotations
 
@@ -17,14 +17,18 @@ from ..dynamics.clusters import AttractorSettings
 from ..dynamics.lyapunov import BATCHES, BLOCKS, SIGMAS, WANDER
 from ..errors import InputError
 from ..files import open_folder, write_whole
-from ..fmu import OSCILLATOR, SHAKER
-from ..fmu.webassembly import WebKernel, loop_tables, web_kernel
+from ..fmu.channel import StepAnswer
+from ..fmu.webassembly import WebKernel, loop_tables, numbers_in, web_kernel
 from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.ranges import STRUCTURE
 from ..running.job import refuse_family
 from ..units import Units, units_of
 from ..version import __version__
+from ..weak_drive.connection import FORCE, MOTOR
+from ..weak_drive.master import CUBIC, Links, Pair, Scheme
+from ..weak_drive.record import BOX, LEADING, OscillatorOutputs
+from ..weak_drive.run import oscillator_start
 from .branches import branch_json
 from .bundle import bundle
 from .measured import record_json
@@ -72,13 +76,8 @@ def explore(
             "that is free, or such a page to be replaced"
         )
     open_folder(path.parent)
-    kernels = {
-        "oscillator": web_kernel(OSCILLATOR, build_folder),
-        "shaker": web_kernel(SHAKER, build_folder),
-    }
-    text = render_page(
-        chosen, shown_in(asked, chosen.level), branch_json(branches) | record_json(record), kernels
-    )
+    kernel, drawn = web_kernel(build_folder), branch_json(branches) | record_json(record)
+    text = render_page(chosen, shown_in(asked, chosen.level), drawn, kernel)
     return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
@@ -91,15 +90,11 @@ def first_bytes(path: Path) -> bytes:
 
 
 def render_page(
-    chosen: SweepData, shown: dict[str, str], drawn: dict[str, Any], kernels: dict[str, WebKernel]
+    chosen: SweepData, shown: dict[str, str], drawn: dict[str, Any], kernel: WebKernel
 ) -> str:
     """Return the page's HTML, made by a template that escapes all text."""
     scripts = read_modules()
-    made_by = f"vibroimpact {__version__}, kernel {kernels['oscillator'].guid}"
-    tables = {
-        name: {"slots": one.slots, "starts": one.starts, "variables": one.variables}
-        for name, one in kernels.items()
-    }
+    made_by = f"vibroimpact {__version__}, kernel {kernel.guid}"
     style, script = read_source("style.css"), bundle(scripts, "main")
     return (
         template_environment()
@@ -119,12 +114,12 @@ def render_page(
                 **page_data(chosen),
                 "shown": shown,
                 **drawn,
-                **tables,
-                "loops": {**loop_tables(), "exponent": EXPONENT},
+                "variables": kernel.variables,
+                "loops": {**loop_tables(Pair, StepAnswer), "exponent": EXPONENT},
                 "drive": drive_data(),
             },
             data=compress(chosen.numbers.astype("<f8").tobytes()),
-            **{name: compress(kernel.module) for name, kernel in kernels.items()},
+            kernel=compress(kernel.module),
             **voltage_slider(),
         )
     )
@@ -183,10 +178,31 @@ def page_data(chosen: SweepData) -> dict[str, Any]:
 
 
 def drive_data(step: float = 0.1) -> dict[str, Any]:
-    """Return parameters of the page's motor (set ``quick``) and its communication step."""
-    structure = Structure.from_file("quick")
-    drive = {name: float(value) for name, value in Drive.from_file("quick").parameters().items()}
-    return {"structure": structure_numbers(structure), "drive": drive, "h": step / structure.omega}
+    """Return what the page's coupled run is (set ``quick``): the loop's structure, its variables,
+    start values, and its communication step.
+    """
+    structure, drive = Structure.from_file("quick"), Drive.from_file("quick")
+    scheme, inputs = Scheme(step / structure.omega), (*FORCE, *MOTOR.inputs)
+    names = {
+        "oscillator": {"inputs": CUBIC, "outputs": OscillatorOutputs._fields},
+        "drive": {"inputs": inputs, "outputs": (*BOX, *MOTOR.outputs)},
+    }
+    force, motion = (Links.of([(i, MOTOR.links[n]) for i, n in enumerate(o)]) for o in (FORCE, BOX))
+    pair = Pair(force=force, motion=motion, cubic=MOTOR.cubic, stride=len(MOTOR.inputs))
+    for name in ("tolerance", "easy", "halvings", "first_passes"):
+        setattr(pair, name, getattr(scheme, name))
+    for side, known in names.items():
+        for name, some in known.items():
+            setattr(getattr(pair, side), f"{name[:-1]}_count", len(some))
+    return {
+        "pair": numbers_in(pair),
+        "names": names,
+        "columns": (*LEADING, *MOTOR.outputs, *MOTOR.inputs),
+        "oscillator": {name: float(value) for name, value in oscillator_start(structure).items()},
+        "drive": {name: float(value) for name, value in drive.parameters().items()},
+        "h": scheme.h,
+        "omega": structure.omega,
+    }
 
 
 def voltage_slider(low: float = 0.8, high: float = 2.0, first: float = 0.9) -> dict[str, str]:

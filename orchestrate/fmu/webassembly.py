@@ -1,10 +1,10 @@
-"""The models' FMUs and loops as WebAssembly modules for web pages: found, or compiled."""
+"""The models' FMUs and the loops as a WebAssembly module for web pages: found, or compiled."""
 
 from __future__ import annotations
 
 import ctypes
 import logging
-from ctypes import c_bool, c_double
+from ctypes import c_bool, c_double, c_int
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -19,8 +19,8 @@ from fmu_src.export.sources import model_sources
 from ..errors import InputError
 from ..files import made_once, open_folder, write_whole
 from . import event_loop
-from .exported import SHIPPED, check, default_folder
-from .models import OSCILLATOR, SHAKER
+from .exported import SHIPPED, default_folder
+from .models import OSCILLATOR
 from .oscillator import (
     COUNTS,
     DEVIATING,
@@ -34,8 +34,9 @@ from .oscillator import (
 )
 
 log = logging.getLogger(__name__)
-FORM = "wasm"
-WEB_MODELS = (OSCILLATOR, SHAKER)
+FILE = Path("wasm") / "models.wasm"
+KINDS = {c_double: "f64", c_bool: "u8", c_int: "i32"}  # else of 32 bits
+WIDTHS = {"f64": 8, "u8": 1, "i32": 4, "u32": 4}
 STRUCTURES = (
     *(OscillatorCalls, ResponseTask, ResponseProgress),
     *(event_loop.PlayerCalls, event_loop.PlayTask, event_loop.PlayProgress),
@@ -44,39 +45,30 @@ STRUCTURES = (
 
 @dataclass(frozen=True)
 class WebKernel:
-    """Kernel of a model for a web page: WebAssembly bytes, slots and start values of its
-    variables.
-    """
+    """The models and loops for a web page: WebAssembly bytes, value references of variables."""
 
     module: bytes  # the WebAssembly module
-    # place of each variable in an instance's memory, and `SIZE`, `TIME`, `STOP`, the place of the
-    # flag that ends a step at its first event, and `SET`, that of the flag to be raised when an
-    # input from the places `CUBIC` to `CUBIC_END` is set, the last not included
-    slots: dict[str, int]
-    starts: dict[str, float]  # start values of variables, where they are not zero
-    variables: dict[str, int]  # value references by FMI 3.0
+    variables: dict[str, dict[str, int]]  # value references by FMI 3.0, by the models' folders
     guid: str  # of the module
 
 
-def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKernel:
-    """Return a model's kernel as WebAssembly; compile it first unless the present one is there."""
-    check(model, "fmi3")
+def web_kernel(folder: str | PathLike[str] | None = None) -> WebKernel:
+    """Return the models and loops as WebAssembly; compile them unless the present are there."""
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
-    guid = sources.guid(MODELS[model])
-    name = MODELS[model]
-    tables = sources.slots(name), sources.starts(name), sources.references(name)
-    paths = [base / FORM / f"{model}.wasm" for base in folders]
-    for path in paths:
+    guid = sources.guid()
+    variables = {name: sources.references(name) for name in sources.MODELS}
+    for path in (base / FILE for base in folders):
         module = read_module(path, guid)
         if module:
-            return WebKernel(module, *tables, guid)
+            return WebKernel(module, variables, guid)
     try:
-        with made_once(paths[0]):
-            module = read_module(paths[0], guid) or compile_module(model, folders[0]).read_bytes()
+        with made_once(folders[0] / FILE):
+            module = read_module(folders[0] / FILE, guid)
+            module = module or compile_module(folders[0]).read_bytes()
     except CannotExport as reason:
-        text = f"{model}.wasm: none matches the current sources, and none can be built here"
+        text = f"{FILE.name}: none matches the current sources, and none can be built here"
         raise InputError(f"{text}: {reason}") from None
-    return WebKernel(module, *tables, guid)
+    return WebKernel(module, variables, guid)
 
 
 def read_module(path: Path, guid: str) -> bytes:
@@ -86,23 +78,22 @@ def read_module(path: Path, guid: str) -> bytes:
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
-    """Compile the kernels of the explorer's models to WebAssembly files in a folder; return the
-    paths of those made.
+    """Compile the explorer's models and loops to a WebAssembly file in a folder; return its path,
+    or nothing where it cannot be made.
     """
-    target, made = default_folder() if folder is None else Path(folder), []
-    for model in WEB_MODELS:
-        try:
-            made.append(compile_module(model, target))
-        except CannotExport as reason:
-            log.warning("%s.wasm left out: %s", model, reason)
-    return made
+    try:
+        return [compile_module(default_folder() if folder is None else Path(folder))]
+    except CannotExport as reason:
+        log.warning("%s left out: %s", FILE.name, reason)
+        return []
 
 
-def loop_tables() -> dict[str, Any]:
+def loop_tables(*more: type[ctypes.Structure]) -> dict[str, Any]:
     """Return what a page needs to call the loops, as JSON: structures, names, and their order."""
+    structures: tuple[type[ctypes.Structure], ...] = (*STRUCTURES, *more)
     booleans = [name for name, value in SET.items() if isinstance(value, bool)]
     return {
-        "structures": {kind.__name__: layout(kind) for kind in STRUCTURES},
+        "structures": {kind.__name__: layout(kind) for kind in structures},
         "set": {name: float(value) for name, value in SET.items()},
         "booleans": booleans,
         "reals": [name for name in SET if name not in booleans],
@@ -115,15 +106,49 @@ def loop_tables() -> dict[str, Any]:
     }
 
 
-def layout(kind: type[ctypes.Structure]) -> list[tuple[str, str]]:
-    """Return name and type of each field on a machine of 32 bits, those of inner structures too."""
-    fields: list[tuple[str, str]] = []
-    for name, type_, *_ in kind._fields_:
-        if isinstance(type_, type) and issubclass(type_, ctypes.Structure):
-            fields += [(f"{name}.{inner}", word) for inner, word in layout(type_)]
-        else:
-            fields.append((name, {c_double: "f64", c_bool: "u8"}.get(type_, "u32")))
-    return fields
+def layout(kind: type[ctypes.Structure]) -> dict[str, Any]:
+    """Return the size of a C structure on a machine of 32 bits, and kind and place of its fields.
+
+    Those of inner structures, and elements of arrays, have names with dots: ``force.places.0``.
+    """
+    size, _, fields = place_members(kind)
+    return {"size": size, "fields": fields}
+
+
+def place_members(kind: Any) -> tuple[int, int, dict[str, tuple[str, int]]]:
+    """Return size, alignment and members of a C type on a machine of 32 bits."""
+    if issubclass(kind, ctypes.Structure):
+        parts = [(name, member) for name, member, *_ in kind._fields_]
+    elif issubclass(kind, ctypes.Array):
+        parts = [(str(i), kind._type_) for i in range(kind._length_)]
+    else:
+        word = KINDS.get(kind, "u32")
+        return WIDTHS[word], WIDTHS[word], {"": (word, 0)}
+    fields, end, widest = {}, 0, 1
+    for name, member in parts:
+        size, alignment, inner = place_members(member)
+        start = round_up(end, alignment)
+        for path, (word, place) in inner.items():
+            fields[f"{name}.{path}".rstrip(".")] = word, start + place
+        end, widest = start + size, max(widest, alignment)
+    return round_up(end, widest), widest, fields
+
+
+def round_up(place: int, alignment: int) -> int:
+    """Return the first multiple of an alignment from a place on."""
+    return -(-place // alignment) * alignment
+
+
+def numbers_in(structure: ctypes.Structure) -> dict[str, float]:
+    """Return the numbers of a C structure that are not 0, by the names of :func:`layout`."""
+    found = {}
+    for path in layout(type(structure))["fields"]:
+        value: Any = structure
+        for name in path.split("."):
+            value = value[int(name)] if name.isdigit() else getattr(value, name)
+        if isinstance(value, int | float) and value:
+            found[path] = value
+    return found
 
 
 def kernel_digest(model: str) -> str:
@@ -132,11 +157,11 @@ def kernel_digest(model: str) -> str:
     return fingerprint({name: files[name] for name in files if name.startswith("kernels/")})
 
 
-def compile_module(model: str, folder: Path) -> Path:
-    """Compile a model's kernel to ``folder/wasm/NAME.wasm`` atomically; return the path."""
-    path = folder / FORM / f"{model}.wasm"
+def compile_module(folder: Path) -> Path:
+    """Compile the models and loops to a file in a folder atomically; return the path."""
+    path = folder / FILE
     log.info("compiling %s", path)
-    module = sources.export(MODELS[model])
+    module = sources.export()
     open_folder(path.parent)
     write_whole(path, lambda target: target.write_bytes(module))
     return path

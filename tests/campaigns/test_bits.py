@@ -59,24 +59,18 @@ def web_module() -> Any:
     from orchestrate.fmu.webassembly import web_kernel
     from tests.web_instance import WebInstance
 
-    return WebInstance(web_kernel(OSCILLATOR))
+    return WebInstance(web_kernel())
 
 
 def end_by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
     """Return the outputs at the end of a grid, by the WebAssembly module."""
     web = web_module()
-    call, here = web.exports, (web.store, web.address)
-    call["memory"].write(web.store, bytes(8 * web.slots["SIZE"]), web.address)
-    web.set(**{**web.starts, **drawn.values})
-    if call["kernel_initialize"](*here, drawn.start_time):
+    if not web.begin(drawn.start_time, **drawn.values):
         return REFUSED
-    for time, target in itertools.pairwise([drawn.start_time, *grid]):
-        web.set(STOP=0.0)
-        reached = max(time + (target - time), float(web.memory()[web.slots["TIME"]]))
-        if call["kernel_advance"](*here, reached):
-            return REFUSED
+    if not all(web.step(*span) for span in itertools.pairwise([drawn.start_time, *grid])):
+        return REFUSED
     memory = web.memory()
-    return to_hexadecimal(memory[web.slots[name]] for name in OUTPUTS)
+    return to_hexadecimal(memory[web.variables[name]] for name in OUTPUTS)
 
 
 def reachable_grids(drawn: ParameterSet) -> list[list[float]]:

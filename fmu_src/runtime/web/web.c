@@ -1,11 +1,15 @@
-/* What a web page calls beside the loops: an instance of the FMU, as fmi.h has it, its memory and its last message. */
+/* What a web page calls beside the loops, with the prefix of a model: an instance of the FMU, as fmi.h has it, and its last message. */
 #include <string.h>
 
 #include "core.h"
 #include "fmi.h"
 #include "fmi3Functions.h"
 
+#define message OWN(message)
 EXPORT char message[TEXT];
+
+/* To save, restore and release states, as couple.c calls them. */
+EXPORT const void *const OWN(state_functions)[] = {(void *)fmi3GetFMUState, (void *)fmi3SetFMUState, (void *)fmi3FreeFMUState};
 
 static void report(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String text) {
     (void)environment, (void)status, (void)category;
@@ -14,7 +18,7 @@ static void report(fmi3InstanceEnvironment environment, fmi3Status status, fmi3S
 }
 
 /* Make an instance, which stops at its events or has none; false without memory. */
-EXPORT bool open_fmu(Fmi *fmi, bool has_events) {
+EXPORT bool OWN(open_fmu)(Fmi *fmi, bool has_events) {
     void *instance = fmi3InstantiateCoSimulation("", MODEL_TOKEN, "", false, true, has_events, has_events, NULL, 0, NULL, report, NULL);
     *fmi = (Fmi){
         .instance = instance, .version = 3, .reset = (int (*)(void *))fmi3Reset,
@@ -31,7 +35,4 @@ EXPORT bool open_fmu(Fmi *fmi, bool has_events) {
     return instance != NULL;
 }
 
-EXPORT void close_fmu(Fmi *fmi) { fmi3FreeInstance(fmi->instance); }
-
-/* The kernel's memory of an instance. */
-EXPORT double *memory_of(Fmi *fmi) { return ((Instance *)fmi->instance)->state.memory; }
+EXPORT void OWN(close_fmu)(Fmi *fmi) { fmi3FreeInstance(fmi->instance); }

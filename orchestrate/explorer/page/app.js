@@ -39,7 +39,7 @@ export class App {
   constructor({ table, compiled, worker, diagram }) {
     this.table = table;
     showIn(table.shown);
-    useLibrary(new Library(compiled.oscillator));
+    useLibrary(new Library(compiled));
     const [unit, value] = table.level;
     /** @type {View} */
     this.usual = {
@@ -154,7 +154,7 @@ export class App {
     toDefault(input("branches"));
     this.player.reset();
     this.drive.reset();
-    this.basin.forget();
+    this.basin.reset();
     this.restore(this.first);
     this.refreshMotion();
   }
@@ -316,7 +316,7 @@ export class App {
   }
 
   showOthers() {
-    at("basin-figure").scrollIntoView({ block: "center" });
+    this.basin.wanted = true;
     this.computeBasin();
   }
 

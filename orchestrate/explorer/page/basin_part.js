@@ -34,12 +34,13 @@ export class BasinPart {
     this.about = ""; // the point that is shown
     this.point = ""; // that the picture was computed at
     this.visible = false;
+    this.wanted = false; // whether it was ever asked for
     /** @param {IntersectionObserverEntry[]} entries */
     const watch = ([{ isIntersecting }]) => {
       this.visible = isIntersecting;
       if (isIntersecting) seen();
     };
-    new IntersectionObserver(watch, { threshold: 0.4 }).observe(at("basin"));
+    new IntersectionObserver(watch, { threshold: 0.4 }).observe(at("basin-figure"));
   }
 
   /** Nothing is known of another point. @param {Point} point */
@@ -52,6 +53,13 @@ export class BasinPart {
     const text = JSON.stringify(point);
     if (this.about === text) return;
     this.about = text;
+    this.forget();
+  }
+
+  /** As when the page was opened. */
+  reset() {
+    this.wanted = false;
+    this.at("basin-map").hidden = true;
     this.forget();
   }
 
@@ -75,7 +83,7 @@ export class BasinPart {
   /** What is known of other motions. */
   hint() {
     const complete = Boolean(this.point) && this.at("basins").dataset.complete === "true";
-    if (this.others) return complete ? "Other motions: see the coloured map." : "There is another motion at this frequency.";
+    if (this.others) return complete ? "Other motions: the coloured map." : "There is another motion.";
     return complete ? `No other motion from ${SIDE * SIDE} starts.` : "";
   }
 
@@ -100,7 +108,7 @@ export class BasinPart {
 
   /** Unless it is there. @param {Choice} choice @param {import("./response.js").Response} response */
   compute({ point, level }, response) {
-    if (this.point === JSON.stringify(point)) return;
+    if (!this.wanted || this.point === JSON.stringify(point)) return;
     this.order?.cancel();
     this.point = JSON.stringify(point);
     const plane = planeOf(point, response);
@@ -132,6 +140,7 @@ export class BasinPart {
       }),
     );
     list.dataset.complete = String(complete);
+    if (complete || words.length > 1) this.at("basin-map").hidden = words.length < 2; // one colour says nothing
     this.told();
     this.view.picture.describe(`Where starts lead to: ${words.map(({ text }) => text).join("; ")}`);
   }

@@ -1,175 +1,121 @@
-/** Structure and motor coupled as by the project's master, in fixed steps. */
+/** The structure and the motor that shakes it, by the compiled loop of the project's master. */
+
+import { Rooms } from "./kernel.js";
 
 /**
- * @typedef {[number, number, number, number]} Cubic value and three derivatives at the beginning
- * @typedef {Record<string, number>} Outputs
- * @typedef {{structure: Record<string, number>, drive: Record<string, number>, h: number}} Start
- * @typedef {{oscillator: Float64Array, shaker: Float64Array, told: Cubic | null,
- *   numbers: Record<string, number>, motion: Outputs, shaking: Outputs, h: number}} Run
+ * @typedef {"oscillator" | "drive"} Side
+ * @typedef {{oscillator: Record<string, number>, drive: Record<string, number>, pair: Record<string, number>, columns: string[],
+ *   names: Record<Side, {inputs: string[], outputs: string[]}>, h: number, omega: number}} Start start values, the loop's structure, columns of a row
+ * @typedef {{oscillator: Uint8Array, drive: Uint8Array, row: Float64Array, last: {turn: number, time: number, impacts: number}}} Run saved states, last row and revolution
  */
 
-const MOTION = ["x1", "box_force", "box_impulse", "box_impulse_moment"];
-const SHAKING = ["box_position", "box_velocity", "box_acceleration", "angle", "speed"];
-const TOLD = ["box_acceleration", "box_jerk", "box_snap", "box_crackle"];
-const FORCE = ["box_force", "box_force_1", "box_force_2", "box_force_3"];
-const FIRST = 3; // passes of the first step
-const TURN = 2 * Math.PI;
+const WARNING = 1; // status of FMI
+const MODELS = { oscillator: "oscillator", drive: "motor_shaker" };
+const SIDES = /** @type {Side[]} */ (Object.keys(MODELS));
 
-/** The cubic with given ends, mean and first moment. @param {number} first @param {number} last @param {number} mean @param {number} moment @param {number} h @returns {Cubic} */
-export function matchedCubic(first, last, mean, moment, h) {
-  const [a1, a2, a3] = [last - first, mean - first, moment - 0.5 * first];
-  const b = 3 * a1 + 36 * a2 - 60 * a3;
-  const c = -12 * a1 - 96 * a2 + 180 * a3;
-  const d = 10 * a1 + 60 * a2 - 120 * a3;
-  return [first, b / h, (2 * c) / (h * h), (6 * d) / (h * h * h)];
-}
-
-/** First derivative of a cubic at a step's end. @param {Cubic} cubic @param {number} h */
-function endSlope([, f1, f2, f3], h) {
-  return f1 + h * (f2 + 0.5 * h * f3);
-}
-
-/** @param {Instance} instance @param {string[]} names @returns {Outputs} */
-function read(instance, names) {
-  return Object.fromEntries(names.map((name) => [name, instance.get(name)]));
-}
-
-/**
- * The structure goes first with an extrapolated acceleration of the box, the shaker with the force
- * that came of it; then the structure goes back and once more with the acceleration found. What is
- * exchanged is a cubic with the ends, the mean and the first moment that both sides know exactly.
- */
+/** Both instances, with the loop that couples them; to be closed. */
 export class Coupled {
-  /** @param {Instance} oscillator @param {Instance} shaker @param {number} h communication step, s */
-  constructor(oscillator, shaker, h) {
-    this.oscillator = oscillator;
-    this.shaker = shaker;
-    this.h = h;
-    this.numbers = {
-      ...{ time: 0, voltage: NaN },
-      ...{ turn: 0, turnTime: 0, impacts: 0, high: -Infinity, low: Infinity },
+  /** @param {Library} library @param {Start} start @param {Run | null} run where it goes on */
+  constructor(library, start, run) {
+    this.library = library;
+    this.start = start;
+    this.rooms = new Rooms(library);
+    const { pair, columns, names } = start;
+    this.kept = { oscillator: this.rooms.array("u32", 1), drive: this.rooms.array("u32", 1) };
+    const scratch = this.rooms.array("f64", 2 * names.drive.inputs.length);
+    this.pair = this.rooms.structure("Pair", { ...pair, scratch, ...this.sideOf("oscillator"), ...this.sideOf("drive") });
+    for (const side of SIDES) {
+      if (!library.calls[`${MODELS[side]}_open_fmu`](this.place(side), 0)) throw new Error("out of memory");
+      if (run) this.restore(side, run[side]);
+      else this.begin(side, start[side]);
+    }
+    this.row = this.rooms.array("f64", run?.row ?? columns.map(() => NaN));
+    if (!run) this.beginRow(columns.indexOf("x1"), names.oscillator.outputs);
+  }
+
+  close() {
+    for (const side of SIDES) {
+      this.call(side, "fmi3FreeFMUState", this.kept[side]);
+      this.library.calls[`${MODELS[side]}_close_fmu`](this.place(side));
+    }
+    this.rooms.free();
+  }
+
+  /** Fields of a side. @param {Side} side */
+  sideOf(side) {
+    const model = MODELS[side];
+    const { inputs, outputs } = this.start.names[side];
+    const [save, restore, release] = this.library.view("u32", this.library.places[`${model}_state_functions`].value, 3);
+    const fields = {
+      ...{ save, restore, release, kept: this.kept[side], answer: this.rooms.structure("StepAnswer", {}) },
+      ...{ inputs: this.rooms.references(inputs, model), outputs: this.rooms.references(outputs, model) },
+      impacts: this.rooms.references(side === "oscillator" ? ["impact_count"] : [], model),
     };
-    /** @type {Cubic | null} the acceleration over the last step */
-    this.told = null;
-    /** @type {Outputs} */
-    this.motion = {};
-    /** @type {Outputs} */
-    this.shaking = {};
+    return Object.fromEntries(Object.entries(fields).map(([name, value]) => [`${side}.${name}`, value]));
   }
 
-  /** @param {Instance} oscillator @param {Instance} shaker @param {Start} start */
-  static begun(oscillator, shaker, { structure, drive, h }) {
-    const one = new Coupled(oscillator, shaker, h);
-    oscillator.initialize({ ...structure, box_amplitude: 0, box_frequency: 0, x_rel_max_on: 0 });
-    shaker.initialize(drive);
-    one.motion = read(oscillator, MOTION);
-    one.shaking = read(shaker, SHAKING);
-    return one;
+  /** Where a side's FMU is. @param {Side} side */
+  place(side) {
+    return this.pair + this.library.loops.structures.Pair.fields[`${side}.fmi.instance`][1];
   }
 
-  /** @param {Instance} oscillator @param {Instance} shaker @param {Run} run */
-  static resumed(oscillator, shaker, run) {
-    const one = new Coupled(oscillator, shaker, run.h);
-    oscillator.memory.set(run.oscillator);
-    shaker.memory.set(run.shaker);
-    const { told, numbers, motion, shaking } = run;
-    return Object.assign(one, { told, numbers: { ...numbers }, motion, shaking });
+  /** Call a function of FMI. @param {Side} side @param {string} name @param {number[]} numbers */
+  call(side, name, ...numbers) {
+    const [instance] = this.library.view("u32", this.place(side), 1);
+    const status = this.library.calls[`${MODELS[side]}_${name}`](instance, ...numbers);
+    if (status > WARNING) throw new Error(this.library.message(MODELS[side]) || name);
   }
 
-  /** All that a run goes on from. @returns {Run} */
+  /** @param {Side} side @param {Record<string, number>} values */
+  begin(side, values) {
+    const { rooms, library } = this;
+    const [booleans, reals] = [true, false].map((is) => Object.keys(values).filter((name) => library.loops.booleans.includes(name) === is));
+    for (const [type, kind, names] of /** @type {[string, Kind, string[]][]} */ ([["Float64", "f64", reals], ["Boolean", "u8", booleans]])) {
+      const numbers = rooms.array(kind, names.map((name) => values[name]));
+      this.call(side, `fmi3Set${type}`, rooms.references(names, MODELS[side]), names.length, numbers, names.length);
+    }
+    this.call(side, "fmi3EnterInitializationMode", 0, 0, 0, 0, 0);
+    this.call(side, "fmi3ExitInitializationMode");
+  }
+
+  /** The first row: of the step nothing, and the motion; the loop looks at the drive. @param {number} place @param {string[]} outputs */
+  beginRow(place, outputs) {
+    this.library.view("f64", this.row, place).fill(0);
+    this.call("oscillator", "fmi3GetFloat64", this.rooms.references(outputs), outputs.length, this.row + 8 * place, outputs.length);
+  }
+
+  /** @param {Side} side @param {Uint8Array} bytes */
+  restore(side, bytes) {
+    this.call(side, "fmi3DeserializeFMUState", this.rooms.array("u8", bytes), bytes.length, this.kept[side]);
+    this.call(side, "fmi3SetFMUState", this.library.view("u32", this.kept[side], 1)[0]);
+  }
+
+  /** @param {Side} side */
+  save(side) {
+    const size = this.rooms.array("u32", 1);
+    this.call(side, "fmi3GetFMUState", this.kept[side]);
+    const [state] = this.library.view("u32", this.kept[side], 1);
+    this.call(side, "fmi3SerializedFMUStateSize", state, size);
+    const [count] = this.library.view("u32", size, 1);
+    const bytes = this.rooms.take(count);
+    this.call(side, "fmi3SerializeFMUState", state, bytes, count);
+    return new Uint8Array(/** @type {Uint8Array} */ (this.library.view("u8", bytes, count)));
+  }
+
+  /** All that a run goes on from. */
   memory() {
-    const { told, numbers, motion, shaking, h } = this;
-    const [oscillator, shaker] = [this.oscillator.memory.slice(), this.shaker.memory.slice()];
-    return { oscillator, shaker, told, numbers, motion, shaking, h };
+    const row = new Float64Array(this.library.view("f64", this.row, this.start.columns.length));
+    return { oscillator: this.save("oscillator"), drive: this.save("drive"), row };
   }
 
-  /** @param {Cubic} cubic */
-  put([f0, f1, f2, f3]) {
-    const values = { voltage: this.numbers.voltage };
-    this.shaker.set({ ...values, [FORCE[0]]: f0, [FORCE[1]]: f1, [FORCE[2]]: f2, [FORCE[3]]: f3 });
-  }
-
-  /** The shaker's outputs under a force. @param {number} force */
-  look(force) {
-    this.put([force, 0, 0, 0]);
-    this.shaker.call("kernel_refresh", this.shaker.get("TIME"));
-    return read(this.shaker, SHAKING);
-  }
-
-  /** One communication step. @param {number} voltage */
-  step(voltage) {
-    const { numbers, oscillator, shaker, h } = this;
-    if (voltage !== numbers.voltage) {
-      numbers.voltage = voltage;
-      this.shaking = this.look(this.motion.box_force);
-    }
-    const [kept, other] = [oscillator.memory.slice(), shaker.memory.slice()];
-    let told = this.extrapolated();
-    for (let i = 0; i < (this.told ? 1 : FIRST); i++) {
-      if (i) {
-        oscillator.memory.set(kept);
-        shaker.memory.set(other);
-      }
-      const motion = this.oscillate(told);
-      this.put(this.forceOf(motion));
-      shaker.stepBy(numbers.time, h);
-      told = this.found(this.look(motion.box_force));
-    }
-    oscillator.memory.set(kept);
-    this.motion = this.oscillate(told);
-    this.shaking = this.look(this.motion.box_force);
-    this.told = told;
-    numbers.time += h;
-  }
-
-  /** The structure's motion after a step. @param {Cubic} told */
-  oscillate(told) {
-    TOLD.forEach((name, i) => this.oscillator.set({ [name]: told[i] }));
-    this.oscillator.stepBy(this.numbers.time, this.h);
-    return read(this.oscillator, MOTION);
-  }
-
-  /** The force over a step to `motion`. @param {Outputs} motion */
-  forceOf(motion) {
-    const { h } = this;
-    const [mean, moment] = [motion.box_impulse / h, motion.box_impulse_moment / (h * h)];
-    return matchedCubic(this.motion.box_force, motion.box_force, mean, moment, h);
-  }
-
-  /** The acceleration over a step that the shaker has done. @param {Outputs} after */
-  found(after) {
-    const { h, shaking: now } = this;
-    const mean = (after.box_velocity - now.box_velocity) / h;
-    const moment = mean - ((after.box_position - now.box_position) / h - now.box_velocity) / h;
-    return matchedCubic(now.box_acceleration, after.box_acceleration, mean, moment, h);
-  }
-
-  /** The last step's cubic goes on from the present value. @returns {Cubic} */
-  extrapolated() {
-    const value = this.shaking.box_acceleration;
-    if (!this.told) return [value, 0, 0, 0];
-    const [, , f2, f3] = this.told;
-    return [value, endSlope(this.told, this.h), f2 + this.h * f3, f3];
-  }
-
-  /** When a revolution is complete: its end, the voltage, mean speed, half range of x1 at the communication points, impacts. */
-  revolution() {
-    const { numbers, shaking, motion } = this;
-    numbers.high = Math.max(numbers.high, motion.x1);
-    numbers.low = Math.min(numbers.low, motion.x1);
-    const angle = shaking.angle / TURN;
-    let turn = Math.floor(angle);
-    if (turn <= numbers.turn) {
-      turn = Math.ceil(angle);
-      if (turn >= numbers.turn) return null;
-    }
-    const time = numbers.time - (shaking.angle - turn * TURN) / shaking.speed;
-    const impacts = this.oscillator.get("impact_count");
-    const row = {
-      ...{ time, voltage: numbers.voltage, speed: ((turn - numbers.turn) * TURN) / (time - numbers.turnTime) },
-      ...{ amplitude: 0.5 * (numbers.high - numbers.low), impacts: impacts - numbers.impacts },
-    };
-    Object.assign(numbers, { turn, turnTime: time, impacts, high: motion.x1, low: motion.x1 });
-    return row;
+  /** Steps under given voltages: the row before them, and one for each. @param {number[]} voltages */
+  run(voltages) {
+    const { library, rooms, start, row } = this;
+    const [width, count] = [start.columns.length, voltages.length];
+    const rows = rooms.array("f64", (1 + count) * width);
+    /** @type {Float64Array} */ (library.view("f64", rows, width)).set(library.view("f64", row, width));
+    const done = library.calls.couple(this.pair, row, rows, rooms.array("i32", count), rooms.array("f64", voltages), count, start.h);
+    if (done < count) throw new Error(SIDES.map((side) => library.message(MODELS[side])).join(" ").trim() || "the coupled run stopped");
+    return new Float64Array(library.view("f64", rows, (1 + count) * width));
   }
 }

@@ -5,7 +5,6 @@ import { toDefault } from "./field.js";
 import { countOf } from "./words_of.js";
 import { Picture } from "./picture.js";
 import { shown } from "./scale.js";
-import { omegaOf } from "./structure.js";
 
 const IDLE = "Not running: press Slowly up.";
 
@@ -14,7 +13,7 @@ const PACE = 60; // ms between two requests
 const STEPS = 1200; // communication steps in each
 const SWEEP = 2e-4; // V/s of a ramp, times the largest voltage
 
-/** @typedef {{time: number, voltage: number, speed: number, amplitude: number, impacts: number}} Row */
+/** @typedef {{time: number, voltage: number, speed: number, impacts: number}} Row */
 
 export class DrivePart {
   /** @param {(id: string) => HTMLElement} at @param {WorkerPool} pool @param {Start} start */
@@ -24,7 +23,6 @@ export class DrivePart {
     this.start = start;
     this.voltage = /** @type {HTMLInputElement} */ (at("voltage"));
     this.bonded = /** @type {HTMLInputElement} */ (at("drive-bonded"));
-    this.omega = omegaOf(/** @type {Structure} */ (/** @type {unknown} */ (start.structure)));
     this.picture = new Picture(/** @type {HTMLCanvasElement} */ (at("drive")), (pen, size, theme) => this.draw(pen, size, theme));
     this.running = false;
     this.ramp = 0; // sign of the voltage's change
@@ -90,10 +88,10 @@ export class DrivePart {
   ask() {
     const bonded = this.bonded.checked ? 1 : 0;
     const voltages = this.voltages();
-    const { structure, drive } = this.start;
+    const { oscillator, drive } = this.start;
     const start = {
       ...this.start,
-      structure: { ...structure, bonded },
+      oscillator: { ...oscillator, bonded },
       drive: { ...drive, voltage: voltages[0], speed_start: voltages[0] / drive.motor_constant },
     };
     const order = this.pool.ask("drive", { run: this.state, start, voltages }, ([part]) => this.take(part));
@@ -110,8 +108,8 @@ export class DrivePart {
     this.rows = [...this.rows, ...rows].slice(-KEPT);
     const last = this.rows[this.rows.length - 1];
     if (last) {
-      const unit = this.start.drive.motor_constant * this.omega;
-      const words = `Voltage for a speed of ${shown(last.voltage / unit, 3)}: speed ${shown(last.speed / this.omega, 3)} of the beam's ω, ${countOf(last.impacts, "a revolution")}`;
+      const unit = this.start.drive.motor_constant * this.start.omega;
+      const words = `Voltage for a speed of ${shown(last.voltage / unit, 3)}: speed ${shown(last.speed / this.start.omega, 3)} of the beam's ω, ${countOf(last.impacts, "a revolution")}`;
       this.at("drive-status").textContent = words;
       this.picture.describe(`Speed of the motor over its voltage. ${words}`);
     }
@@ -121,9 +119,9 @@ export class DrivePart {
   /** @param {Pen} pen @param {Size} size @param {Theme} theme */
   draw(pen, size, theme) {
     const [low, high] = [Number(this.voltage.min), Number(this.voltage.max)];
-    const unit = this.start.drive.motor_constant * this.omega;
+    const unit = this.start.drive.motor_constant * this.start.omega;
     const x = this.rows.map((row) => row.voltage / unit);
-    const y = this.rows.map((row) => row.speed / this.omega);
+    const y = this.rows.map((row) => row.speed / this.start.omega);
     const ends = [low / unit, high / unit];
     drawChart(pen, size, theme, {
       x: { low: ends[0], high: ends[1], label: "voltage, as the speed without load over ω" },

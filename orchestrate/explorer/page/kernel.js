@@ -3,13 +3,10 @@
 import { omegaOf } from "./structure.js";
 
 /**
- * @typedef {{SIZE: number, TIME: number, STOP: number, SET: number, CUBIC: number, CUBIC_END: number,
- *   [name: string]: number}} Slots
- * @typedef {{structures: Record<string, [string, string][]>, set: Record<string, number>,
+ * @typedef {{structures: Record<string, {size: number, fields: Record<string, [Kind, number]>}>, set: Record<string, number>,
  *   reals: string[], booleans: string[], read: string[], series: string[], counts: string[],
- *   capacity: number, traits: string[], deviating: string[], exponent: Record<string, number>}} Loops capacity: states that a step keeps
- * @typedef {{module: WebAssembly.Module, slots: Slots, starts: Record<string, number>,
- *   variables: Record<string, number>, loops: Loops}} Compiled
+ *   capacity: number, traits: string[], deviating: string[], exponent: Record<string, number>}} Loops fields: kind and place; capacity: states that a step keeps
+ * @typedef {{module: WebAssembly.Module, variables: Record<string, Record<string, number>>, loops: Loops}} Compiled variables: their references, by model
  * @typedef {"u32" | "i32" | "f64" | "u8"} Kind
  * @typedef {{value: number, error: number, verdict: number}} Exponent per unit of tau, with its standard error; 1 chaotic, −1 converging, 0 undecided
  * @typedef {{order: Float64Array, amplitude: Float64Array}} Spectrum lines over the excitation's
@@ -22,25 +19,24 @@ const PIECE = 100; // periods of one step of a transient, at most
 const DEVIATED = ["x1", "x2", "v1", "v2", "impact_velocity"];
 const SAMPLED = 4; // periods of a spectrum's states between two pauses
 const IMPACTS = 4096; // that a loop keeps until it pauses
+const MODEL = "oscillator";
 
-/** A compiled model: its functions, and memory for any number of instances. */
+/** The compiled models and loops, and memory for any number of instances. */
 export class Library {
   /** @param {Compiled} compiled */
-  constructor({ module, slots, starts, variables, loops }) {
-    this.slots = slots;
-    this.starts = starts;
+  constructor({ module, variables, loops }) {
     this.variables = variables;
     this.loops = loops;
     const { exports } = new WebAssembly.Instance(module);
     this.calls = /** @type {Record<string, (...numbers: number[]) => number>} */ (/** @type {unknown} */ (exports));
     this.memory = /** @type {WebAssembly.Memory} */ (exports.memory);
-    this.text = /** @type {WebAssembly.Global} */ (exports.message).value;
+    this.places = /** @type {Record<string, WebAssembly.Global>} */ (/** @type {unknown} */ (exports));
     this.calls._initialize();
   }
 
-  /** What the FMU said last. */
-  message() {
-    const bytes = new Uint8Array(this.memory.buffer, this.text);
+  /** What an FMU said last. */
+  message(model = MODEL) {
+    const bytes = new Uint8Array(this.memory.buffer, this.places[`${model}_message`].value);
     return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
   }
 
@@ -80,17 +76,21 @@ export class Rooms {
 
   /** A structure with some of its fields set, the others zero. @param {string} name @param {Record<string, number>} values */
   structure(name, values) {
-    const fields = this.library.loops.structures[name];
-    const { places, size } = layout(fields);
+    const { size, fields } = this.library.loops.structures[name];
     const address = this.array("u8", size);
     const view = new DataView(this.library.memory.buffer, address, size);
-    fields.forEach(([field, kind], i) => {
-      const value = values[field] ?? 0;
-      if (kind === "f64") view.setFloat64(places[i], value, true);
-      else if (kind === "u8") view.setUint8(places[i], value);
-      else view.setUint32(places[i], value, true);
-    });
+    for (const field in values) {
+      const [kind, place] = fields[field];
+      if (kind === "f64") view.setFloat64(place, values[field], true);
+      else if (kind === "u8") view.setUint8(place, values[field]);
+      else view.setUint32(place, values[field], true);
+    }
     return address;
+  }
+
+  /** Value references as an array of C. @param {string[]} names */
+  references(names, model = MODEL) {
+    return this.array("u32", names.map((name) => this.library.variables[model][name]));
   }
 
   /** A row of what a structure under an excitation is for the loops. @param {Point} point */
@@ -109,18 +109,6 @@ export class Rooms {
   }
 }
 
-/** Where C puts fields. @param {[string, string][]} fields */
-function layout(fields) {
-  let size = 0;
-  const places = fields.map(([, kind]) => {
-    const width = WIDTH[/** @type {Kind} */ (kind)];
-    const place = Math.ceil(size / width) * width;
-    size = place + width;
-    return place;
-  });
-  return { places, size: Math.ceil(size / 8) * 8 };
-}
-
 /** An instance of `TwoMassImpactOscillator`, with the loops that run it; to be closed. */
 export class Oscillator {
   /** @param {Library} library @param {boolean} [stops] whether steps end at its events */
@@ -129,22 +117,17 @@ export class Oscillator {
     this.rooms = new Rooms(library);
     const { reals, booleans, read, series, capacity } = library.loops;
     this.own = this.rooms.structure("OscillatorCalls", {
-      ...{ reals: this.references(reals), booleans: this.references(booleans), series: this.references(series) },
+      ...{ reals: this.rooms.references(reals), booleans: this.rooms.references(booleans), series: this.rooms.references(series) },
       ...{ real_count: reals.length, boolean_count: booleans.length, start: reals.indexOf("x1_start") },
       ...{ series_count: series.length, capacity, kept: this.rooms.array("f64", series.length * capacity) },
-      ...Object.fromEntries(read.map((name) => [name, library.variables[name]])),
+      ...Object.fromEntries(read.map((name) => [name, library.variables.oscillator[name]])),
     });
-    if (!library.calls.open_fmu(this.own, Number(stops))) throw new Error(library.message() || "out of memory");
+    if (!library.calls.oscillator_open_fmu(this.own, Number(stops))) throw new Error(library.message() || "out of memory");
   }
 
   close() {
-    this.library.calls.close_fmu(this.own);
+    this.library.calls.oscillator_close_fmu(this.own);
     this.rooms.free();
-  }
-
-  /** Value references as an array of C. @param {string[]} names */
-  references(names) {
-    return this.rooms.array("u32", names.map((name) => this.library.variables[name]));
   }
 
   /** Call a loop until it is done. @param {string} name @param {number[]} numbers @returns {Generator<undefined, void>} it pauses */
@@ -254,12 +237,12 @@ export class Oscillator {
     const rooms = new Rooms(this.library);
     const width = told.length + 2;
     try {
-      const references = (/** @type {string[]} */ names) => rooms.array("u32", names.map((name) => this.library.variables[name]));
       const player = rooms.structure("PlayerCalls", {
-        ...{ outputs: references(outputs), impact_outputs: references(told), contact: references(["in_contact"]) },
+        ...{ outputs: rooms.references(outputs), impact_outputs: rooms.references(told), contact: rooms.references(["in_contact"]) },
         ...{ output_count: outputs.length, impact_output_count: told.length },
       });
-      const fmi = this.library.loops.structures.PlayerCalls.findIndex(([name]) => !name.startsWith("fmi.")) * WIDTH.u32;
+      const { PlayerCalls, PlayProgress } = this.library.loops.structures;
+      const fmi = PlayerCalls.fields.inputs[1]; // it comes first
       this.library.view("u8", player, fmi).set(this.library.view("u8", this.own, fmi));
       const places = {
         rows: rooms.array("f64", outputs.length * times.length),
@@ -270,7 +253,7 @@ export class Oscillator {
         ...{ piece_count: 1, sample_count: times.length, impact_capacity: IMPACTS, max_steps: WORK, ...places },
       });
       const progress = rooms.structure("PlayProgress", { time: from });
-      const kept = layout(this.library.loops.structures.PlayProgress).places[3] / WIDTH.u32;
+      const kept = PlayProgress.fields.impact[1] / WIDTH.u32;
       /** @type {number[][]} */
       const impacts = [];
       const take = () => {
@@ -330,67 +313,5 @@ export class Oscillator {
     rooms.free();
     const floor = calls.wander_floor(wander, omegaOf(point.structure) * end);
     return { value, error, verdict: calls.classify_exponent(value, error, floor, sigmas) };
-  }
-}
-
-/** An instance with its bare memory, for the coupled run. */
-export class Instance {
-  /** @param {Library} library */
-  constructor(library) {
-    this.library = library;
-    this.slots = library.slots;
-    this.rooms = new Rooms(library);
-    this.fmi = this.rooms.structure("OscillatorCalls", {});
-    if (!library.calls.open_fmu(this.fmi, 0)) throw new Error(library.message() || "out of memory");
-    this.address = library.calls.memory_of(this.fmi);
-  }
-
-  close() {
-    this.library.calls.close_fmu(this.fmi);
-    this.rooms.free();
-  }
-
-  get memory() {
-    return /** @type {Float64Array} */ (this.library.view("f64", this.address, this.slots.SIZE));
-  }
-
-  /** @param {string} name */
-  get(name) {
-    return this.memory[this.slots[name]];
-  }
-
-  /** As the FMU's setters do: a cubic input begins where it is set. @param {Record<string, number>} values by variable */
-  set(values) {
-    const { SET, CUBIC, CUBIC_END } = this.slots;
-    const memory = this.memory;
-    for (const name in values) {
-      const slot = this.slots[name];
-      memory[slot] = values[name];
-      if (CUBIC <= slot && slot < CUBIC_END) memory[SET] = 1;
-    }
-  }
-
-  /** Reset and initialise at time 0. @param {Record<string, number>} values by variable */
-  initialize(values) {
-    this.memory.fill(0);
-    this.set(this.library.starts);
-    this.set(values);
-    this.call("kernel_initialize", 0);
-  }
-
-  /** @param {string} name @param {number} time */
-  call(name, time) {
-    const code = this.library.calls[name](this.address, time);
-    if (code !== 0) throw new Error(`the kernel stopped at ${time} s with code ${code}`);
-  }
-
-  /** @param {number} time @param {number} h length of the step */
-  stepBy(time, h) {
-    const { TIME, STOP } = this.slots;
-    const memory = this.memory;
-    const reached = memory[TIME];
-    memory[STOP] = 0;
-    this.call("kernel_advance", Math.max(time + h, reached));
-    if (memory[TIME] < reached) memory[TIME] = reached;
   }
 }

@@ -1,8 +1,7 @@
 /** What the page carries: the compiled kernel, tables, and where the responses of a sweep begin. */
 
 /**
- * @typedef {{slots: Slots, starts: Record<string, number>, variables: Record<string, number>}} Kernel
- * @typedef {{oscillator: Kernel, shaker: Kernel, loops: Loops, drive: Start,
+ * @typedef {{variables: Compiled["variables"], loops: Loops, drive: Start,
  *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>, units: Units,
  *   alike: number, settings: Settings, directions: ("up" | "down")[], count: number,
  *   low: number, high: number, level: ["paper" | "g" | "mm", number],
@@ -29,11 +28,8 @@ async function bytes(id) {
 export async function load() {
   /** @type {Table} */
   const table = JSON.parse(text("table"));
-  const packed = ["oscillator", "shaker", "data"].map(bytes);
-  const [first, second, data] = await Promise.all(packed);
-  const [one, other] = await Promise.all([first, second].map((code) => WebAssembly.compile(code)));
-  const { oscillator, shaker, loops } = table;
-  const compiled = { oscillator: { module: one, loops, ...oscillator }, shaker: { module: other, loops, ...shaker } };
+  const [code, data] = await Promise.all(["kernel", "data"].map(bytes));
+  const compiled = { module: await WebAssembly.compile(code), variables: table.variables, loops: table.loops };
   return { table, compiled, worker: text("worker"), diagram: shipped(table, new Float64Array(data)) };
 }
 

@@ -49,6 +49,6 @@ export function spectrumCsv({ delaminated, bonded }) {
 
 /** Revolutions of the motor. @param {Row[]} revolutions */
 export function driveCsv(revolutions) {
-  const rows = revolutions.map((row) => [row.time, row.voltage, row.speed, row.amplitude, row.impacts]);
-  return { head: ["time", "voltage", "speed", "amplitude", "impacts"], rows };
+  const rows = revolutions.map((row) => [row.time, row.voltage, row.speed, row.impacts]);
+  return { head: ["time", "voltage", "speed", "impacts"], rows };
 }

@@ -2,7 +2,7 @@
 
 import { destination, startAt } from "./basin.js";
 import { Coupled } from "./coupled.js";
-import { Instance, Oscillator } from "./kernel.js";
+import { Oscillator } from "./kernel.js";
 import { record } from "./motion.js";
 import { respond } from "./response.js";
 import { periodOf, pointOf } from "./structure.js";
@@ -11,6 +11,7 @@ import { waveform } from "./waveform.js";
 /** @typedef {import("./response.js").Response} Response */
 
 const REST = [0, 0, 0, 0];
+const TURN = 2 * Math.PI;
 const SPAN = { periods: 64, points: 1024, highest: 20 };
 
 /**
@@ -110,23 +111,33 @@ function* sound(instance, { point, start, periods, pitch, rate }) {
 }
 
 /**
- * Some revolutions of the motor and the structure in its box, from where they were left.
+ * Some steps of the motor and the structure in its box, from where they were left, and the revolutions completed in them.
  * @param {Oscillator} instance
- * @param {{run: Run | null, start: Start,
- *   voltages: number[]}} asked a voltage for each step
- * @param {Library} library of the shaker
+ * @param {{run: Run | null, start: Start, voltages: number[]}} asked a voltage for each step
  */
-function* drive(instance, { run, start, voltages }, library) {
-  const [oscillator, shaker] = [instance.library, library].map((one) => new Instance(one));
-  const coupled = run ? Coupled.resumed(oscillator, shaker, run) : Coupled.begun(oscillator, shaker, start);
-  const rows = [];
-  for (const voltage of voltages) {
-    coupled.step(voltage);
-    const row = coupled.revolution();
-    if (row) rows.push(row);
+function* drive({ library }, { run, start, voltages }) {
+  const coupled = new Coupled(library, start, run);
+  try {
+    const { found, last } = revolutions(coupled.run(voltages), start.columns, run?.last ?? { turn: 0, time: 0, impacts: 0 });
+    yield { rows: found, run: { ...coupled.memory(), last } };
+  } finally {
+    coupled.close();
   }
-  yield { rows, run: coupled.memory() };
-  [oscillator, shaker].forEach((one) => one.close());
+}
+
+/** Revolutions that are complete in rows of a run: end, voltage, mean speed, impacts. @param {Float64Array} rows @param {string[]} columns @param {Run["last"]} last the one before */
+function revolutions(rows, columns, last) {
+  const found = [];
+  for (let i = columns.length; i < rows.length; i += columns.length) {
+    const [now, voltage, angle, spin, count] = ["time", "voltage", "angle", "speed", "impacts"].map((name) => rows[i + columns.indexOf(name)]);
+    const turns = angle / TURN;
+    if (Math.abs(turns - last.turn) < 1) continue;
+    const turn = turns > last.turn ? Math.floor(turns) : Math.ceil(turns);
+    const time = now - (angle - turn * TURN) / spin;
+    found.push({ time, voltage, speed: ((turn - last.turn) * TURN) / (time - last.time), impacts: count - last.impacts });
+    last = { turn, time, impacts: count };
+  }
+  return { found, last };
 }
 
 /**
@@ -140,20 +151,20 @@ function* basin(instance, { point, plane, cells }) {
   }
 }
 
-/** @type {Record<string, (instance: Oscillator, asked: any, shaker: Library) => Generator<unknown>>} */
+/** @type {Record<string, (instance: Oscillator, asked: any) => Generator<unknown>>} */
 const TASKS = { replay, chain, motion, section, spectra, sound, drive, basin };
 
 /**
  * Run a task on an instance of its own.
  * @param {string} task
  * @param {unknown} asked
- * @param {{oscillator: Library, shaker: Library}} libraries
+ * @param {Library} library
  * @returns {Generator<unknown>}
  */
-export function* perform(task, asked, { oscillator, shaker }) {
-  const instance = new Oscillator(oscillator);
+export function* perform(task, asked, library) {
+  const instance = new Oscillator(library);
   try {
-    yield* TASKS[task](instance, asked, shaker);
+    yield* TASKS[task](instance, asked);
   } finally {
     instance.close();
   }

@@ -6,8 +6,8 @@ import { perform } from "./tasks.js";
 
 const SLICE = 8; // ms
 
-/** @type {{oscillator: Library, shaker: Library}} */
-let libraries;
+/** @type {Library} */
+let library;
 /** @type {{id: number, urgent: boolean, run: Generator<unknown>}[]} */
 const tasks = [];
 const wake = new MessageChannel();
@@ -19,11 +19,10 @@ const scope = /** @type {{onmessage: unknown, postMessage: (message: unknown) =>
 
 scope.onmessage = (/** @type {MessageEvent} */ { data }) => {
   if (data.compiled) {
-    const { oscillator, shaker } = data.compiled;
-    libraries = { oscillator: new Library(oscillator), shaker: new Library(shaker) };
-    useLibrary(libraries.oscillator);
+    library = new Library(data.compiled);
+    useLibrary(library);
   }
-  if (data.task) tasks.push({ id: data.id, urgent: data.urgent, run: perform(data.task, data.asked, libraries) });
+  if (data.task) tasks.push({ id: data.id, urgent: data.urgent, run: perform(data.task, data.asked, library) });
   if (data.cancel !== undefined) drop(data.cancel);
   rouse();
 };

@@ -3,7 +3,7 @@
 /** @typedef {{cancel: () => void, done: Promise<void>}} Order */
 
 export class WorkerPool {
-  /** @param {string} source of the worker @param {{oscillator: Compiled, shaker: Compiled}} compiled @param {number} size */
+  /** @param {string} source of the worker @param {Compiled} compiled @param {number} size */
   constructor(source, compiled, size) {
     const place = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
     this.number = 0;

@@ -49,7 +49,7 @@ def test_six_tasks_are_done_by_the_page_alone(first):
     first.run(WORDS, "button", "Reset the whole page")
     typed(first, "eta-number", "1.3")
     first.until(MOVED)
-    first.run(WORDS, "button", "Other motions")
+    first.run(WORDS, "button", "Try many starts")
     first.until("return document.getElementById('basins').dataset.complete === 'true'")
     assert first.run("return document.querySelectorAll('#basins li').length") == 2
     before = first.text("sentence")
@@ -78,6 +78,34 @@ def test_on_a_telephone_the_diagram_and_the_fields_of_one_s_own_beam_are_seen(fi
         assert 0 < first.run(place, "f1") < 800
     finally:
         first.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+BOTTOMS = """
+const bottom = (at) => at.getBoundingClientRect().bottom + scrollY;
+const last = (name) => Math.max(...[...document.querySelectorAll(`${name} figure`)].map(bottom));
+return [last(".side"), last(".motion"), document.getElementById("basin-figure").offsetHeight];
+"""
+
+
+def test_on_a_desktop_both_columns_are_filled_and_no_panel_is_empty(first):
+    screen = {"width": 1440, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    first.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+    try:
+        side, main, panel = first.run(BOTTOMS)
+    finally:
+        first.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert 0.8 * main < side < 1.2 * main and panel < 200
+
+
+@pytest.mark.slow
+def test_a_map_of_one_colour_is_not_shown(first):
+    for eta, hidden, words in (("0.7", True, "No other motion"), ("1.3", False, "Other motions")):
+        typed(first, "eta-number", eta)
+        first.until(MOVED)
+        first.run(WORDS, "button", "Try many starts")
+        first.until("return document.getElementById('basins').dataset.complete === 'true'")
+        assert first.get("basin-map", "hidden") in ((None, False), ("", True))[hidden]
+        assert first.text("hint").startswith(words)
 
 
 @pytest.mark.slow

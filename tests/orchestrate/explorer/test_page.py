@@ -10,12 +10,15 @@ import xarray as xr
 import orchestrate
 from orchestrate import cli
 from orchestrate.explorer.page import explore
-from orchestrate.fmu import OSCILLATOR, Instance, begin, find, sampled
+from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, begin, find, sampled
 from orchestrate.model import Excitation
 from orchestrate.response.equations import absolute_accelerations
 from orchestrate.response.questions import Point
 from orchestrate.response.spectra import acceleration_spectrum
+from orchestrate.weak_drive.master import IMPACTS, Master, Scheme
+from orchestrate.weak_drive.run import oscillator_start
 
+from ...draws import draw_system
 from ...sparing import ordinary
 from .test_own_beam import pasted
 
@@ -226,7 +229,7 @@ def test_a_link_restores_the_view(chromium, page):
 def test_the_basin_fills_and_a_click_or_a_key_on_it_starts_there(browser):
     from selenium.webdriver.common.keys import Keys
 
-    browser.run("explorer.choose(1.3)")
+    browser.run("explorer.choose(1.3, true)")
     browser.chosen()
     browser.click("others")
     browser.until("return document.getElementById('basins').dataset.complete === 'true'")
@@ -305,11 +308,11 @@ def test_the_weak_drive_is_the_masters(shown, clearance):
     found = orchestrate.couple(structure, drive, voltage=1.3, duration=300.0, **fixed)
     shown.run(
         """
-        const { drive, structure, ...rest } = explorer.table.drive;
+        const { drive, oscillator, ...rest } = explorer.table.drive;
         const motor = { ...drive, voltage: 1.3, speed_start: 1.3 / drive.motor_constant };
         const voltages = new Array(1500).fill(1.3);
-        const halves = { ...structure, clearance: arguments[0] };
-        const asked = { run: null, start: { ...rest, drive: motor, structure: halves }, voltages };
+        const halves = { ...oscillator, clearance: arguments[0] };
+        const asked = { run: null, start: { ...rest, drive: motor, oscillator: halves }, voltages };
         explorer.told = null;
         explorer.pool.ask("drive", asked, ([first]) =>
           explorer.pool.ask("drive", { ...asked, run: first.run }, ([last]) => {
@@ -324,6 +327,59 @@ def test_the_weak_drive_is_the_masters(shown, clearance):
     for name in ("time", "speed", "impacts"):
         mine = shown.numbers(f"explorer.told.map((row) => row.{name})")
         assert np.array_equal(mine, found[name].values), name
+
+
+def coupled_by_python(system, voltages, h):
+    """The master's row after some steps from rest."""
+    drive = {**system.drive.parameters(), "voltage": voltages[0]}
+    with Instance(find(OSCILLATOR).path) as one, Instance(find(SHAKER).path) as other:
+        one.initialize(**oscillator_start(system.structure))
+        other.initialize(**drive)
+        master = Master(one, other, Scheme(h))
+        master.run(np.array(voltages)[:, None])
+        master.close()
+        return np.array(master.row)
+
+
+def coupled_by_the_page(browser, system, voltages, h):
+    """The same by the page, in two parts, so that another instance goes on."""
+    values = {
+        "oscillator": {k: float(v) for k, v in oscillator_start(system.structure).items()},
+        "drive": {**system.drive.parameters(), "voltage": voltages[0]},
+        "h": h,
+    }
+    browser.run(
+        """
+        const [values, voltages] = arguments;
+        const start = { ...explorer.table.drive, ...values };
+        const asked = { run: null, start, voltages: voltages.slice(0, 400) };
+        explorer.told = null;
+        explorer.pool.ask("drive", asked, ([{ run }]) =>
+          explorer.pool.ask("drive", { run, start, voltages: voltages.slice(400) }, ([last]) => {
+            explorer.told = last.run.row;
+          }));
+        """,
+        values,
+        voltages,
+    )
+    browser.until("return explorer.told")
+    return browser.numbers("explorer.told")
+
+
+@pytest.mark.parametrize("count", ordinary([4, 100]))
+def test_random_drives_run_to_the_same_last_bit(shown, count):
+    """Bonded and delaminated ones, with gap or preload, under a voltage that rises."""
+    rng, impacts = np.random.default_rng(61), 0
+    for i in range(count):
+        system = draw_system(rng).of_kind("bonded" if i % 4 == 3 else "delaminated")
+        h = 0.1 / system.structure.omega
+        unit = system.drive.volts(system.structure)
+        voltages = (unit * np.linspace(0.6, 1.4, 1000)).tolist()
+        expected = coupled_by_python(system, voltages, h)
+        mine = coupled_by_the_page(shown, system, voltages, h)
+        assert mine.tobytes() == expected.tobytes(), system
+        impacts += int(mine[IMPACTS])
+    assert impacts > 10 * count
 
 
 TURNS = [2.0 * np.pi * hertz for hertz in (12.0, 12.25, 12.5)]

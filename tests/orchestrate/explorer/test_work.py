@@ -15,33 +15,38 @@ import { Library } from "./kernel.js";
 import { useLibrary } from "./model.js";
 import { load } from "./payload.js";
 import { perform } from "./tasks.js";
-load().then(({ compiled: { oscillator, shaker } }) => {
-  const libraries = { oscillator: new Library(oscillator), shaker: new Library(shaker) };
-  useLibrary(libraries.oscillator);
-  window.probe = { libraries, perform: (task, asked) => perform(task, asked, libraries) };
+load().then(({ compiled }) => {
+  const library = new Library(compiled);
+  useLibrary(library);
+  window.probe = { library, perform: (task, asked) => perform(task, asked, library) };
 });
 """
 LONGEST = """
 const [task, asked, eta, changes] = arguments;
-const { libraries, perform } = window.probe;
+const { library, perform } = window.probe;
 const structure = { ...explorer.table.usual, ...changes };
 const frequency = eta * Math.sqrt(structure.k1 / structure.m1);
 const point = { structure, eta, frequency, amplitude: 1 / (eta * eta) };
-const { oscillator } = libraries;
-const { calls, slots } = oscillator;
+const { calls, variables } = library;
+const place = calls.malloc(8);
 let work = 0;
 // what a loop runs on begins with its FMU
 const counted = (name) => (fmu, ...numbers) => {
-  const memory = () => oscillator.view("f64", calls.memory_of(fmu), slots.SIZE);
-  const impacts = () => memory()[slots.impact_count];
+  const impacts = () => {
+    const words = library.view("u32", place, 2);
+    words.set([variables.oscillator.impact_count, 0]);
+    const [instance] = library.view("u32", fmu, 1);
+    calls.oscillator_fmi3GetInt32(instance, place, 1, place + 4, 1); // 0 before it began
+    return words[1];
+  };
   const before = impacts();
   const answer = calls[name](fmu, ...numbers);
   work += 1 + Math.max(0, impacts() - before);
   return answer;
 };
-oscillator.calls = { ...calls };
+library.calls = { ...calls };
 for (const name of ["begin", "respond", "sample_evenly", "play"]) {
-  oscillator.calls[name] = counted(name);
+  library.calls[name] = counted(name);
 }
 const found = [];
 const settings = { transient: 500, samples: 200, tolerance: 1e-2 };
@@ -49,7 +54,8 @@ for (const _ of perform(task, { point, start: [0, 0, 0, 0], settings, ...asked }
   found.push(work);
   work = 0;
 }
-oscillator.calls = calls;
+library.calls = calls;
+calls.free(place);
 return [...found, work];
 """
 PLANE = {"side": 64, "gap": 3.0, "speed": 3.0, "mean": [0.0, 0.0]}
@@ -83,7 +89,7 @@ def test_little_is_done_between_two_pauses(probed, task, eta):
 def test_a_motion_that_paused_goes_on_as_if_it_had_not(probed):
     """Other tasks have their turn in every pause, and one is called off."""
     same = """
-    const { perform, libraries } = window.probe;
+    const { perform, library } = window.probe;
     const structure = explorer.table.usual;
     const at = (eta) => ({ structure, eta, frequency: eta, amplitude: 1 / (eta * eta) });
     const settings = { transient: 500, samples: 200, tolerance: 1e-2 };
@@ -102,9 +108,9 @@ def test_a_motion_that_paused_goes_on_as_if_it_had_not(probed):
       }
     };
     const [[first, alone], [second, shared]] = [run(false), run(true)];
-    const size = libraries.oscillator.memory.buffer.byteLength;
+    const size = library.memory.buffer.byteLength;
     for (let i = 0; i < 20; i++) run(true);
-    const grown = libraries.oscillator.memory.buffer.byteLength - size;
+    const grown = library.memory.buffer.byteLength - size;
     return [first, second, alone.length, alone.every((value, i) => value === shared[i]), grown];
     """
     first, second, count, alike, grown = probed.run(same)
