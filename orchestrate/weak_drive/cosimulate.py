@@ -11,10 +11,11 @@ import hashlib
 import math
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -52,7 +53,7 @@ from .energy_balance import given_work
 from .inputs import Input, Inputs, check_inputs
 from .master import DriveSide, Master, Scheme
 from .polynomials import end_value
-from .record import BOX, Floats, Record, joined
+from .record import Floats, Record, joined
 from .schedule import Course, check
 
 OUTPUTS = (*PLAYED, "box_force", "impact_energy")
@@ -70,6 +71,9 @@ AT_THE_DURATION = "at the duration"  # attribute `ended` of a run that the drive
 NOTHING = np.empty((0, 0))
 DIVERGED = 1e12  # m: springs that a force on the box would stretch so far are none
 NOTICED = 0.01  # of the largest displacement: a larger coupling error gives a warning
+RESOLVED = 0.5  # of a drive's response to a force at once, its mean over a step, else a warning
+SHORT = 1.0 / 64.0  # of a step: in it a drive responds to a force as at once
+TO_HALF = 8.0 / 7.0  # error over its difference to half the step, which errors of third order have
 Values = tuple[tuple[str, float | bool], ...]
 
 
@@ -77,7 +81,12 @@ class Coupling:
     """Both FMUs of a job, stepped together at its step or a part of it."""
 
     def __init__(
-        self, job: CosimulateJob, oscillator: Instance, drive: Instance, parts: int
+        self,
+        job: CosimulateJob,
+        oscillator: Instance,
+        drive: Instance,
+        parts: int,
+        inverse_mass: float,
     ) -> None:
         self.job, self.parts, self.oscillator, self.drive = job, parts, oscillator, drive
         self.inputs = Inputs(job.inputs, drive.description)
@@ -86,7 +95,8 @@ class Coupling:
         connection = job.begin_drive(drive, self.inputs)
         connection = replace(connection, recorded=job.record if parts == 1 else ())
         self.h = job.step / parts
-        self.master = Master(oscillator, drive, Scheme(self.h), connection)
+        scheme = Scheme(self.h)
+        self.master = Master(oscillator, drive, scheme, connection, inverse_mass=inverse_mass)
         knows = "box_acceleration" in connection.links
         fixed = drive.description.has_fixed_step or drive.description.internal_step
         self.divides_first = not knows and not fixed
@@ -170,6 +180,7 @@ class CosimulateJob(Question):
     record: tuple[str, ...] = ()
     start: tuple[float, ...] = REST
     estimate: bool = True
+    force_sign: str = "tested"
     asked: ClassVar[str] = "cosimulate"
     chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
@@ -213,17 +224,15 @@ class CosimulateJob(Question):
         if items[0] == self.count() - 1:
             assert previous is not None
             return self.motion(fmus[OSCILLATOR], previous)
-        table: Table = {}
-        if self.estimate:
-            known = previous["moved"][-1] if previous is not None else self.moved_by_force()
-            table["moved"] = np.array([known])
+        response = self.response_to_force() if previous is None else previous["response"][-1]
+        table: Table = {"response": response[np.newaxis]}
         warned: dict[str, None] = {}
         for parts in self.finenesses():
             if previous is not None and previous[f"ended {parts}"][-1]:
                 table |= nothing_more(previous, parts)
                 continue
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(self.drive, "drive") as drive:
-                coupling = Coupling(self, oscillator, drive, parts)
+                coupling = Coupling(self, oscillator, drive, parts, float(response[0]))
                 if previous is not None:
                     coupling.set_state(previous)
                 table |= coupling.advance(items)
@@ -241,19 +250,41 @@ class CosimulateJob(Question):
         links = checked_links(dict(self.connect), drive.description, dict(self.units))
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
 
-    def moved_by_force(self) -> float:
-        """Return by how much 1 N more moves the box in a step, by its connected motion."""
-        moved = []
+    def response_to_force(self) -> Floats:
+        """Return by how much 1 N accelerates the box at once, m/s2, and which part of it in a step.
+
+        At once is what a connected acceleration says, else the motion in a short step.
+        """
+        seen: list[Any] = []
         for force in (0.0, 1.0):
-            with Instance(self.drive, "drive") as drive:
+            with suppress(FmuError), Instance(self.drive, "drive") as drive:
                 connection = self.begin_drive(drive, Inputs(self.inputs, drive.description))
                 side = DriveSide(drive, replace(connection, inputs=()))  # they stay as they began
                 side.put((force, 0.0, 0.0, 0.0), ())
-                drive.step(0.0, self.step)
-                moved.append(side.get()[: len(BOX)])
-        # the first that is connected: its sign is sure whatever springs the drive has
-        ways = (after - before for before, after in zip(*moved, strict=True))
-        return next((way for way in ways if math.isfinite(way)), math.nan)
+                motion, about = [side.get()[:3]], drive.description
+                short = 0.0 if about.has_fixed_step or about.internal_step else SHORT * self.step
+                if short:
+                    drive.step(0.0, short)
+                    motion.append(side.get()[:3])
+                drive.step(short, self.step - short)
+                seen.append([*motion, side.get()[:3]])
+        if len(seen) < 2:  # the run itself says what the drive does
+            return np.array([0.0, math.nan])
+        begin, *early, late = np.diff(seen, axis=0)[0]
+        means = np.array([2.0 / self.step**2, 1.0 / self.step, 0.5]) * (late + [0, 0, begin[2]])
+        soon = np.array([2.0 / short**2, 1.0 / short]) * early[0][:2] if early else means[:2]
+        at_once = next((x for x in (begin[2], *soon[::-1]) if math.isfinite(x)), math.nan)
+        self.check_sign([at_once, *means], connection.links)
+        mean = next(x for x in means[[1, 0, 2]] if math.isfinite(x))
+        return np.array([at_once, mean / at_once if at_once else math.nan])
+
+    def check_sign(self, responses: Sequence[float], links: Mapping[str, Link]) -> None:
+        """Raise ``InputError`` if the first response to the force that is one goes against it."""
+        moved = next((x for x in responses if math.isfinite(x) and x), 0.0)
+        if moved < 0.0 and self.force_sign == "tested":
+            text = f"1 N of box_force accelerates the box by {moved:.2g} m/s2, against the force; "
+            text += f"connect {turned(links)}, or say force_sign='given' if that is meant"
+            raise InputError(text)
 
     def inputs_at_start(self, drive: Description) -> Iterator[str]:
         """Yield ``name = start unit`` of each of the drive's inputs that nothing is given for."""
@@ -283,7 +314,7 @@ class CosimulateJob(Question):
         columns = dict(zip(OUTPUTS, rows.T, strict=True)) | {"time": times, "in_contact": touching}
         if self.estimate:
             away = np.abs(rows - motions[1][0])[:, [OUTPUTS.index(name) for name in ("x1", "x2")]]
-            columns["coupling_error"] = 4.0 / 3.0 * away.max(axis=1)
+            columns["coupling_error"] = TO_HALF * away.max(axis=1)
         nodes, cubics = np.append(0.0, steps["nodes 1"]), steps["cubics 1"]
         last = end_value(cubics[-1], nodes[-1] - nodes[-2])
         at_times = nodes.searchsorted(times)
@@ -293,7 +324,7 @@ class CosimulateJob(Question):
             if isinstance(one, InputControl):
                 end = one.aborted(tuple(steps["control 1"][-1].tolist()))
                 columns["control_aborted"] = np.array([end])
-        columns["moved"] = steps.get("moved", np.array([np.nan]))[:1]
+        columns["response"] = steps["response"][:1]
         columns["ended"] = np.array([ended])
         return {**columns, **impact_columns(impacts, self.structure)}
 
@@ -337,7 +368,7 @@ class CosimulateJob(Question):
                 "drive": description.name,
                 "recorded": ",".join(self.record),
                 "inputs_at_start": ", ".join(self.inputs_at_start(description)),
-                "moved_by_1_N": float(table["moved"][0]),
+                "response_in_a_step": float(table["response"][0][1]),
                 "ended": str(table["ended"][-1]) or AT_THE_DURATION,
                 "drive_warnings": "\n".join(dict.fromkeys(filter(None, table["warned"].tolist()))),
                 "resumable": "yes"
@@ -360,6 +391,7 @@ def cosimulate(
     record: Sequence[str] | None = None,
     start: ArrayLike | None = None,
     estimate: bool = True,
+    force_sign: Literal["tested", "given"] = "tested",
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Couple the oscillator to a drive that is an FMU, and simulate both.
@@ -395,6 +427,8 @@ def cosimulate(
         x1, x2 in m, v1, v2 in m/s at time 0, relative to the box; at rest by default.
     estimate : bool
         Whether the coupling's error is estimated, by a second run with half the step.
+    force_sign : {"tested", "given"}
+        Whether a force that moves the box against it is an error, or meant so.
     **running
         ``store``, ``progress`` and others, see :class:`orchestrate.running.options.Running`.
 
@@ -470,13 +504,16 @@ def cosimulate(
         step=float(duration) / count,
         record=checked_record(record or (), description),
         start=checked_state("start", start, checked),
+        force_sign=force_sign,
     )
     check_inputs(job.inputs, links)
     found = answer(job, running, finder(running), job.drive_sha256 if foreign else "")
     warn_of_drive(found)
+    missing = [name for name in MOTION if name not in links]
+    if missing:
+        warn_of_step(found, missing)
     if estimate:
-        warn_of_sign(found, links)
-        warn_of_error(found, [name for name in MOTION if name not in links])
+        warn_of_error(found, missing)
     return found
 
 
@@ -496,11 +533,13 @@ def nothing_more(previous: Table, parts: int) -> Table:
     return {**table, f"ended {parts}": previous[f"ended {parts}"]}
 
 
-def warn_of_sign(run: xr.Dataset, links: Mapping[str, Link]) -> None:
-    """Warn where a force on the box moves the box against it."""
-    if (moved := getattr(run, "attrs", {}).get("moved_by_1_N", 0.0)) < 0.0:
-        text = f"1 N of box_force moves the box by {moved:.2g} in a step, against the force"
-        warnings.warn(f"{text}; connect {turned(links)}, unless that is meant", stacklevel=3)
+def warn_of_step(run: xr.Dataset, missing: Sequence[str]) -> None:
+    """Warn where the drive is not seen to follow a force as a mass does within a step."""
+    share = getattr(run, "attrs", {}).get("response_in_a_step", math.nan)
+    if share < RESOLVED:
+        text = f"a force accelerates the box by {share:.2g} in a step, where it does by 1 at once: "
+        text += "the step is too long for the drive's own motion"
+        warnings.warn(f"{text}; reduce it or connect {', '.join(missing)}", stacklevel=3)
 
 
 def turned(links: Mapping[str, Link]) -> str:

@@ -36,6 +36,7 @@ RUN = {  # shaken close to the structure's own frequencies
     "progress": False,
     "estimate": False,
 }
+MEANT = {"force_sign": "given"}
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +104,7 @@ def test_a_sign_and_two_runs_with_the_same_bits(drive):
     twice = [orchestrate.cosimulate(STRUCTURE, drive, connect=CONNECT, **run) for _ in range(2)]
     assert twice[0].x1.values.tobytes() == twice[1].x1.values.tobytes()
     other = orchestrate.cosimulate(
-        STRUCTURE, drive, connect={**CONNECT, "box_force": "-specimen_force"}, **run
+        STRUCTURE, drive, connect={**CONNECT, "box_force": "-specimen_force"}, **run, **MEANT
     )
     assert np.abs(other.x1 - twice[0].x1).max() > 1e-4
 
@@ -237,9 +238,20 @@ def test_an_error_that_may_hide_impacts_gives_a_warning(drive):
     run = {**RUN, "duration": 0.5, "estimate": True, "step": 0.01}
     with pytest.warns(UserWarning, match="connect box_velocity, box_position"):
         orchestrate.cosimulate(STRUCTURE, drive, connect=CONNECT, **run)
-    turned = {**CONNECT, "box_force": "-specimen_force"}
-    with pytest.warns(UserWarning, match="connect box_force=specimen_force, unless"):
-        orchestrate.cosimulate(STRUCTURE, drive, connect=turned, **run)
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize("letters", ["a", "v", "p"])
+def test_a_wrong_sign_of_the_force_is_an_error_unless_it_is_given(tmp_path, letters):
+    drive = draw(4)
+    path, connect = drive.write(tmp_path), drive.connected(letters)
+    force = connect["box_force"]
+    turned = force[1:] if force.startswith("-") else f"-{force}"
+    run = {"duration": 0.02, "step": 0.01, "estimate": False, "progress": False}
+    run |= {"parameters": drive.parameters, "connect": {**connect, "box_force": turned}}
+    with pytest.raises(InputError, match=f"against the force; connect box_force={force}, or say"):
+        orchestrate.cosimulate(STRUCTURE, path, **run)
+    assert orchestrate.cosimulate(STRUCTURE, path, force_sign="given", **run).sizes["time"] == 3
 
 
 @pytest.mark.usefixtures("exported")
@@ -253,7 +265,7 @@ def test_a_coupling_that_diverges_says_what_to_look_at(drive, tmp_path, duration
         (far.write(tmp_path), one.connect, far.parameters, one.names[1], (one.names[2], "njnp4")),
         (drive, turned, {"mass": 0.005}, "volts", ("table_acc", "specimen_force")),
     ):
-        run = {**RUN, "connect": connect, "inputs": {command: 3.0}, "duration": duration}
+        run = {**RUN, "connect": connect, "inputs": {command: 3.0}, "duration": duration, **MEANT}
         with pytest.raises(FmuError) as raised:
             orchestrate.cosimulate(STRUCTURE, path, parameters=parameters, step=0.01, **run)
         words = rf"at t = [\d.]+ s \(box_force = .* N\): look at the unit of {unit} .*={force}; or"
@@ -263,8 +275,9 @@ def test_a_coupling_that_diverges_says_what_to_look_at(drive, tmp_path, duration
 def test_derivatives_of_a_polynomial_through_points():
     times = [-0.3, -0.1, 0.0, 0.4]
     values = [2.0 - t + 3.0 * t**2 + 5.0 * t**3 for t in times]
-    assert derivatives(times, values, 1) == pytest.approx((-1.0, 6.0))
-    assert derivatives(times, values, 2) == pytest.approx((6.0, 30.0))
+    for order in range(3):
+        expected = [2.0, -1.0, 6.0, 30.0, 0.0, 0.0][order : order + 4]
+        assert derivatives(times, values, order) == pytest.approx(expected, abs=1e-9)
 
 
 def tables(monkeypatch, exported, path, **run):
