@@ -106,7 +106,8 @@ class Coupling:
         steps = range(items[0] * self.parts, (items[-1] + 1) * self.parts)
         recorded = []
         if self.master.connection.recorded and not steps.start:
-            recorded = [np.array([self.master.recorded(self.inputs.at(np.zeros(1))[0])])]
+            start = [*self.inputs.start_values().values()]
+            recorded = [np.array([self.master.recorded(start)])]
         try:
             record = self.run(steps)
         except FmuError:
@@ -139,15 +140,17 @@ class Coupling:
     def run(self, steps: range) -> Record:
         """Run both FMUs over some steps."""
         if steps.start or not self.divides_first:
-            return self.inputs.run(self.master, steps, self.h)
-        short = self.h / sum(BEGINNING)  # nothing is known of the acceleration
-        first = self.inputs.at(np.array([0.5, 1.0]) * self.h).reshape(1, -1)
-        first = first[:, : self.master.width]
-        pieces = joined([self.master.run(first, part * short) for part in BEGINNING])
+            return self.inputs.run(self.master, steps, self.h, int(self.divides_first))
+        parts = (
+            np.array(BEGINNING) / sum(BEGINNING) * self.h
+        )  # nothing is known of the acceleration
+        rows = self.inputs.rows(np.append(0.0, np.cumsum(parts)), self.master.width)
+        runs = (self.master.run(rows[i : i + 1], h) for i, h in enumerate(parts.tolist()))
+        pieces = joined([*runs])
         if self.master.ended:
             raise FmuError(self.master.ended)
         begun = replace(pieces, ends=pieces.ends[-1:], recorded=pieces.recorded[-1:])
-        return joined([begun, self.inputs.run(self.master, steps[1:], self.h)])
+        return joined([begun, self.inputs.run(self.master, steps[1:], self.h, 1)])
 
     def get_state(self) -> Table:
         """Return the state of both FMUs and of the master, a row of each."""
@@ -245,8 +248,7 @@ class CosimulateJob(Question):
 
     def begin_drive(self, drive: Instance, inputs: Inputs) -> Connection:
         """Initialise the drive with its inputs at the start; return how it is connected."""
-        (values,) = inputs.at(np.zeros(1)).tolist()
-        drive.initialize(**dict(self.start_values), **dict(zip(inputs.names, values, strict=True)))
+        drive.initialize(**dict(self.start_values), **inputs.start_values())
         links = checked_links(dict(self.connect), drive.description, dict(self.units))
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
 
@@ -271,7 +273,7 @@ class CosimulateJob(Question):
         if len(seen) < 2:  # the run itself says what the drive does
             return np.array([0.0, math.nan])
         begin, *early, late = np.diff(seen, axis=0)[0]
-        means = np.array([2.0 / self.step**2, 1.0 / self.step, 0.5]) * (late + [0, 0, begin[2]])
+        means = np.array([2.0 / self.step**2, 1.0 / self.step, 1.0]) * late
         soon = np.array([2.0 / short**2, 1.0 / short]) * early[0][:2] if early else means[:2]
         at_once = next((x for x in (begin[2], *soon[::-1]) if math.isfinite(x)), math.nan)
         self.check_sign([at_once, *means], connection.links)
@@ -408,8 +410,9 @@ def cosimulate(
         and ``box_position`` at least one is an output of the drive; ``box_force`` (N) is its input,
         the force of springs and dampers on the box, positive as the box's motion. A name with a
         minus before it, as ``"-force"``, counts with the other sign; other units of the same kind
-        are converted. A drive that takes derivatives of the force has them as ``box_force_1`` to
-        ``box_force_3``. By default the names of the package's own drives.
+        are converted, and ``"pos[mm]"`` states one as ``units`` does. A drive that takes
+        derivatives of the force has them as ``box_force_1`` to ``box_force_3``. By default the
+        names of the package's own drives.
     units : mapping of str to str, optional
         Units of connected variables, by the drive's names, in place of those that it states: m/s2,
         mm, kN and others. Units that it defines by no base units are taken by their names; none

@@ -62,7 +62,7 @@ typedef struct {
     double tolerance, easy;
     int halvings, first_passes;
     Links force, motion;
-    int cubic;  /* place among the drive's other inputs of one with its derivatives, or -1 */
+    int cubic;  /* place among the drive's other inputs from which on they are cubics, four of each, or -1 */
     const unsigned *recorded;
     size_t recorded_count;
     double *table;  /* of what is recorded, a row an interval */
@@ -265,8 +265,9 @@ static bool look(Pair *p, double *row, const double *inputs, double h) {
     int known = p->motion.count;
     double force[4] = {row[FORCE]}, box[3], *later = p->scratch + p->drive.input_count, *read = row + POSITION + 3 - known;
     if (p->cubic >= 0 && h != 0.0) {
-        for (size_t i = 0; i < p->drive.input_count - p->force.count; i++) later[i] = inputs[i];
-        end_derivatives(later + p->cubic, inputs + p->cubic, h);
+        size_t own = p->drive.input_count - p->force.count;
+        for (size_t i = 0; i < own; i++) later[i] = inputs[i];
+        for (size_t i = p->cubic; i < own; i += 4) end_derivatives(later + i, inputs + i, h);
         inputs = later;
     }
     if (!put_force(p, inputs, force) || !get(&p->drive, read)) return false;

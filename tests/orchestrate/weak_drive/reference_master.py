@@ -247,8 +247,10 @@ class PythonMaster(Master):
         first = self.connection.cubic
         if first < 0:
             return inputs
-        cubic = end_derivatives(tuple(inputs[first : first + 4]), h)
-        return [*inputs[:first], *cubic, *inputs[first + 4 :]]
+        later = list(inputs)
+        for i in range(first, len(inputs), 4):
+            later[i : i + 4] = end_derivatives(tuple(inputs[i : i + 4]), h)
+        return later
 
     def _feel(self, force, inputs):
         """Return what 1 N more adds to the acceleration; as it was known where that is not read."""
