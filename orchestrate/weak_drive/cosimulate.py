@@ -268,7 +268,7 @@ class CosimulateJob(Question):
                 if short:
                     drive.step(0.0, short)
                     motion.append(side.get()[:3])
-                drive.step(short, self.step - short)
+                drive.step(short, self.step)
                 seen.append([*motion, side.get()[:3]])
         if len(seen) < 2:  # the run itself says what the drive does
             return np.array([0.0, math.nan])
