@@ -183,7 +183,7 @@ def draw_box_gap_impacts(data: xr.Dataset, box: Axes, gap: Axes, impacts: Axes) 
 
 def draw_signal(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
     """Draw a signal as a line, or as the band between its extremes if it is long."""
-    time, values = data.time.values, data[name].values / factor
+    time, values = data[data[name].dims[0]].values, data[name].values / factor
     if len(time) <= 5000:
         axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})
     else:

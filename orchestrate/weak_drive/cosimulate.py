@@ -29,7 +29,7 @@ from ..fmu.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
 from ..fmu.play import PLAYED, Player
 from ..lazy import Unpack, xr
 from ..model import Excitation
-from ..model.arguments import Positive, checked_integer
+from ..model.arguments import Count, Positive, checked_integer
 from ..model.drive import Drive
 from ..model.shaker import Shaker
 from ..model.structure import Structure
@@ -184,6 +184,7 @@ class CosimulateJob(Question):
     start: tuple[float, ...] = REST
     estimate: bool = True
     force_sign: str = "tested"
+    points: Count = 1
     asked: ClassVar[str] = "cosimulate"
     chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
@@ -303,6 +304,7 @@ class CosimulateJob(Question):
     def motion(self, oscillator: Path, steps: Table) -> Table:
         """Return the motion under the accelerations of all steps, over time, and its impacts."""
         times, ended = self.reached(steps)
+        times = self.times(self.points)[: self.points * (len(times) - 1) + 1]
         for parts in self.finenesses() if ended else ():
             done = steps[f"nodes {parts}"] <= times[-1]
             steps |= {name: steps[name][done] for name in (f"{one} {parts}" for one in IN_STEPS)}
@@ -318,10 +320,11 @@ class CosimulateJob(Question):
             away = np.abs(rows - motions[1][0])[:, [OUTPUTS.index(name) for name in ("x1", "x2")]]
             columns["coupling_error"] = TO_HALF * away.max(axis=1)
         nodes, cubics = np.append(0.0, steps["nodes 1"]), steps["cubics 1"]
-        last = end_value(cubics[-1], nodes[-1] - nodes[-2])
-        at_times = nodes.searchsorted(times)
-        columns["box_acceleration"] = np.append(cubics[at_times[:-1], 0], last)
-        columns["box_work"] = np.append(0.0, np.cumsum(steps["work 1"]))[at_times]
+        inside = (nodes.searchsorted(times, side="right") - 1).clip(max=len(cubics) - 1)
+        columns["box_acceleration"] = end_value(tuple(cubics[inside].T), times - nodes[inside])
+        columns["step_time"] = times[:: self.points]
+        work = np.append(0.0, np.cumsum(steps["work 1"]))
+        columns["box_work"] = work[nodes.searchsorted(columns["step_time"])]
         for _, one in self.inputs:
             if isinstance(one, InputControl):
                 end = one.aborted(tuple(steps["control 1"][-1].tolist()))
@@ -344,11 +347,12 @@ class CosimulateJob(Question):
         names = {**IN_TIME, **IN_TIME_TOO}
         description = describe(self.drive)
         theirs = {}
-        recorded = table.get("recorded", NOTHING)[: len(table["time"])]
+        recorded = table.get("recorded", NOTHING)[: len(table["step_time"])]
+        at_steps = "time" if self.points == 1 else "step_time"
         for name, values in zip(self.record, recorded.T, strict=True):
             about = description.variable(name)
             text = about.description or f"{name} of the drive"
-            theirs[name] = variable("time", values, about.unit or "1", text)
+            theirs[name] = variable(at_steps, values, about.unit or "1", text)
         knows_velocity = any(ours == "box_velocity" for ours, _ in self.connect)
         shown = [n for n in names if n in table and (n != "box_work" or knows_velocity)]
         contact = "whether the masses are in permanent contact"
@@ -358,13 +362,21 @@ class CosimulateJob(Question):
             aborted["control_aborted"] = variable((), table["control_aborted"][-1], "s", text)
         return xr.Dataset(
             {
-                **{name: variable("time", table[name], *names[name]) for name in shown},
+                **{
+                    name: variable(at_steps if name == "box_work" else "time", table[name], *about)
+                    for name, about in names.items()
+                    if name in shown
+                },
                 "in_contact": yes_or_no("time", table["in_contact"], contact),
                 **theirs,
                 **impact_variables(table),
                 **aborted,
             },
-            {"time": variable("time", table["time"], "s", "communication points")},
+            {
+                name: variable(name, table[name], "s", text)
+                for name, text in (("step_time", "communication points"), ("time", "time"))
+                if name in ("time", at_steps)
+            },
             {
                 "title": f"{self.structure.label()} on {description.name}",
                 "drive": description.name,
@@ -394,6 +406,7 @@ def cosimulate(
     start: ArrayLike | None = None,
     estimate: bool = True,
     force_sign: Literal["tested", "given"] = "tested",
+    points: Count = 1,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Couple the oscillator to a drive that is an FMU, and simulate both.
@@ -432,13 +445,16 @@ def cosimulate(
         Whether the coupling's error is estimated, by a second run with half the step.
     force_sign : {"tested", "given"}
         Whether a force that moves the box against it is an error, or meant so.
+    points : int
+        Points of time in each step: the motion between communication points is that of the FMU's
+        closed form. What is of the drive stays over ``step_time`` if it is more than 1.
     **running
         ``store``, ``progress`` and others, see :class:`orchestrate.running.options.Running`.
 
     Returns
     -------
     xarray.Dataset
-        Over ``time``, the communication points in s: ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``,
+        Over ``time`` in s, the communication points: ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``,
         ``v_rel``, ``contact_force``, ``in_contact``, ``box_force``, ``impact_energy``,
         ``box_acceleration``, what is recorded of the drive by its names, ``box_work`` where a
         velocity is connected, ``coupling_error``, the larger error of ``x1`` and ``x2`` in m, and
@@ -457,13 +473,13 @@ def cosimulate(
 
     Notes
     -----
-    The drive does each step once, so it need not be able to go back; the oscillator does it twice,
-    see :mod:`orchestrate.weak_drive.master`. With acceleration, velocity and position connected,
-    and the force with its derivatives, errors are of fourth order in the step, else of second order
-    as long as the drive's acceleration follows its force at once when it is read; of a drive whose
-    outputs change in steps alone they are of first order, unless its velocity is connected. After
-    impacts that one of the two runs has and the other not, or in chaos, the estimated error is as
-    large as the motion.
+    The drive does each step once, so it need not be able to go back; the oscillator does it two or
+    three times, see :mod:`orchestrate.weak_drive.master`. A drive takes the force held, or with its
+    derivatives. Errors are of fourth order in the step if a velocity is connected, of third order
+    otherwise, of second order if it is the acceleration alone, under inputs that change: as long as
+    the acceleration follows the force at once when it is read. Of a drive whose outputs change in
+    steps alone they are of first order, unless its velocity is connected. After impacts that one of
+    the two runs has and the other not, or in chaos, the estimated error is as large as the motion.
 
     An interrupted run resumes where the drive can save its state (``canSerializeFMUstate``); else
     it begins anew, as ``resumable`` in the attributes says.
@@ -508,6 +524,7 @@ def cosimulate(
         record=checked_record(record or (), description),
         start=checked_state("start", start, checked),
         force_sign=force_sign,
+        points=points,
     )
     check_inputs(job.inputs, links)
     found = answer(job, running, finder(running), job.drive_sha256 if foreign else "")

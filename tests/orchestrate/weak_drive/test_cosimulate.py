@@ -122,6 +122,27 @@ MOTOR = {"inputs": {"voltage": 4.0}, "parameters": {"speed_start": 60.0}, "progr
 
 
 @pytest.mark.usefixtures("exported")
+def test_points_between_communication_points_are_on_the_same_motion():
+    """The same bits where both have them, and the equation of motion between."""
+    run = {"step": 0.004, "duration": 0.2, "record": ["speed"], **MOTOR}
+    coarse, fine = (orchestrate.cosimulate(*BEAM, points=n, **run) for n in (1, 8))
+    for name in ("x1", "box_force", "box_acceleration", "coupling_error"):
+        assert fine[name][::8].values.tobytes() == coarse[name].values.tobytes(), name
+    for name in ("speed", "box_work"):
+        assert fine[name].dims == ("step_time",)
+        assert fine[name].values.tobytes() == coarse[name].values.tobytes()
+    s, h = BEAM[0], float(fine.time[1])
+    force = s.k1 * fine.x1 + s.d1 * fine.v1 + s.k2 * fine.x2 + s.d2 * fine.v2
+    assert force.values == pytest.approx(fine.box_force.values, abs=1e-9)
+    momentum = s.m1 * fine.v1 + s.m2 * fine.v2  # through impacts: of both masses
+    pushes = -fine.box_force - (s.m1 + s.m2) * fine.box_acceleration
+    simpson = h / 3.0 * (pushes[:-2:2].values + 4.0 * pushes[1::2].values + pushes[2::2].values)
+    change = np.diff(momentum[::2].values)
+    assert change == pytest.approx(simpson, abs=1e-3 * np.abs(change).max())
+    assert orchestrate.plot(fine)
+
+
+@pytest.mark.usefixtures("exported")
 def test_our_own_drive_is_what_couple_has():
     """Of fourth order, compared with half the step; the error that is stated is that of couple."""
     runs = [
