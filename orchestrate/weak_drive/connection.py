@@ -57,19 +57,24 @@ MOTOR = Connection(  # the first two outputs are what the step control needs
 
 
 def checked_links(
-    connect: Mapping[str, str], drive: Description, units: Mapping[str, str]
+    connect: Mapping[str, str],
+    drive: Description,
+    units: Mapping[str, str],
+    alone: bool = False,
 ) -> dict[str, Link]:
     """Return the connections by our names; raise ``InputError`` where one cannot be made.
 
     ``units`` has those that the drive does not state, by its names; a name in ``connect`` may say
-    its own: ``table_pos[mm]``.
+    its own: ``table_pos[mm]``. A drive that runs ``alone`` has no force on it.
     """
     if not isinstance(connect, Mapping) or not all(isinstance(v, str) for v in connect.values()):
         raise InputError(f"connect = {connect!r}: expected names of theirs by names of ours")
     for name in connect:
         if name not in UNITS:
             raise InputError(f"connect: {name} is none of our names{near(name, UNITS)}; {EXPECTED}")
-    if "box_force" not in connect or not set(connect) & set(MOTION):
+    if alone and set(connect) & set(FORCE):
+        raise InputError("connect: box_force has no structure that exerts it; leave it out")
+    if not (alone or "box_force" in connect) or not set(connect) & set(MOTION):
         missing = "box_force" if set(connect) & set(MOTION) else "a motion of the box"
         likely = ", ".join(f"{ours}={theirs}" for ours, theirs in proposals(drive).items())
         hint = f"; by unit and name likely: {likely}" if likely else ""

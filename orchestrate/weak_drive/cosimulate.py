@@ -40,6 +40,7 @@ from ..running.job import Chunk, Table, brief, plain
 from ..running.options import Running
 from ..running.runner import answer
 from .connection import (
+    FORCE,
     MOTION,
     OURS,
     Connection,
@@ -65,6 +66,9 @@ IN_TIME_TOO = {
     "coupling_error": ("m", "estimated error of x1 and x2 by the coupling, the larger one"),
 }
 BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
+BALLAST = Structure(
+    m1=1.0, m2=1.0, k1=1.0, k2=1.0, bonded=True
+)  # of a drive alone, which it is not on
 MAX_STEPS = 10_000_000
 IN_STEPS = ("nodes", "cubics", "work")  # arrays with a row for each step
 AT_THE_DURATION = "at the duration"  # attribute `ended` of a run that the drive did not end
@@ -129,7 +133,7 @@ class Coupling:
     def check_forces(self, times: ArrayLike, forces: ArrayLike) -> None:
         """Raise ``FmuError`` with what to look at where the coupling diverges."""
         limit = DIVERGED * (self.job.structure.k1 + self.job.structure.k2)
-        rows = np.column_stack([times, forces])
+        rows = np.column_stack([times, forces])[: 0 if self.job.alone else None]
         for time, force in rows[np.abs(rows[:, 1]) > limit][:1]:
             links = self.master.connection.links
             motion = " and ".join(links[name].theirs for name in MOTION if name in links)
@@ -192,12 +196,17 @@ class CosimulateJob(Question):
     item_columns: ClassVar[tuple[str, ...]] = ()  # nodes, and a state
     item: ClassVar[str] = "step"
 
+    @property
+    def alone(self) -> bool:
+        """Return whether the drive runs without a structure."""
+        return "box_force" not in dict(self.connect)
+
     def call_text(self) -> str:
         values: dict[str, Any] = {"connect": dict(self.connect), "units": dict(self.units)}
         values |= {"parameters": dict(self.start_values)}
         values |= {name: getattr(self, name) for name in ("duration", "step", "record", "start")}
         texts = (f"{name}={value!r}" for name, value in values.items() if value)
-        structure = f"Structure{brief(plain(self.structure))}"
+        structure = "None" if self.alone else f"Structure{brief(plain(self.structure))}"
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
     def count(self) -> int:
@@ -250,8 +259,12 @@ class CosimulateJob(Question):
     def begin_drive(self, drive: Instance, inputs: Inputs) -> Connection:
         """Initialise the drive with its inputs at the start; return how it is connected."""
         drive.initialize(**dict(self.start_values), **inputs.start_values())
-        links = checked_links(dict(self.connect), drive.description, dict(self.units))
+        links = self.links(drive.description)
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
+
+    def links(self, drive: Description) -> dict[str, Link]:
+        """Return the connections by our names."""
+        return checked_links(dict(self.connect), drive, dict(self.units), self.alone)
 
     def response_to_force(self) -> Floats:
         """Return by how much 1 N accelerates the box at once, m/s2, and which part of it in a step.
@@ -259,6 +272,8 @@ class CosimulateJob(Question):
         At once is what a connected acceleration says, else the motion in a short step.
         """
         seen: list[Any] = []
+        if self.alone:
+            return np.array([0.0, math.nan])
         for force in (0.0, 1.0):
             with suppress(FmuError), Instance(self.drive, "drive") as drive:
                 connection = self.begin_drive(drive, Inputs(self.inputs, drive.description))
@@ -291,7 +306,7 @@ class CosimulateJob(Question):
 
     def inputs_at_start(self, drive: Description) -> Iterator[str]:
         """Yield ``name = start unit`` of each of the drive's inputs that nothing is given for."""
-        links = checked_links(dict(self.connect), drive, dict(self.units)).values()
+        links = self.links(drive).values()
         given = {*(link.theirs for link in links), *Inputs(self.inputs, drive).names}
         for name, one in drive.variables.items():
             if one.causality == "input" and name not in given:
@@ -345,6 +360,8 @@ class CosimulateJob(Question):
 
     def dataset(self, table: Table) -> xr.Dataset:
         names = {**IN_TIME, **IN_TIME_TOO}
+        if self.alone:
+            names = {name: names[name] for name in ("box_acceleration",)}
         description = describe(self.drive)
         theirs = {}
         recorded = table.get("recorded", NOTHING)[: len(table["step_time"])]
@@ -356,6 +373,8 @@ class CosimulateJob(Question):
         knows_velocity = any(ours == "box_velocity" for ours, _ in self.connect)
         shown = [n for n in names if n in table and (n != "box_work" or knows_velocity)]
         contact = "whether the masses are in permanent contact"
+        in_contact = yes_or_no("time", table["in_contact"], contact)
+        title = f"{'no structure' if self.alone else self.structure.label()} on {description.name}"
         aborted = {}
         if "control_aborted" in table:
             text = "time at which the control gave up, NaN if it did not"
@@ -367,9 +386,8 @@ class CosimulateJob(Question):
                     for name, about in names.items()
                     if name in shown
                 },
-                "in_contact": yes_or_no("time", table["in_contact"], contact),
+                **({} if self.alone else {"in_contact": in_contact, **impact_variables(table)}),
                 **theirs,
-                **impact_variables(table),
                 **aborted,
             },
             {
@@ -378,7 +396,7 @@ class CosimulateJob(Question):
                 if name in ("time", at_steps)
             },
             {
-                "title": f"{self.structure.label()} on {description.name}",
+                "title": title,
                 "drive": description.name,
                 "recorded": ",".join(self.record),
                 "inputs_at_start": ", ".join(self.inputs_at_start(description)),
@@ -393,7 +411,7 @@ class CosimulateJob(Question):
 
 
 def cosimulate(
-    structure: Structure,
+    structure: Structure | None,
     drive: str | PathLike[str] | Drive | Shaker,
     *,
     connect: Mapping[str, str] | None = None,
@@ -413,8 +431,8 @@ def cosimulate(
 
     Parameters
     ----------
-    structure : Structure
-        Delaminated or bonded.
+    structure : Structure or None
+        Delaminated or bonded; ``None`` for the drive alone, which has no ``box_force`` then.
     drive : path, Drive or Shaker
         An FMU of FMI 2.0 or 3.0 for co-simulation that moves the box, of any tool; or one of the
         package's own: a motor with an unbalance, an electrodynamic shaker.
@@ -499,18 +517,20 @@ def cosimulate(
     if isinstance(drive, (Drive, Shaker)):
         parameters = {**drive.parameters(), **(parameters or {})}
         model = SHAKER if isinstance(drive, Drive) else ELECTRODYNAMIC_SHAKER
-        connect, drive = connect or OURS, finder(running)(model).path
+        ours = {name: name for name in OURS if structure is not None or name not in FORCE}
+        connect, drive = connect or ours, finder(running)(model).path
     path = Path(drive).resolve()
     description = describe_runnable(path)
     units = checked_units(units, description)
-    links = checked_links(connect or {}, description, units)
+    links = checked_links(connect or {}, description, units, structure is None)
     for name, value in (("duration", duration), ("step", step)):
         check(name, value, "s", low=0.0, exclusive=True)
     check_internal_step(duration, step, description, estimate)
     count = checked_step_count(duration, step, description)
-    checked = checked_structure(structure)
+    estimate = estimate and structure is not None
+    checked = checked_structure(BALLAST if structure is None else structure)
     job = CosimulateJob(
-        name=f"cosimulate_{checked.label()}_{path.stem}",
+        name=f"cosimulate_{checked.label() if structure else 'alone'}_{path.stem}",
         structure=checked,
         duration=duration,
         estimate=estimate,

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 import orchestrate
 from orchestrate.errors import FmuError, InputError
@@ -272,6 +273,25 @@ def test_the_work_on_the_drive_is_what_the_system_loses(exported):
     balance = springs + kinetic + run.impact_energy + run.box_work
     assert run.sizes["impact"] > 3
     assert np.abs(balance).max() < 1e-4 * np.abs(run.box_work).max()
+
+
+@pytest.mark.usefixtures("exported")
+def test_a_drive_runs_without_a_structure(drive):
+    """Against its own exponential under a constant voltage; with a picture, and no structure."""
+    run = {**RUN, "inputs": {"volts": 3.0}, "duration": 0.5, "step": 0.01, "record": ["table_pos"]}
+    motion = {"box_acceleration": "table_acc"}
+    found = orchestrate.cosimulate(None, drive, connect=motion, **run)
+    own = table_drive(table.NUMBERS)
+    inverse = np.linalg.inv(own.a[:3, :3])
+    settled = -inverse @ own.b[:3, 1] * 3.0
+    expected = [(settled - expm(own.a[:3, :3] * t) @ settled)[0] for t in found.time.values]
+    assert found.table_pos.values == pytest.approx(expected, abs=1e-12)
+    assert set(found.data_vars) == {"box_acceleration", "table_pos"} and orchestrate.plot(found)
+    motor = orchestrate.Drive.from_file("beam")
+    alone = orchestrate.cosimulate(None, motor, duration=0.1, step=0.01, record=["speed"], **MOTOR)
+    assert 60.0 < alone.speed[-1] < 66.0
+    with pytest.raises(InputError, match="box_force has no structure that exerts it; leave it out"):
+        orchestrate.cosimulate(None, drive, connect=CONNECT, **run)
 
 
 WRONG = {  # by Python alone: what a command line can have is tested there
