@@ -66,9 +66,8 @@ IN_TIME_TOO = {
     "coupling_error": ("m", "estimated error of x1 and x2 by the coupling, the larger one"),
 }
 BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
-BALLAST = Structure(
-    m1=1.0, m2=1.0, k1=1.0, k2=1.0, bonded=True
-)  # of a drive alone, which it is not on
+# in place of the structure where there is none: the drive does not feel it
+BALLAST = Structure(m1=1.0, m2=1.0, k1=1.0, k2=1.0, bonded=True)
 MAX_STEPS = 10_000_000
 IN_STEPS = ("nodes", "cubics", "work")  # arrays with a row for each step
 AT_THE_DURATION = "at the duration"  # attribute `ended` of a run that the drive did not end
@@ -97,7 +96,7 @@ class Coupling:
         still = Excitation(frequency=job.structure.omega, amplitude=0.0)
         begin(oscillator, job.structure, still, job.start)
         connection = job.begin_drive(drive, self.inputs)
-        connection = replace(connection, recorded=job.record if parts == 1 else ())
+        connection = replace(connection, recorded=job.record)
         self.h = job.step / parts
         scheme = Scheme(self.h)
         self.master = Master(oscillator, drive, scheme, connection, inverse_mass=inverse_mass)
@@ -127,7 +126,8 @@ class Coupling:
             table["control"] = np.array([self.inputs.state])
         table = {f"{name} {self.parts}": values for name, values in table.items()}
         if self.master.connection.recorded:
-            table["recorded"] = np.concatenate([*recorded, record.recorded])
+            rows = record.recorded[self.parts - 1 :: self.parts]
+            table[f"recorded {self.parts}"] = np.concatenate([*recorded, rows])
         return table
 
     def check_forces(self, times: ArrayLike, forces: ArrayLike) -> None:
@@ -364,12 +364,18 @@ class CosimulateJob(Question):
             names = {name: names[name] for name in ("box_acceleration",)}
         description = describe(self.drive)
         theirs = {}
-        recorded = table.get("recorded", NOTHING)[: len(table["step_time"])]
+        count = len(table["step_time"])
+        recorded, finer = (table.get(f"recorded {i}", NOTHING)[:count] for i in (1, 2))
         at_steps = "time" if self.points == 1 else "step_time"
-        for name, values in zip(self.record, recorded.T, strict=True):
+        for i, name in enumerate(self.record):
             about = description.variable(name)
-            text = about.description or f"{name} of the drive"
-            theirs[name] = variable(at_steps, values, about.unit or "1", text)
+            text, unit = about.description or f"{name} of the drive", about.unit or "1"
+            theirs[name] = variable(at_steps, recorded[:, i], unit, text)
+            if self.estimate:
+                error = TO_HALF * np.abs(recorded[:, i] - finer[:, i])
+                theirs[f"{name}_error"] = variable(
+                    at_steps, error, unit, f"estimated error: {text}"
+                )
         knows_velocity = any(ours == "box_velocity" for ours, _ in self.connect)
         shown = [n for n in names if n in table and (n != "box_work" or knows_velocity)]
         contact = "whether the masses are in permanent contact"
@@ -474,8 +480,9 @@ def cosimulate(
     xarray.Dataset
         Over ``time`` in s, the communication points: ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``,
         ``v_rel``, ``contact_force``, ``in_contact``, ``box_force``, ``impact_energy``,
-        ``box_acceleration``, what is recorded of the drive by its names, ``box_work`` where a
-        velocity is connected, ``coupling_error``, the larger error of ``x1`` and ``x2`` in m, and
+        ``box_acceleration``, what is recorded of the drive by its names, with its estimated error
+        as ``NAME_error``, ``box_work`` where a velocity is connected, ``coupling_error``, the
+        larger error of ``x1`` and ``x2`` in m, and
         of a control the time ``control_aborted``. Attributes: ``ended``, when and why the drive
         ended the simulation before the duration, with what was reached until then, and
         ``drive_warnings``, what it warned of; both are given as warnings too.
@@ -568,8 +575,7 @@ def warn_of_drive(run: xr.Dataset) -> None:
 
 def nothing_more(previous: Table, parts: int) -> Table:
     """Return the table of a run that a drive ended in a chunk before: no rows, the same end."""
-    names = {name for name in previous if name.endswith(f" {parts}")} | ({"recorded"} & {*previous})
-    table = {name: previous[name][:0] for name in names if name != "recorded" or parts == 1}
+    table = {name: previous[name][:0] for name in previous if name.endswith(f" {parts}")}
     return {**table, f"ended {parts}": previous[f"ended {parts}"]}
 
 

@@ -179,7 +179,7 @@ class Master:
         """
         self.oscillator = Channel(oscillator, CUBIC, OscillatorOutputs._fields)
         self.drive, self.scheme = DriveSide(drive, connection), scheme
-        self.connection, self.goes_back = connection, drive.description.has_states
+        self.connection = connection
         self.names = (*LEADING, *connection.outputs, *connection.inputs)
         self.inputs = slice(END + len(connection.outputs), len(self.names))
         unknown = [math.nan] * len(connection.inputs)
@@ -277,9 +277,10 @@ class Master:
         """Describe both FMUs and the scheme in the C structure."""
         connection, drive = self.connection, self.drive
         pair = Pair(Side.of(self.oscillator, ["impact_count"]), Side.of(drive.channel))
-        for name in ("tolerance", "easy", "halvings", "first_passes"):
+        for name in ("tolerance", "easy", "halvings"):
             setattr(pair, name, getattr(self.scheme, name))
-        pair.first_passes = self.scheme.first_passes if self.goes_back else 1
+        goes_back = drive.instance.description.has_states
+        pair.first_passes = self.scheme.first_passes if goes_back else 1
         pair.force, pair.motion = Links.of(drive.forces), Links.of(drive.motions)
         names = () if self._reads_itself else connection.recorded
         pair.cubic, pair.recorded = connection.cubic, references(drive.instance, names)
@@ -301,7 +302,7 @@ class Master:
                 channel.get()  # it raises
             if side.status in (0, NOT_WHOLE) or side.failed == b"the step":
                 with suppress(SimulationEnded):
-                    channel.check_step(max(side.status, 0))
+                    channel.check_step(max(side.status, 0), side.status != NOT_WHOLE)
             else:
                 raise side.error(channel.instance)
 

@@ -29,7 +29,7 @@ enum {  /* places in a row; after the motion of the box the drive's other output
     DISCARD = 2, NOT_WHOLE = -2,  /* statuses, of FMI and our own */
     LAST_TIME = 2, TERMINATED = 3  /* kinds of fmi2GetRealStatus and fmi2GetBooleanStatus */
 };
-static const double WHOLE = 1e-6;  /* fmu/channel.py */
+static const double WHOLE = 1e-6;  /* of a step: a rest that is rounding, its end was reached */
 
 typedef int (*RealStatus2)(void *, int kind, double *value);
 typedef int (*BooleanStatus2)(void *, int kind, int *value);

@@ -96,7 +96,8 @@ class SteppingChannel(Channel):
         if self.ended:
             raise SimulationEnded(self.ended)
         self.begin()
-        self.check_step(self._step(time, h))
+        status = self._step(time, h)
+        self.check_step(status, self.answer.last >= time + (1.0 - 1e-6) * h)
 
     def save(self):
         if self.kept and not self._reused:
@@ -188,7 +189,7 @@ class PythonMaster(Master):
     def _attempt(self, h, may_refuse: bool):
         """Try one step; return its row, None where it is refused, and its relative defect."""
         now, inputs, drive = self.row, self.row[self.inputs], self.drive
-        passes = self.scheme.first_passes if self.goes_back and now[H] == 0.0 else 1
+        passes = self.pair.first_passes if now[H] == 0.0 else 1
         self.oscillator.save()
         if may_refuse or passes > 1:
             drive.channel.save()
