@@ -48,7 +48,7 @@ def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
 def variable_lines(drive: Path) -> Iterator[str]:
     """Yield the drive's parameters, inputs and outputs, and what could be connected."""
     from ..fmu.description import describe
-    from ..weak_drive.connection import MOTION, proposals
+    from ..weak_drive.connection import MOTION, proposals, reason_for
 
     description = describe(drive)
     yield f"{description.name}, FMI {description.fmi_version}"
@@ -60,7 +60,9 @@ def variable_lines(drive: Path) -> Iterator[str]:
                 yield f"  {causality:10} {name:28} {about}".rstrip()
     if likely := proposals(description):
         links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
-        yield f"likely: --connect {links}   (by unit and name; a run checks the sign of the force)"
+        yield f"likely: --connect {links}   (a run checks the sign of the force)"
+        for ours, theirs in likely.items():
+            yield f"  {ours:17} {theirs}: {reason_for(description, ours, theirs)}"
     else:
         outputs = " ".join(f"{ours}=OUTPUT" for ours in MOTION)
         yield (
@@ -77,7 +79,7 @@ class OfDrive(Options):
     listed: bool = option("show its variables, propose connections, and end", name="--list")
     connect: list[str] = option(
         "box_acceleration (or box_velocity, box_position) and box_force, by names of the drive; a "
-        "minus before a name turns its sign",
+        "minus before a name turns its sign, a unit after it in brackets states it: pos[mm]",
         (),
         value="OURS=THEIRS",
         many=True,

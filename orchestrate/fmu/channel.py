@@ -21,8 +21,6 @@ from typing import Any
 from ..errors import FmuError
 from .instance import DISCARD, ERROR, Instance
 
-WHOLE = 1e-6  # of a step: a rest that is rounding, its end was reached
-
 
 class SimulationEnded(FmuError):
     """Raised if an FMU ends the simulation before the end of a step."""
@@ -44,11 +42,6 @@ class StepAnswer(Structure):
     last: float
     terminate: bool
     early: bool
-
-    @property
-    def is_whole(self) -> bool:
-        """Return whether the step reached its end."""
-        return self.last >= self.time + (1.0 - WHOLE) * self.h
 
 
 class Channel:
@@ -109,8 +102,8 @@ class Channel:
             raise self.instance.not_finite_error(self._names, values)
         return values
 
-    def check_step(self, status: int) -> None:
-        """Take the status of a step and its answer by the rule of this module."""
+    def check_step(self, status: int, whole: bool) -> None:
+        """Take a step's status, whether it was whole, and its answer by this module's rule."""
         answer, name = self.answer, self.instance.description.name
         texts = [self.instance.logged()]
         if answer.terminate and self.instance.logged(ERROR):  # pythonfmu's answer to an exception
@@ -118,7 +111,7 @@ class Channel:
         if answer.terminate:
             texts = [f"the FMU {name} ended the simulation at t = {answer.last:.6g} s", *texts]
             self.ended = ": ".join(filter(None, texts))
-        if status == DISCARD or (answer.early and not answer.is_whole):
+        if status == DISCARD or (answer.early and not whole):
             span = f"its step from t = {answer.time:.6g} s to {answer.time + answer.h:.6g} s"
             done = f" (it came to {answer.last:.6g} s)" if answer.last > answer.time else ""
             early = f"returned early from {span}{done}, which was not allowed"
@@ -126,7 +119,7 @@ class Channel:
             unsaid = "it logged no cause; try a shorter step, and the limits of its inputs"
             cause = texts[-1] or (unsaid if status == DISCARD else "expected its end")
             raise FmuError(f"the FMU {name} {why}: {cause}")
-        if self.ended and not answer.is_whole:
+        if self.ended and not whole:
             raise SimulationEnded(self.ended)
         self.instance.check("the step", status)
 

@@ -128,7 +128,8 @@ def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = No
     heights: Any = {"sharex": True, "height_ratios": (1.0, 1.6, 1.2, 1.2)}
     figure, (box, masses, gap, impacts) = make_panels(4, 1, (10.4, 7.2), title, **heights)
     scale, _ = acceleration_scale(data)
-    draw_box_gap_impacts(data, box, gap, impacts)
+    draw_acceleration(data, box)
+    draw_gap_impacts(data, gap, impacts)
     for number, colour in (("1", BLUE), ("2", RED)):
         style: Any = {"color": colour, "label": f"mass {number}", "alpha": 0.55}
         draw_signal(masses, data, f"a{number}_abs", scale, **style)
@@ -147,16 +148,18 @@ def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = No
 def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
     """Draw a coupled run over time, a panel for each quantity of the drive; return the figure."""
     names = [str(name) for name in data.attrs["recorded"].split(",") if name]
-    count = 4 + len(names)
+    count = (4 if "x1" in data else 1) + len(names)
     title = title or f"{data.attrs['drive']}; {labels.title_from_attributes(data)}"
     figure, rows = make_panels(count, 1, (10.4, 1.2 + 1.6 * count), title, sharex=True)
-    draw_box_gap_impacts(data, rows[0], rows[2], rows[3])
-    factor, unit = length_scale(data, float(abs(data.x1).max()))
-    for name, colour in (("x1", BLUE), ("x2", RED)):
-        draw_signal(rows[1], data, name, factor, color=colour, label=f"mass {name[1]}")
-    rows[1].set_ylabel(in_unit("displacement", unit, "\n"))
-    legend_above(rows[1], 2)
-    for axes, name in zip(rows[4:], names, strict=True):
+    draw_acceleration(data, rows[0])
+    if "x1" in data:
+        draw_gap_impacts(data, rows[2], rows[3])
+        factor, unit = length_scale(data, float(abs(data.x1).max()))
+        for name, colour in (("x1", BLUE), ("x2", RED)):
+            draw_signal(rows[1], data, name, factor, color=colour, label=f"mass {name[1]}")
+        rows[1].set_ylabel(in_unit("displacement", unit, "\n"))
+        legend_above(rows[1], 2)
+    for axes, name in zip(rows[count - len(names) :], names, strict=True):
         draw_signal(axes, data, name, 1.0, color=BLACK)
         unit = str(data[name].attrs["units"])
         axes.set_ylabel(name if unit == "1" else f"{name}\nin {unit}")
@@ -164,11 +167,15 @@ def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
-def draw_box_gap_impacts(data: xr.Dataset, box: Axes, gap: Axes, impacts: Axes) -> None:
-    """Draw the box's acceleration, the gap and each impact's impulse, in a panel each."""
+def draw_acceleration(data: xr.Dataset, box: Axes) -> None:
+    """Draw the box's acceleration."""
     scale, unit = acceleration_scale(data)
     draw_signal(box, data, "box_acceleration", scale, color=BLACK)
     box.set_ylabel(in_unit("acceleration\nof box", unit))
+
+
+def draw_gap_impacts(data: xr.Dataset, gap: Axes, impacts: Axes) -> None:
+    """Draw the gap and each impact's impulse, in a panel each."""
     factor, unit = length_scale(data, float(data.x_rel.max()))
     draw_signal(gap, data, "x_rel", factor, color=BLACK)
     gap.set_ylabel(in_unit("gap", unit))
@@ -183,7 +190,7 @@ def draw_box_gap_impacts(data: xr.Dataset, box: Axes, gap: Axes, impacts: Axes) 
 
 def draw_signal(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
     """Draw a signal as a line, or as the band between its extremes if it is long."""
-    time, values = data.time.values, data[name].values / factor
+    time, values = data[data[name].dims[0]].values, data[name].values / factor
     if len(time) <= 5000:
         axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})
     else:

@@ -47,7 +47,7 @@ class Connection:
     inputs: tuple[str, ...] = ()  # its others, by its names
     outputs: tuple[str, ...] = ()
     recorded: tuple[str, ...] = ()  # what is read at the end of each interval
-    cubic: int = -1  # place among its inputs of one with its three derivatives; -1: all are held
+    cubic: int = -1  # place among its inputs from which on they are cubics; -1: all are held
 
 
 ENERGIES = ("box_force_work", "motor_energy", "box_damper_energy", "stored_energy")
@@ -57,18 +57,24 @@ MOTOR = Connection(  # the first two outputs are what the step control needs
 
 
 def checked_links(
-    connect: Mapping[str, str], drive: Description, units: Mapping[str, str]
+    connect: Mapping[str, str],
+    drive: Description,
+    units: Mapping[str, str],
+    alone: bool = False,
 ) -> dict[str, Link]:
     """Return the connections by our names; raise ``InputError`` where one cannot be made.
 
-    ``units`` has those that the drive does not state, by its names.
+    ``units`` has those that the drive does not state, by its names; a name in ``connect`` may say
+    its own: ``table_pos[mm]``. A drive that runs ``alone`` has no force on it.
     """
     if not isinstance(connect, Mapping) or not all(isinstance(v, str) for v in connect.values()):
         raise InputError(f"connect = {connect!r}: expected names of theirs by names of ours")
     for name in connect:
         if name not in UNITS:
             raise InputError(f"connect: {name} is none of our names{near(name, UNITS)}; {EXPECTED}")
-    if "box_force" not in connect or not set(connect) & set(MOTION):
+    if alone and set(connect) & set(FORCE):
+        raise InputError("connect: box_force has no structure that exerts it; leave it out")
+    if not (alone or "box_force" in connect) or not set(connect) & set(MOTION):
         missing = "box_force" if set(connect) & set(MOTION) else "a motion of the box"
         likely = ", ".join(f"{ours}={theirs}" for ours, theirs in proposals(drive).items())
         hint = f"; by unit and name likely: {likely}" if likely else ""
@@ -76,6 +82,10 @@ def checked_links(
     links: dict[str, Link] = {}
     for ours, theirs in connect.items():
         sign, name = (-1.0, theirs[1:]) if theirs.startswith("-") else (1.0, theirs)
+        stated = re.fullmatch(r"(.+)\[([^\[\]]+)\]", name)
+        if name not in drive.variables and stated and stated[1] in drive.variables:
+            name = stated[1]
+            units = {**units, **checked_units({name: stated[2]}, drive)}
         causality = "input" if ours in FORCE else "output"
         checked_variable(drive, name, causality)
         if name in (link.theirs for link in links.values()):
@@ -173,6 +183,16 @@ def proposals(drive: Description) -> dict[str, str]:
         if ranks and (ours not in FORCE[1:] or ours in ranks):
             found[ours] = ours if ours in ranks else max(ranks, key=lambda name: ranks[name])
     return found if FORCE[0] in found and set(MOTION) & set(found) else {}
+
+
+def reason_for(drive: Description, ours: str, theirs: str) -> str:
+    """Return why a variable of the drive is proposed for one of ours."""
+    variable = drive.variable(theirs)
+    if ours == theirs:
+        return "has the same name"
+    unit, alike = variable.unit in drive.units, similarity(ours.partition("_")[2], theirs) == 1.0
+    reasons = [f"{variable.causality} in {variable.unit}"] * unit + ["a name like it"] * alike
+    return " and ".join(reasons)
 
 
 def similarity(word: str, name: str) -> float:

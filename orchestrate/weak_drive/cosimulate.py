@@ -11,10 +11,11 @@ import hashlib
 import math
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,7 +29,7 @@ from ..fmu.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
 from ..fmu.play import PLAYED, Player
 from ..lazy import Unpack, xr
 from ..model import Excitation
-from ..model.arguments import Positive, checked_integer
+from ..model.arguments import Count, Positive, checked_integer
 from ..model.drive import Drive
 from ..model.shaker import Shaker
 from ..model.structure import Structure
@@ -39,6 +40,7 @@ from ..running.job import Chunk, Table, brief, plain
 from ..running.options import Running
 from ..running.runner import answer
 from .connection import (
+    FORCE,
     MOTION,
     OURS,
     Connection,
@@ -52,7 +54,7 @@ from .energy_balance import given_work
 from .inputs import Input, Inputs, check_inputs
 from .master import DriveSide, Master, Scheme
 from .polynomials import end_value
-from .record import BOX, Floats, Record, joined
+from .record import Floats, Record, joined
 from .schedule import Course, check
 
 OUTPUTS = (*PLAYED, "box_force", "impact_energy")
@@ -64,12 +66,17 @@ IN_TIME_TOO = {
     "coupling_error": ("m", "estimated error of x1 and x2 by the coupling, the larger one"),
 }
 BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
+# in place of the structure where there is none: the drive does not feel it
+BALLAST = Structure(m1=1.0, m2=1.0, k1=1.0, k2=1.0, bonded=True)
 MAX_STEPS = 10_000_000
 IN_STEPS = ("nodes", "cubics", "work")  # arrays with a row for each step
 AT_THE_DURATION = "at the duration"  # attribute `ended` of a run that the drive did not end
 NOTHING = np.empty((0, 0))
 DIVERGED = 1e12  # m: springs that a force on the box would stretch so far are none
 NOTICED = 0.01  # of the largest displacement: a larger coupling error gives a warning
+RESOLVED = 0.5  # of a drive's response to a force at once, its mean over a step, else a warning
+SHORT = 1.0 / 64.0  # of a step: in it a drive responds to a force as at once
+TO_HALF = 8.0 / 7.0  # error over its difference to half the step, which errors of third order have
 Values = tuple[tuple[str, float | bool], ...]
 
 
@@ -77,16 +84,22 @@ class Coupling:
     """Both FMUs of a job, stepped together at its step or a part of it."""
 
     def __init__(
-        self, job: CosimulateJob, oscillator: Instance, drive: Instance, parts: int
+        self,
+        job: CosimulateJob,
+        oscillator: Instance,
+        drive: Instance,
+        parts: int,
+        inverse_mass: float,
     ) -> None:
         self.job, self.parts, self.oscillator, self.drive = job, parts, oscillator, drive
         self.inputs = Inputs(job.inputs, drive.description)
         still = Excitation(frequency=job.structure.omega, amplitude=0.0)
         begin(oscillator, job.structure, still, job.start)
         connection = job.begin_drive(drive, self.inputs)
-        connection = replace(connection, recorded=job.record if parts == 1 else ())
+        connection = replace(connection, recorded=job.record)
         self.h = job.step / parts
-        self.master = Master(oscillator, drive, Scheme(self.h), connection)
+        scheme = Scheme(self.h)
+        self.master = Master(oscillator, drive, scheme, connection, inverse_mass=inverse_mass)
         knows = "box_acceleration" in connection.links
         fixed = drive.description.has_fixed_step or drive.description.internal_step
         self.divides_first = not knows and not fixed
@@ -96,7 +109,8 @@ class Coupling:
         steps = range(items[0] * self.parts, (items[-1] + 1) * self.parts)
         recorded = []
         if self.master.connection.recorded and not steps.start:
-            recorded = [np.array([self.master.recorded(self.inputs.at(np.zeros(1))[0])])]
+            start = [*self.inputs.start_values().values()]
+            recorded = [np.array([self.master.recorded(start)])]
         try:
             record = self.run(steps)
         except FmuError:
@@ -112,13 +126,14 @@ class Coupling:
             table["control"] = np.array([self.inputs.state])
         table = {f"{name} {self.parts}": values for name, values in table.items()}
         if self.master.connection.recorded:
-            table["recorded"] = np.concatenate([*recorded, record.recorded])
+            rows = record.recorded[self.parts - 1 :: self.parts]
+            table[f"recorded {self.parts}"] = np.concatenate([*recorded, rows])
         return table
 
     def check_forces(self, times: ArrayLike, forces: ArrayLike) -> None:
         """Raise ``FmuError`` with what to look at where the coupling diverges."""
         limit = DIVERGED * (self.job.structure.k1 + self.job.structure.k2)
-        rows = np.column_stack([times, forces])
+        rows = np.column_stack([times, forces])[: 0 if self.job.alone else None]
         for time, force in rows[np.abs(rows[:, 1]) > limit][:1]:
             links = self.master.connection.links
             motion = " and ".join(links[name].theirs for name in MOTION if name in links)
@@ -129,15 +144,17 @@ class Coupling:
     def run(self, steps: range) -> Record:
         """Run both FMUs over some steps."""
         if steps.start or not self.divides_first:
-            return self.inputs.run(self.master, steps, self.h)
-        short = self.h / sum(BEGINNING)  # nothing is known of the acceleration
-        first = self.inputs.at(np.array([0.5, 1.0]) * self.h).reshape(1, -1)
-        first = first[:, : self.master.width]
-        pieces = joined([self.master.run(first, part * short) for part in BEGINNING])
+            return self.inputs.run(self.master, steps, self.h, int(self.divides_first))
+        parts = (
+            np.array(BEGINNING) / sum(BEGINNING) * self.h
+        )  # nothing is known of the acceleration
+        rows = self.inputs.rows(np.append(0.0, np.cumsum(parts)), self.master.width)
+        runs = (self.master.run(rows[i : i + 1], h) for i, h in enumerate(parts.tolist()))
+        pieces = joined([*runs])
         if self.master.ended:
             raise FmuError(self.master.ended)
         begun = replace(pieces, ends=pieces.ends[-1:], recorded=pieces.recorded[-1:])
-        return joined([begun, self.inputs.run(self.master, steps[1:], self.h)])
+        return joined([begun, self.inputs.run(self.master, steps[1:], self.h, 1)])
 
     def get_state(self) -> Table:
         """Return the state of both FMUs and of the master, a row of each."""
@@ -170,6 +187,8 @@ class CosimulateJob(Question):
     record: tuple[str, ...] = ()
     start: tuple[float, ...] = REST
     estimate: bool = True
+    force_sign: str = "tested"
+    points: Count = 1
     asked: ClassVar[str] = "cosimulate"
     chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
@@ -177,12 +196,17 @@ class CosimulateJob(Question):
     item_columns: ClassVar[tuple[str, ...]] = ()  # nodes, and a state
     item: ClassVar[str] = "step"
 
+    @property
+    def alone(self) -> bool:
+        """Return whether the drive runs without a structure."""
+        return "box_force" not in dict(self.connect)
+
     def call_text(self) -> str:
         values: dict[str, Any] = {"connect": dict(self.connect), "units": dict(self.units)}
         values |= {"parameters": dict(self.start_values)}
         values |= {name: getattr(self, name) for name in ("duration", "step", "record", "start")}
         texts = (f"{name}={value!r}" for name, value in values.items() if value)
-        structure = f"Structure{brief(plain(self.structure))}"
+        structure = "None" if self.alone else f"Structure{brief(plain(self.structure))}"
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
     def count(self) -> int:
@@ -213,17 +237,15 @@ class CosimulateJob(Question):
         if items[0] == self.count() - 1:
             assert previous is not None
             return self.motion(fmus[OSCILLATOR], previous)
-        table: Table = {}
-        if self.estimate:
-            known = previous["moved"][-1] if previous is not None else self.moved_by_force()
-            table["moved"] = np.array([known])
+        response = self.response_to_force() if previous is None else previous["response"][-1]
+        table: Table = {"response": response[np.newaxis]}
         warned: dict[str, None] = {}
         for parts in self.finenesses():
             if previous is not None and previous[f"ended {parts}"][-1]:
                 table |= nothing_more(previous, parts)
                 continue
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(self.drive, "drive") as drive:
-                coupling = Coupling(self, oscillator, drive, parts)
+                coupling = Coupling(self, oscillator, drive, parts, float(response[0]))
                 if previous is not None:
                     coupling.set_state(previous)
                 table |= coupling.advance(items)
@@ -236,28 +258,55 @@ class CosimulateJob(Question):
 
     def begin_drive(self, drive: Instance, inputs: Inputs) -> Connection:
         """Initialise the drive with its inputs at the start; return how it is connected."""
-        (values,) = inputs.at(np.zeros(1)).tolist()
-        drive.initialize(**dict(self.start_values), **dict(zip(inputs.names, values, strict=True)))
-        links = checked_links(dict(self.connect), drive.description, dict(self.units))
+        drive.initialize(**dict(self.start_values), **inputs.start_values())
+        links = self.links(drive.description)
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
 
-    def moved_by_force(self) -> float:
-        """Return by how much 1 N more moves the box in a step, by its connected motion."""
-        moved = []
+    def links(self, drive: Description) -> dict[str, Link]:
+        """Return the connections by our names."""
+        return checked_links(dict(self.connect), drive, dict(self.units), self.alone)
+
+    def response_to_force(self) -> Floats:
+        """Return by how much 1 N accelerates the box at once, m/s2, and which part of it in a step.
+
+        At once is what a connected acceleration says, else the motion in a short step.
+        """
+        seen: list[Any] = []
+        if self.alone:
+            return np.array([0.0, math.nan])
         for force in (0.0, 1.0):
-            with Instance(self.drive, "drive") as drive:
+            with suppress(FmuError), Instance(self.drive, "drive") as drive:
                 connection = self.begin_drive(drive, Inputs(self.inputs, drive.description))
                 side = DriveSide(drive, replace(connection, inputs=()))  # they stay as they began
                 side.put((force, 0.0, 0.0, 0.0), ())
-                drive.step(0.0, self.step)
-                moved.append(side.get()[: len(BOX)])
-        # the first that is connected: its sign is sure whatever springs the drive has
-        ways = (after - before for before, after in zip(*moved, strict=True))
-        return next((way for way in ways if math.isfinite(way)), math.nan)
+                motion, about = [side.get()[:3]], drive.description
+                short = 0.0 if about.has_fixed_step or about.internal_step else SHORT * self.step
+                if short:
+                    drive.step(0.0, short)
+                    motion.append(side.get()[:3])
+                drive.step(short, self.step)
+                seen.append([*motion, side.get()[:3]])
+        if len(seen) < 2:  # the run itself says what the drive does
+            return np.array([0.0, math.nan])
+        begin, *early, late = np.diff(seen, axis=0)[0]
+        means = np.array([2.0 / self.step**2, 1.0 / self.step, 1.0]) * late
+        soon = np.array([2.0 / short**2, 1.0 / short]) * early[0][:2] if early else means[:2]
+        at_once = next((x for x in (begin[2], *soon[::-1]) if math.isfinite(x)), math.nan)
+        self.check_sign([at_once, *means], connection.links)
+        mean = next(x for x in means[[1, 0, 2]] if math.isfinite(x))
+        return np.array([at_once, mean / at_once if at_once else math.nan])
+
+    def check_sign(self, responses: Sequence[float], links: Mapping[str, Link]) -> None:
+        """Raise ``InputError`` if the first response to the force that is one goes against it."""
+        moved = next((x for x in responses if math.isfinite(x) and x), 0.0)
+        if moved < 0.0 and self.force_sign == "tested":
+            text = f"1 N of box_force accelerates the box by {moved:.2g} m/s2, against the force; "
+            text += f"connect {turned(links)}, or say force_sign='given' if that is meant"
+            raise InputError(text)
 
     def inputs_at_start(self, drive: Description) -> Iterator[str]:
         """Yield ``name = start unit`` of each of the drive's inputs that nothing is given for."""
-        links = checked_links(dict(self.connect), drive, dict(self.units)).values()
+        links = self.links(drive).values()
         given = {*(link.theirs for link in links), *Inputs(self.inputs, drive).names}
         for name, one in drive.variables.items():
             if one.causality == "input" and name not in given:
@@ -270,6 +319,7 @@ class CosimulateJob(Question):
     def motion(self, oscillator: Path, steps: Table) -> Table:
         """Return the motion under the accelerations of all steps, over time, and its impacts."""
         times, ended = self.reached(steps)
+        times = self.times(self.points)[: self.points * (len(times) - 1) + 1]
         for parts in self.finenesses() if ended else ():
             done = steps[f"nodes {parts}"] <= times[-1]
             steps |= {name: steps[name][done] for name in (f"{one} {parts}" for one in IN_STEPS)}
@@ -283,17 +333,18 @@ class CosimulateJob(Question):
         columns = dict(zip(OUTPUTS, rows.T, strict=True)) | {"time": times, "in_contact": touching}
         if self.estimate:
             away = np.abs(rows - motions[1][0])[:, [OUTPUTS.index(name) for name in ("x1", "x2")]]
-            columns["coupling_error"] = 4.0 / 3.0 * away.max(axis=1)
+            columns["coupling_error"] = TO_HALF * away.max(axis=1)
         nodes, cubics = np.append(0.0, steps["nodes 1"]), steps["cubics 1"]
-        last = end_value(cubics[-1], nodes[-1] - nodes[-2])
-        at_times = nodes.searchsorted(times)
-        columns["box_acceleration"] = np.append(cubics[at_times[:-1], 0], last)
-        columns["box_work"] = np.append(0.0, np.cumsum(steps["work 1"]))[at_times]
+        inside = (nodes.searchsorted(times, side="right") - 1).clip(max=len(cubics) - 1)
+        columns["box_acceleration"] = end_value(tuple(cubics[inside].T), times - nodes[inside])
+        columns["step_time"] = times[:: self.points]
+        work = np.append(0.0, np.cumsum(steps["work 1"]))
+        columns["box_work"] = work[nodes.searchsorted(columns["step_time"])]
         for _, one in self.inputs:
             if isinstance(one, InputControl):
                 end = one.aborted(tuple(steps["control 1"][-1].tolist()))
                 columns["control_aborted"] = np.array([end])
-        columns["moved"] = steps.get("moved", np.array([np.nan]))[:1]
+        columns["response"] = steps["response"][:1]
         columns["ended"] = np.array([ended])
         return {**columns, **impact_columns(impacts, self.structure)}
 
@@ -309,35 +360,53 @@ class CosimulateJob(Question):
 
     def dataset(self, table: Table) -> xr.Dataset:
         names = {**IN_TIME, **IN_TIME_TOO}
+        if self.alone:
+            names = {name: names[name] for name in ("box_acceleration",)}
         description = describe(self.drive)
         theirs = {}
-        recorded = table.get("recorded", NOTHING)[: len(table["time"])]
-        for name, values in zip(self.record, recorded.T, strict=True):
+        count = len(table["step_time"])
+        recorded, finer = (table.get(f"recorded {i}", NOTHING)[:count] for i in (1, 2))
+        at_steps = "time" if self.points == 1 else "step_time"
+        for i, name in enumerate(self.record):
             about = description.variable(name)
-            text = about.description or f"{name} of the drive"
-            theirs[name] = variable("time", values, about.unit or "1", text)
+            text, unit = about.description or f"{name} of the drive", about.unit or "1"
+            theirs[name] = variable(at_steps, recorded[:, i], unit, text)
+            if self.estimate:
+                error = TO_HALF * np.abs(recorded[:, i] - finer[:, i])
+                theirs[f"{name}_error"] = variable(
+                    at_steps, error, unit, f"estimated error: {text}"
+                )
         knows_velocity = any(ours == "box_velocity" for ours, _ in self.connect)
         shown = [n for n in names if n in table and (n != "box_work" or knows_velocity)]
         contact = "whether the masses are in permanent contact"
+        in_contact = yes_or_no("time", table["in_contact"], contact)
+        title = f"{'no structure' if self.alone else self.structure.label()} on {description.name}"
         aborted = {}
         if "control_aborted" in table:
             text = "time at which the control gave up, NaN if it did not"
             aborted["control_aborted"] = variable((), table["control_aborted"][-1], "s", text)
         return xr.Dataset(
             {
-                **{name: variable("time", table[name], *names[name]) for name in shown},
-                "in_contact": yes_or_no("time", table["in_contact"], contact),
+                **{
+                    name: variable(at_steps if name == "box_work" else "time", table[name], *about)
+                    for name, about in names.items()
+                    if name in shown
+                },
+                **({} if self.alone else {"in_contact": in_contact, **impact_variables(table)}),
                 **theirs,
-                **impact_variables(table),
                 **aborted,
             },
-            {"time": variable("time", table["time"], "s", "communication points")},
             {
-                "title": f"{self.structure.label()} on {description.name}",
+                name: variable(name, table[name], "s", text)
+                for name, text in (("step_time", "communication points"), ("time", "time"))
+                if name in ("time", at_steps)
+            },
+            {
+                "title": title,
                 "drive": description.name,
                 "recorded": ",".join(self.record),
                 "inputs_at_start": ", ".join(self.inputs_at_start(description)),
-                "moved_by_1_N": float(table["moved"][0]),
+                "response_in_a_step": float(table["response"][0][1]),
                 "ended": str(table["ended"][-1]) or AT_THE_DURATION,
                 "drive_warnings": "\n".join(dict.fromkeys(filter(None, table["warned"].tolist()))),
                 "resumable": "yes"
@@ -348,7 +417,7 @@ class CosimulateJob(Question):
 
 
 def cosimulate(
-    structure: Structure,
+    structure: Structure | None,
     drive: str | PathLike[str] | Drive | Shaker,
     *,
     connect: Mapping[str, str] | None = None,
@@ -360,14 +429,16 @@ def cosimulate(
     record: Sequence[str] | None = None,
     start: ArrayLike | None = None,
     estimate: bool = True,
+    force_sign: Literal["tested", "given"] = "tested",
+    points: Count = 1,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Couple the oscillator to a drive that is an FMU, and simulate both.
 
     Parameters
     ----------
-    structure : Structure
-        Delaminated or bonded.
+    structure : Structure or None
+        Delaminated or bonded; ``None`` for the drive alone, which has no ``box_force`` then.
     drive : path, Drive or Shaker
         An FMU of FMI 2.0 or 3.0 for co-simulation that moves the box, of any tool; or one of the
         package's own: a motor with an unbalance, an electrodynamic shaker.
@@ -376,8 +447,9 @@ def cosimulate(
         and ``box_position`` at least one is an output of the drive; ``box_force`` (N) is its input,
         the force of springs and dampers on the box, positive as the box's motion. A name with a
         minus before it, as ``"-force"``, counts with the other sign; other units of the same kind
-        are converted. A drive that takes derivatives of the force has them as ``box_force_1`` to
-        ``box_force_3``. By default the names of the package's own drives.
+        are converted, and ``"pos[mm]"`` states one as ``units`` does. A drive that takes
+        derivatives of the force has them as ``box_force_1`` to ``box_force_3``. By default the
+        names of the package's own drives.
     units : mapping of str to str, optional
         Units of connected variables, by the drive's names, in place of those that it states: m/s2,
         mm, kN and others. Units that it defines by no base units are taken by their names; none
@@ -395,16 +467,22 @@ def cosimulate(
         x1, x2 in m, v1, v2 in m/s at time 0, relative to the box; at rest by default.
     estimate : bool
         Whether the coupling's error is estimated, by a second run with half the step.
+    force_sign : {"tested", "given"}
+        Whether a force that moves the box against it is an error, or meant so.
+    points : int
+        Points of time in each step: the motion between communication points is that of the FMU's
+        closed form. What is of the drive stays over ``step_time`` if it is more than 1.
     **running
         ``store``, ``progress`` and others, see :class:`orchestrate.running.options.Running`.
 
     Returns
     -------
     xarray.Dataset
-        Over ``time``, the communication points in s: ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``,
+        Over ``time`` in s, the communication points: ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``,
         ``v_rel``, ``contact_force``, ``in_contact``, ``box_force``, ``impact_energy``,
-        ``box_acceleration``, what is recorded of the drive by its names, ``box_work`` where a
-        velocity is connected, ``coupling_error``, the larger error of ``x1`` and ``x2`` in m, and
+        ``box_acceleration``, what is recorded of the drive by its names, with its estimated error
+        as ``NAME_error``, ``box_work`` where a velocity is connected, ``coupling_error``, the
+        larger error of ``x1`` and ``x2`` in m, and
         of a control the time ``control_aborted``. Attributes: ``ended``, when and why the drive
         ended the simulation before the duration, with what was reached until then, and
         ``drive_warnings``, what it warned of; both are given as warnings too.
@@ -420,13 +498,13 @@ def cosimulate(
 
     Notes
     -----
-    The drive does each step once, so it need not be able to go back; the oscillator does it twice,
-    see :mod:`orchestrate.weak_drive.master`. With acceleration, velocity and position connected,
-    and the force with its derivatives, errors are of fourth order in the step, else of second order
-    as long as the drive's acceleration follows its force at once when it is read; of a drive whose
-    outputs change in steps alone they are of first order, unless its velocity is connected. After
-    impacts that one of the two runs has and the other not, or in chaos, the estimated error is as
-    large as the motion.
+    The drive does each step once, so it need not be able to go back; the oscillator does it two or
+    three times, see :mod:`orchestrate.weak_drive.master`. A drive takes the force held, or with its
+    derivatives. Errors are of fourth order in the step if a velocity is connected, of third order
+    otherwise, of second order if it is the acceleration alone, under inputs that change: as long as
+    the acceleration follows the force at once when it is read. Of a drive whose outputs change in
+    steps alone they are of first order, unless its velocity is connected. After impacts that one of
+    the two runs has and the other not, or in chaos, the estimated error is as large as the motion.
 
     An interrupted run resumes where the drive can save its state (``canSerializeFMUstate``); else
     it begins anew, as ``resumable`` in the attributes says.
@@ -446,18 +524,20 @@ def cosimulate(
     if isinstance(drive, (Drive, Shaker)):
         parameters = {**drive.parameters(), **(parameters or {})}
         model = SHAKER if isinstance(drive, Drive) else ELECTRODYNAMIC_SHAKER
-        connect, drive = connect or OURS, finder(running)(model).path
+        ours = {name: name for name in OURS if structure is not None or name not in FORCE}
+        connect, drive = connect or ours, finder(running)(model).path
     path = Path(drive).resolve()
     description = describe_runnable(path)
     units = checked_units(units, description)
-    links = checked_links(connect or {}, description, units)
+    links = checked_links(connect or {}, description, units, structure is None)
     for name, value in (("duration", duration), ("step", step)):
         check(name, value, "s", low=0.0, exclusive=True)
     check_internal_step(duration, step, description, estimate)
     count = checked_step_count(duration, step, description)
-    checked = checked_structure(structure)
+    estimate = estimate and structure is not None
+    checked = checked_structure(BALLAST if structure is None else structure)
     job = CosimulateJob(
-        name=f"cosimulate_{checked.label()}_{path.stem}",
+        name=f"cosimulate_{checked.label() if structure else 'alone'}_{path.stem}",
         structure=checked,
         duration=duration,
         estimate=estimate,
@@ -470,13 +550,17 @@ def cosimulate(
         step=float(duration) / count,
         record=checked_record(record or (), description),
         start=checked_state("start", start, checked),
+        force_sign=force_sign,
+        points=points,
     )
     check_inputs(job.inputs, links)
     found = answer(job, running, finder(running), job.drive_sha256 if foreign else "")
     warn_of_drive(found)
+    missing = [name for name in MOTION if name not in links]
+    if missing:
+        warn_of_step(found, missing)
     if estimate:
-        warn_of_sign(found, links)
-        warn_of_error(found, [name for name in MOTION if name not in links])
+        warn_of_error(found, missing)
     return found
 
 
@@ -491,16 +575,17 @@ def warn_of_drive(run: xr.Dataset) -> None:
 
 def nothing_more(previous: Table, parts: int) -> Table:
     """Return the table of a run that a drive ended in a chunk before: no rows, the same end."""
-    names = {name for name in previous if name.endswith(f" {parts}")} | ({"recorded"} & {*previous})
-    table = {name: previous[name][:0] for name in names if name != "recorded" or parts == 1}
+    table = {name: previous[name][:0] for name in previous if name.endswith(f" {parts}")}
     return {**table, f"ended {parts}": previous[f"ended {parts}"]}
 
 
-def warn_of_sign(run: xr.Dataset, links: Mapping[str, Link]) -> None:
-    """Warn where a force on the box moves the box against it."""
-    if (moved := getattr(run, "attrs", {}).get("moved_by_1_N", 0.0)) < 0.0:
-        text = f"1 N of box_force moves the box by {moved:.2g} in a step, against the force"
-        warnings.warn(f"{text}; connect {turned(links)}, unless that is meant", stacklevel=3)
+def warn_of_step(run: xr.Dataset, missing: Sequence[str]) -> None:
+    """Warn where the drive is not seen to follow a force as a mass does within a step."""
+    share = getattr(run, "attrs", {}).get("response_in_a_step", math.nan)
+    if share < RESOLVED:
+        text = f"a force accelerates the box by {share:.2g} in a step, where it does by 1 at once: "
+        text += "the step is too long for the drive's own motion"
+        warnings.warn(f"{text}; reduce it or connect {', '.join(missing)}", stacklevel=3)
 
 
 def turned(links: Mapping[str, Link]) -> str:

@@ -1,7 +1,9 @@
 """The drive's inputs other than the force, step by step: courses over time, and a controlled one.
 
-A course is held over a step at its value in the middle. A controller gives a cubic: a drive with
-inputs for its derivatives (``command_1`` to ``command_3``) takes it whole, another one its mean.
+A drive with inputs for the derivatives of an input (``command_1`` to ``command_3``) takes it as a
+cubic over each step: of a course the one with its ends, mean and first moment. Another one holds
+its mean; what the first moments of a course lack then is made up for in this step and the next two,
+as of the force in :mod:`.master`. A controller gives a cubic.
 """
 
 from __future__ import annotations
@@ -15,42 +17,69 @@ from ..fmu.description import Description
 from .connection import Link
 from .controllers import InputControl
 from .master import Master
-from .polynomials import end_derivatives, mean_value
+from .polynomials import end_derivatives, matched_cubic, mean_value
 from .record import Floats, Record
 from .schedule import Course
 
 Input = Course | InputControl
 
 
+MADE_UP = (-1.5, 2.0, -0.5)  # of a first moment over the step's square, in this step and the next
+
+
 class Inputs:
-    """The inputs of one drive by name; a controlled one is the last, with its derivatives."""
+    """The inputs of one drive by name; those with derivatives are last, a controlled one of all."""
 
     def __init__(self, inputs: Sequence[tuple[str, Input]], drive: Description) -> None:
+        whole = {name for name, _ in inputs if all(o in drive.variables for o in cubic_names(name))}
         courses = [(name, one) for name, one in inputs if isinstance(one, Course)]
         controls = [(name, one) for name, one in inputs if isinstance(one, InputControl)]
-        self.names, self.courses = [name for name, _ in courses], [one for _, one in courses]
+        self.held = [(name, one) for name, one in courses if name not in whole]
+        self.cubics = [(name, one) for name, one in courses if name in whole]
+        self.names = [name for name, _ in self.held]
         self.control: InputControl | None = None
-        self.own: list[str] = []  # names of what is controlled
         for name, self.control in controls:
-            cubic = [name, *(f"{name}_{order}" for order in (1, 2, 3))]
-            self.own = cubic if all(one in drive.variables for one in cubic) else [name]
-        self.names += self.own
-        self.cubic = len(courses) if len(self.own) > 1 else -1  # place of a cubic, for the master
+            self.controlled = len(self.names) + 4 * len(self.cubics) * (name in whole)
+            self.controls_cubic = name in whole
+            self.names += [name] * (name not in whole)
+        # place of the first cubic, for the master
+        self.cubic = len(self.names) if whole else -1
+        for name, _ in [*self.cubics, *(one for one in controls if one[0] in whole)]:
+            self.names += cubic_names(name)
         self.state = self.control.begin() if self.control else ()
 
-    def at(self, times: Floats) -> Floats:
-        """Return the inputs at some times, a row for each; 0 for what is controlled."""
-        rows = np.zeros((len(times), len(self.names)))
-        for column, course in zip(rows.T, self.courses, strict=False):
-            column[:] = course.at(times)
-        return rows
+    def start_values(self) -> dict[str, float]:
+        """Return the inputs at time 0 by name."""
+        values = {name: float(one.at(np.zeros(1))[0]) for name, one in [*self.held, *self.cubics]}
+        return {name: values.get(name, 0.0) for name in self.names}
 
-    def run(self, master: Master, steps: range, h: float) -> Record:
-        """Run both FMUs over some steps of one length."""
-        numbers = np.arange(steps.start, steps.stop, dtype=np.float64)
-        rows = self.at((numbers + 0.5) * h)
-        if master.connection.recorded:
-            rows = np.hstack([rows, self.at((numbers + 1.0) * h)])
+    def rows(self, edges: Floats, width: int = 0, earlier: int = 0) -> Floats:
+        """Return the inputs of the steps between edges, but some earlier ones; 0 for a control.
+
+        Where a row has the width for it, they are followed by the inputs at the step's end.
+        """
+        count = len(self.names)
+        h, rows = np.diff(edges), np.zeros((len(edges) - 1, max(width, count)))
+        ends = rows[:, count:] if width > count else np.zeros((len(h), count))
+        for i, (_, course) in enumerate(self.held):
+            _, ends[:, i], rows[:, i], lever = course.over_steps(edges)
+            moments = np.append([0.0, 0.0], lever / h**2)
+            if np.ptp(h) <= 1e-6 * h[0]:
+                for back, share in enumerate(MADE_UP):
+                    rows[:, i] += share * moments[2 - back : len(moments) - back]
+        for i, (_, course) in enumerate(self.cubics):
+            first, last, mean, lever = course.over_steps(edges)
+            place = self.cubic + 4 * i
+            cubic = matched_cubic(first, last, mean, 0.5 * mean + lever / h**2, h)
+            rows[:, place : place + 4] = np.transpose(cubic)
+            ends[:, place : place + 4] = np.transpose(end_derivatives(cubic, h))
+        return rows[earlier:]
+
+    def run(self, master: Master, steps: range, h: float, first: int = 0) -> Record:
+        """Run both FMUs over some steps of one length, which all have from the first one on."""
+        earlier = min(2, steps.start - first)  # steps whose first moments are made up for in these
+        edges = np.arange(steps.start - earlier, steps.stop + 1, dtype=np.float64) * h
+        rows = self.rows(edges, master.width, earlier)
         if self.control is None:
             return master.run(rows, h)
         return master.run_controlled(self._controlled(rows.tolist(), h, master), len(rows), h)
@@ -60,15 +89,21 @@ class Inputs:
     ) -> Iterator[list[float]]:
         """Yield the rows with what is commanded, from the box's motion as each step begins."""
         assert self.control is not None
-        first, last = len(self.courses), len(self.names)
+        first, count = self.controlled, len(self.names)
         for row in rows:
             seen = master.time, h, master["box_acceleration"], self.state
             cubic, self.state = self.control.update(*seen)
-            whole = self.cubic >= 0
-            row[first:last] = cubic if whole else [mean_value(cubic, h)]
-            if len(row) > last:
-                row[last + first :] = end_derivatives(cubic, h) if whole else row[first:last]
+            values = [*cubic] if self.controls_cubic else [mean_value(cubic, h)]
+            row[first : first + len(values)] = values
+            if len(row) > count:
+                ends = [*end_derivatives(cubic, h)] if self.controls_cubic else values
+                row[count + first : count + first + len(values)] = ends
             yield row
+
+
+def cubic_names(name: str) -> list[str]:
+    """Return the names of an input and its derivatives."""
+    return [name, *(f"{name}_{order}" for order in (1, 2, 3))]
 
 
 def check_inputs(inputs: Sequence[tuple[str, Input]], links: Mapping[str, Link]) -> None:

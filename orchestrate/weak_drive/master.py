@@ -31,7 +31,8 @@ TIME, IMPACTS = PLACE["time"], PLACE["impacts"]
 MOTION, DRIVE = PLACE["x1"], PLACE[BOX[0]]
 END = DRIVE + len(BOX)
 FORCE_PLACE = OscillatorOutputs._fields.index("box_force")
-PAST = 3  # communication points that are remembered where no acceleration is connected
+PAST = 4  # points that are remembered where acceleration and velocity are not both connected
+MEMORY = {"inverse_mass": 2, "held": 1, "owed": 2}  # of the force, between steps
 NOT_WHOLE = -2  # a status that FMI does not have
 
 
@@ -120,6 +121,7 @@ class Pair(ctypes.Structure):
         ("scratch", POINTER(c_double)),
         ("points", c_double * (2 * PAST)),
         ("point_count", c_int),
+        *((name, c_double * count) for name, count in MEMORY.items()),
     ]
 
 
@@ -169,11 +171,15 @@ class Master:
         scheme: Scheme,
         connection: Connection = MOTOR,
         start_time: float = 0.0,
+        inverse_mass: float = 0.0,
     ) -> None:
-        """Connect both instances and read their initial outputs."""
+        """Connect both instances and read their initial outputs.
+
+        ``inverse_mass``: of the drive, 1/kg, if it takes a held force and gives no acceleration.
+        """
         self.oscillator = Channel(oscillator, CUBIC, OscillatorOutputs._fields)
         self.drive, self.scheme = DriveSide(drive, connection), scheme
-        self.connection, self.goes_back = connection, drive.description.has_states
+        self.connection = connection
         self.names = (*LEADING, *connection.outputs, *connection.inputs)
         self.inputs = slice(END + len(connection.outputs), len(self.names))
         unknown = [math.nan] * len(connection.inputs)
@@ -181,6 +187,8 @@ class Master:
         self.drive.put((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())  # its acceleration follows it
         self.row = [*step, *motion, *self.drive.get(), *unknown]
         self.pair = self._described()
+        if len(self.drive.forces) < len(FORCE):
+            self.pair.inverse_mass[:] = inverse_mass, inverse_mass
 
     @property
     def time(self) -> float:
@@ -269,18 +277,15 @@ class Master:
         """Describe both FMUs and the scheme in the C structure."""
         connection, drive = self.connection, self.drive
         pair = Pair(Side.of(self.oscillator, ["impact_count"]), Side.of(drive.channel))
-        for name in ("tolerance", "easy", "halvings", "first_passes"):
+        for name in ("tolerance", "easy", "halvings"):
             setattr(pair, name, getattr(self.scheme, name))
-        pair.first_passes = self.scheme.first_passes if self.goes_back else 1
+        goes_back = drive.instance.description.has_states
+        pair.first_passes = self.scheme.first_passes if goes_back else 1
         pair.force, pair.motion = Links.of(drive.forces), Links.of(drive.motions)
         names = () if self._reads_itself else connection.recorded
         pair.cubic, pair.recorded = connection.cubic, references(drive.instance, names)
         pair.recorded_count, pair.stride = len(names), self.width
         pair.scratch = (c_double * (2 * pair.drive.input_count))()
-        if math.isnan(self.row[DRIVE + 2]):  # no acceleration
-            position, velocity = self.row[DRIVE : DRIVE + 2]
-            pair.points[:2] = self.time, position if math.isnan(velocity) else velocity
-            pair.point_count = 1
         return pair
 
     def _check(self) -> None:
@@ -297,7 +302,7 @@ class Master:
                 channel.get()  # it raises
             if side.status in (0, NOT_WHOLE) or side.failed == b"the step":
                 with suppress(SimulationEnded):
-                    channel.check_step(max(side.status, 0))
+                    channel.check_step(max(side.status, 0), side.status != NOT_WHOLE)
             else:
                 raise side.error(channel.instance)
 
@@ -306,12 +311,16 @@ class Master:
     def get_state(self) -> list[float]:
         """Return the master's own state as a list of floats, to be restored later."""
         known = 2 * self.pair.point_count
-        return [*self.row, *self.pair.points[:known], *[math.nan] * (2 * PAST - known)]
+        memory = [x for name in MEMORY for x in getattr(self.pair, name)]
+        return [*self.row, *memory, *self.pair.points[:known], *[math.nan] * (2 * PAST - known)]
 
     def set_state(self, numbers: Sequence[float]) -> None:
         """Restore the state that :meth:`get_state` returned."""
-        count = len(self.names)
-        self.row, points = list(numbers[:count]), [x for x in numbers[count:] if x == x]
+        rest = iter(numbers)
+        self.row = [next(rest) for _ in self.names]
+        for name, count in MEMORY.items():
+            getattr(self.pair, name)[:] = [next(rest) for _ in range(count)]
+        points = [x for x in rest if x == x]
         self.pair.points[: len(points)], self.pair.point_count = points, len(points) // 2
 
     def close(self) -> None:

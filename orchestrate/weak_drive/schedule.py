@@ -230,6 +230,28 @@ class Course(Schedule):
             inside = low + (values[last] - low) * (times - begin) / (known[last] - begin)
         return np.where(times < known[-1], inside, values[-1])
 
+    def over_steps(self, edges: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return values at both ends of steps between edges, means, and first moments about their
+        middles. A jump at an edge belongs to the step after it.
+        """
+        known, values = np.array(self.times), np.array(self.voltages)
+        inner = known[(known > edges[0]) & (known < edges[-1])]
+        nodes = np.unique(np.concatenate([edges, inner]))
+        middles, spans = 0.5 * (nodes[1:] + nodes[:-1]), np.diff(nodes)
+        piece = known.searchsorted(middles).clip(1, len(known) - 1)
+        held = middles >= known[-1]
+        rise = np.where(held, 0.0, (values[piece] - values[piece - 1]))
+        slope = rise / np.where(held, 1.0, known[piece] - known[piece - 1])
+        level = np.where(held, values[-1], values[piece - 1])
+        level = level + slope * (middles - known[piece - 1])
+        starts, counts = nodes.searchsorted(edges[:-1]), np.diff(nodes.searchsorted(edges))
+        arms = middles - np.repeat(0.5 * (edges[1:] + edges[:-1]), counts)
+        above = level - np.repeat(level[starts], counts)  # of a constant exactly 0
+        means = level[starts] + np.add.reduceat(above * spans, starts) / np.diff(edges)
+        moments = np.add.reduceat((above * arms + slope * spans**2 / 12.0) * spans, starts)
+        half, ends = 0.5 * slope * spans, starts + counts - 1
+        return (level - half)[starts], (level + half)[ends], means, moments
+
     def trend(self, times: np.ndarray) -> np.ndarray:
         places = np.clip(np.searchsorted(self.times, times) - 1, 0, len(self.times) - 2)
         return np.sign(np.diff(self.voltages))[places].astype(int)

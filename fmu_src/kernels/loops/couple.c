@@ -4,11 +4,14 @@
  * other over a step decides everything.
  *
  * - The oscillator does the step under an extrapolated acceleration: the cubic of the last step goes on from the present value.
- * - The drive does it under the force that came of it: the cubic with its ends, mean and first moment, which are exact through impacts. A drive that takes the
- *   force alone is given its mean.
- * - The oscillator goes back and does it again, under the acceleration between both ends: the cubic with the changes of the box's velocity and position, or
- *   what is known of it.
- * - Where nothing is known to extrapolate, at the start, both do the step `first_passes` times, if the drive can go back.
+ * - The drive does it under the force that came of it: the cubic with its ends, mean and first moment, which are exact through impacts. A drive that takes a held
+ *   force gets its mean, and a share of the impulse and of the first moment that the forces held until then lack (`owed`), so that nothing is owed two steps
+ *   later if the moment stays as it is.
+ * - The oscillator goes back and does it again. Of a drive that takes a held force the acceleration is w(t) F(t) and a rest: w, the inverse mass, is what 1 N more
+ *   adds at once; F is exact; the rest is what is seen of the box less what the held force does to it.
+ * - Acceleration and velocity give the ends and the mean of the rest (all of the acceleration where w is 0), the position its first moment, or it is a parabola.
+ *   Otherwise it is the polynomial through the last points of acceleration, velocity or position. Where nothing is known to extrapolate, at the start, both do
+ *   the step `first_passes` times, if the drive can go back.
  * - With a `tolerance` a step is halved, for both, where the energy defect is a larger part of the work exchanged in it; one with less than `easy` of that is
  *   followed by one twice as long.
  *
@@ -22,11 +25,11 @@ enum {  /* places in a row; after the motion of the box the drive's other output
     TIME, H, LEVEL, THEN, IMPACTS = THEN + 4,
     MOTION, FORCE = MOTION + 4, IMPULSE, MOMENT,
     POSITION = MOTION + 10, VELOCITY, ACCELERATION, WORK, ENERGY,
-    PAST = 3,  /* communication points that are remembered where no acceleration is connected */
+    PAST = 4,  /* communication points that are remembered where acceleration and velocity are not both connected */
     DISCARD = 2, NOT_WHOLE = -2,  /* statuses, of FMI and our own */
     LAST_TIME = 2, TERMINATED = 3  /* kinds of fmi2GetRealStatus and fmi2GetBooleanStatus */
 };
-static const double WHOLE = 1e-6;  /* fmu/channel.py */
+static const double WHOLE = 1e-6;  /* of a step: a rest that is rounding, its end was reached */
 
 typedef int (*RealStatus2)(void *, int kind, double *value);
 typedef int (*BooleanStatus2)(void *, int kind, int *value);
@@ -59,14 +62,16 @@ typedef struct {
     double tolerance, easy;
     int halvings, first_passes;
     Links force, motion;
-    int cubic;  /* place among the drive's other inputs of one with its derivatives, or -1 */
+    int cubic;  /* place among the drive's other inputs from which on they are cubics, four of each, or -1 */
     const unsigned *recorded;
     size_t recorded_count;
     double *table;  /* of what is recorded, a row an interval */
     size_t stride;  /* of the inputs of an interval */
     double *scratch;  /* two rows of the drive's inputs */
-    double points[2 * PAST];  /* times and values of velocity or position, where no acceleration is connected */
+    double points[2 * PAST];  /* times and values of the rest, or of its first or second integral */
     int point_count;
+    double inverse_mass[2];  /* w at a step's beginning and end; 0 for a drive that takes the force's derivatives */
+    double held, owed[2];  /* force in the last step; impulse and first moment about now, N s and N s^2, that the drive lacks */
 } Pair;
 
 EXPORT const unsigned sizes_of_couple[] = {sizeof(Pair), MOTION, POSITION};  /* Python has to have the same */
@@ -114,6 +119,8 @@ static bool count_impacts(Side *s, double *impacts) {
 
 static double size_of(double value) { return __builtin_fabs(value); }
 
+static bool is_known(double value) { return value == value; }
+
 static void set_cubic(Cubic f, double f0, double f1, double f2, double f3) { f[0] = f0, f[1] = f1, f[2] = f2, f[3] = f3; }
 
 static void matched_cubic(Cubic f, double first, double last, double mean, double moment, double h) {
@@ -134,76 +141,112 @@ static double work(const Cubic force, double velocity, const Cubic a, double h) 
 
 /* -- what each side assumes of the other -- */
 
-static void force_over(const Pair *p, Cubic f, const double *now, const double *next, double h) {
-    if (p->force.count == 4) matched_cubic(f, now[FORCE], next[FORCE], next[IMPULSE] / h, next[MOMENT] / (h * h), h);
-    else set_cubic(f, next[IMPULSE] / h, 0.0, 0.0, 0.0);
+static bool is_held(const Pair *p) { return p->force.count < 4; }
+
+/* The first moment of the force about the middle of a step, which a held force lacks. */
+static double lever(const double *next, double h) { return next[MOMENT] - 0.5 * h * next[IMPULSE]; }
+
+static void exact_force(Cubic f, const double *now, const double *next, double h) {
+    matched_cubic(f, now[FORCE], next[FORCE], next[IMPULSE] / h, next[MOMENT] / (h * h), h);
+}
+
+static void force_over(Pair *p, Cubic f, const double *now, const double *next, double h) {
+    if (!is_held(p)) {
+        exact_force(f, now, next, h);
+        return;
+    }
+    p->held = next[IMPULSE] / h + (p->owed[1] / h + 1.5 * (p->owed[0] - lever(next, h) / h)) / h;
+    set_cubic(f, p->held, 0.0, 0.0, 0.0);
+}
+
+/* What the drive is owed after a step, of the force that it was given. */
+static void settle(Pair *p, const double *next, double h) {
+    double lacks = next[IMPULSE] - p->held * h;
+    p->owed[1] += h * (p->owed[0] + 0.5 * lacks) - lever(next, h);
+    p->owed[0] += lacks;
 }
 
 static void end_derivatives(Cubic end, const double *f, double h) {
     set_cubic(end, f[0] + h * (f[1] + 0.5 * h * (f[2] + h * f[3] / 3.0)), f[1] + h * (f[2] + 0.5 * h * f[3]), f[2] + h * f[3], f[3]);
 }
 
-/* Two derivatives at time 0, from an order on, of the polynomial through points. */
-static void derivatives(const double *times, double *values, int count, int order, double *found) {
-    double polynomial[PAST + 4] = {0.0};  /* coefficients, by Horner's scheme in Newton's form */
+/* Derivatives at time 0, from an order on, of the polynomial through points. */
+static void derivatives(const double *times, double *values, int count, int order, Cubic found) {
+    double polynomial[PAST + 5] = {0.0}, factorial = order > 1 ? 2.0 : 1.0;  /* coefficients, by Horner's scheme in Newton's form */
     for (int level = 1; level < count; level++)
         for (int i = count - 1; i >= level; i--) values[i] = (values[i] - values[i - 1]) / (times[i] - times[i - level]);
     for (int i = count - 1; i >= 0; i--) {
-        for (int k = count + 2; k > 0; k--) polynomial[k] = polynomial[k - 1] - times[i] * polynomial[k];
+        for (int k = count; k > 0; k--) polynomial[k] = polynomial[k - 1] - times[i] * polynomial[k];
         polynomial[0] = values[i] - times[i] * polynomial[0];
     }
-    found[0] = order * polynomial[order];  /* its factorial: order is 1 or 2 */
-    found[1] = (order == 1 ? 2.0 : 6.0) * polynomial[order + 1];
+    for (int k = order; k < order + 4; factorial *= ++k) found[k - order] = k < count ? factorial * polynomial[k] : 0.0;
 }
 
-/* The acceleration over a step from velocities or positions alone, as a line. */
-static void line_of_points(const Pair *p, Cubic f, const double *now, const double *next, double h) {
-    bool from_position = next[VELOCITY] != next[VELOCITY];
-    int known = p->point_count < 2 + from_position ? p->point_count : 2 + from_position, first = p->point_count - known;
-    double ages[PAST + 1], values[PAST + 1], found[2];
+static bool knows_ends_and_mean(const double *row) { return is_known(row[ACCELERATION]) && is_known(row[VELOCITY]); }
+
+/* Which derivative the points are: 0 of the rest, -1 and -2 for its integrals. */
+static int order_of(const double *row) { return is_known(row[ACCELERATION]) ? 0 : is_known(row[VELOCITY]) ? 1 : 2; }
+
+/* What the points are of at a row: the acceleration less w times the force, or the velocity or position. */
+static double point_of(const double *row, double w) {
+    int order = order_of(row);
+    return order ? row[order == 1 ? VELOCITY : POSITION] : row[ACCELERATION] - w * row[FORCE];
+}
+
+/* What a held force did over a step to a point that is `age` from the step's end: nothing after it. */
+static double moved_by(double held, int order, double h, double age) { return order == 0 ? 0.0 : order == 1 ? held * h : held * h * (0.5 * h + age); }
+
+/* The rest over a step through the points of velocity, position or acceleration alone. */
+static void rest_of_points(const Pair *p, Cubic f, const double *now, const double *next, double h) {
+    int order = order_of(now), most = 2 + order, known = p->point_count < most ? p->point_count : most, first = p->point_count - known;
+    double ages[PAST + 1], values[PAST + 1];
     for (int i = 0; i < known; i++) {
         ages[i] = p->points[2 * (first + i)] - now[TIME];
         values[i] = p->points[2 * (first + i) + 1];
     }
-    ages[known] = now[TIME] + h - now[TIME];
-    values[known] = next[from_position ? POSITION : VELOCITY];
-    derivatives(ages, values, known + 1, 1 + from_position, found);
-    set_cubic(f, found[0], found[1], 0.0, 0.0);
+    ages[known] = h;
+    values[known] = point_of(next, p->inverse_mass[1]) - p->inverse_mass[1] * moved_by(p->held, order, h, 0.0);
+    derivatives(ages, values, known + 1, order, f);
 }
 
-/* Keep the last points of velocity or position where no acceleration is connected. */
+/* Keep the last points, as though w times the forces held since then had not acted. */
 static void remember(Pair *p, const double *row) {
-    if (row[ACCELERATION] == row[ACCELERATION]) return;
+    if (knows_ends_and_mean(row)) return;
+    for (int i = 0; i < p->point_count && row[H] != 0.0; i++)
+        p->points[2 * i + 1] += p->inverse_mass[1] * moved_by(p->held, order_of(row), row[H], p->points[2 * i] - row[TIME]);
     if (p->point_count == PAST) {
         for (int i = 0; i < 2 * PAST - 2; i++) p->points[i] = p->points[i + 2];
         p->point_count--;
     }
     double *point = p->points + 2 * p->point_count++;
-    point[0] = row[TIME], point[1] = row[VELOCITY] == row[VELOCITY] ? row[VELOCITY] : row[POSITION];
+    point[0] = row[TIME], point[1] = point_of(row, p->inverse_mass[1]);
+}
+
+/* The rest over a step from its ends, its mean, and its first moment. */
+static void rest_of_ends(const Pair *p, Cubic f, const double *now, const double *next, double h) {
+    double w0 = p->inverse_mass[0], w1 = p->inverse_mass[1];
+    double first = now[ACCELERATION] - w0 * now[FORCE], last = next[ACCELERATION] - w1 * next[FORCE];
+    double mean = (next[VELOCITY] - now[VELOCITY]) / h - 0.5 * (w0 + w1) * p->held;
+    double moment = 0.5 * mean + (last - first) / 12.0;
+    if (is_known(now[POSITION])) moment = mean - ((next[POSITION] - now[POSITION]) / h - now[VELOCITY]) / h + (w0 + 0.5 * w1) / 3.0 * p->held;
+    matched_cubic(f, first, last, mean, moment, h);
 }
 
 static void acceleration_over(const Pair *p, Cubic f, const double *now, const double *next, double h) {
-    if (now[ACCELERATION] != now[ACCELERATION]) {
-        line_of_points(p, f, now, next, h);
-        return;
-    }
-    double first = now[ACCELERATION], last = next[ACCELERATION];
-    bool knows_velocity = now[VELOCITY] == now[VELOCITY];
-    double mean = knows_velocity ? (next[VELOCITY] - now[VELOCITY]) / h : 0.5 * (first + last);
-    if (!knows_velocity || now[POSITION] != now[POSITION]) {
-        double bend = 3.0 * (first + last) - 6.0 * mean;
-        set_cubic(f, first, (last - first - bend) / h, 2.0 * bend / (h * h), 0.0);
-    } else {
-        double moment = mean - ((next[POSITION] - now[POSITION]) / h - now[VELOCITY]) / h;
-        matched_cubic(f, first, last, mean, moment, h);
-    }
+    double w = p->inverse_mass[0], rise = (p->inverse_mass[1] - w) / h;
+    Cubic force;
+    if (knows_ends_and_mean(now)) rest_of_ends(p, f, now, next, h);
+    else rest_of_points(p, f, now, next, h);
+    if (w == 0.0 && rise == 0.0) return;
+    exact_force(force, now, next, h);
+    for (int i = 0; i < 4; i++) f[i] += w * force[i] + (i ? i * rise * force[i - 1] : 0.0);
 }
 
 /* Extrapolate the box acceleration over the coming step. */
 static void run_on(Cubic f, const double *now) {
     set_cubic(f, 0.0, 0.0, 0.0, 0.0);
     if (now[H] != 0.0) end_derivatives(f, now + THEN, now[H]);
-    if (now[ACCELERATION] == now[ACCELERATION]) f[0] = now[ACCELERATION];
+    if (is_known(now[ACCELERATION])) f[0] = now[ACCELERATION];
 }
 
 /* -- a step -- */
@@ -222,14 +265,29 @@ static bool look(Pair *p, double *row, const double *inputs, double h) {
     int known = p->motion.count;
     double force[4] = {row[FORCE]}, box[3], *later = p->scratch + p->drive.input_count, *read = row + POSITION + 3 - known;
     if (p->cubic >= 0 && h != 0.0) {
-        for (size_t i = 0; i < p->drive.input_count - p->force.count; i++) later[i] = inputs[i];
-        end_derivatives(later + p->cubic, inputs + p->cubic, h);
+        size_t own = p->drive.input_count - p->force.count;
+        for (size_t i = 0; i < own; i++) later[i] = inputs[i];
+        for (size_t i = p->cubic; i < own; i += 4) end_derivatives(later + i, inputs + i, h);
         inputs = later;
     }
     if (!put_force(p, inputs, force) || !get(&p->drive, read)) return false;
     for (int i = 0; i < known; i++) box[i] = read[i];
     for (int i = 0; i < 3; i++) row[POSITION + i] = __builtin_nan("");
     for (int i = 0; i < known; i++) row[POSITION + p->motion.places[i]] = p->motion.scales[i] * box[i];
+    return true;
+}
+
+/* The same, and w under it: the force is tried with 1 N more first. */
+static bool feel(Pair *p, double *row, const double *inputs, double h, double *w) {
+    double force = row[FORCE], more = 0.0;
+    bool tries = is_held(p) && p->motion.places[p->motion.count - 1] == ACCELERATION - POSITION;
+    if (tries) {
+        row[FORCE] = force + 1.0;
+        if (!look(p, row, inputs, h)) return false;
+        row[FORCE] = force, more = row[ACCELERATION];
+    }
+    if (!look(p, row, inputs, h)) return false;
+    if (tries) *w = more - row[ACCELERATION];
     return true;
 }
 
@@ -241,7 +299,7 @@ static bool oscillate(Pair *p, const double *now, double *next, const Cubic acce
 
 static bool restore_both(Pair *p) { return restore(&p->oscillator) && restore(&p->drive); }
 
-static double relative_defect(const Pair *p, const double *now, const double *next, const Cubic acceleration, double h) {
+static double relative_defect(Pair *p, const double *now, const double *next, const Cubic acceleration, double h) {
     Cubic force;
     force_over(p, force, now, next, h);
     double taken = next[WORK] - now[WORK], given = next[ENERGY] - now[ENERGY];
@@ -253,6 +311,7 @@ static double relative_defect(const Pair *p, const double *now, const double *ne
 static bool attempt(Pair *p, const double *now, double *next, double h, bool may_refuse, double *defect, bool *refused) {
     int passes = now[H] == 0.0 ? p->first_passes : 1;
     const double *inputs = now + inputs_at(p);
+    double *w = p->inverse_mass, given;
     Cubic acceleration, force;
     if (!save(&p->oscillator) || ((may_refuse || passes > 1) && !save(&p->drive))) return false;
     run_on(acceleration, now);
@@ -260,7 +319,13 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
         if (i && !restore_both(p)) return false;
         if (!oscillate(p, now, next, acceleration, h)) return false;
         force_over(p, force, now, next, h);
-        if (!put_force(p, inputs, force) || !advance(&p->drive, now[TIME], h) || !look(p, next, inputs, h)) return false;
+        if (!put_force(p, inputs, force) || !advance(&p->drive, now[TIME], h) || !feel(p, next, inputs, h, w + 1)) return false;
+        acceleration_over(p, acceleration, now, next, h);
+    }
+    given = next[FORCE];
+    if (w[0] != 0.0 || w[1] != 0.0) {  /* w times the force of the motion that is nearly the last one */
+        if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h)) return false;
+        next[ACCELERATION] += w[1] * (next[FORCE] - given);
         acceleration_over(p, acceleration, now, next, h);
     }
     if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h) || !look(p, next, inputs, h)) return false;
@@ -269,7 +334,9 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
     if (*refused) return restore_both(p);
     next[TIME] = now[TIME] + h, next[H] = h, next[LEVEL] = now[LEVEL];
     for (int i = 0; i < 4; i++) next[THEN + i] = acceleration[i];
+    if (is_held(p)) settle(p, next, h);
     remember(p, next);
+    w[0] = w[1];
     return count_impacts(&p->oscillator, next + IMPACTS);
 }
 
@@ -281,7 +348,14 @@ static bool interval(Pair *p, double *now, double **at, size_t width, const doub
     bool known = p->cubic < 0, refused;
     for (size_t i = first; i < width; i++) known = known && now[i] == inputs[i - first];
     for (size_t i = first; i < width; i++) now[i] = inputs[i - first];
+    double before = now[ACCELERATION];
     if (!known && !look(p, now, inputs, 0.0)) return false;
+    for (int i = 0; i < p->point_count && is_known(before); i++) p->points[2 * i + 1] += now[ACCELERATION] - before;  /* a jump of the inputs is none of the motion */
+    if (now[H] == 0.0 && p->point_count == 0) {
+        if (!feel(p, now, inputs, 0.0, p->inverse_mass + 1)) return false;
+        p->inverse_mass[0] = p->inverse_mass[1];
+        remember(p, now);
+    }
     while (done < 1 << halvings) {
         int size = (1 << halvings) >> level;
         double *next = *at + width;

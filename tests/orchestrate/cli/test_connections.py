@@ -91,6 +91,8 @@ BAD = {  # options, and what the line says
     "unit that is not known": ("strange", [A, F], "state it, as units={'acc': 'm/s2'}"),
     "unit of nothing": ("plain", [A, F, "--unit", "acc=fathom"], "units: acc = 'fathom'; expected"),
     "unit of another kind": ("plain", [A, F, "--unit", "acc=N"], "acc of the FMU Linear is in N"),
+    "unit in brackets of nothing": ("plain", ["box_acceleration=acc[fathom]", F], "acc = 'fathom'"),
+    "unit in brackets of another kind": ("plain", ["box_position=pos[N]", F], "pos of the FMU"),
     "single precision": ("single", [A, F], "double precision"),
     "whole number": ("whole", [A, F], "double precision"),
     "a text": ("text", ["box_velocity=vel", F], "double precision"),
@@ -137,3 +139,15 @@ def test_what_cannot_be_connected_is_a_line(drives, tmp_path, monkeypatch, capsy
     assert code == 2 and text.startswith("error: ") and words in text, (code, done.err)
     assert "Traceback" not in done.err and done.err.count("error:") == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_the_list_says_why_a_connection_is_proposed(drives, capsys):
+    assert cli.main(["cosimulate", "--drive", str(drives / "units.fmu"), "--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    at = next(i for i, line in enumerate(lines) if line.startswith("likely: --connect "))
+    reasons = dict(line.split(":") for line in lines[at + 1 :])
+    assert reasons == {
+        "  box_velocity      vel": " a name like it",
+        "  box_position      acc": " output in mm",
+        "  box_force         force": " input in N and a name like it",
+    }

@@ -23,25 +23,28 @@ VELOCITY, ACCELERATION = DRIVE + 1, DRIVE + 2
 LAST_TIME, TERMINATED = 2, 3  # kinds of fmi2GetRealStatus and fmi2GetBooleanStatus
 
 
-def matched_parabola(first: float, last: float, mean: float, h: float):
-    """Return the parabola with given end values and mean over a step."""
-    bend = 3.0 * (first + last) - 6.0 * mean
-    return first, (last - first - bend) / h, 2.0 * bend / (h * h), 0.0
-
-
 def derivatives(times, values, order: int):
-    """Return two derivatives at time 0, from an order on, of the polynomial through points."""
+    """Return four derivatives at time 0, from an order on, of the polynomial through points."""
     table = list(values)  # of divided differences
     for level in range(1, len(times)):
         for i in range(len(times) - 1, level - 1, -1):
             table[i] = (table[i] - table[i - 1]) / (times[i] - times[i - level])
-    polynomial = [0.0] * (len(times) + 3)  # coefficients, by Horner's scheme in Newton's form
+    polynomial = [0.0] * (len(times) + order + 4)  # by Horner's scheme in Newton's form
     for i in range(len(times) - 1, -1, -1):
-        for k in range(len(times) + 2, 0, -1):
+        for k in range(len(times), 0, -1):
             polynomial[k] = polynomial[k - 1] - times[i] * polynomial[k]
         polynomial[0] = table[i] - times[i] * polynomial[0]
-    first, second = (math.factorial(k) * polynomial[k] for k in (order, order + 1))
-    return first, second
+    return tuple(math.factorial(k) * polynomial[k] for k in range(order, order + 4))
+
+
+def lever(motion, h):
+    """Return the first moment of the force about the middle of a step."""
+    return motion[6] - 0.5 * h * motion[5]
+
+
+def moved_by(held, order: int, h, age):
+    """Return what a held force did over a step to a point, per inverse mass."""
+    return (0.0, held * h, held * h * (0.5 * h + age))[order]
 
 
 class SteppingChannel(Channel):
@@ -93,7 +96,8 @@ class SteppingChannel(Channel):
         if self.ended:
             raise SimulationEnded(self.ended)
         self.begin()
-        self.check_step(self._step(time, h))
+        status = self._step(time, h)
+        self.check_step(status, self.answer.last >= time + (1.0 - 1e-6) * h)
 
     def save(self):
         if self.kept and not self._reused:
@@ -107,13 +111,15 @@ class SteppingChannel(Channel):
 class PythonMaster(Master):
     """Steps in Python."""
 
-    def __init__(self, *arguments):
-        super().__init__(*arguments)
+    def __init__(self, *arguments, **keywords):
+        super().__init__(*arguments, **keywords)
         self.oscillator = SteppingChannel(self.oscillator)
         self.drive.channel = SteppingChannel(self.drive.channel)
         self.is_whole = len(self.drive.forces) == 4
-        self.points = []
-        self._remember()
+        self.points = [[], []]  # times and values
+        self.weights, self.held, self.owed = list(self.pair.inverse_mass), 0.0, [0.0, 0.0]
+        known = [not math.isnan(x) for x in self.row[DRIVE:END]]
+        self.knows_both, self.order = known[1] and known[2], 0 if known[2] else 2 - known[1]
 
     def run(self, inputs, h=None):
         rows = [[float(x) for x in (row if hasattr(row, "__len__") else [row])] for row in inputs]
@@ -134,12 +140,16 @@ class PythonMaster(Master):
         return Record.of_rows(self.names, rows, ends, recorded)
 
     def get_state(self):
-        missing = [math.nan] * (2 * PAST - len(self.points))
-        return [*self.row, *self.points, *missing]
+        pairs = [x for point in zip(*self.points, strict=True) for x in point]
+        missing = [math.nan] * (2 * PAST - len(pairs))
+        return [*self.row, *self.weights, self.held, *self.owed, *pairs, *missing]
 
     def set_state(self, numbers):
         super().set_state(numbers)
-        self.points = [x for x in numbers[len(self.names) :] if x == x]
+        pair, known = self.pair, 2 * self.pair.point_count
+        self.points = [pair.points[first:known:2] for first in (0, 1)]
+        self.weights, (self.held,) = list(pair.inverse_mass), pair.held
+        self.owed = list(pair.owed)
 
     def _interval(self, inputs: list[float], h):
         """Run one communication interval; return the rows of its steps."""
@@ -147,8 +157,14 @@ class PythonMaster(Master):
         # the acceleration belongs to the inputs as set now
         if inputs != self.row[self.inputs] or self.connection.cubic >= 0:
             self.row[self.inputs] = inputs
-            force = self.row[MOTION + FORCE_PLACE]
+            force, before = self.row[MOTION + FORCE_PLACE], self.row[ACCELERATION]
             self.row[DRIVE : self.inputs.start] = self._outputs_at(force, inputs)
+            if not math.isnan(before):
+                jump = self.row[ACCELERATION] - before
+                self.points[1] = [value + jump for value in self.points[1]]
+        if self.row[H] == 0.0 and not self.points[0]:
+            self.weights = [self._feel(self.row[MOTION + FORCE_PLACE], inputs)] * 2
+            self._remember()
         rows = self._steps(h, self.scheme.halvings if self.scheme.tolerance else 0)
         rows[-1][TIME] = self.row[TIME] = end
         return rows
@@ -173,7 +189,7 @@ class PythonMaster(Master):
     def _attempt(self, h, may_refuse: bool):
         """Try one step; return its row, None where it is refused, and its relative defect."""
         now, inputs, drive = self.row, self.row[self.inputs], self.drive
-        passes = self.scheme.first_passes if self.goes_back and now[H] == 0.0 else 1
+        passes = self.pair.first_passes if now[H] == 0.0 else 1
         self.oscillator.save()
         if may_refuse or passes > 1:
             drive.channel.save()
@@ -185,8 +201,16 @@ class PythonMaster(Master):
             motion = self._oscillate(acceleration, h)
             drive.put(self._force_over(motion, h), inputs)
             drive.channel.step(now[TIME], h)
-            outputs = self._outputs_at(motion[FORCE_PLACE], self._later(inputs, h))
-            acceleration = self._acceleration_over(outputs, h)
+            later = self._later(inputs, h)
+            self.weights[1] = self._feel(motion[FORCE_PLACE], later)
+            outputs = self._outputs_at(motion[FORCE_PLACE], later)
+            acceleration = self._acceleration_over(motion, outputs, h)
+        if any(self.weights):
+            given = motion[FORCE_PLACE]
+            self.oscillator.restore()
+            motion = self._oscillate(acceleration, h)
+            outputs[2] += self.weights[1] * (motion[FORCE_PLACE] - given)
+            acceleration = self._acceleration_over(motion, outputs, h)
         self.oscillator.restore()
         motion = self._oscillate(acceleration, h)
         outputs = self._outputs_at(motion[FORCE_PLACE], self._later(inputs, h))
@@ -199,8 +223,13 @@ class PythonMaster(Master):
             return None, defect
         count = float(self.oscillator.instance.get("impact_count")[0])
         step = (now[TIME] + h, h, now[LEVEL], *acceleration, count)
+        if not self.is_whole:
+            lacks = motion[5] - self.held * h
+            self.owed[1] += h * (self.owed[0] + 0.5 * lacks) - lever(motion, h)
+            self.owed[0] += lacks
         self.row = [*step, *motion, *outputs, *inputs]
         self._remember()
+        self.weights[0] = self.weights[1]
         return list(self.row), defect
 
     def _oscillate(self, acceleration, h):
@@ -219,43 +248,78 @@ class PythonMaster(Master):
         first = self.connection.cubic
         if first < 0:
             return inputs
-        cubic = end_derivatives(tuple(inputs[first : first + 4]), h)
-        return [*inputs[:first], *cubic, *inputs[first + 4 :]]
+        later = list(inputs)
+        for i in range(first, len(inputs), 4):
+            later[i : i + 4] = end_derivatives(tuple(inputs[i : i + 4]), h)
+        return later
 
-    def _force_over(self, motion, h):
-        """Return the force over a step, exact in its mean and first moment if these are taken."""
+    def _feel(self, force, inputs):
+        """Return what 1 N more adds to the acceleration; as it was known where that is not read."""
+        if self.is_whole or self.order:
+            return self.weights[1]
+        more = self._outputs_at(force + 1.0, inputs)[2]
+        return more - self._outputs_at(force, inputs)[2]
+
+    def _exact_force(self, motion, h):
+        """Return the force over a step, exact in its ends, mean and first moment."""
         _, _, _, _, force, impulse, moment, *_ = motion
         first = self.row[MOTION + FORCE_PLACE]
-        if not self.is_whole:
-            return impulse / h, 0.0, 0.0, 0.0
         return matched_cubic(first, force, impulse / h, moment / (h * h), h)
 
-    def _acceleration_over(self, after, h):
-        """Return the box acceleration over a step, from what is known of the box at both ends."""
-        position, velocity, first = self.row[DRIVE:END]
-        if math.isnan(first):
-            return self._slopes_of_points(after, h)
-        knows_velocity = not math.isnan(velocity)
-        mean = (after[1] - velocity) / h if knows_velocity else 0.5 * (first + after[2])
-        if math.isnan(position) or not knows_velocity:
-            return matched_parabola(first, after[2], mean, h)
-        moment = mean - ((after[0] - position) / h - velocity) / h
-        return matched_cubic(first, after[2], mean, moment, h)
+    def _force_over(self, motion, h):
+        """Return the force that the drive gets over a step."""
+        if self.is_whole:
+            return self._exact_force(motion, h)
+        impulse, moment = self.owed
+        owed = moment / h + 1.5 * (impulse - lever(motion, h) / h)
+        self.held = motion[5] / h + owed / h
+        return self.held, 0.0, 0.0, 0.0
 
-    def _slopes_of_points(self, after, h):
-        """Return the acceleration over a step from velocities or positions alone, as a line."""
-        from_position = math.isnan(after[1])
-        times = [*self.points[::2][-2 - from_position :], self.row[TIME] + h]
-        values = [*self.points[1::2][-2 - from_position :], after[0 if from_position else 1]]
-        ages = [t - self.row[TIME] for t in times]
-        return (*derivatives(ages, values, 1 + from_position), 0.0, 0.0)
+    def _acceleration_over(self, motion, after, h):
+        """Return the box acceleration over a step: w(t) F(t), and the rest."""
+        rest = self._rest_of_ends if self.knows_both else self._rest_of_points
+        acceleration = list(rest(motion, after, h))
+        w, rise = self.weights[0], (self.weights[1] - self.weights[0]) / h
+        if w == 0.0 and rise == 0.0:
+            return acceleration
+        force = self._exact_force(motion, h)
+        for i in range(4):
+            acceleration[i] += w * force[i] + (i * rise * force[i - 1] if i else 0.0)
+        return acceleration
+
+    def _rest_of_ends(self, motion, after, h):
+        """Return the rest from its ends, its mean, and its first moment."""
+        w0, w1 = self.weights
+        position, velocity, acceleration = self.row[DRIVE:END]
+        first = acceleration - w0 * self.row[MOTION + FORCE_PLACE]
+        last = after[2] - w1 * motion[FORCE_PLACE]
+        mean = (after[1] - velocity) / h - 0.5 * (w0 + w1) * self.held
+        moment = 0.5 * mean + (last - first) / 12.0
+        if not math.isnan(position):
+            lag = ((after[0] - position) / h - velocity) / h
+            moment = mean - lag + (w0 + 0.5 * w1) / 3.0 * self.held
+        return matched_cubic(first, last, mean, moment, h)
+
+    def _rest_of_points(self, motion, after, h):
+        """Return the rest as the parabola through points of it, or of its integrals."""
+        w, order = self.weights[1], self.order
+        new = after[2 - order] - (w * motion[FORCE_PLACE] if order == 0 else 0.0)
+        times, values = (part[-2 - order :] for part in self.points)
+        ages = [*(t - self.row[TIME] for t in times), h]
+        values = [*values, new - w * moved_by(self.held, order, h, 0.0)]
+        return derivatives(ages, values, order)
 
     def _remember(self):
-        """Keep the last points of velocity or position where no acceleration is connected."""
-        position, velocity, acceleration = self.row[DRIVE:END]
-        if math.isnan(acceleration):
-            value = position if math.isnan(velocity) else velocity
-            self.points = [*self.points, self.row[TIME], value][-2 * PAST :]
+        """Keep the last points, as though w times the forces held since then had not acted."""
+        if self.knows_both:
+            return
+        (times, values), row, w = self.points, self.row, self.weights[1]
+        if row[H] != 0.0:
+            moved = [moved_by(self.held, self.order, row[H], t - row[TIME]) for t in times]
+            values = [v + w * m for v, m in zip(values, moved, strict=True)]
+        new = row[DRIVE + 2 - self.order]
+        new -= w * row[MOTION + FORCE_PLACE] if self.order == 0 else 0.0
+        self.points = [[*times, row[TIME]][-PAST:], [*values, new][-PAST:]]
 
     def _run_on(self):
         """Extrapolate the box acceleration over the coming step: its last cubic goes on."""

@@ -150,6 +150,9 @@ def test_units_by_name_are_converted_and_can_be_stated(tmp_path):
     path = thousand.write(tmp_path, "thousand")
     named = replace(thousand, unit="mm/s2").write(tmp_path, "named")
     own = {"parameters": thousand.parameters, "connect": DRIVE.connect, **RUN}
-    for drive, more in ((named, {}), (path, {"units": {DRIVE.names[2]: "mm/s2"}})):
-        found = orchestrate.cosimulate(STRUCTURE, drive, **own, **more)
+    name = DRIVE.connect["box_acceleration"]
+    in_brackets = {**DRIVE.connect, "box_acceleration": f"{name}[mm/s2]"}
+    stated = {"units": {DRIVE.names[2]: "mm/s2"}}
+    for drive, more in ((named, {}), (path, stated), (path, {"connect": in_brackets})):
+        found = orchestrate.cosimulate(STRUCTURE, drive, **{**own, **more})
         assert found.x1.values == pytest.approx(expected.x1.values, abs=1e-12)

@@ -43,11 +43,17 @@ class LinearDrive:
     @property
     def connect(self):
         """Names of theirs by ours."""
+        return self.connected("a")
+
+    def connected(self, letters):
+        """The same of some of acceleration, position and velocity, by their first letters."""
         force, acceleration = ("-" if sign < 0 else "" for sign in self.signs)
-        return {
-            "box_force": force + self.names[0],
-            "box_acceleration": acceleration + self.names[2],
-        }
+        names = (acceleration + self.names[2], *self.names[3:])
+        motions = zip(
+            "apv", ("box_acceleration", "box_position", "box_velocity"), names, strict=True
+        )
+        found = {ours: theirs for letter, ours, theirs in motions if letter in letters}
+        return {"box_force": force + self.names[0], **found}
 
     def write(self, folder, name="Linear"):
         """Write the FMU."""
@@ -114,10 +120,10 @@ def compiled(folder, fmi, does, has_states):
     return path
 
 
-def draw(seed):
+def draw(seed, masses=(2.0, 8.0)):
     """A random drive: a table on a suspension, a coil or other lag, a filter before the force."""
     rng, words = np.random.default_rng(seed), random.Random(seed)
-    mass, lag, filtered = rng.uniform(2.0, 8.0), rng.uniform(0.01, 0.1), bool(seed % 2)
+    mass, lag, filtered = rng.uniform(*masses), rng.uniform(0.01, 0.1), bool(seed % 2)
     frequency, damping = rng.uniform(5.0, 30.0), rng.uniform(0.02, 0.3)
     a, b, c, d = np.zeros((SIZE, SIZE)), np.zeros((SIZE, 2)), np.zeros(SIZE), np.zeros(2)
     c[:3] = -(frequency**2), -2.0 * damping * frequency, rng.uniform(5.0, 20.0) / mass
@@ -165,11 +171,14 @@ def together(drive, s, command, times, start=(0.0,) * 4):
             t_eval=times[time + 1e-12 < times],
             max_step=0.01,
         )
-        rows |= dict(zip(np.round(done.t, 9), done.y[:2].T, strict=True))
+        rows |= dict(
+            zip(np.round(done.t, 9), np.reshape(done.y, (len(state), -1))[:2].T, strict=True)
+        )
         if not done.t_events[0].size:
             break
         time, state = done.t_events[0][0], done.y_events[0][0].copy()
         closing = state[2] - state[3]
+        assert impacts < 400, "it chatters, which this solver cannot"
         impulse = (1.0 + s.e) * s.m1 * s.m2 / (s.m1 + s.m2) * closing
         state[2] -= impulse / s.m1
         state[3] += impulse / s.m2
@@ -184,7 +193,9 @@ def table_drive(n):
     d = np.array([1.0 / n["mass"], 0.0])
     a = np.array([[0.0, 1.0, 0.0], c, [0.0, -n["bl"] / n["l"], -n["r"] / n["l"]]])
     b = np.array([[0.0, 0.0], d, [0.0, 1.0 / n["l"]]])
-    return LinearDrive(a, b, c, d)
+    rest = SIZE - len(c)
+    a, b = np.pad(a, (0, rest)), np.pad(b, ((0, rest), (0, 0)))
+    return LinearDrive(a, b, np.pad(c, (0, rest)), d)
 
 
 def sine(amplitude=20.0, rate=26.0):

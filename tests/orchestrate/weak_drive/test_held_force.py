@@ -1,0 +1,135 @@
+"""Drives that take a held force: errors against one system, their order, and what is stated."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate.running.runner import answer
+from orchestrate.weak_drive import cosimulate
+
+from ...sparing import ordinary
+from .drives.linear import draw, table_drive, together
+from .monolithic import Monolith
+
+STEPS = (0.1, 0.05, 0.025, 0.0125)
+START, DURATION = (0.0, 0.5, 0.0, 0.0), 20.0
+TIMES = np.linspace(0.0, DURATION, round(DURATION / STEPS[-1]) + 1)
+STRUCTURE = orchestrate.Structure(m1=1.0, m2=1.0, k1=1.0, k2=1.2, d1=0.01, d2=0.01, e=0.7)
+MOTOR = orchestrate.Drive(
+    **{"box_mass": 3.6667, "box_stiffness": 0.036667, "box_damping": 0.0036667},
+    **{"unbalance_mass": 0.01, "unbalance_radius": 100.0, "rotor_inertia": 300.0},
+    **{"motor_constant": 6.0, "armature_resistance": 6.0, "armature_inductance": 0.5},
+)
+MOTIONS = {"a": "box_acceleration", "v": "box_velocity", "p": "box_position"}
+ERRORS = {  # m, at most, with steps of STEPS
+    ("motor", "av"): (2.5e-6, 1.6e-7, 1.0e-8, 1.0e-9),
+    ("motor", "avp"): (1.3e-6, 9.0e-8, 6.0e-9, 6.0e-10),
+    (5.5, "av"): (5.0e-6, 3.5e-7, 2.2e-8, 1.5e-9),
+    (5.5, "avp"): (1.0e-6, 6.0e-8, 4.0e-9, 4.0e-10),
+    (0.2, "av"): (1.3e-4, 9.0e-6, 6.0e-7, 4.0e-8),
+    (0.2, "v"): (1.8e-3, 1.5e-4, 1.2e-5, 8.0e-7),
+    (0.2, "a"): (1.6e-2, 2.2e-3, 3.0e-4, 4.0e-5),
+    (5.5, "p"): (3.2e-3, 6.5e-4, 1.0e-4, 1.5e-5),
+}
+ORDER = {"p": 2.5}  # at least, by regression over STEPS
+pytestmark = pytest.mark.usefixtures("exported")
+
+
+def shaker(mass):
+    """An electrodynamic shaker with a table of a mass."""
+    numbers = {"mass": mass, "stiffness": 0.055, "damping": 0.0055, "bl": 1.0, "r": 1.0, "l": 0.1}
+    return table_drive(numbers)
+
+
+def system_of(name, letters, folder, exported):
+    """The drive, its arguments, and the truth: displacements and impacts."""
+    if name == "motor":
+        names = {"box_force": "box_force", **{MOTIONS[one]: MOTIONS[one] for one in letters}}
+        own = {
+            "parameters": {**MOTOR.parameters(), "speed_start": 1.25},
+            "inputs": {"voltage": 7.8},
+        }
+        state = [0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 1.25, 0.0]
+        rows, impacts = Monolith(STRUCTURE, MOTOR, 7.8).solve(state, TIMES)
+        drive = exported / "fmi3" / "MotorShaker.fmu"
+        return drive, {**own, "connect": names}, rows[:, [0, 2]], impacts
+    drive = shaker(name)
+    own = {"parameters": drive.parameters, "inputs": {"command": 1.5}}
+    truth = together(drive, STRUCTURE, lambda _: 1.5, TIMES, START)
+    return drive.write(folder), {**own, "connect": drive.connected(letters)}, *truth
+
+
+def error(run, truth, times=TIMES):
+    """Largest error of both displacements, m."""
+    every = (len(times) - 1) // (run.sizes["time"] - 1)
+    both = np.column_stack([run.x1.values, run.x2.values])
+    return np.abs(both - truth[::every]).max()
+
+
+@pytest.fixture
+def here(monkeypatch):
+    """Drives run in this process."""
+    monkeypatch.setattr(
+        cosimulate, "answer", lambda job, *known, foreign=0: answer(job, *known[:2])
+    )
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize(("name", "letters"), ERRORS)
+def test_a_held_force_costs_no_order(tmp_path, exported, name, letters):
+    drive, own, truth, impacts = system_of(name, letters, tmp_path, exported)
+    run = {"duration": DURATION, "start": START, "estimate": False, "progress": False, **own}
+    errors = []
+    for step, most in zip(STEPS, ERRORS[name, letters], strict=True):
+        found = orchestrate.cosimulate(STRUCTURE, drive, step=step, **run)
+        assert found.sizes["impact"] == impacts >= 6
+        errors.append(error(found, truth))
+        assert errors[-1] <= most
+    assert np.polyfit(np.log(STEPS), np.log(errors), 1)[0] > ORDER.get(letters, 2.7)
+
+
+ALL = ("av", "avp", "a", "v", "p", "ap", "pv")
+STIFF = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize("seed", ordinary(range(40), 7))
+def test_what_is_stated_is_the_error_of_random_drives(tmp_path, seed):
+    """Tables of 0.2 to 5.5 kg, of FMI 2.0 and 3.0, every second with a filter before the force."""
+    drive = replace(draw(seed, (0.2, 5.5)), fmi=2 + seed // 2 % 2)
+    letters = ALL[seed % len(ALL)]
+    step = 4e-3 if letters in ("av", "avp") else 1e-3
+    times = np.linspace(0.0, 0.5, round(0.5 / step) + 1)
+    start = (0.0, 0.02, 0.0, 0.0)
+    truth, impacts = together(drive, STIFF, lambda _: 20.0, times, start)
+    found = orchestrate.cosimulate(
+        STIFF,
+        drive.write(tmp_path),
+        **{"connect": drive.connected(letters), "parameters": drive.parameters, "start": start},
+        **{"inputs": {drive.names[1]: 20.0}, "duration": 0.5, "step": step, "progress": False},
+    )
+    true, stated = error(found, truth, times), float(found.coupling_error.max())
+    assert found.sizes["impact"] == impacts and true < 0.01 * np.abs(truth).max()
+    assert 0.5 * true < stated < 2.0 * true
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize("letters", ["a", "v", "p", "av", "avp"])
+def test_a_step_that_is_too_long_for_a_stiff_drive_is_said(tmp_path, letters):
+    """A table on a suspension of 500 rad/s: its velocity swings within a step of 0.01 s."""
+    numbers = {"mass": 0.5, "stiffness": 125e3, "damping": 1.0, "bl": 1.0, "r": 1.0, "l": 0.1}
+    drive = table_drive(numbers)
+    run = {"connect": drive.connected(letters), "parameters": drive.parameters, "start": START}
+    run |= {"duration": 0.5, "estimate": False, "progress": False}
+    path, missing = drive.write(tmp_path), "box_velocity" if letters in "ap" else "box_position"
+    with warnings.catch_warnings(record=True) as shown:
+        warnings.simplefilter("always")
+        orchestrate.cosimulate(STRUCTURE, path, step=0.01, **run)
+    said = [str(one.message) for one in shown if "the step is too long" in str(one.message)]
+    assert len(said) == (letters != "avp") and all(missing in text for text in said)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        orchestrate.cosimulate(STRUCTURE, path, step=0.001, **run)
