@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from . import held_files
-from .exports import BUILD, refresh
+from .exports import BUILD, refresh, unexpected
 from .fmu.programs.driver import Fmu2
 
 everywhere = settings(
@@ -53,8 +53,13 @@ def pytest_addoption(parser):
 
 @pytest.fixture(scope="session")
 def exported(tmp_path_factory):
-    """The build folder, with all FMUs that can be made here, of the present sources."""
-    refresh(BUILD)
+    """The build folder, with all FMUs that can be made here, of the present sources.
+
+    What can be made and is not ends the run: tests of an older FMU say nothing of these sources.
+    """
+    if reasons := unexpected(refresh(BUILD), BUILD):
+        lines = [f"{place}: {reason}" for place, reason in reasons.items()]
+        pytest.exit("\n".join(["cannot export", *lines]), returncode=1)
     Fmu2.home = tmp_path_factory.mktemp("extracted")
     return BUILD
 

@@ -40,7 +40,8 @@ def copy_of_the_tree(folder):
     """Copy what the tests need; a broken kernel makes FMUs of its own there."""
     for name in (*OWN, "examples", "docs", "build"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(ROOT / "pyproject.toml", folder)
+    for name in ("pyproject.toml", "LICENSE", "README.md"):
+        shutil.copy(ROOT / name, folder)
 
 
 def run_tests(folder, tests):
