@@ -298,7 +298,7 @@ def test_a_hold_ends_with_a_tenth_of_the_way_to_go_and_comes_at_the_rate():
     start = HeldPoint(1.5, 1.3, 0.0, {"speed": np.array([1.3])})
     left = 1.4 - loop.hold(start.state, 1.5005, 1.5005, (1.3, 1.4)).state["speed"][0]
     assert 0.009 < left < 0.01
-    loop.hold_from(start, 1.51)
+    loop.hold_from(start, 1.5098)
     assert courses[-1].times == pytest.approx((0.0, 200.0, 20200.0))
 
 
