@@ -52,14 +52,15 @@ def pytest_addoption(parser):
 
 
 @pytest.fixture(scope="session")
-def exported(tmp_path_factory):
+def exported(request, tmp_path_factory):
     """The build folder, with all FMUs that can be made here, of the present sources.
 
     What can be made and is not ends the run: tests of an older FMU say nothing of these sources.
     """
     if reasons := unexpected(refresh(BUILD), BUILD):
-        lines = [f"{place}: {reason}" for place, reason in reasons.items()]
-        pytest.exit("\n".join(["cannot export", *lines]), returncode=1)
+        text = "; ".join(f"{place}: {reason}" for place, reason in reasons.items())
+        request.session.shouldfail = f"cannot export {text}"  # of workers too
+        pytest.fail(request.session.shouldfail, pytrace=False)
     Fmu2.home = tmp_path_factory.mktemp("extracted")
     return BUILD
 

@@ -30,8 +30,10 @@ def breakages(source):
 
 
 def subscripts(node):
-    """Slots of the kernels' memory are no numbers; neither are annotations."""
+    """Slots of the kernels' memory are no numbers, nor are annotations; of 1.0 / 6.0 one counts."""
     hidden = [node.slice] if isinstance(node, ast.Subscript) else []
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
+        hidden += [node.left] if isinstance(node.left, ast.Constant) else []
     hidden += [getattr(node, name, None) for name in ("annotation", "returns")]
     return [part for one in hidden if one is not None for part in ast.walk(one)]
 

@@ -174,7 +174,7 @@ def test_a_close_root_is_exact_and_the_only_one():
     scale = rng.uniform(0.2, 1.3, COUNT) / 256.0
     weight = np.abs(h[:, 2:]) / FACTORIALS[1:5] * 1.125 ** np.arange(1, 5)
     h[:, 2:] *= (scale / weight.sum(axis=1))[:, None]
-    h[:, 5] *= rng.choice([1e-12, 1e-3], COUNT)  # what the quartic misses
+    h[:, 5] *= rng.choice([1e-12, 1e-3, 1.0], COUNT)  # what the quartic misses
     change = (np.abs(h[:, 2:]) / FACTORIALS[1:5] * 1.125 ** np.arange(1, 5)).sum(axis=1)
     missed = np.abs(h[:, 5]) / 120.0
     accuracy = np.maximum(missed * rng.uniform(1.0, 3.0, COUNT), 1e-16)
@@ -185,6 +185,7 @@ def test_a_close_root_is_exact_and_the_only_one():
         if root:
             taken += 1
             assert turn < 1.0 / 255.9
+            assert abs(row[5]) * 1.125**5 / 120.0 <= 1.001 * wanted
             if taken % 8 == 0:
                 assert abs(root - exact_root(row)) <= 1.1 * wanted + 4e-16
         else:
@@ -215,5 +216,24 @@ def test_one_step_of_the_walk():
         assert found[1] or found[0] > 0.0
     assert 100 < ended < 1400
     assert kernel.next_step(-1e-9, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1e-12) == (0.0, True)
-    assert kernel.clear_step_or_root(1e-17, -1.0, 1.0, 1e3, 1e3, 1e20, 2.0, 1.0, 0.0)[1]
-    assert not kernel.clear_step_or_root(1e-15, -1.0, 1.0, 1e3, 1e3, 1e20, 2.0, 1.0, 0.0)[1]
+    assert math.isnan(kernel.NO_NUMBER)
+    for h0, ends in ((2.0e-16, True), (2.4e-16, False)):  # a last digit of where the walk stands
+        assert kernel.clear_step_or_root(h0, -1.0, 1.0, 1e3, 1e3, 1e20, 2.0, 1.0, 0.0)[1] == ends
+
+
+def test_a_start_on_the_boundary_leaves_it_as_far_as_is_certain():
+    """At rest, pulled apart less and less: exactly until the bound turns it back."""
+    rng = np.random.default_rng(12)
+    for _ in range(1000):
+        far = float(np.exp(rng.uniform(-1.0, 1.0)))
+        h3, h4 = -rng.uniform(0.1, 1.0, 2) * (rng.random(2) > 0.2)
+        rest = float(rng.uniform(0.05, 1.0))
+        h2 = rest - far * h3 / 3.0 - far**2 * h4 / 12.0
+        bound = 60.0 * rest / far**3  # brings it back at `far`
+        assert kernel.clear_step(0.0, 0.0, h2, h3, h4, 0.99 * bound, far) == far
+        back = kernel.clear_step(0.0, 0.0, h2, h3, h4, 1.01 * bound, far)
+        row = np.array([[0.0, 0.0, h2, h3, h4, -1.01 * bound]])
+        assert 0.98 * far < back < far
+        assert value(row, np.array([[back]]))[0, 0] > -1e-14
+        free = kernel.clear_step(0.0, 0.0, h2 - rest, h3, h4, 0.0, 1.2 * far)
+        assert h2 == rest or free == pytest.approx(far, rel=1e-12)
