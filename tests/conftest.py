@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from . import held_files
-from .exports import BUILD, refresh
+from .exports import BUILD, refresh, unexpected
 from .fmu.programs.driver import Fmu2
 
 everywhere = settings(
@@ -52,9 +52,15 @@ def pytest_addoption(parser):
 
 
 @pytest.fixture(scope="session")
-def exported(tmp_path_factory):
-    """The build folder, with all FMUs that can be made here, of the present sources."""
-    refresh(BUILD)
+def exported(request, tmp_path_factory):
+    """The build folder, with all FMUs that can be made here, of the present sources.
+
+    What can be made and is not ends the run: tests of an older FMU say nothing of these sources.
+    """
+    if reasons := unexpected(refresh(BUILD), BUILD):
+        text = "; ".join(f"{place}: {reason}" for place, reason in reasons.items())
+        request.session.shouldfail = f"cannot export {text}"  # of workers too
+        pytest.fail(request.session.shouldfail, pytrace=False)
     Fmu2.home = tmp_path_factory.mktemp("extracted")
     return BUILD
 

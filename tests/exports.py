@@ -1,5 +1,6 @@
 """What is made once for all workers: the FMUs of the present sources, the compiled kernel."""
 
+import importlib.util
 import os
 import pickle
 import re
@@ -40,14 +41,23 @@ def refresh(build):
     build.mkdir(exist_ok=True)
     with FileLock(build / ".lock"), ThreadPoolExecutor() as threads:  # compilers work outside
         made = list(threads.map(lambda name: refresh_model(name, build), forms.MODELS))
-        for source in SOURCES:
-            library(source, build)
-    reasons = {place: reason for reasons in made for place, reason in reasons.items()}
+        made += [refresh_library(source, build) for source in SOURCES]
+    reasons = {place: reason for each in made for place, reason in each.items()}
     try:
         web_kernel(build)
     except InputError as reason:
         reasons["wasm"] = CannotExport(str(reason))
     return reasons
+
+
+def unexpected(reasons, build):
+    """Those of the reasons that no missing package explains, or that leave an older FMU behind."""
+    whole = all(map(importlib.util.find_spec, ("ziglang", "pythonfmu")))
+    return {
+        place: reason
+        for place, reason in reasons.items()
+        if whole or (build / f"{place}.fmu").exists()
+    }
 
 
 def refresh_model(name, build):
@@ -60,6 +70,15 @@ def refresh_model(name, build):
             except CannotExport as reason:
                 reasons[f"{form}/{name}"] = reason
     return reasons
+
+
+def refresh_library(source, build):
+    """The library of one loop; returns as :func:`refresh`."""
+    try:
+        library(source, build)
+    except InputError as reason:
+        return {f"libraries/{source.stem}": reason}
+    return {}
 
 
 def once(tmp_path_factory, name, make):

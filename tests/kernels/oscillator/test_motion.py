@@ -3,13 +3,14 @@ that always move together.
 """
 
 import math
+from fractions import Fraction
 from unittest.mock import patch
 
 import mpmath as mp
 import pytest
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator import stepper
+from fmu_src.kernels.oscillator import motion, stepper
 from tests import exact_motion as truth
 
 from . import reference
@@ -119,3 +120,55 @@ def test_a_motion_that_decays_for_ever_comes_to_rest():
         advanced(m, 20_000.0)
     assert [m[slot] for slot in (at.X1, at.V1, at.X2, at.V2, at.X_REL)] == [0.0] * 5
     assert m[at.IMPACT_COUNT] > 1000.0
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.3, 2.0])
+def test_a_brief_contact_from_rest_ends_where_newton_has_it(phase):
+    """Its way, of the second or third order in time, is below the rounding of the closed form."""
+    values = {"m2": 1.3, "d1": 0.02, "box_jerk": 0.05, "box_acceleration": 0.1, "box_snap": 0.3}
+    m = started(phase_start=phase, **values)
+    m[at.MODE] = at.CONTACT
+    motion.begin_common(m, at.CONTACT, 0.0, 0.0)
+    exact, _ = truth.contact_motion({**DEFAULTS, **values}, 0.0, 0.0, mp.mpf(phase))
+    speed = exact.derivative()
+    for age in (0.95e-6, 1e-8):
+        m[at.END] = age / m[at.RATE]
+        with mp.workdps(60):
+            expected = float(exact(mp.mpf(m[at.END]))), float(speed(mp.mpf(m[at.END])))
+        assert motion.state_at_end(m)[:2] == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_origin_of_time_keeps_its_low_part():
+    """Over 200,000 states: both parts together are the sum to 1e-25 of it."""
+    m = started()
+    m[at.ORIGIN] = 1e6
+    for _ in range(200_000):
+        motion.advance_origin(m, 0.1)
+    total = Fraction(10**6) + 200_000 * Fraction(0.1)
+    assert abs(Fraction(m[at.ORIGIN]) + Fraction(m[at.ORIGIN_LOW]) - total) < 1e-19
+    assert m[at.ORIGIN] == float(total)
+
+
+@pytest.mark.parametrize("order", [3, 4, 5])
+def test_a_start_at_rest_leaves_the_boundary_by_half_of_what_its_bound_allows(order):
+    """There its first derivative that does not vanish makes twice as much as the bound takes."""
+    m = started(**STARTS)
+    bound = motion.derivative_bound(m, order + 1)
+    value = 1e-3 * bound * m[at.RIGHT_AGE]
+    motion.leave_boundary(m, order, value)
+    step = m[at.CLEAR]
+    grown, taken = (s / math.factorial(k) for k, s in power_terms(step, order, value, bound))
+    assert 0.0 < step < m[at.RIGHT_AGE] and taken == pytest.approx(0.5 * grown)
+    assert motion.grown_to(step, order, value) == pytest.approx(grown + taken)
+    m[at.LIMIT] = 0.5 * (grown + taken)
+    motion.leave_boundary(m, order, value)
+    assert (
+        0.4 * step < m[at.CLEAR] < step and motion.grown_to(m[at.CLEAR], order, value) < m[at.LIMIT]
+    )
+    motion.leave_boundary(m, order, 1e9 * bound)
+    assert m[at.CLEAR] <= m[at.RIGHT_AGE]
+
+
+def power_terms(step, order, value, bound):
+    """Exponents and sizes of the leading term and of the one that the bound allows."""
+    return (order, value * step**order), (order + 1, bound * step ** (order + 1))

@@ -237,6 +237,71 @@ def test_growth_that_takes_more_than_ten_holds_is_left_out(rate, held):
     assert np.isfinite(loop.lasting(loop.at(1.52)).speed) == held
 
 
+def line(*points):
+    """Held points by voltage, speed and error."""
+    return [HeldPoint(voltage, speed, error, {}) for voltage, speed, error in points]
+
+
+@pytest.mark.parametrize(
+    ("points", "larger"),
+    [
+        ([(1.50, 1.3, 0.0), (1.52, 1.32 + 4.1e-3, 0.0)], True),  # than the voltage
+        ([(1.50, 1.3, 0.0), (1.52, 1.32 + 3.9e-3, 0.0)], False),
+        ([(1.50, 1.3, 0.0), (1.52, 1.32 - 4.1e-3, 0.0)], True),
+        ([(1.50, 1.3, 0.0), (1.52, 1.32 - 3.9e-3, 0.0)], False),
+        ([(1.50, 1.3, 0.0), (1.501, 1.3 - 1.05e-3, 0.0)], True),  # against it
+        ([(1.50, 1.3, 0.0), (1.501, 1.3 - 0.95e-3, 0.0)], False),
+        ([(1.50, 1.3, 1e-3), (1.52, 1.32 + 6.9e-3, 0.0)], False),  # three standard errors
+        ([(1.50, 1.3, 1e-3), (1.52, 1.32 + 7.1e-3, 0.0)], True),
+        ([(1.50, 1.3, 1.0), (1.52, 1.32 + 8.1e-3, 0.0)], True),  # of which 4e-3 count at most
+        ([(1.50, 1.3, 0.0), (1.52, 1.302, 0.0), (1.5252, 1.302, 0.0)], False),  # 0.26 of a step
+        ([(1.50, 1.3, 0.0), (1.52, 1.302, 0.0), (1.5248, 1.302, 0.0)], True),  # 0.24: too short
+    ],
+)
+def test_each_threshold_of_a_step_that_is_looked_into(points, larger):
+    assert (Scripted(None).excess(line(*points), 0, {}) > 0.0) == larger
+
+
+@pytest.mark.parametrize(
+    ("away", "error", "same"),
+    [(1.95e-3, 0.0, True), (2.05e-3, 0.0, False), (4.9e-3, 1e-3, True), (4.9e-3, 9e-4, False)]
+    + [(5.1e-3, 1.0, False)],  # errors make no motions `clear` apart one
+)
+def test_each_threshold_of_one_motion(away, error, same):
+    first, other = line((1.5, 1.3, 0.6 * error), (1.5, 1.3 + away, 0.8 * error))
+    loop = Scripted(None)
+    assert loop.is_same(first, other) == loop.is_same(other, first) == same
+
+
+@pytest.mark.parametrize(("leaves", "seen"), [(3, True), (4, False)])
+def test_a_motion_is_held_three_times_again(leaves, seen):
+    holds = []
+
+    def higher(motion, before, voltage):
+        holds.append(voltage)
+        return 0.1 if len(holds) >= leaves else 0.0
+
+    loop = Scripted(higher)
+    point = loop.at(1.5)
+    assert (loop.hold_again(point) is not point) == seen
+
+
+def test_a_hold_ends_with_a_tenth_of_the_way_to_go_and_comes_at_the_rate():
+    """The speed rises evenly, by 5e-4 in a piece of 50/omega, too fast to settle."""
+    courses = []
+
+    def begin(course):
+        courses.append(course)
+        return Rotor(course, 0.0, 1.3, 0.0)
+
+    loop = HysteresisLoop(begin, Ramp(1.4, 1.6, 1e-4), H, 1.0, 1.0, 2e4)
+    start = HeldPoint(1.5, 1.3, 0.0, {"speed": np.array([1.3])})
+    left = 1.4 - loop.hold(start.state, 1.5005, 1.5005, (1.3, 1.4)).state["speed"][0]
+    assert 0.009 < left < 0.01
+    loop.hold_from(start, 1.5098)
+    assert courses[-1].times == pytest.approx((0.0, 200.0, 20200.0))
+
+
 def test_a_jump_in_the_tail_of_a_larger_one():
     """The second one is smaller than what the speed gains over a step of the grid."""
 
@@ -313,9 +378,50 @@ def record(means):
     return np.repeat(np.concatenate([[0.0], means]), SETTLED.block)
 
 
-def test_an_exponential_has_settled_before_it_is_there():
-    means = 1.3 - 0.05 * 0.8 ** np.arange(6)
-    assert settled_speed(record(means), SETTLED) == pytest.approx((1.3, 0.0), abs=1e-6)
+def approach(change, ratios):
+    """Means that end at 1.3, whose changes keep some ratios."""
+    changes = change * np.cumprod([1.0, *ratios])
+    return 1.3 + np.concatenate([[0.0], np.cumsum(changes)]) - changes.sum()
+
+
+def thirds(count, scatter, rise, earlier=0.0):
+    """Means to and fro, the last third of the later half higher, the earlier half elsewhere."""
+    means = 1.3 + scatter * (-1.0) ** np.arange(count)
+    means[-max(48, count // 2) // 3 :] += rise
+    means[: count - max(48, count // 2)] += earlier
+    return means
+
+
+LAST = 1.049 / 2.049, 1.051 / 2.051  # the limit is 0.49 and 0.51 of the tolerance off
+NEVER = (np.nan, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("means", "expected"),
+    [
+        (np.full(5, 1.3), (1.3, 0.0)),  # four changes after the first block
+        (np.full(4, 1.3), NEVER),
+        (approach(0.98e-6, [1.0] * 3), (1.3, 0.0)),  # `still`, however they go on
+        (approach(1.02e-6, [1.0] * 3), NEVER),
+        (1.3 + 1e-4 * np.array([0.145, -0.145] * 3), (1.3 - 0.029e-4, 0.0)),  # `to_and_fro`
+        (1.3 + 1e-4 * np.array([0.155, -0.155] * 3), NEVER),
+        (approach(1e-3, [0.945] * 4), (1.3 + 0.945**5 * 1e-3 / 0.055, 0.0)),  # `slowest`
+        (approach(1e-3, [0.955] * 4), NEVER),
+        (approach(4e-3, [0.5, 0.5, LAST[0]]), (1.3 + 1.049e-3 * LAST[0], 0.0)),
+        (approach(4e-3, [0.5, 0.5, LAST[1]]), NEVER),  # `agreement`
+        (thirds(48, 1e-3, 0.0), (1.3, 0.35e-3)),  # `blocks`, `deviation`
+        (thirds(47, 1e-3, 0.0), NEVER),
+        (thirds(48, 2e-5, 0.98e-4), (1.3 + 0.98e-4 / 3.0, 0.98e-4)),  # the tolerance
+        (thirds(48, 2e-5, 1.02e-4), NEVER),
+        (thirds(48, 1e-3, 0.50e-3), (1.3 + 0.5e-3 / 3.0, 0.50e-3)),  # `scatter`
+        (thirds(48, 1e-3, 0.53e-3), NEVER),
+        (thirds(120, 1e-3, 0.0, 0.1), (1.3, 0.35e-3)),  # the later half alone,
+        (thirds(120, 1e-3, 0.53e-3), NEVER),  # and all of it
+    ],
+)
+def test_each_threshold_of_a_settled_speed(means, expected):
+    speed, error = settled_speed(record(means), SETTLED)
+    assert (speed, error) == pytest.approx(expected, rel=1e-9, abs=1e-12, nan_ok=True)
 
 
 def test_an_approach_to_a_fold_has_not_settled():

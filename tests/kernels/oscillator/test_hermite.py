@@ -1,0 +1,127 @@
+"""The quintic between two nodes and its Bernstein coefficients, against its own polynomial."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+from fmu_src.kernels.oscillator import hermite
+from fmu_src.kernels.oscillator import memory as at
+
+H = 0.3
+S = np.linspace(0.0, 1.0, 2001)
+
+
+def interval(quintic, remainder=0.0):
+    """A memory with a quintic's values and derivatives at both ends of an interval from 2 on."""
+    m = [0.0] * at.SIZE
+    m[at.SPACING], m[at.LEFT_AGE], m[at.RIGHT_AGE] = H, 2.0, 2.0 + H
+    m[at.HERMITE], m[at.HERMITE + 1], m[at.HERMITE + 2] = H / 5.0, H * H / 20.0, H**6 / 28800.0
+    for slot, s in ((at.LEFT_VALUES, 0.0), (at.RIGHT_VALUES, 1.0)):
+        for k in range(3):
+            m[slot + k] = float(quintic.deriv(k)(s)) / H**k if k else float(quintic(s))
+    m[at.REMAINDER] = remainder
+    return m
+
+
+def quintics(seed, count, spread=1.0):
+    """Of s in [0, 1], by their Bernstein coefficients; with these."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        b = spread * rng.normal(size=6) + rng.choice([0.0, 1.0, 3.0])
+        yield rng, of_bernstein(b), b
+
+
+def of_bernstein(b):
+    s = Polynomial([0.0, 1.0])
+    return sum(float(c) * math.comb(5, k) * s**k * (1.0 - s) ** (5 - k) for k, c in enumerate(b))
+
+
+def part_coefficients(quintic, s):
+    """Bernstein coefficients of a quintic's part up to s, from its powers."""
+    powers = np.pad(quintic.coef, (0, 6 - len(quintic.coef))) * s ** np.arange(6)
+    return [
+        sum(math.comb(k, i) / math.comb(5, i) * powers[i] for i in range(k + 1)) for k in range(6)
+    ]
+
+
+def test_coefficients_of_values_and_derivatives():
+    for _, quintic, b in quintics(1, 200):
+        m = interval(quintic, 0.125)
+        assert hermite.present_coefficients(m, 0.0) == pytest.approx(b, abs=1e-12)
+        lowered = b - np.array([0.0, 0.0, 0.25, 0.25, 0.0, 0.0])
+        assert hermite.present_coefficients(m, 0.25) == pytest.approx(lowered, abs=1e-12)
+        left, right = m[at.LEFT_VALUES :][:3], m[at.RIGHT_VALUES :][:3]
+        after, before = hermite.lowest_after(m, *left, 0.25), hermite.lowest_before(m, *right, 0.25)
+        assert after == pytest.approx(lowered[:3].min(), abs=1e-12)
+        assert before == pytest.approx(lowered[3:5].min(), abs=1e-12)
+        raised = b + np.array([0.0, 0.0, 0.125, 0.125, 0.0, 0.0])
+        assert hermite.interval_is_below(m, raised.max() + 1e-9)
+        assert not hermite.interval_is_below(m, raised.max() - 1e-9)
+
+
+def test_each_coefficient_counts_for_having_no_root():
+    for k in range(6):
+        b = [1.0] * 6
+        b[k] = 0.0
+        assert hermite.has_no_root(*b) == (k < 5)
+        b[k] = -1e-9
+        assert not hermite.has_no_root(*b)
+
+
+def test_a_part_is_clear_where_its_coefficients_are():
+    clear = 0
+    for rng, quintic, b in quintics(2, 3000):
+        s = float(rng.uniform(0.05, 1.0))
+        part = part_coefficients(quintic, s)
+        lowest = min(part)
+        if abs(lowest) > 1e-12:
+            assert hermite.part_is_clear(*b, s) == (lowest >= 0.0)
+            clear += lowest >= 0.0
+    assert 300 < clear < 2700
+
+
+def test_the_clear_part_ends_closely_before_the_last_root():
+    """Of a quintic that falls throughout, if Newton's method gets there; any has no root in it."""
+    short, tried = [], 0
+    for rng, quintic, b in quintics(3, 2000):
+        part = hermite.clear_part(*b)
+        assert not part or quintic(part * S[1:]).min() > 0.0
+        falling = np.sort(rng.normal(size=6))[::-1]
+        if falling[0] > 0.0 > falling[-1]:
+            root = S[np.argmax(of_bernstein(falling)(S) <= 0.0)]
+            part, crossing = hermite.clear_part(*falling), hermite.last_crossing(*falling)
+            assert part < root and part in (0.0, crossing)
+            tried += 1
+            short += [root - part] if part else []
+    short = np.array(short)
+    assert len(short) > 0.5 * tried
+    assert (short < 1e-3).mean() > 0.99 and (short > 2e-4).mean() > 0.5
+
+
+def test_a_positive_end_behind_a_low_middle_leaves_half():
+    """Both halves' ends are positive; no crossing is sought."""
+    assert hermite.clear_part(1.0, 1.0, -0.2, 0.9, 1.0, 1.0) == 0.5
+    assert hermite.clear_part(1.0, -1.0, -1.0, 1.0, 1.0, 1.0) == 0.0
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_no_summit_is_overlooked_and_a_clear_slope_is_seen(sign):
+    """What the quintic misses is added or taken: the remainder times 20 s^3 (1 - s)^3 / (5/16)."""
+    seen = 0
+    bump = Polynomial([0.0, 0.0, 0.0, 1.0]) * Polynomial([1.0, -1.0]) ** 3
+    for rng, quintic, _ in quintics(4, 2000, spread=0.3):
+        tilted = quintic + Polynomial([0.0, float(rng.normal(scale=3.0))])
+        low = float(np.exp(rng.uniform(-9.0, -1.0)))
+        m = interval(tilted, low)
+        a, z = np.sort(rng.uniform(0.0, 1.0, 2)).tolist()
+        slope = (tilted + sign * 40.0 * low * bump).deriv()(a + (z - a) * S)
+        summit = hermite.has_summit(m, 2.0 + H * a, 2.0 + H * z)
+        assert summit or slope.min() > 0.0 or slope.max() < 0.0
+        first, second = abs(tilted.deriv()(a)), abs(tilted.deriv(2)(a))
+        third = np.abs(tilted.deriv(3)(S)).max()
+        if first > (second + 1.7 * third * (z - a)) * (z - a) + 300.0 * low:
+            seen += 1
+            assert not summit
+    assert seen > 200

@@ -1,0 +1,143 @@
+"""Break one module: ``python -m tests.mutation MODULE TABLE.csv --budget 100 --seed 1``.
+
+Each breakage is written into a copy of the tree, where a fork that has loaded the libraries already
+runs the module's tests. What was noticed once stays noticed; what was not is asked again when the
+tests have changed.
+"""
+
+import argparse
+import csv
+import hashlib
+import os
+import random
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import hypothesis  # noqa: F401  # what the forks share
+import mpmath  # noqa: F401
+import netCDF4  # noqa: F401
+import pytest
+import scipy.signal  # noqa: F401
+import scipy.stats  # noqa: F401
+import xarray  # noqa: F401
+
+from .breakages import breakages
+from .subjects import SUBJECTS
+
+ROOT = Path(__file__).resolve().parents[2]
+PATIENCE = 5.0  # times the unbroken tests' time
+OPTIONS = ["-x", "-q", "-n", "0", "-p", "no:cacheprovider"]
+OWN = ("tests", "fmu_src", "orchestrate", "tools")
+NOTICED, SURVIVED = "noticed", "survived"
+COLUMNS = ("line", "broken", "outcome", "tests")
+
+
+def copy_of_the_tree(folder):
+    """Copy what the tests need; a broken kernel makes FMUs of its own there."""
+    for name in (*OWN, "examples", "docs", "build"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "LICENSE", "README.md"):
+        shutil.copy(ROOT / name, folder)
+
+
+def run_tests(folder, tests):
+    """Run tests in a folder; never returns."""
+    os.setsid()
+    os.chdir(folder)
+    quiet = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(quiet, 1)
+    os.dup2(quiet, 2)
+    sys.dont_write_bytecode = True
+    for name in [name for name in sys.modules if name.split(".")[0] in OWN]:
+        del sys.modules[name]
+    sys.path[:] = [str(folder), *(part for part in sys.path if part not in ("", str(ROOT)))]
+    os._exit(int(pytest.main([*OPTIONS, *(name for name in tests if Path(name).exists())])))
+
+
+def outcome(folder, tests, limit):
+    """Return whether tests fail in a folder or take too long, and their time."""
+    begun = time.monotonic()
+    child = os.fork()
+    if child == 0:
+        run_tests(folder, tests)
+    while time.monotonic() - begun < limit:
+        ended, status = os.waitpid(child, os.WNOHANG)
+        if ended:
+            return status != 0, time.monotonic() - begun
+        time.sleep(0.02)
+    os.killpg(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return True, limit
+
+
+def digest(tests):
+    """What the tests are, to ask the survivors again when they change."""
+    texts = [(ROOT / name).read_bytes() for name in tests if (ROOT / name).exists()]
+    return hashlib.sha256(b"\0".join(texts)).hexdigest()[:12]
+
+
+def rows_of(table):
+    """The rows of a table by their breakage."""
+    if not table.exists():
+        return {}
+    with table.open(newline="") as file:
+        return {(row["line"], row["broken"]): row for row in csv.DictReader(file)}
+
+
+def break_module(module, table, budget, seed, again):
+    """Break a module in as many ways as the budget has, and write the table after each."""
+    tests, before, chosen = SUBJECTS[module], rows_of(table), breakages((ROOT / module).read_text())
+    if budget and budget < len(chosen):
+        chosen = sorted(random.Random(seed).sample(chosen, budget))
+    token = digest(tests)
+    with tempfile.TemporaryDirectory() as home:
+        folder = Path(home).resolve()
+        copy_of_the_tree(folder)
+        target = folder / module
+        source = target.read_text()
+        failed, usual = outcome(folder, tests, 1800.0)
+        assert not failed, f"{module}: its tests fail before it is broken"
+        target.write_text(f"raise RuntimeError\n{source}")
+        assert outcome(folder, tests, 1800.0)[0], f"{module}: its tests do not import it"
+        for one in chosen:
+            key = (one.text, one.broken)
+            old = before.get(key)
+            if old and (old["outcome"] == NOTICED or (old["tests"] == token and not again)):
+                continue
+            target.write_text(one.source)
+            failed, _ = outcome(folder, tests, 10.0 + PATIENCE * usual)
+            result = NOTICED if failed else SURVIVED
+            before[key] = dict(zip(COLUMNS, (*key, result, token), strict=True))
+            write(table, before.values())
+    return [before[one.text, one.broken]["outcome"] for one in chosen]
+
+
+def write(table, rows):
+    """Write a table whole, so that an interrupted run loses one breakage at most."""
+    table.parent.mkdir(parents=True, exist_ok=True)
+    part = table.with_suffix(".part")
+    with part.open("w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS)
+        writer.writeheader()
+        writer.writerows(rows)
+    part.replace(table)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("module", choices=list(SUBJECTS))
+    parser.add_argument("table", type=Path)
+    parser.add_argument("--budget", type=int, default=0, help="breakages; 0: all")
+    parser.add_argument("--seed", type=int, default=1, help="of the choice")
+    parser.add_argument("--again", action="store_true", help="ask all survivors again")
+    asked = parser.parse_args()
+    results = break_module(asked.module, asked.table, asked.budget, asked.seed, asked.again)
+    print(f"{asked.module},{len(results)},{results.count(NOTICED)}")
+
+
+if __name__ == "__main__":
+    main()
