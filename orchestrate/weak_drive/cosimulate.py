@@ -33,7 +33,7 @@ from ..model.arguments import Count, Positive, checked_integer
 from ..model.drive import Drive
 from ..model.shaker import Shaker
 from ..model.structure import Structure
-from ..response.labels import variable, yes_or_no
+from ..response.labels import Variable, variable, yes_or_no
 from ..response.questions import Question, checked_state, checked_structure
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Chunk, Table, brief, plain
@@ -359,61 +359,55 @@ class CosimulateJob(Question):
         return times[times <= last], ended
 
     def dataset(self, table: Table) -> xr.Dataset:
-        names = {**IN_TIME, **IN_TIME_TOO}
-        if self.alone:
-            names = {name: names[name] for name in ("box_acceleration",)}
         description = describe(self.drive)
-        theirs = {}
-        count = len(table["step_time"])
-        recorded, finer = (table.get(f"recorded {i}", NOTHING)[:count] for i in (1, 2))
         at_steps = "time" if self.points == 1 else "step_time"
-        for i, name in enumerate(self.record):
-            about = description.variable(name)
-            text, unit = about.description or f"{name} of the drive", about.unit or "1"
-            theirs[name] = variable(at_steps, recorded[:, i], unit, text)
-            if self.estimate:
-                error = TO_HALF * np.abs(recorded[:, i] - finer[:, i])
-                theirs[f"{name}_error"] = variable(
-                    at_steps, error, unit, f"estimated error: {text}"
-                )
-        knows_velocity = any(ours == "box_velocity" for ours, _ in self.connect)
-        shown = [n for n in names if n in table and (n != "box_work" or knows_velocity)]
-        contact = "whether the masses are in permanent contact"
-        in_contact = yes_or_no("time", table["in_contact"], contact)
-        title = f"{'no structure' if self.alone else self.structure.label()} on {description.name}"
-        aborted = {}
-        if "control_aborted" in table:
-            text = "time at which the control gave up, NaN if it did not"
-            aborted["control_aborted"] = variable((), table["control_aborted"][-1], "s", text)
+        times = {"time": "time"} | {at_steps: "communication points"}
+        structure = "no structure" if self.alone else self.structure.label()
+        resumable = "yes" if description.saves_states else "no: the drive cannot save its state"
         return xr.Dataset(
+            self.motion_variables(table, at_steps) | self.drive_variables(table, at_steps),
+            {name: variable(name, table[name], "s", text) for name, text in times.items()},
             {
-                **{
-                    name: variable(at_steps if name == "box_work" else "time", table[name], *about)
-                    for name, about in names.items()
-                    if name in shown
-                },
-                **({} if self.alone else {"in_contact": in_contact, **impact_variables(table)}),
-                **theirs,
-                **aborted,
-            },
-            {
-                name: variable(name, table[name], "s", text)
-                for name, text in (("step_time", "communication points"), ("time", "time"))
-                if name in ("time", at_steps)
-            },
-            {
-                "title": title,
+                "title": f"{structure} on {description.name}",
                 "drive": description.name,
                 "recorded": ",".join(self.record),
                 "inputs_at_start": ", ".join(self.inputs_at_start(description)),
                 "response_in_a_step": float(table["response"][0][1]),
                 "ended": str(table["ended"][-1]) or AT_THE_DURATION,
                 "drive_warnings": "\n".join(dict.fromkeys(filter(None, table["warned"].tolist()))),
-                "resumable": "yes"
-                if description.saves_states
-                else "no: the drive cannot save its state",
+                "resumable": resumable,
             },
         )
+
+    def motion_variables(self, table: Table, at_steps: str) -> dict[str, Variable]:
+        """Return the variables of the box, and of the structure if there is one."""
+        shown = {**IN_TIME, **IN_TIME_TOO}
+        work = shown.pop("box_work")
+        acceleration = variable("time", table["box_acceleration"], *shown["box_acceleration"])
+        if self.alone:
+            return {"box_acceleration": acceleration}
+        found = {n: variable("time", table[n], *about) for n, about in shown.items() if n in table}
+        if "box_velocity" in dict(self.connect):
+            found["box_work"] = variable(at_steps, table["box_work"], *work)
+        text = "whether the masses are in permanent contact"
+        found["in_contact"] = yes_or_no("time", table["in_contact"], text)
+        return found | impact_variables(table)
+
+    def drive_variables(self, table: Table, at_steps: str) -> dict[str, Variable]:
+        """Return what is recorded of the drive, with its estimated error, and of a control."""
+        count, found = len(table["step_time"]), {}
+        recorded, finer = (table.get(f"recorded {i}", NOTHING)[:count].T for i in (1, 2))
+        for i, name in enumerate(self.record):
+            about = describe(self.drive).variable(name)
+            text, unit = about.description or f"{name} of the drive", about.unit or "1"
+            found[name] = variable(at_steps, recorded[i], unit, text)
+            if self.estimate:
+                error = TO_HALF * np.abs(recorded[i] - finer[i])
+                found[f"{name}_error"] = variable(at_steps, error, unit, f"error of {text}")
+        if "control_aborted" in table:
+            text = "time at which the control gave up, NaN if it did not"
+            found["control_aborted"] = variable((), table["control_aborted"][-1], "s", text)
+        return found
 
 
 def cosimulate(
@@ -501,10 +495,11 @@ def cosimulate(
     The drive does each step once, so it need not be able to go back; the oscillator does it two or
     three times, see :mod:`orchestrate.weak_drive.master`. A drive takes the force held, or with its
     derivatives. Errors are of fourth order in the step if a velocity is connected, of third order
-    otherwise, of second order if it is the acceleration alone, under inputs that change: as long as
-    the acceleration follows the force at once when it is read. Of a drive whose outputs change in
-    steps alone they are of first order, unless its velocity is connected. After impacts that one of
-    the two runs has and the other not, or in chaos, the estimated error is as large as the motion.
+    otherwise, of second order if it is the acceleration alone and inputs change or the force acts
+    late, as long as the acceleration is that under the present force when it is read. Of a drive
+    whose outputs change in steps alone they are of first order, unless its velocity is connected.
+    After impacts that one of the two runs has and the other not, or in chaos, the estimated error
+    is as large as the motion.
 
     An interrupted run resumes where the drive can save its state (``canSerializeFMUstate``); else
     it begins anew, as ``resumable`` in the attributes says.

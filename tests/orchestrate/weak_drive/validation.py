@@ -20,11 +20,17 @@ RANGES = {  # of what a laboratory would build
     **{"Omega_b": (0.05, 0.3), "D_b": (0.005, 0.05), "lag": (0.0, 1.0)},
 }
 
+WIDE = {  # of what users may enter
+    **RANGES,
+    **{"mu": (0.25, 4.0), "kappa": (0.4, 3.0), "D1": (0.0, 0.2), "D2": (0.0, 0.2)},
+    **{"e": (0.05, 0.95), "b": (0.004, 0.1)},
+}
 
-def random_sets(count, seed=SEED):
+
+def random_sets(count, seed=SEED, ranges=RANGES):
     """Structures with their drives, each number uniform in its range."""
     rng = np.random.default_rng(seed)
-    return [made({name: rng.uniform(*ends) for name, ends in RANGES.items()}) for _ in range(count)]
+    return [made({name: rng.uniform(*ends) for name, ends in ranges.items()}) for _ in range(count)]
 
 
 def made(v):
