@@ -25,9 +25,12 @@ SUBJECTS = {
     "orchestrate/weak_drive/settled.py": (f"{DRIVE}/test_hysteresis.py",),
     "orchestrate/dynamics/decision.py": ("tests/orchestrate/dynamics/test_decision.py",),
     "orchestrate/diagnosis/decision_rule.py": (
+        f"{DIAGNOSIS}/test_thresholds.py",
         f"{DIAGNOSIS}/test_verdicts.py",
-        f"{DIAGNOSIS}/test_detect.py",
     ),
     "orchestrate/diagnosis/impact_timing.py": (f"{DIAGNOSIS}/test_impact_timing.py",),
-    "orchestrate/diagnosis/wiring.py": (f"{DIAGNOSIS}/test_wiring.py",),
+    "orchestrate/diagnosis/wiring.py": (
+        f"{DIAGNOSIS}/test_thresholds.py",
+        f"{DIAGNOSIS}/test_wiring.py",
+    ),
 }

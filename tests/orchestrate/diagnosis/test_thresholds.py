@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from orchestrate.diagnosis.bursts import mean_power
 from orchestrate.diagnosis.decision_rule import (
     DELAMINATED,
     NOT_DESCRIBED,
@@ -14,6 +15,8 @@ from orchestrate.diagnosis.decision_rule import (
     UNDECIDED,
     resampled_share,
 )
+from orchestrate.diagnosis.even_orders import even_orders, thresholds
+from orchestrate.diagnosis.settings import SETTINGS
 from orchestrate.diagnosis.wiring import WIRING, LowResponse, is_heard, sensor_notes
 
 from .test_verdicts import OPENED, QUIET
@@ -119,3 +122,65 @@ def test_each_threshold_of_a_dead_or_exchanged_sensor(face, base, floor, kinds):
     made = orders(face, base, floor)
     assert [note.kind for note in sensor_notes(made, 0, WIRING)] == kinds
     assert is_heard(made, 0, WIRING) or kinds == ["dead"]
+
+
+def windows(one, other=None, noise=0.0, floor=0.0):
+    """Evidence of one or two sensors by their orders 1 and 2 in 40 windows, over a base of none."""
+    rows = [row for row in (one, other) if row is not None]
+    measured = np.array([[np.broadcast_to(order, 40) for order in row] for row in rows], complex)
+    return SimpleNamespace(
+        measured=measured,
+        noise=np.full(len(rows), noise),
+        floor=np.full((len(rows), 40), floor),
+        size=np.abs(measured[:, 0]),
+        base=np.zeros((2, 40), complex),
+        frequency=np.linspace(20.0, 40.0, 40),
+        settings=SETTINGS,
+    )
+
+
+@pytest.mark.parametrize(
+    ("noise", "floor", "order2", "seen"),
+    [
+        *((0.0, 0.0, 0.0051, True), (0.0, 0.0, 0.0049, False)),  # over order 1,
+        *((0.01, 0.0, 0.051, True), (0.01, 0.0, 0.049, False)),  # five times the noise,
+        *((0.0, 0.01, 0.0225, True), (0.0, 0.01, 0.0222, False)),  # twice the floor, and it
+    ],
+)
+def test_each_threshold_of_order_2(noise, floor, order2, seen):
+    evidence = windows((1.0, order2), noise=noise, floor=floor)
+    assert even_orders(evidence, np.zeros_like(evidence.measured)).is_order_2_seen == seen
+
+
+@pytest.mark.parametrize(
+    ("other", "apart"),
+    [
+        *(((1.0, 0.395), True), ((1.0, 0.405), False)),  # a fifth of order 2
+        *(((1.031, 0.5), True), ((1.029, 0.5), False)),  # 0.03 of order 1
+    ],
+)
+def test_each_threshold_of_faces_that_move_apart(other, apart):
+    """A difference in order 1 that goes to and fro is not one of gains."""
+    turns = (-1.0) ** np.arange(40)
+    order1 = 1.0 + (other[0] - 1.0) * turns
+    assert (even_orders_of(windows((1.0, 0.5), (order1, other[1]))) > 1.0) == apart
+
+
+def even_orders_of(evidence):
+    return even_orders(evidence, np.zeros_like(evidence.measured)).moved_apart
+
+
+def test_little_moves_below_a_tenth_of_the_largest_order_1():
+    size = np.where(np.arange(40) < 20, 1.0, 0.11)
+    size[30:] = 0.09
+    seen = thresholds(windows((size, 0.0)))[0]
+    assert np.isfinite(seen[22:28]).all() and np.isnan(seen[33:]).all()
+
+
+@pytest.mark.parametrize(("loud", "heard"), [((1, 0, 1, 0, 0), True), ((1, 0, 0, 0), False)])
+def test_bursts_in_less_than_a_third_of_the_periods_are_lost_samples(loud, heard):
+    turns = np.repeat(np.arange(240), 10)
+    signal = np.where(np.resize(loud, 240), 1.0, 0.1)[turns]
+    power = mean_power(signal, turns, 600, 1.0 - SETTINGS.burst_periods)
+    expected = np.mean(loud) + 0.01 * (1.0 - np.mean(loud)) if heard else 0.01
+    assert power == pytest.approx(np.full(len(power), expected), rel=0.02)
