@@ -10,7 +10,7 @@ SETTLED = SettledSettings()
 
 def record(means):
     """A record of revolutions by the means of its blocks, after a first block."""
-    return np.repeat(np.concatenate([[0.0], means]), SETTLED.block)
+    return np.repeat(np.concatenate([[0.0], means]), 12)
 
 
 def approach(change, ratios):
