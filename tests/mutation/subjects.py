@@ -22,12 +22,15 @@ SUBJECTS = {
     "fmu_src/kernels/oscillator/motion.py": kernel("motion", "chattering", "stepper", "contact"),
     "fmu_src/kernels/repetition.py": ("tests/orchestrate/response/test_multiplicity.py",),
     "orchestrate/weak_drive/hysteresis.py": (f"{DRIVE}/test_hysteresis.py",),
-    "orchestrate/weak_drive/settled.py": (f"{DRIVE}/test_hysteresis.py",),
+    "orchestrate/weak_drive/settled.py": (f"{DRIVE}/test_settled.py",),
     "orchestrate/dynamics/decision.py": ("tests/orchestrate/dynamics/test_decision.py",),
     "orchestrate/diagnosis/decision_rule.py": (
+        f"{DIAGNOSIS}/test_thresholds.py",
         f"{DIAGNOSIS}/test_verdicts.py",
-        f"{DIAGNOSIS}/test_detect.py",
     ),
     "orchestrate/diagnosis/impact_timing.py": (f"{DIAGNOSIS}/test_impact_timing.py",),
-    "orchestrate/diagnosis/wiring.py": (f"{DIAGNOSIS}/test_wiring.py",),
+    "orchestrate/diagnosis/wiring.py": (
+        f"{DIAGNOSIS}/test_thresholds.py",
+        f"{DIAGNOSIS}/test_wiring.py",
+    ),
 }

@@ -164,6 +164,8 @@ def test_a_root_by_taylor_is_found_where_all_bends_down_a_little():
             assert kernel.taylor_root(*row[:5], 1.01 * limit, step, wanted) == 0.0
         assert kernel.taylor_root(*row[:5], 0.0, 0.66, wanted) == 0.0
         assert kernel.taylor_root(*row[:5], 0.0, 1.01, wanted) == 0.0
+    for bound, root in ((23.0, 1.0), (25.0, 0.0)):  # 24 may turn the slope before the root
+        assert kernel.taylor_root(1.0, -1.0, 0.0, 0.0, 0.0, bound, 0.9, 0.3) == root
 
 
 def test_a_close_root_is_exact_and_the_only_one():

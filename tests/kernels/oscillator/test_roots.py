@@ -1,115 +1,19 @@
-"""The certified step never passes a root; the walk finds the first root, which a scan in high
-precision finds too.
-"""
-
-import math
+"""The walk finds the first root, which a scan in high precision finds too."""
 
 import mpmath as mp
-import numpy as np
 import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from fmu_src.kernels.numerics.first_root import (
-    clear_step,
-    lowest_curvature,
-    parabola_root,
-    taylor_root,
-)
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.roots import walk
 from tests import exact_motion as truth
 
-from .kernel import DEFAULTS, examples, rest_together, sizes, started, structures, unloaded
+from .kernel import DEFAULTS, examples, rest_together, started, structures, unloaded
 
-SIGNED = st.just(0.0) | sizes(1e-12, 1e3) | sizes(1e-12, 1e3).map(lambda x: -x)
-HEIGHTS = st.just(0.0) | sizes(1e-15, 1e3)
 STATES = st.tuples(
     st.floats(-1.0, 0.0), st.floats(-1.0, 1.0), st.floats(0.01, 1.0), st.floats(-1.0, 1.0)
 )
-
-
-REACH = 6.0
-
-
-def quintic(h, bound, s):
-    """The lower bound of an event function, and the size of its terms."""
-    terms = [mp.mpf(value) * s**k / mp.factorial(k) for k, value in enumerate(h)] + [
-        -mp.mpf(bound) * s**5 / 120
-    ]
-    return sum(terms), sum(map(abs, terms))
-
-
-def lowest(h, bound, stop):
-    """The quintic's least value on (0, stop], relative to the size of its terms there."""
-    with mp.workdps(60):
-        slope = [
-            -mp.mpf(bound) / 24,
-            mp.mpf(h[4]) / 6,
-            mp.mpf(h[3]) / 2,
-            mp.mpf(h[2]),
-            mp.mpf(h[1]),
-        ]
-        flat = [
-            mp.re(s)
-            for s in mp.polyroots(slope[::-1], maxsteps=500, extraprec=400, asc=True)
-            if abs(mp.im(s)) <= abs(s) * mp.mpf("1e-20")
-        ]
-        values = [quintic(h, bound, s) for s in (mp.mpf(stop), *flat) if 0 < s <= stop]
-        return float(min(value / terms for value, terms in values))
-
-
-@examples(150)
-@given(HEIGHTS, SIGNED, SIGNED, SIGNED, SIGNED, sizes(1e-9, 1e6))
-@example(0.0, 0.0, 1.0, 0.0, 0.0, 3.0)
-@example(0.5, -1.0, 1.0, 0.0, 0.0, 1e-9)  # double root of the parabola
-@example(1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
-@example(0.0, 1.0, 0.0, -1.0, 0.0, 1.0)
-@example(0.0, 1.0, -2.0, 3.0, -4.0, 1.0)
-@example(0.0, 0.0, 1.0, 3.0, -8.0, 1.0)
-def test_a_clear_step_is_certified(h0, h1, h2, h3, h4, bound):
-    assume(h0 > 0.0 or h1 > 0.0 or (h1 == 0.0 and h2 > 0.0))
-    step = clear_step(h0, h1, h2, h3, h4, bound, REACH)
-    assert 0.0 < step <= REACH
-    assert lowest((h0, h1, h2, h3, h4), bound, step) >= -4e-15
-
-
-@examples(300)
-@given(
-    sizes(1e-3, 1.0),
-    sizes(1e-3, 1.0),
-    SIGNED,
-    SIGNED,
-    SIGNED,
-    sizes(1e-3, 10.0),
-    st.floats(0.01, 1.0),
-)
-@example(0.641, 0.0593, -18.0, 79.8, 3.57, 0.1, 0.353)  # these rise somewhere between
-@example(0.531, 0.669, 0.164, -0.0128, 1.85, 0.1, 0.973)
-def test_a_root_by_taylor_is_the_only_one_from_the_clear_step_on(h0, fall, h2, h3, h4, bound, step):
-    root = taylor_root(h0, -fall, h2, h3, h4, bound, step, 1e3)
-    if root > 0.0:
-        for s in (step + (root - step) * i / 20 for i in range(21)):
-            assert -fall + s * (h2 + s * (h3 / 2 + s * (h4 / 6 + s * bound / 24))) < 0.0
-
-
-@pytest.mark.parametrize("scale", [1.0, 1e-3, 1e-9])
-def test_the_parabola_is_below_the_quintic(scale):
-    """All along the step, however slightly the derivatives bend it."""
-    rng = np.random.default_rng(3)
-    part = np.linspace(0.0, 1.0, 201)
-    for _ in range(300):
-        h2, h3, h4 = scale * rng.uniform(-1.0, 1.0, 3) * (0.0, 1.0, 3.0)
-        bound, s = scale * rng.uniform(0.0, 1.0) * rng.integers(2), rng.uniform(0.1, 2.0)
-        t = s * part
-        least = (h2 + t * (h3 / 3.0 + t * (h4 / 12.0 - bound * t / 60.0))).min()
-        assert lowest_curvature(h2, h3, h4, bound, s) <= least + 1e-15 * scale
-
-
-def test_an_event_function_that_never_falls_has_no_root():
-    assert clear_step(1.0, 0.5, 0.2, 0.0, 0.0, 0.0, REACH) == REACH
-    assert parabola_root(1.0, -0.1, 1.0) == math.inf
-    assert parabola_root(0.0, 0.0, 1.0) == math.inf
 
 
 def first_end(m, horizon):

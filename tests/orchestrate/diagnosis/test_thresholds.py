@@ -1,0 +1,186 @@
+"""Each threshold of the verdict and of the wiring has a case just inside and one just outside."""
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from orchestrate.diagnosis.bursts import mean_power
+from orchestrate.diagnosis.decision_rule import (
+    DELAMINATED,
+    NOT_DESCRIBED,
+    NOT_SEEN,
+    UNDECIDED,
+    resampled_share,
+)
+from orchestrate.diagnosis.even_orders import even_orders, thresholds
+from orchestrate.diagnosis.settings import SETTINGS
+from orchestrate.diagnosis.wiring import WIRING, LowResponse, is_heard, sensor_notes
+
+from .test_verdicts import OPENED, QUIET
+
+APART = replace(OPENED, apart=1.01, bursts=0.9)
+ALONE = replace(APART, excess=0.9)
+POOR = replace(QUIET, sound_misfit=1.21)
+
+
+@pytest.mark.parametrize(
+    ("findings", "name", "inside", "outside", "verdicts"),
+    [
+        (OPENED, "excess", 1.01, 0.99, (DELAMINATED, UNDECIDED)),
+        (OPENED, "bursts", 30.1, 29.9, (DELAMINATED, UNDECIDED)),
+        (OPENED, "sound_misfit", 1.501 * 0.8, 1.499 * 0.8, (DELAMINATED, UNDECIDED)),
+        (APART, "sound_misfit", 1.101 * 0.8, 1.099 * 0.8, (DELAMINATED, UNDECIDED)),
+        (ALONE, "sound_misfit", 5.01 * 0.8, 4.99 * 0.8, (DELAMINATED, UNDECIDED)),
+        (replace(ALONE, bursts=1.01), "sound_misfit", 0.89, 0.87, (DELAMINATED, UNDECIDED)),
+        (APART, "apart", 1.01, 0.99, (DELAMINATED, UNDECIDED)),
+        (replace(OPENED, sound_misfit=9.0), "delaminated_misfit", 2.99, 3.01)
+        + ((DELAMINATED, NOT_DESCRIBED),),
+        (OPENED, "share", 0.751, 0.749, (DELAMINATED, UNDECIDED)),
+        (OPENED, "end_response", 0.69, 0.71, (DELAMINATED, UNDECIDED)),
+        (OPENED, "clipped", 0.99 * OPENED.settings.clipped, 1.01 * OPENED.settings.clipped)
+        + ((DELAMINATED, UNDECIDED),),
+        (OPENED, "resonance", 2.01 * 42.0 / 4.0, 1.99 * 42.0 / 4.0, (DELAMINATED, UNDECIDED)),
+        (OPENED, "resonance", 1.99 * 52.0, 2.01 * 52.0, (DELAMINATED, UNDECIDED)),
+        (QUIET, "bursts", 0.99, 1.01, (NOT_SEEN, UNDECIDED)),
+        (QUIET, "excess", 0.99, 1.01, (NOT_SEEN, UNDECIDED)),
+        (QUIET, "sound_misfit", 1.19, 1.21, (NOT_SEEN, UNDECIDED)),
+        (QUIET, "hidden", 0.099, 0.101, (NOT_SEEN, UNDECIDED)),
+        (POOR, "delaminated_misfit", 2.99, 3.01, (UNDECIDED, NOT_DESCRIBED)),
+        (replace(POOR, delaminated_misfit=4.0), "sound_misfit", 1.19, 1.21)
+        + ((NOT_SEEN, NOT_DESCRIBED),),
+    ],
+)
+def test_each_threshold_of_the_verdict(findings, name, inside, outside, verdicts):
+    found = tuple(replace(findings, **{name: value}).verdict() for value in (inside, outside))
+    assert found == verdicts
+
+
+@pytest.mark.parametrize(("blocks", "share"), [(1, 1.0 - 0.95**20), (2, 1.0 - 0.9**20)])
+def test_a_record_is_put_together_of_twenty_blocks(blocks, share):
+    """By chance it has none of those that alone make the ratio: 0.64 and 0.88 of records do."""
+    one = np.full((1, 1, 200), 0.1)
+    burst = one.copy()
+    burst[..., : 10 * blocks] = 1e3
+    assert resampled_share(burst, one, 1.5) == pytest.approx(share, abs=0.04)
+
+
+@pytest.mark.parametrize(
+    ("factor", "delay", "kinds"),
+    [
+        (9.80665 * math.exp(0.24), 0.0, ["unit"]),
+        (9.80665 * math.exp(0.26), 0.0, ["scale"]),
+        (math.exp(-0.24) / 9.80665, 0.0, ["unit"]),
+        (math.exp(-0.26) / 9.80665, 0.0, ["scale"]),
+        (2.49, 0.0, []),
+        (2.51, 0.0, ["scale"]),
+        (1.0 / 2.49, 0.0, []),
+        (1.0 / 2.51, 0.0, ["scale"]),
+        (-1.0, 0.0, ["polarity"]),
+        (1.0, 0.99e-3, []),
+        (1.0, -1.01e-3, ["delay"]),
+        (1.0, 0.01 * 7.4 / (2.0 * math.pi * 10.0), []),  # below 7.5 times the misfit's phase
+        (1.0, 0.01 * 7.6 / (2.0 * math.pi * 10.0), ["delay"]),
+    ],
+)
+def test_each_threshold_of_a_gain_and_a_delay(factor, delay, kinds):
+    misfit = 0.01 if abs(delay) > 1.1e-3 else 0.0
+    fit = LowResponse(10.0, factor, delay, misfit)
+    assert [note.kind for note in fit.notes("face 1", WIRING)] == kinds
+
+
+def orders(face, base, floor=0.0):
+    """Orders of a record whose windows have some amplitudes of order 1."""
+    face, base = np.array(face, dtype=complex), np.array(base, dtype=complex)
+    return SimpleNamespace(
+        channels=SimpleNamespace(names=("acceleration1",)),
+        amplitude=face[None, None, :],
+        floor=np.full((1, len(face)), floor),
+        order=lambda number, name: base,
+        windows=SimpleNamespace(frequency=np.linspace(10.0, 20.0, len(face))),
+        level=np.ones(len(face)),
+    )
+
+
+@pytest.mark.parametrize(
+    ("face", "base", "floor", "kinds"),
+    [
+        ([1.0, 1.0, 1.0, 0.1], [1.0] * 4, 0.33, []),
+        ([1.0, 1.0, 0.1, 0.1], [1.0] * 4, 0.33, ["dead"]),  # in half of the windows
+        ([1.0, 1.0, 1.0, 0.1], [1.0] * 4, 0.34, ["dead"]),  # three times the floor
+        ([0.051] * 4, [1.0] * 4, 0.0, []),
+        ([0.049] * 4, [1.0] * 4, 0.0, ["dead"]),
+        ([0.049, 0.049, 0.15, 0.049], [1.0] * 4, 0.0, []),  # but with a resonance
+        ([0.049, 0.049, 0.14, 0.049], [1.0] * 4, 0.0, ["dead"]),
+        ([1.0] * 4, [1.0, 1.0, 3.1, 1.0], 0.0, ["swapped"]),
+        ([1.0] * 4, [1.0, 1.0, 2.9, 1.0], 0.0, []),
+    ],
+)
+def test_each_threshold_of_a_dead_or_exchanged_sensor(face, base, floor, kinds):
+    made = orders(face, base, floor)
+    assert [note.kind for note in sensor_notes(made, 0, WIRING)] == kinds
+    assert is_heard(made, 0, WIRING) or kinds == ["dead"]
+
+
+def windows(one, other=None, noise=0.0, floor=0.0):
+    """Evidence of one or two sensors by their orders 1 and 2 in 40 windows, over a base of none."""
+    rows = [row for row in (one, other) if row is not None]
+    measured = np.array([[np.broadcast_to(order, 40) for order in row] for row in rows], complex)
+    return SimpleNamespace(
+        measured=measured,
+        noise=np.full(len(rows), noise),
+        floor=np.full((len(rows), 40), floor),
+        size=np.abs(measured[:, 0]),
+        base=np.zeros((2, 40), complex),
+        frequency=np.linspace(20.0, 40.0, 40),
+        settings=SETTINGS,
+    )
+
+
+@pytest.mark.parametrize(
+    ("noise", "floor", "order2", "seen"),
+    [
+        *((0.0, 0.0, 0.0051, True), (0.0, 0.0, 0.0049, False)),  # over order 1,
+        *((0.01, 0.0, 0.051, True), (0.01, 0.0, 0.049, False)),  # five times the noise,
+        *((0.0, 0.01, 0.0225, True), (0.0, 0.01, 0.0222, False)),  # twice the floor, and it
+    ],
+)
+def test_each_threshold_of_order_2(noise, floor, order2, seen):
+    evidence = windows((1.0, order2), noise=noise, floor=floor)
+    assert even_orders(evidence, np.zeros_like(evidence.measured)).is_order_2_seen == seen
+
+
+@pytest.mark.parametrize(
+    ("other", "apart"),
+    [
+        *(((1.0, 0.395), True), ((1.0, 0.405), False)),  # a fifth of order 2
+        *(((1.031, 0.5), True), ((1.029, 0.5), False)),  # 0.03 of order 1
+    ],
+)
+def test_each_threshold_of_faces_that_move_apart(other, apart):
+    """A difference in order 1 that goes to and fro is not one of gains."""
+    turns = (-1.0) ** np.arange(40)
+    order1 = 1.0 + (other[0] - 1.0) * turns
+    assert (even_orders_of(windows((1.0, 0.5), (order1, other[1]))) > 1.0) == apart
+
+
+def even_orders_of(evidence):
+    return even_orders(evidence, np.zeros_like(evidence.measured)).moved_apart
+
+
+def test_little_moves_below_a_tenth_of_the_largest_order_1():
+    size = np.where(np.arange(40) < 20, 1.0, 0.11)
+    size[30:] = 0.09
+    seen = thresholds(windows((size, 0.0)))[0]
+    assert np.isfinite(seen[22:28]).all() and np.isnan(seen[33:]).all()
+
+
+@pytest.mark.parametrize(("loud", "heard"), [((1, 0, 1, 0, 0), True), ((1, 0, 0, 0), False)])
+def test_bursts_in_less_than_a_third_of_the_periods_are_lost_samples(loud, heard):
+    turns = np.repeat(np.arange(240), 10)
+    signal = np.where(np.resize(loud, 240), 1.0, 0.1)[turns]
+    power = mean_power(signal, turns, 600, 1.0 - SETTINGS.burst_periods)
+    expected = np.mean(loud) + 0.01 * (1.0 - np.mean(loud)) if heard else 0.01
+    assert power == pytest.approx(np.full(len(power), expected), rel=0.02)
