@@ -127,7 +127,7 @@ def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = No
     title = title or f"{labels.in_shown_units(data, words)}; {labels.title_from_attributes(data)}"
     heights: Any = {"sharex": True, "height_ratios": (1.0, 1.6, 1.2, 1.2)}
     figure, (box, masses, gap, impacts) = make_panels(4, 1, (10.4, 7.2), title, **heights)
-    scale, _ = acceleration_scale(data)
+    scale, unit = acceleration_scale(data)
     draw_box_gap_impacts(data, box, gap, impacts)
     for number, colour in (("1", BLUE), ("2", RED)):
         style: Any = {"color": colour, "label": f"mass {number}", "alpha": 0.55}
@@ -136,7 +136,7 @@ def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = No
         time, low, high = local_extremes(bonded.time.values, bonded.a1_abs.values / scale)
         draw_line(masses, time, high, "-", BLACK, 0.9, "both, bonded")
         draw_line(masses, time, low, "-", BLACK, 0.9)
-    masses.set_ylabel(box.get_ylabel().replace("of box", "of masses"))
+    masses.set_ylabel(in_unit("acceleration\nof masses", unit))
     legend_above(masses, 3)
     impacts.set(xlabel="time in s", xlim=(0.0, float(data.time[-1])))
     return figure
@@ -165,10 +165,14 @@ def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_box_gap_impacts(data: xr.Dataset, box: Axes, gap: Axes, impacts: Axes) -> None:
-    """Draw the box's acceleration, the gap and each impact's impulse, in a panel each."""
-    scale, unit = acceleration_scale(data)
-    draw_signal(box, data, "box_acceleration", scale, color=BLACK)
-    box.set_ylabel(in_unit("acceleration\nof box", unit))
+    """Draw what drives, the gap and each impact's impulse, in a panel each."""
+    if force := next((name for name in ("force1", "force2") if name in data), ""):
+        draw_signal(box, data, force, 1.0, color=BLACK)
+        box.set_ylabel(f"force on\nmass {force[-1]} in N")
+    else:
+        scale, unit = acceleration_scale(data)
+        draw_signal(box, data, "box_acceleration", scale, color=BLACK)
+        box.set_ylabel(in_unit("acceleration\nof box", unit))
     factor, unit = length_scale(data, float(data.x_rel.max()))
     draw_signal(gap, data, "x_rel", factor, color=BLACK)
     gap.set_ylabel(in_unit("gap", unit))

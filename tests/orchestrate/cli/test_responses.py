@@ -267,6 +267,10 @@ def test_a_motion(ask, folder):
             ("--shock", "half-sine", "--length", "0.011", "--acceleration", "49"),
             ("acceleration of the box: ", "4 impacts", "; 0 begin permanent contact"),
         ),
+        (
+            ("--hammer", "20:0.01", "--half", "2", "--at", "0.1", "--duration", "0.3", "--beside"),
+            ("force on mass 2: ", "impacts"),
+        ),
     ],
 )
 def test_shaken_as_in_the_laboratory(ask, folder, options, words):
