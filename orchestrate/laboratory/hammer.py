@@ -60,6 +60,7 @@ class Hammer(ExcitationSignal):
 
     @property
     def drives(self) -> str:
+        """Input of the FMU, and channel of records: force1 or force2."""
         return f"force{self.half}"
 
     @property

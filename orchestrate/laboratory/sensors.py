@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -244,7 +245,7 @@ def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Piec
         return Pieces(whole.nodes - begin, whole.derivatives, whole.error)
     steps = len(history.time) - 1
     rate = steps / float(history.time[-1] - history.time[0])
-    driven = history[driven_channel(history)].values
+    driven: Any = history[driven_channel(history)].values
     return Sampled(acceleration=driven, sample_rate=rate).pieces()
 
 
@@ -257,7 +258,7 @@ def driven_channel(history: xr.Dataset) -> str:
 
 
 def sensor_by_channel(
-    sensor: Sensor | Mapping[str, Sensor], known: tuple[str, ...]
+    sensor: Sensor | Mapping[str, Sensor], known: tuple[str, ...] = tuple(ACCELERATIONS)
 ) -> dict[str, Sensor]:
     """Return the sensor of each channel, by name."""
     if isinstance(sensor, Sensor):

@@ -176,6 +176,7 @@ class SumOfSignals(ExcitationSignal):
 
     @property
     def drives(self) -> str:
+        """What all parts drive."""
         return self.parts[0].drives
 
     @property

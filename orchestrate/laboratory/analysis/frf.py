@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import InputError
 from ...lazy import xr
-from ...response.labels import variable, yes_or_no
+from ...response.labels import Variable, variable, yes_or_no
 from ..record import FORCES
 from .channels import (
     BOX,
@@ -94,17 +94,11 @@ def frf(
     12.5
     """
     channels = Channels.from_record(record)
-    given = [name for name in FORCES if name in record and BOX not in channels.names]
-    driven = given[0] if given else BOX
-    if len(given) > 1 or not (given or BOX in channels.names):
-        lacking = " and ".join(given) if given else f"no {BOX}"
-        text = f"expected {BOX} over time, in m/s2, or one of force1 and force2, in N"
-        raise InputError(f"record: {lacking}; {text}")
+    driven, drive = what_drives(record, channels)
     names, responses = channels.responses()
     if not names:
         raise InputError("record: no acceleration1; expected it beside the excitation, in m/s2")
-    drive = finite(driven, record[driven], channels.time) if given else channels.box
-    knocks = Knocks.from_force(drive, channels, resolution) if given else None
+    knocks = None if driven == BOX else Knocks.from_force(drive, channels, resolution)
     if knocks is not None:
         window, overlap = "force and exponential", 0.0
         averages, spacing = float(len(knocks.starts)), channels.sample_rate / knocks.length
@@ -113,6 +107,35 @@ def frf(
         segments = averaging(channels, resolution, window, overlap, fewest=2)
         averages, spacing = segments.independent, segments.resolution
         frequency, box, response, cross = segments.spectra(drive, responses, channels.sample_rate)
+    made = frf_variables(driven, averages, frequency, box, response, cross)
+    made["resolution"] = variable((), spacing, "Hz", "distance of the lines")
+    if knocks is not None:
+        text = "rate at which the exponential window falls"
+        made["window_decay"] = variable((), knocks.decay, "1/s", text)
+    text = f"estimator: noise on the response, on the {KINDS[driven][0]}, on both"
+    coordinates = {"estimator": ("estimator", np.array(ESTIMATORS), {"long_name": text})}
+    coordinates |= channel_coordinate(names) | frequency_coordinate(frequency)
+    settings = {"window": window, "overlap": overlap, "excitation": driven}
+    words = attributes("frf", "Frequency response", channels.title, **settings)
+    return xr.Dataset(made, coordinates, words)
+
+
+def what_drives(record: xr.Dataset, channels: Channels) -> tuple[str, Floats]:
+    """Return name and values of the channel that excites: the box's, or a force."""
+    if BOX in channels.names:
+        return BOX, channels.box
+    given = [name for name in FORCES if name in record]
+    if len(given) != 1:
+        lacking = " and ".join(given) if given else f"no {BOX}"
+        text = f"expected {BOX} over time, in m/s2, or one of force1 and force2, in N"
+        raise InputError(f"record: {lacking}; {text}")
+    return given[0], finite(given[0], record[given[0]], channels.time)
+
+
+def frf_variables(
+    driven: str, averages: float, frequency: Floats, box: Floats, response: Floats, cross: Floats
+) -> dict[str, Variable]:
+    """Return the estimates and their errors from spectra of what drives and of the responses."""
     with np.errstate(divide="ignore", invalid="ignore"):
         estimates = estimate(box, response, cross)
         coherence = np.minimum(np.abs(cross) ** 2 / (box * response), 1.0)
@@ -123,39 +146,17 @@ def frf(
     over_all = ("estimator", "channel", "frequency")
     over_channels = ("channel", "frequency")
     text = "standard deviation of the magnitude over the magnitude"
-    added = "rate at which the exponential window falls"
-    return xr.Dataset(
-        {
-            "magnitude": variable(over_all, np.abs(estimates), unit, quotient),
-            "phase": variable(over_all, np.angle(estimates), "rad", f"phase against the {word}'s"),
-            "coherence": variable(over_channels, coherence, "1", f"coherence with the {word}"),
-            "random_error": variable(over_channels, error, "1", text),
-            density: variable(
-                "frequency", box, density_unit, f"power spectral density of the {word}"
-            ),
-            "excited": yes_or_no(
-                "frequency", excited, f"whether the {word} shakes the structure there"
-            ),
-            "averages": variable((), averages, "1", "independent averages"),
-            "resolution": variable((), spacing, "Hz", "distance of the lines"),
-            **({"window_decay": variable((), knocks.decay, "1/s", added)} if knocks else {}),
-        },
-        {
-            "estimator": (
-                "estimator",
-                np.array(ESTIMATORS),
-                {"long_name": f"estimator: noise on the response, on the {word}, on both"},
-            ),
-            **channel_coordinate(names),
-            **frequency_coordinate(frequency),
-        },
-        attributes(
-            "frf",
-            "Frequency response",
-            channels.title,
-            **{"window": window, "overlap": overlap, "excitation": driven},
-        ),
-    )
+    density_text = f"power spectral density of the {word}"
+    excited_text = f"whether the {word} shakes the structure there"
+    return {
+        "magnitude": variable(over_all, np.abs(estimates), unit, quotient),
+        "phase": variable(over_all, np.angle(estimates), "rad", f"phase against the {word}'s"),
+        "coherence": variable(over_channels, coherence, "1", f"coherence with the {word}"),
+        "random_error": variable(over_channels, error, "1", text),
+        density: variable("frequency", box, density_unit, density_text),
+        "excited": yes_or_no("frequency", excited, excited_text),
+        "averages": variable((), averages, "1", "independent averages"),
+    }
 
 
 def estimate(box: Floats, response: Floats, cross: Floats) -> Floats:

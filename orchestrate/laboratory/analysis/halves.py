@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...constants import TURN
 from ...errors import InputError
-from ...files import write_whole
 from ...lazy import xr
 from ...model import Structure
 from ...model.arguments import checked_word
+from ...model.files import write
 from ...response.labels import variable
 from ..pieces import Floats
 from ..record import FORCES
@@ -94,7 +93,7 @@ def halves(
         numbers = {"m1": m1, "m2": m2, "f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
         structure = Structure.from_halves(**numbers)
     if output is not None:
-        write_structure(structure, Path(output))
+        write(output, structure=structure)
     return dataset_of_halves(fits, structure)
 
 
@@ -178,14 +177,3 @@ def dataset_of_halves(fits: list[HalfFit], structure: Structure) -> xr.Dataset:
     numbers = {name: +value for name, value in structure.parameters().items()}  # no Booleans
     title = f"Halves by knocks: {structure.label()}"
     return xr.Dataset(made, {"knocked": knocked}, {"title": title, **numbers})
-
-
-def write_structure(structure: Structure, path: Path) -> Path:
-    """Write a structure's halves as a TOML file."""
-    s = structure
-    numbers = {"m1": s.m1, "m2": s.m2, "f1_hz": s.f1, "f2_hz": s.f2}
-    numbers |= {"zeta1": s.zeta1, "zeta2": s.zeta2}
-    lines = [f"{name} = {value!r}" for name, value in numbers.items()]
-    lines = ["# by knocks; e, gamma, clearance at their defaults", "[structure]", *lines, ""]
-    text = "\n".join(lines)
-    return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))

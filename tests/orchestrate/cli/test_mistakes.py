@@ -63,7 +63,7 @@ MISTAKES = {  # options of each command, then what its line says
     "shake": """
         : nothing given | --swept-sine, --stepped-sine, --random, --shock, --hammer, --record
         --hammer 20 : --hammer 20 | two numbers
-        --hammer 20:0.004 --half 3 : half = 3 | 1 to 2
+        --hammer 20:0.004 --half 3 : --half 3 | 1 to 2
         --hammer 20:0.004 --length 1 : --length | with --shock alone
         --swept-sine 8:20 --g 1 --shock trapezoid : --swept-sine and --shock given | one of
         --swept-sine 8:20 --g 1 : nothing given | one of duration and rate

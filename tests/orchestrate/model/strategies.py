@@ -29,7 +29,12 @@ STRUCTURES = st.builds(
 NUMBERS = st.fixed_dictionaries(
     {"mu": SMALL, "kappa": SMALL, "D1": RATIO, "D2": RATIO, "e": st.floats(0.0, 1.0)}
 )
-EXCITATIONS = st.builds(Excitation, frequency=SCALE, amplitude=LOSS, phase=st.floats(-1e3, 1e3))
+PUSHED = st.floats(-1e3, 1e3)
+EXCITATIONS = st.builds(
+    Excitation,
+    **{"frequency": SCALE, "amplitude": LOSS, "phase": st.floats(-1e3, 1e3)},
+    **{"box_acceleration": PUSHED, "force1": PUSHED, "force2": PUSHED},
+)
 DRIVES = st.builds(
     Drive,
     box_mass=SCALE,
