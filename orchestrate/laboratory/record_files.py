@@ -20,7 +20,7 @@ from .analysis.channels import CHANNELS as ACCELERATIONS
 from .channel_setup import Channels, ChannelSetup
 from .columns import Column, Columns, converted_channels
 from .conversion import SMALLEST, ByChannel, number_by_channel
-from .record import CHANNELS, Reading, checked_record, unit_of_channel
+from .record import CHANNELS, FORCES, Reading, checked_record, unit_of_channel
 from .record_csv import read_csv, write_csv
 from .record_labview import read_lvm, read_tdms
 from .record_mat import read_mat, write_mat
@@ -230,6 +230,7 @@ def read_netcdf(path: Path) -> Columns:
                 text = "expected what sensors read of it: orchestrate.measure, then write_record"
                 raise InputError(f"{path}: simulated accelerations leave out the impacts; {text}")
             names = {"time": "time", **{stored: name for name, stored in ACCELERATIONS.items()}}
+            names |= {name: name for name in FORCES}
         columns = [
             Column(
                 name, str(getattr(one, "units", "")), np.ma.filled(one[...].astype(float), np.nan)

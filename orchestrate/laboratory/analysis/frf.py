@@ -113,7 +113,9 @@ def frf(
         text = "rate at which the exponential window falls"
         made["window_decay"] = variable((), knocks.decay, "1/s", text)
     text = f"estimator: noise on the response, on the {KINDS[driven][0]}, on both"
-    coordinates = {"estimator": ("estimator", np.array(ESTIMATORS), {"long_name": text})}
+    coordinates: dict[str, Variable] = {
+        "estimator": ("estimator", np.array(ESTIMATORS), {"long_name": text})
+    }
     coordinates |= channel_coordinate(names) | frequency_coordinate(frequency)
     settings = {"window": window, "overlap": overlap, "excitation": driven}
     words = attributes("frf", "Frequency response", channels.title, **settings)
