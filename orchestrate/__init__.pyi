@@ -24,6 +24,7 @@ from .errors import VibroimpactError as VibroimpactError
 from .errors import WorkerError as WorkerError
 from .laboratory.analysis.density import probability_density as probability_density
 from .laboratory.analysis.frf import frf as frf
+from .laboratory.analysis.halves import halves as halves
 from .laboratory.analysis.harmonics import harmonics as harmonics
 from .laboratory.analysis.orders import track_orders as track_orders
 from .laboratory.analysis.psd import psd as psd
@@ -31,6 +32,7 @@ from .laboratory.analysis.shock_spectrum import shock_spectrum as shock_spectrum
 from .laboratory.analysis.spectrogram import spectrogram as spectrogram
 from .laboratory.channel_table import channels as channels
 from .laboratory.curve_files import read_curve as read_curve
+from .laboratory.hammer import Hammer as Hammer
 from .laboratory.level_control import LevelControl as LevelControl
 from .laboratory.random_vibration import Random as Random
 from .laboratory.record import record as record

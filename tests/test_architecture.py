@@ -491,7 +491,7 @@ ANNOTATED = [
     file for file in FILES if file.startswith(("orchestrate/", "fmu_src/export/", "tools/"))
 ]
 CLASS = re.compile(r"(?<![\w.])[A-Z][a-z]+[A-Za-z]*\b")  # but those of other packages, with a dot
-EXCITATIONS = {"SweptSine", "SteppedSine", "Random", "Shock", "Sampled"}  # public names
+EXCITATIONS = {"SweptSine", "SteppedSine", "Random", "Shock", "Sampled", "Hammer"}  # public names
 
 
 def described_types(docstring: str | None) -> list[str]:

@@ -51,6 +51,7 @@ KINDS = {  # of excitation: the class, or the reader, whose arguments are its op
     "stepped_sine": "SteppedSine",
     "random": "Random",
     "shock": "Shock",
+    "hammer": "Hammer",
     "record": "read_record",
 }
 
@@ -69,11 +70,11 @@ def arguments_of(function: str) -> dict[str, bool]:
 class OfExcitation(Options):
     """Options of an excitation."""
 
-    heading, rank = "the box's acceleration", 1
-    remark = "one of the first five"
+    heading, rank = "the box's acceleration, or a knock", 1
+    remark = "one of the first six"
     takes = (
         "SweptSine: rate spacing; SteppedSine: settle_cycles measured_cycles; "
-        "Random: seed; Shock: length delay; read_record: unit scale"
+        "Random: seed; Shock: length delay; Hammer: at half; read_record: unit scale"
     )
     if_given = True
     swept_sine: Ends = option("frequencies, Hz; downwards too", value="FIRST:LAST")
@@ -83,6 +84,7 @@ class OfExcitation(Options):
         value="PSD",
     )
     shock: str | None = option("half-sine, sawtooth or trapezoid", value="SHAPE")
+    hammer: Ends = option("largest force, N, and width of a knock, s", value="PEAK:WIDTH")
     record: Any = option("measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc", value="FILE")
     g: str | None = option(
         "peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too; "
@@ -113,6 +115,8 @@ class OfExcitation(Options):
             if note := unit_note(record.attrs):
                 print(f"{main}: {note}")
             return orchestrate.Sampled.from_record(record)
+        if kind == "hammer":
+            return orchestrate.Hammer(peak=main[0], width=main[1], **settings)
         has_level = any(settings.pop(name, None) is not None for name in LEVELS)
         if kind != "random" or has_level:
             level = self.read_level()
@@ -171,6 +175,7 @@ class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
   {program} shake --structure beam --random 5:1e-3,100:1e-3g2/Hz --g 0.3 --duration 30
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --shaker shaker_1kN
   {program} shake --structure beam --shock half-sine --length 0.011 --g 5
+  {program} shake --structure beam --hammer 20:0.004 --half 2 --at 0.1 --duration 5
   {program} shake --structure beam --record base.csv --unit g"""
 
     def ask(self) -> tuple[Structure, Question]:
@@ -184,7 +189,8 @@ class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
         }
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        yield from extents(data, "box_acceleration a1_abs a2_abs x_rel")
+        driven = [name for name in ("box_acceleration", "force1", "force2") if name in data]
+        yield from extents(data, f"{driven[0]} a1_abs a2_abs x_rel")
         if "transient_time" in data:
             yield f"a linear transient decays within {float(data.transient_time):.3g} s"
         elif data.control_aborted.notnull():
@@ -215,7 +221,7 @@ def columns_of_analysis(name: str, data: xr.Dataset) -> Columns:
     columns: Columns = {"channel": [MASSES[str(channel)] for channel in data.channel.values]}
     if name == "frf":
         h1 = data.magnitude.sel(estimator="H1").where(data.excited > 0)
-        columns["largest |H1|"] = peak_cells(data, h1, "1")
+        columns["largest |H1|"] = peak_cells(data, h1, str(data.magnitude.units))
         at = {"frequency": h1.fillna(-1.0).argmax("frequency")}
         of_peak = data[["random_error", "coherence"]].isel(at)
         medians = data.coherence.where(data.excited > 0).median("frequency")

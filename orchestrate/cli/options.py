@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 import textwrap
 from collections.abc import Callable, Mapping
@@ -168,15 +169,25 @@ class OfBox(Options):
         return {"frequency": frequencies, "amplitude": held}
 
     def excitation_from_file(self) -> dict[str, Any] | None:
-        """Return frequency and amplitude from the structure's file, or None; set ``--phase``."""
+        """Return keywords of the excitation in the structure's file, or None; set ``--phase``."""
+        import orchestrate
+
         from ..model.files import read
+        from ..model.ranges import PUSHES
 
         excitation: Any = read(self.structure).get("excitation")
         if excitation is None:
             return None
         if getattr(self, "phase", None) == 0.0:
             self.phase = excitation.phase
-        return {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
+        values = {name: getattr(self, name, None) or getattr(excitation, name) for name in PUSHES}
+        pushes = {name: value for name, value in values.items() if value}
+        called: str = getattr(self, "calls")  # noqa: B009 (of the command, which has this group)
+        known = inspect.signature(getattr(orchestrate, called)).parameters
+        if unknown := [name for name in pushes if name not in known]:
+            text = f"{called} does not know it yet; expected the box's motion alone"
+            raise InputError(f"{self.structure}: excitation.{unknown[0]}: {text}")
+        return {"frequency": excitation.frequency, "amplitude": excitation.amplitude, **pushes}
 
     def frequency_option(self) -> str | None:
         """Return which option gives the frequency, None if none does."""

@@ -53,7 +53,7 @@ class InColumns(Options):
     heading = "how to read records"
     channels: str | None = option(
         "columns by name or number from 0: CHANNEL=COLUMN,... with the channels time, base, face1, "
-        "face2, force; A,B,... in that order without the force; or the file that the command "
+        "face2, force1, force2; A,B,... in that order without forces; or the file that the command "
         "channels writes (default: by usual names)",
         value="FILE.toml|A=X,...|X,...",
         also="--columns",

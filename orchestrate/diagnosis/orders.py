@@ -18,7 +18,7 @@ from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import EDGE, NYQUIST, Window, measured_phase, window
 from ..laboratory.pieces import Floats
-from ..laboratory.record import channel_label
+from ..laboratory.record import FORCES, channel_label
 from ..lazy import xr
 
 if TYPE_CHECKING:
@@ -174,7 +174,9 @@ def sensor_channels(record: xr.Dataset) -> Channels:
 def checked_channels(record: xr.Dataset) -> Channels:
     """Check that a record has the base's acceleration and a face's, and return the channels."""
     if hasattr(record, "data_vars") and not {BOX} & set(record):
-        excited = "it is excited by a force" if "force" in record else "what excites it is unknown"
+        excited = (
+            "it is excited by a force" if {*FORCES} & {*record} else "what excites it is unknown"
+        )
         text = f"no acceleration of the base, {excited}; a verdict needs it"
         test = "measure a swept sine of the base, with an accelerometer beside the clamp"
         raise InputError(f"record: {text}: {test}; orchestrate.signs does without")

@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels, attributes, checked_number
 from ..laboratory.pieces import Floats
-from ..laboratory.record import FORCE
+from ..laboratory.record import FORCES
 from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer
@@ -54,7 +54,7 @@ def signs(
     ----------
     record : xarray.Dataset
         As for :func:`orchestrate.frf`. Without ``box_acceleration`` the phase is that of
-        ``force`` or, without one too, of the response itself, and no sound structure is known. Or
+        the force or, without one too, of the response itself, and no sound structure is known. Or
         a run of :func:`orchestrate.couple`, for the signs of a weak drive.
     other : xarray.Dataset or sequence of them, optional
         Records of the same beam at other levels or in the other direction, for the signs that
@@ -159,8 +159,8 @@ def reference_channels(record: xr.Dataset) -> Channels:
     if not isinstance(getattr(record, "data_vars", None), Mapping) or BOX in record:
         return sensor_channels(record)
     channels = Channels.from_record(record)
-    label = FORCE if FORCE in record else RESPONSE
-    values = np.asarray(record[FORCE].values, float) if FORCE in record else channels.values[0]
+    label = next((name for name in FORCES if name in record), RESPONSE)
+    values = channels.values[0] if label == RESPONSE else np.asarray(record[label].values, float)
     names, rows = (BOX, *channels.names), np.vstack([values, channels.values])
     return replace(channels, names=names, values=rows, box_label=label)
 
@@ -182,7 +182,7 @@ def sound_structure(
 ) -> SoundStructure:
     """Return the sound structure: the bonded guess, or the oscillator nearest to the record."""
     refuse_family("signs", structure)
-    force = channels.box_label == FORCE
+    force = channels.box_label in FORCES
     if structure is not None and not (force and own.curves):
         return SoundStructure.from_structure(structure)
     if not own.curves:

@@ -1,4 +1,4 @@
-"""Simulate a structure under a box acceleration given as cubic pieces, through all impacts.
+"""Simulate a structure under an input given as cubic pieces, through all impacts.
 
 Each cubic is set where it begins and runs on, so the motion does not depend on where it is read.
 """
@@ -15,12 +15,16 @@ from .begin import REST, begin
 from .event_loop import Played
 from .events import EventInstance
 
-CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
+BOX = "box_acceleration"
+CUBICS = {  # inputs by the quantity that they make a cubic of
+    BOX: (BOX, "box_jerk", "box_snap", "box_crackle"),
+    **{name: (name, *(f"{name}_{n}" for n in (1, 2, 3))) for name in ("force1", "force2")},
+}
 PLAYED = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force")
 
 
 class Player(EventInstance):
-    """Oscillator FMU instance that simulates motions under box accelerations given as cubics."""
+    """Oscillator FMU instance that simulates motions under inputs given as cubics."""
 
     def start(self, structure: Structure, start: ArrayLike = REST) -> None:
         """Initialise a structure's motion at time 0 from a start state, its box at rest."""
@@ -32,6 +36,7 @@ class Player(EventInstance):
         derivatives: NDArray[np.float64],
         samples: NDArray[np.float64],
         outputs: Sequence[str] = PLAYED,
+        drives: str = BOX,
     ) -> Played:
-        """Simulate under a box acceleration of consecutive cubics; return samples and impacts."""
-        return self.event_loop(CUBIC, tuple(outputs)).run(nodes, derivatives, samples)
+        """Simulate under consecutive cubics of what drives; return samples and impacts."""
+        return self.event_loop(CUBICS[drives], tuple(outputs)).run(nodes, derivatives, samples)

@@ -29,7 +29,7 @@ from .conversion import (
     unit_factor,
 )
 from .pieces import Floats
-from .record import CHANNELS, FORCE, SHORT_NAMES
+from .record import CHANNELS, FORCES, SHORT_NAMES
 from .record_checks import ascends, first_hole, implausible_times
 
 Named: TypeAlias = "Mapping[str, str | int] | Sequence[str | int] | None"  # columns by a caller
@@ -65,13 +65,15 @@ BEAM = (
     "(?:beam|balken|face|tip|spitze|response|antwort|poutre|viga|trave|specimen|probe|prüfling|"
     "laser|vibrometer|ldv)"
 )
+FORCE = "(?:force|kraft|fuerza|forza|load|hammer|impulshammer)(?:cell|sensor|geber)?"
 NUMBERED = f"(?:a|acc|accel|acceleration|beschleunigung|{SENSOR}{FACE})"
 NAMES = {
     "time": "time|t|zeit|temps|tiempo|tempo|timestamp|xvalue|zeitachse",
     "box_acceleration": f"{SENSOR}{BASE}{SENSOR}[xyz]?",
     "acceleration1": f"{NUMBERED}1{SENSOR}[xyz]?|{SENSOR}{BEAM}{SENSOR}[xyz]?",
     "acceleration2": f"{NUMBERED}2{SENSOR}[xyz]?",
-    "force": "(?:force|kraft|fuerza|forza|load|hammer|impulshammer)(?:cell|sensor|geber)?",
+    "force1": f"{FORCE}1?",  # that has no number is on the first half
+    "force2": f"{FORCE}2",
 }
 MOTION = "(?:amplitude|acceleration|acc|a|face|mass|velocity|v|displacement|x)"
 RATIO = "(?:transmissibility|ratio|response|magnitude)"
@@ -233,7 +235,7 @@ def converted_channels(
         own = units.get(name, column.unit)
         sensor = stated.get(name, column.sensitivity)
         factor, derivatives = unit_factor(
-            column_label(table, column), own, sensor, OF_FORCES if name == FORCE else OF_MOTIONS
+            column_label(table, column), own, sensor, OF_FORCES if name in FORCES else OF_MOTIONS
         )
         if name in stated and plain_unit(own or "V") not in VOLTAGES:
             expected = f"expected volts: a sensitivity does not act on a column in {own}"
@@ -266,7 +268,7 @@ def check_units(
         words = {n: SHORT_NAMES.get(n, n).replace(" ", "") for n in (*units, *unknown)}
         order = (n for n in ("time", *used) if n in words)
         option = ",".join(f"{words[n]}={units.get(n) or '...'}" for n in order)
-        usual = "N, kN, V" if unknown == [FORCE] else "m/s2, g, mm/s, um, V"
+        usual = "N, kN, V" if {*unknown} <= {*FORCES} else "m/s2, g, mm/s, um, V"
         text = f"{labels}: no unit; expected one such as {usual}: give it by unit="
         raise InputError(f'{table.path}, {text}"{option}"')
 
@@ -446,10 +448,10 @@ def channels_by_name(table: Columns) -> Assignment:
     if len({bool(table.columns[i].unit) for i in channels}) != 1:
         return Assignment(places, known)
     missing = [name for name in ("box_acceleration", "acceleration1") if name not in places]
-    if len(missing) == len(rest) == 1 and FORCE not in places:
+    if len(missing) == len(rest) == 1 and not FORCES.keys() & places.keys():
         return Assignment(places | {missing[0]: rest[0]}, known | {missing[0]: LEFT})
     faces = [name for name in ("acceleration1", "acceleration2") if name not in places]
-    if {"box_acceleration", FORCE} & places.keys() and 0 < len(rest) <= len(faces) == 2:
+    if {"box_acceleration", *FORCES} & places.keys() and 0 < len(rest) <= len(faces) == 2:
         proposed = dict(zip(faces, rest, strict=False))
         return Assignment(places | proposed, known | dict.fromkeys(proposed, BY_ORDER))
     return Assignment(places, known)

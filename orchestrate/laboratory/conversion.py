@@ -46,7 +46,7 @@ CALLED = {  # what options call the channels
     **dict.fromkeys(("base", "box", "box_acceleration"), "box_acceleration"),
     **dict.fromkeys(("face", "face1", "acceleration1"), "acceleration1"),
     **dict.fromkeys(("face2", "acceleration2"), "acceleration2"),
-    **{"force": "force", "time": "time"},
+    **{"force": "force1", "force1": "force1", "force2": "force2", "time": "time"},
 }
 ByChannel = str | float | Mapping[str, Any] | None  # as an argument: of all, or by channel
 

@@ -1,8 +1,8 @@
 """What the masses do between the samples of a history: its smooth parts, exact by (6).
 
 From each sample on the equations of motion are solved by Taylor series, through impacts and
-releases, up to the next sample. All that is not known is the box's acceleration between the
-samples, unless its pieces are given. How far the solution is from the next sample shows the error.
+releases, up to the next sample. All that is not known is the excitation between the samples,
+unless its pieces are given. How far the solution is from the next sample shows the error.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..lazy import xr
 from ..model import Structure
 from .analog_filter import Cells
 from .pieces import Floats, Pieces
+from .record import FORCES
 
 Flags = NDArray[np.bool_]
 SHORT = 0.1  # of a cell times the highest natural frequency, rad
@@ -28,7 +29,7 @@ class Motion:
     """Hold a stored motion of the structure as arrays, with the parameters of its equations."""
 
     structure: Structure
-    pieces: Pieces  # of the box's acceleration; their time begins at the first sample
+    pieces: Pieces  # of what drives it; their time begins at the first sample
     times: Floats  # s from the first sample
     states: Floats  # x1, x2, v1, v2
     touching: Flags
@@ -36,9 +37,12 @@ class Motion:
     impact_times: Floats
     impulses: Floats
     sticks: Flags
+    drives: str = "box_acceleration"  # channel of the pieces
 
     @classmethod
-    def from_history(cls, history: xr.Dataset, structure: Structure, pieces: Pieces) -> Motion:
+    def from_history(
+        cls, history: xr.Dataset, structure: Structure, pieces: Pieces, drives: str
+    ) -> Motion:
         """Take the motion from a result of :func:`.shake.shake`."""
         begin, end = float(history.time[0]), float(history.time[-1])
         struck = history.impact_time.values
@@ -52,24 +56,41 @@ class Motion:
             struck[kept] - begin,
             history.impulse.values[kept],
             history.sticks.values.astype(bool)[kept],
+            drives,
         )
+
+    def driven(self, channel: str, times: Floats) -> Floats:
+        """Compute a channel of the excitation and its derivatives, shape (n, 4); else 0."""
+        return self.pieces.taylor(times) if channel == self.drives else np.zeros((len(times), 4))
 
     def derivatives(self, states: Floats, touching: Flags, times: Floats) -> Floats:
         """Compute displacements and their derivatives, shape (ORDER + 2, 2, n), by (6)."""
         found = np.empty((ORDER + 2, 2, len(times)))
         found[:2] = states.T.reshape(2, 2, -1)
-        box = np.zeros((ORDER, len(times)))
-        box[:4] = self.pieces.taylor(times).T
+        box, forces = self.box(times), self.forces(times)
         for n in range(ORDER):
-            found[n + 2] = self.accelerations(found[n], found[n + 1], touching) - box[n]
+            felt = self.accelerations(found[n], found[n + 1], touching, forces[n])
+            found[n + 2] = felt - box[n]
         return found
 
-    def accelerations(self, x: Floats, v: Floats, touching: Flags) -> Floats:
+    def box(self, times: Floats) -> Floats:
+        """Compute the box's acceleration and its derivatives, shape (ORDER, n)."""
+        return in_order(self.driven("box_acceleration", times))
+
+    def forces(self, times: Floats) -> Floats:
+        """Compute the forces on both masses and their derivatives, shape (ORDER, 2, n)."""
+        return np.stack([in_order(self.driven(name, times)) for name in FORCES], axis=1)
+
+    def accelerations(
+        self, x: Floats, v: Floats, touching: Flags, forces: ArrayLike = 0.0
+    ) -> Floats:
         """Compute the masses' accelerations by (6), or derivatives of them, shape (2, n)."""
         s = self.structure
-        one, two = s.k1 * x[0] + s.d1 * v[0], s.k2 * x[1] + s.d2 * v[1]
-        both = (one + two) / (s.m1 + s.m2)
-        return -np.where(touching, both, np.stack([one / s.m1, two / s.m2]))
+        loads = np.asarray(forces) - np.array(
+            [s.k1 * x[0] + s.d1 * v[0], s.k2 * x[1] + s.d2 * v[1]]
+        )
+        both = (loads[0] + loads[1]) / (s.m1 + s.m2)
+        return np.where(touching, both, np.stack([loads[0] / s.m1, loads[1] / s.m2]))
 
     def advance(self, states: Floats, touching: Flags, times: Floats, lengths: Floats) -> Floats:
         """Compute the states a given time later, shape (n, 4), by Taylor series."""
@@ -101,9 +122,12 @@ class Motion:
         state = self._state_at(begin)
         touching = np.array([True])
         mesh = np.linspace(begin, end, 1 + self.step_count(end - begin))
+        nodes = self.pieces.nodes
+        mesh = np.union1d(mesh, nodes[(nodes > begin) & (nodes < end)])
         for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
             series = self.derivatives(state, touching, np.array([start]))[:, :, 0]
-            root = first_fall(*self._contact_force(series), stop - start)
+            forces = self.forces(np.array([start]))[:, :, 0]
+            root = first_fall(*self._contact_force(series, forces), stop - start)
             if root is not None:
                 return float(start + root)
             state = self.advance(state, touching, np.array([start]), np.array([stop - start]))
@@ -130,13 +154,20 @@ class Motion:
         after[:, 3] += impulses / self.structure.m2
         return after
 
-    def _contact_force(self, series: Floats) -> tuple[Floats, float]:
+    def _contact_force(self, series: Floats, forces: Floats) -> tuple[Floats, float]:
         """Compute the contact force (18) and its derivatives, and the scale of its terms."""
         s = self.structure
-        own = s.k1 * series[:-1, 0] + s.d1 * series[1:, 0]
-        other = s.k2 * series[:-1, 1] + s.d2 * series[1:, 1]
+        own = s.k1 * series[:-2, 0] + s.d1 * series[1:-1, 0] - forces[:, 0]
+        other = s.k2 * series[:-2, 1] + s.d2 * series[1:-1, 1] - forces[:, 1]
         force: Floats = (s.m1 * other - s.m2 * own) / (s.m1 + s.m2)
         return force, abs(float(own[0])) + abs(float(other[0]))
+
+
+def in_order(taylor: Floats) -> Floats:
+    """Return a cubic's derivatives at n times as the first rows of ORDER."""
+    found = np.zeros((ORDER, len(taylor)))
+    found[:4] = taylor.T
+    return found
 
 
 def taylor(series: Floats, lengths: Floats) -> Floats:
@@ -168,7 +199,7 @@ class SmoothParts:
     """Hold the absolute accelerations of box and masses, without the impulses of impacts."""
 
     times: Floats  # of the record, s
-    box: Cells
+    drive: Cells  # what moves the box, m/s2, or a half, N
     mass1: Cells
     mass2: Cells
     error: float  # largest distance of a mass's acceleration from the history's next sample, m/s2
@@ -187,13 +218,18 @@ def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
     nodes = nodes[(nodes >= 0.0) & (nodes <= times[-1])]
     starts = nodes[:-1]
     states, touching, error = propagate(motion, nodes, releases)
-    box = Cells(starts, nodes[1:], motion.pieces.taylor(starts))
-    series = motion.derivatives(states, touching, starts)
+    drive = Cells(starts, nodes[1:], motion.pieces.taylor(starts))
+    series, forces = motion.derivatives(states, touching, starts), motion.forces(starts)
     felt = np.stack(
-        [motion.accelerations(x, v, touching) for x, v in zip(series, series[1:], strict=False)]
+        [
+            motion.accelerations(
+                series[n], series[n + 1], touching, forces[n] if n < ORDER else 0.0
+            )
+            for n in range(ORDER + 1)
+        ]
     )
     one, two = (Cells(starts, nodes[1:], felt[:, i].T) for i in (0, 1))
-    return SmoothParts(times, box, one, two, error)
+    return SmoothParts(times, drive, one, two, error)
 
 
 def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, Flags, float]:

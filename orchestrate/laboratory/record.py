@@ -26,10 +26,10 @@ ACCELERATIONS = {  # long names
     "acceleration1": "absolute acceleration of mass 1",
     "acceleration2": "absolute acceleration of mass 2",
 }
-FORCE = "force"  # in N
-CHANNELS = {**ACCELERATIONS, FORCE: "force on the structure"}
+FORCES = {"force1": "force on mass 1", "force2": "force on mass 2"}  # long names
+CHANNELS = {**ACCELERATIONS, **FORCES}
 SHORT_NAMES = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
-SHORT_NAMES[FORCE] = FORCE
+SHORT_NAMES |= {"force1": "force 1", "force2": "force 2"}
 FEWEST = 4
 
 
@@ -39,7 +39,8 @@ def record(
     box_acceleration: ArrayLike | None = None,
     acceleration1: ArrayLike | None = None,
     acceleration2: ArrayLike | None = None,
-    force: ArrayLike | None = None,
+    force1: ArrayLike | None = None,
+    force2: ArrayLike | None = None,
     sample_rate: float | None = None,
     source: str = "measured",
     sensors: Mapping[str, str] | str = "",
@@ -53,9 +54,9 @@ def record(
         s, in equal steps; or give ``sample_rate``, then it begins at 0.
     box_acceleration, acceleration1, acceleration2 : array_like, optional
         Absolute accelerations of the box and the masses, m/s2; one of them at least.
-    force : array_like, optional
-        N, of a structure that is excited by a force in place of its base: for
-        :func:`orchestrate.signs` alone.
+    force1, force2 : array_like, optional
+        N, of a structure that is excited by a force on a half in place of its base: for
+        :func:`orchestrate.frf`, :func:`orchestrate.halves` and :func:`orchestrate.signs`.
     sample_rate : float, optional
         Hz; by default from ``time``. Of both the rate corrects times that are rounded.
     source : str
@@ -88,9 +89,8 @@ def record(
     >>> made.time.values[-1], made.attrs["sample_rate"]
     (np.float64(0.003), 1000.0)
     """
-    channels = dict(
-        zip(CHANNELS, (box_acceleration, acceleration1, acceleration2, force), strict=True)
-    )
+    columns = box_acceleration, acceleration1, acceleration2, force1, force2
+    channels = dict(zip(CHANNELS, columns, strict=True))
     given = {name: one for name, one in channels.items() if one is not None}
     words = sensors
     if isinstance(sensors, Mapping):
@@ -204,7 +204,7 @@ def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
 
 def unit_of_channel(name: str) -> str:
     """Return the unit of a record's channel."""
-    return "N" if name == FORCE else "m/s2"
+    return "N" if name in FORCES else "m/s2"
 
 
 def channel_label(name: str) -> str:

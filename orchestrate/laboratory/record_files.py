@@ -20,7 +20,7 @@ from .analysis.channels import CHANNELS as ACCELERATIONS
 from .channel_setup import Channels, ChannelSetup
 from .columns import Column, Columns, converted_channels
 from .conversion import SMALLEST, ByChannel, number_by_channel
-from .record import CHANNELS, Reading, checked_record, unit_of_channel
+from .record import CHANNELS, FORCES, Reading, checked_record, unit_of_channel
 from .record_csv import read_csv, write_csv
 from .record_labview import read_lvm, read_tdms
 from .record_mat import read_mat, write_mat
@@ -55,15 +55,15 @@ def read_record(
         ``.uff``, ``.unv`` (universal files, datasets 58 and 58b), ``.mat`` (MATLAB's up to
         version 7.2, structures too), ``.lvm`` and ``.tdms`` (LabVIEW), ``.nc`` (NetCDF), ``.wav``.
     channels : path-like, mapping, sequence or str, optional
-        Which column ``time``, ``base``, ``face1``, ``face2`` and ``force`` are in, by name or by
-        number from 0: a mapping, a text such as ``"base=Table,face1=3"``, or a sequence in that
-        order without the force. In place of a column a mapping may have ``column``, ``unit``,
+        Which column ``time``, ``base``, ``face1``, ``face2``, ``force1`` and ``force2`` are in, by
+        name or by number from 0: a mapping, a text such as ``"base=Table,face1=3"``, or a sequence
+        in that order without forces. In place of a column a mapping may have ``column``, ``unit``,
         ``sensitivity``, ``scale``, ``delay`` and, kept as attributes of the channel, ``sensor``,
         ``serial_number``, ``calibrated``; beside the channels ``sample_rate`` and ``resample``. Or
         the path of a TOML file with the same, as :func:`orchestrate.channels` writes it. By default
         columns with these names or others that are usual; one or two that are left are proposed as
-        faces, in their order, with a warning; where no name is known, the first ones in that
-        order. A time that is not named is in the column of that name, else in the first.
+        faces, in their order, with a warning; where no name is known, the first ones in that order.
+        A time that is not named is in the column of that name, else in the first.
     unit : str or mapping of str to str, optional
         Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face1=mm/s"``): of an
         acceleration, velocity, displacement or voltage; before that of ``channels``, as are the
@@ -230,6 +230,7 @@ def read_netcdf(path: Path) -> Columns:
                 text = "expected what sensors read of it: orchestrate.measure, then write_record"
                 raise InputError(f"{path}: simulated accelerations leave out the impacts; {text}")
             names = {"time": "time", **{stored: name for name, stored in ACCELERATIONS.items()}}
+            names |= {name: name for name in FORCES}
         columns = [
             Column(
                 name, str(getattr(one, "units", "")), np.ma.filled(one[...].astype(float), np.nan)

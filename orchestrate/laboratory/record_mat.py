@@ -126,9 +126,18 @@ def spectra_text(arrays: dict[str, NDArray[Any]], texts: dict[str, str]) -> str:
 
 
 def write_mat(path: Path, columns: list[Column], sample_rate: float) -> None:
-    """Write columns as vectors of a MAT file, with ``sample_rate`` and ``units``."""
+    """Write columns as vectors of a MAT file, with ``sample_rate`` and ``units``.
+
+    Those in another unit than the first channel are structs of their own.
+    """
     from scipy.io import savemat
 
-    vectors: dict[str, Any] = {column.name: column.values for column in columns}
+    unit = columns[1].unit
+    vectors: dict[str, Any] = {
+        one.name: {one.name: one.values, "units": one.unit}
+        if i and one.unit != unit
+        else one.values
+        for i, one in enumerate(columns)
+    }
     with path.open("wb") as file:
-        savemat(file, {**vectors, "sample_rate": sample_rate, "units": columns[-1].unit})
+        savemat(file, {**vectors, "sample_rate": sample_rate, "units": unit})

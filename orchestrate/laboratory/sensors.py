@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -16,14 +17,15 @@ from ..model.ranges import ADDED, STRUCTURE, Quantity, plain
 from .analog_filter import AnalogFilter, Cells, Floats, anti_aliasing, in_series, low_pass
 from .pieces import Pieces
 from .reconstruction import Motion, SmoothParts, smooth_parts
-from .record import ACCELERATIONS, record
+from .record import ACCELERATIONS, CHANNELS, FORCES, record
 from .sampled import Sampled
 from .signals import HERTZ, ExcitationSignal, check_fields
 
 FILTERS = ("butterworth", "bessel")
 PARTICIPATION = Quantity("participation", "1", "", -10.0, 10.0)  # of a sensor's place
 MOST_SAMPLES = 20_000_000
-NEEDED = ("x1", "x2", "v1", "v2", "in_contact", "box_acceleration", "impact_time", "impulse")
+EMPTY = np.empty(0)
+NEEDED = ("x1", "x2", "v1", "v2", "in_contact", "impact_time", "impulse")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,7 +143,7 @@ def measure(
     *,
     excitation: ExcitationSignal | None = None,
 ) -> xr.Dataset:
-    """Compute what accelerometers on the box and on both masses read.
+    """Compute what accelerometers on the box and on both masses read, and a hammer's force cell.
 
     Parameters
     ----------
@@ -149,8 +151,10 @@ def measure(
         Of :func:`orchestrate.shake` or :func:`orchestrate.simulate`.
     sensor : Sensor or mapping of str to Sensor
         On all three; or by channel (``box_acceleration``, ``acceleration1``, ``acceleration2``),
-        with one sample rate; channels left out are not recorded.
-    excitation : SweptSine, SteppedSine, Random, Shock, Sampled or sum, optional
+        with one sample rate; channels left out are not recorded. Under a hammer ``force1`` or
+        ``force2`` takes the place of the box, of which a sensor has N in place of m/s2; where one
+        is on all, it reads the force through the same filters, without noise, limits and digits.
+    excitation : SweptSine, SteppedSine, Random, Shock, Sampled, Hammer or sum, optional
         What the history was shaken by. Without it the box's acceleration between the history's
         samples is taken from the cubic spline through them.
 
@@ -181,18 +185,19 @@ def measure(
     (5121, True)
     """
     structure = structure_of(history)
-    sensors = sensor_by_channel(sensor)
+    drives = driven_channel(history)
+    sensors = sensor_by_channel(sensor, (drives, *list(ACCELERATIONS)[1:]))
     rate = next(iter(sensors.values())).rate
     length = float(history.time[-1] - history.time[0])
     if not 1.0 <= length * rate <= MOST_SAMPLES:
         low, high = 1.0 / length, MOST_SAMPLES / length
         text = f"expected {low:.3g} to {high:.3g} for that history"
         raise InputError(f"sample_rate = {rate!r} Hz: {text}")
-    motion = Motion.from_history(history, structure, pieces_for(history, excitation))
+    motion = Motion.from_history(history, structure, pieces_for(history, excitation), drives)
     parts = smooth_parts(motion, rate)
     readings = {
         name: sensors[name].digitised(sensor_reading(parts, motion, name, sensors[name]), number)
-        for number, name in enumerate(ACCELERATIONS)
+        for number, name in enumerate(CHANNELS)
         if name in sensors
     }
     made = record(
@@ -208,13 +213,15 @@ def measure(
 
 def sensor_reading(parts: SmoothParts, motion: Motion, name: str, sensor: Sensor) -> Floats:
     """Compute what a sensor's filter reads on the box or on a mass, m/s2."""
-    structure, share = motion.structure, sensor.participation
-    if name == "box_acceleration":
-        cells, jumps = parts.box, 0.0 * motion.impulses
-    elif name == "acceleration1":
-        cells, jumps = at_place(parts.mass1, parts.box, share), -motion.impulses / structure.m1
+    structure, share, box = motion.structure, sensor.participation, parts.drive
+    if name == motion.drives:
+        return sensor.analog_filter().respond(box, motion.impact_times[:0], EMPTY, parts.times)
+    if motion.drives in FORCES:  # the box is at rest
+        box = replace(box, derivatives=0.0 * box.derivatives)
+    if name == "acceleration1":
+        cells, jumps = at_place(parts.mass1, box, share), -motion.impulses / structure.m1
     else:
-        cells, jumps = at_place(parts.mass2, parts.box, share), motion.impulses / structure.m2
+        cells, jumps = at_place(parts.mass2, box, share), motion.impulses / structure.m2
     return sensor.analog_filter().respond(cells, motion.impact_times, share * jumps, parts.times)
 
 
@@ -228,7 +235,7 @@ def at_place(mass: Cells, box: Cells, participation: float) -> Cells:
 
 
 def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Pieces:
-    """Return the box's acceleration as pieces, from the history's beginning on."""
+    """Return what drives a history as pieces, from the history's beginning on."""
     if excitation is not None:
         if excitation.label != history.attrs.get("excitation"):
             text = f"expected {history.attrs.get('excitation', 'none')}, which made the history"
@@ -238,17 +245,28 @@ def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Piec
         return Pieces(whole.nodes - begin, whole.derivatives, whole.error)
     steps = len(history.time) - 1
     rate = steps / float(history.time[-1] - history.time[0])
-    box = history.box_acceleration.values
-    return Sampled(acceleration=box, sample_rate=rate).pieces()
+    driven: Any = history[driven_channel(history)].values
+    return Sampled(acceleration=driven, sample_rate=rate).pieces()
 
 
-def sensor_by_channel(sensor: Sensor | Mapping[str, Sensor]) -> dict[str, Sensor]:
+def driven_channel(history: xr.Dataset) -> str:
+    """Return which channel of a history drives it; raise if there is none."""
+    for name in ("box_acceleration", *FORCES):
+        if name in history and history[name].dims == ("time",):
+            return name
+    raise InputError("history: expected an answer of shake or simulate, with what drives it")
+
+
+def sensor_by_channel(
+    sensor: Sensor | Mapping[str, Sensor], known: tuple[str, ...] = tuple(ACCELERATIONS)
+) -> dict[str, Sensor]:
     """Return the sensor of each channel, by name."""
     if isinstance(sensor, Sensor):
-        return dict.fromkeys(ACCELERATIONS, sensor)
+        plain = replace(sensor, noise=0.0, range=math.inf, resolution=0.0)
+        return {name: plain if name in FORCES else sensor for name in known}
     fits = isinstance(sensor, Mapping) and all(isinstance(s, Sensor) for s in sensor.values())
-    if not fits or not sensor or not set(sensor) <= set(ACCELERATIONS):
-        names = ", ".join(ACCELERATIONS)
+    if not fits or not sensor or not set(sensor) <= set(known):
+        names = ", ".join(known)
         raise InputError(f"sensor = {sensor!r}: expected a Sensor, or one for each of {names}")
     rates = sorted({own.rate for own in sensor.values()})
     if len(rates) > 1:

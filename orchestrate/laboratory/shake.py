@@ -16,7 +16,7 @@ from ..fmu import OSCILLATOR, PLAYED, Player
 from ..lazy import Unpack, xr
 from ..model import Shaker, Structure
 from ..model.arguments import checked_positive
-from ..response.equations import absolute_accelerations
+from ..response.equations import absolute_accelerations, accelerations_with
 from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import Question, checked_state, checked_structure
 from ..response.signatures import as_given, question
@@ -25,6 +25,7 @@ from ..running.job import Table
 from ..running.options import Running
 from .level_control import LevelControl, shake_on
 from .pieces import Pieces
+from .record import CHANNELS, unit_of_channel
 from .signals import ExcitationSignal
 
 MOST_SAMPLES = 100_000_000
@@ -86,29 +87,39 @@ class ShakeJob(Question):
             player.start(self.structure, self.start)
             if previous is not None:
                 player.restore_state(previous["fmu_state"][-1].tobytes())
-            played = player.play(nodes, pieces.derivatives[first:last], samples)
+            drives = self.excitation.drives
+            played = player.play(nodes, pieces.derivatives[first:last], samples, drives=drives)
             kept = np.frombuffer(player.save_state(), dtype=np.uint8)[np.newaxis]
-        one, two = absolute_accelerations(played.rows[:, :4], self.structure, played.touching).T
+        driven = pieces(samples)
+        motion = played.rows[:, :4], self.structure, played.touching
+        if drives == "box_acceleration":
+            one, two = absolute_accelerations(*motion).T
+        else:
+            forces = np.outer(driven, [drives == "force1", drives == "force2"])
+            one, two = accelerations_with(forces, *motion).T
         return {
             **dict(zip(PLAYED, played.rows.T, strict=True)),
             **{"in_contact": played.touching, "a1_abs": one, "a2_abs": two},
-            "box_acceleration": pieces(samples),
+            drives: driven,
             **impact_columns(played.impacts, self.structure),
             "fmu_state": kept,
         }
 
     def dataset(self, table: Table) -> xr.Dataset:
         """Return histories, impacts, and what is known of the excitation."""
-        columns = [*PLAYED, "a1_abs", "a2_abs", "box_acceleration"]
+        drives = self.excitation.drives
+        columns = [*PLAYED, "a1_abs", "a2_abs"]
         contact = "whether the masses are in permanent contact"
-        error = "largest distance of the box's acceleration to the signal, by a bound"
+        unit, word = unit_of_channel(drives), CHANNELS[drives]
+        error = f"largest distance of the {word} to the signal, by a bound"
         transient = f"time after which the start's free vibration is below {DECAYED:g} of it"
         return make_dataset(
             {
                 **{name: variable("time", table[name], *IN_TIME[name]) for name in columns},
+                drives: variable("time", table[drives], unit, word),
                 "in_contact": yes_or_no("time", table["in_contact"], contact),
                 **impact_variables(table),
-                "excitation_error": variable((), self.pieces.error, "m/s2", error),
+                "excitation_error": variable((), self.pieces.error, unit, error),
                 "transient_time": variable((), transient_time(self.structure), "s", transient),
             },
             {"time": variable("time", self.times(), "s", "time from the start")},
@@ -145,8 +156,9 @@ def shake(
     ----------
     structure : Structure
         Delaminated or bonded.
-    excitation : SweptSine, SteppedSine, Random, Shock or Sampled
-        The box's acceleration; ``one + other`` is both together.
+    excitation : SweptSine, SteppedSine, Random, Shock, Sampled or Hammer
+        The box's acceleration, or knocks on a half with the box at rest; ``one + other`` is both
+        together.
     sample_rate : float, optional
         Of the record, Hz; by default what the excitation needs. The motion does not depend on it.
     shaker : Shaker, optional
@@ -164,11 +176,12 @@ def shake(
     Returns
     -------
     xarray.Dataset
-        Over ``time`` in s: ``box_acceleration``; ``a1_abs``, ``a2_abs``, accelerations of the
+        Over ``time`` in s: ``box_acceleration``, of a hammer ``force1`` or ``force2`` in N in place
+        of it; ``a1_abs``, ``a2_abs``, accelerations of the
         masses in space between impacts; ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``, ``v_rel``
         relative to the box; ``contact_force`` in N and ``in_contact``. Over ``impact``:
         ``impact_time``, ``impact_velocity``, ``impulse`` in N s and ``sticks``. Scalars:
-        ``excitation_error`` in m/s2 and ``transient_time`` in s, after which the start is
+        ``excitation_error`` in m/s2 or N and ``transient_time`` in s, after which the start is
         forgotten where the motion is linear. On a shaker ``current`` in A, ``voltage``, ``power``
         in W and ``control_aborted`` in s, in place of both scalars.
 
@@ -195,7 +208,7 @@ def shake(
     if shaker is not None:
         return shake_on(structure, excitation, shaker, sample_rate, start, running)
     if not isinstance(excitation, ExcitationSignal):
-        kinds = "expected a SweptSine, SteppedSine, Random, Shock or Sampled, or a sum"
+        kinds = "expected a SweptSine, SteppedSine, Random, Shock, Sampled or Hammer, or a sum"
         raise InputError(f"excitation = {excitation!r}: {kinds}")
     rate = checked_positive(
         "sample_rate", excitation.usual_rate if sample_rate is None else sample_rate

@@ -1,4 +1,4 @@
-"""What every excitation is: an acceleration of the box over the time, and sums of them.
+"""What every excitation is: an acceleration of the box, or a force, over time, and sums of them.
 
 Each can be passed to the FMU as cubic pieces with a bound of their error (see :mod:`.pieces`).
 The box's displacement is not needed: the structure feels the acceleration alone.
@@ -85,12 +85,17 @@ def along_profile(profile: Profile, frequency: Floats) -> Floats:
 
 
 class ExcitationSignal(ABC):
-    """An acceleration of the box over a time that begins at 0.
+    """An acceleration of the box, or a force on a half, over a time that begins at 0.
 
     ``one + other`` is both together; ``duration`` is in s.
     """
 
     duration: float
+
+    @property
+    def drives(self) -> str:
+        """Input of the FMU that it is, and channel of records."""
+        return "box_acceleration"
 
     @property
     @abstractmethod
@@ -109,7 +114,7 @@ class ExcitationSignal(ABC):
 
     @abstractmethod
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """Return the acceleration as cubic pieces."""
+        """Return it as cubic pieces."""
 
     def __add__(self, other: ExcitationSignal) -> SumOfSignals:
         """Return the sum of both signals."""
@@ -165,6 +170,14 @@ class SumOfSignals(ExcitationSignal):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "duration", max(part.duration for part in self.parts))
+        if len(driven := dict.fromkeys(part.drives for part in self.parts)) > 1:
+            text = "expected signals of the box's acceleration alone, or knocks on one half"
+            raise InputError(f"a sum of {' and '.join(driven)}: {text}")
+
+    @property
+    def drives(self) -> str:
+        """What all parts drive."""
+        return self.parts[0].drives
 
     @property
     def label(self) -> str:

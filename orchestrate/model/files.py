@@ -10,7 +10,8 @@ section           keys
                   :class:`.Structure`
 ``[excitation]``  one of ``frequency_hz frequency_rad_s frequency_rpm eta``; one of ``amplitude``
                   (m) and ``acceleration_g`` (peak, in 9.80665 m/s^2), which may be left out with
-                  ``eta``: 1/eta^2 m; ``phase`` (rad)
+                  ``eta``: 1/eta^2 m; ``phase`` (rad); ``box_acceleration`` (m/s^2), ``force1``
+                  and ``force2`` (N)
 ``[motor]``       ``unbalance_mass unbalance_radius rotor_inertia motor_constant
                   armature_resistance armature_inductance``, SI; or, in place of ``motor_constant
                   armature_resistance``, a datasheet's ``rated_voltage stall_torque`` and one of
@@ -41,7 +42,7 @@ from ..files import read_text, write_whole
 from .described import Described
 from .drive import Drive
 from .excitation import Excitation
-from .ranges import DRIVE, SHAKER, STRUCTURE, expected_one_of
+from .ranges import DRIVE, PUSHES, SHAKER, STRUCTURE, expected_one_of
 from .sections import (
     Section,
     check_masses,
@@ -151,10 +152,9 @@ def write(
         tables["structure"] = structure.parameters()
     if excitation is not None:
         phase, amplitude = excitation.phase, excitation.amplitude
-        if any(excitation.pushes):
-            raise InputError(f"{excitation}: a file has the box's motion alone, no forces")
-        frequency = {"frequency_rad_s": excitation.frequency}
-        tables["excitation"] = {**frequency, "amplitude": amplitude, "phase": phase}
+        box = {"frequency_rad_s": excitation.frequency, "amplitude": amplitude, "phase": phase}
+        pushes = zip(PUSHES, excitation.pushes, strict=True)
+        tables["excitation"] = box | {name: value for name, value in pushes if value}
     if drive is not None:
         values = drive.parameters()
         box = {name: values.pop(name) for name in list(values) if name.startswith("box_")}

@@ -18,6 +18,7 @@ from .ranges import (
     EXCITATION,
     LARGEST,
     MECHANICS,
+    PUSHES,
     RATIO_QUANTITIES,
     SHAKER,
     SMALLEST,
@@ -187,23 +188,23 @@ def read_structure(section: Section) -> Structure:
 
 def read_excitation(section: Section, structure: Structure | None) -> Excitation:
     """Return the ``Excitation`` that a section ``[excitation]`` describes."""
-    section.allow(*FREQUENCIES, *AMPLITUDES, "phase")
+    section.allow(*FREQUENCIES, *AMPLITUDES, "phase", *PUSHES)
     key = section.exactly_one(FREQUENCIES)
     amplitude_key = section.at_most_one(AMPLITUDES)
-    phase = section.numbers(("phase",))
+    more = section.numbers(("phase", *PUSHES))
     if key == "eta":
         eta = section.number("eta")
         if structure is None:
             raise section.error("eta", "it refers to a structure; expected a section [structure]")
         if amplitude_key is None:
-            return section.make(lambda: Excitation.nondimensional(eta, structure, **phase))
+            return section.make(lambda: Excitation.nondimensional(eta, structure, **more))
         frequency = eta * structure.omega
     else:
         frequency = section.rad_s(key)
     amplitude = section.number(section.exactly_one(AMPLITUDES))
     if amplitude_key == "acceleration_g":
         amplitude = amplitude * GRAVITY / (frequency * frequency)
-    return section.make(lambda: Excitation(frequency=frequency, amplitude=amplitude, **phase))
+    return section.make(lambda: Excitation(frequency=frequency, amplitude=amplitude, **more))
 
 
 def read_drive(motor: Section, box: Section, structure: Structure | None) -> Drive:

@@ -22,6 +22,7 @@ Results = dict[str, xr.Dataset]  # by label
 Reader = Callable[[xr.Dataset], xr.DataArray]
 CHANNELS = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 COLOURS = (BLUE, RED, BLACK, ORANGE, GREEN, PURPLE)
+FRF_OVER = {"1/kg": "force in 1/kg"}  # by the unit of the magnitude
 PHASE = {"ylim": (-280.0, 100.0), "yticks": (-270, -180, -90, 0, 90)}  # an axis in degrees
 
 
@@ -176,8 +177,9 @@ def draw_frf(results: Results) -> Figure:
     def excited(data: xr.Dataset) -> xr.Dataset:
         return data.sel(estimator="H1").where(data.excited > 0)
 
+    word = FRF_OVER.get(str(first_of(results).magnitude.units), "box")
     rows = (
-        Row("|H1|, mass over box", 1.5, lambda data: excited(data).magnitude, decades=6),
+        Row(f"|H1|, mass over {word}", 1.5, lambda data: excited(data).magnitude, decades=6),
         Row("phase in degrees", 0.9, lambda data: phase_in_degrees(excited(data).phase), PHASE),
         Row("coherence", 0.9, lambda data: excited(data).coherence, {"ylim": (-0.03, 1.03)}),
     )

@@ -127,8 +127,8 @@ def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = No
     title = title or f"{labels.in_shown_units(data, words)}; {labels.title_from_attributes(data)}"
     heights: Any = {"sharex": True, "height_ratios": (1.0, 1.6, 1.2, 1.2)}
     figure, (box, masses, gap, impacts) = make_panels(4, 1, (10.4, 7.2), title, **heights)
-    scale, _ = acceleration_scale(data)
-    draw_acceleration(data, box)
+    scale, unit = acceleration_scale(data)
+    draw_what_drives(data, box)
     draw_gap_impacts(data, gap, impacts)
     for number, colour in (("1", BLUE), ("2", RED)):
         style: Any = {"color": colour, "label": f"mass {number}", "alpha": 0.55}
@@ -137,7 +137,7 @@ def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = No
         time, low, high = local_extremes(bonded.time.values, bonded.a1_abs.values / scale)
         draw_line(masses, time, high, "-", BLACK, 0.9, "both, bonded")
         draw_line(masses, time, low, "-", BLACK, 0.9)
-    masses.set_ylabel(box.get_ylabel().replace("of box", "of masses"))
+    masses.set_ylabel(in_unit("acceleration\nof masses", unit))
     legend_above(masses, 3)
     impacts.set(xlabel="time in s", xlim=(0.0, float(data.time[-1])))
     return figure
@@ -151,7 +151,7 @@ def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
     count = (4 if "x1" in data else 1) + len(names)
     title = title or f"{data.attrs['drive']}; {labels.title_from_attributes(data)}"
     figure, rows = make_panels(count, 1, (10.4, 1.2 + 1.6 * count), title, sharex=True)
-    draw_acceleration(data, rows[0])
+    draw_what_drives(data, rows[0])
     if "x1" in data:
         draw_gap_impacts(data, rows[2], rows[3])
         factor, unit = length_scale(data, float(abs(data.x1).max()))
@@ -167,11 +167,15 @@ def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
-def draw_acceleration(data: xr.Dataset, box: Axes) -> None:
-    """Draw the box's acceleration."""
-    scale, unit = acceleration_scale(data)
-    draw_signal(box, data, "box_acceleration", scale, color=BLACK)
-    box.set_ylabel(in_unit("acceleration\nof box", unit))
+def draw_what_drives(data: xr.Dataset, box: Axes) -> None:
+    """Draw the box's acceleration, or the force on a mass."""
+    if force := next((name for name in ("force1", "force2") if name in data), ""):
+        draw_signal(box, data, force, 1.0, color=BLACK)
+        box.set_ylabel(f"force on\nmass {force[-1]} in N")
+    else:
+        scale, unit = acceleration_scale(data)
+        draw_signal(box, data, "box_acceleration", scale, color=BLACK)
+        box.set_ylabel(in_unit("acceleration\nof box", unit))
 
 
 def draw_gap_impacts(data: xr.Dataset, gap: Axes, impacts: Axes) -> None:

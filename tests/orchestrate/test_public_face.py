@@ -20,7 +20,7 @@ FUNCTIONS = (
     *("simulate", "resonance", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
     *("impact_statistics", "poincare", "basin_entropy", "orbit", "branch", "border", "couple"),
     *("cosimulate", "manifold"),
-    *("shake", "measure", "record", "read_record", "write_record", "channels"),
+    *("shake", "measure", "record", "read_record", "write_record", "channels", "halves"),
     *("resonance_curve", "read_curve"),
 )
 HEAVY = ("xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "pandas", "loky", "tqdm")

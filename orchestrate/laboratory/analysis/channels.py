@@ -172,6 +172,16 @@ class Averaging:
             "detrend": "constant",
         }
 
+    def spectra(
+        self, drive: Floats, responses: Floats, rate: float
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return lines, Hz, and spectra of what drives, of the responses and between them."""
+        from scipy.signal import csd, welch
+
+        frequency, power = welch(drive, rate, **self.options)
+        response = welch(responses, rate, **self.options)[1]
+        return frequency, power, response, csd(drive, responses, rate, **self.options)[1]
+
     @property
     def independent(self) -> float:
         """Number of independent segments that would have the same random error."""

@@ -1,4 +1,4 @@
-"""Frequency response functions of the masses over the box's acceleration, and their coherence.
+"""Frequency response functions of the masses over the box or a force, and their coherence.
 
 SciPy estimates the spectra: pyFRF 1.5 takes sampling rates that are whole numbers alone, divides
 by omega^2 on the way (no line at 0 Hz), and does not know the error of overlapping segments.
@@ -10,7 +10,8 @@ import numpy as np
 
 from ...errors import InputError
 from ...lazy import xr
-from ...response.labels import variable, yes_or_no
+from ...response.labels import Variable, variable, yes_or_no
+from ..record import FORCES
 from .channels import (
     BOX,
     Channels,
@@ -18,11 +19,20 @@ from .channels import (
     attributes,
     averaging,
     channel_coordinate,
+    finite,
     frequency_coordinate,
 )
+from .knocks import Knocks
 
 ESTIMATORS = ("H1", "H2", "Hv")
-EXCITED = 1e-2  # of the largest power density of the box: below, a response has no meaning
+EXCITED = 1e-2  # of the largest power density of the excitation: below, a response has no meaning
+KINDS = {  # of excitation: its name, density and unit, and the response's and its unit
+    BOX: ("box", "box_psd", "m2/s4/Hz", "acceleration over the box's", "1"),
+    **{
+        name: (f"force on mass {name[-1]}", "force_psd", "N2/Hz", "acceleration over force", "1/kg")
+        for name in FORCES
+    },
+}
 
 
 def frf(
@@ -38,28 +48,38 @@ def frf(
     ----------
     record : xarray.Dataset
         Over ``time``: ``box_acceleration``, ``acceleration1`` and, where measured,
-        ``acceleration2`` in m/s2; or a result of :func:`orchestrate.shake`.
+        ``acceleration2`` in m/s2; or a result of :func:`orchestrate.shake`. Without the box's
+        acceleration ``force1`` or ``force2`` in N stands for it.
     resolution : float, optional
         Distance of the lines, Hz. A segment takes 1/resolution: it should be several times as long
-        as a free vibration takes to decay. By default 16 segments fit into the record.
+        as a free vibration takes to decay. By default 16 segments fit into the record; of knocks
+        one reaches to the next.
     window : str
         ``"hann"``, ``"hamming"``, ``"blackman"``, ``"blackmanharris"``, ``"flattop"`` or
-        ``"boxcar"``.
+        ``"boxcar"``. Knocks of a hammer have a force window and an exponential one in place of it
+        (:class:`orchestrate.laboratory.analysis.knocks.Knocks`).
     overlap : float
-        Part of a segment that the next one shares.
+        Part of a segment that the next one shares; of knocks none.
 
     Returns
     -------
     xarray.Dataset
-        ``magnitude`` and ``phase`` in rad over ``estimator`` (H1, H2, Hv), ``channel`` and
-        ``frequency`` in Hz; ``coherence``, and ``random_error``, the standard deviation of the
-        magnitude relative to it, over ``channel`` and ``frequency``; ``box_psd`` in m2/s4/Hz
-        and ``excited``, whether that is a hundredth of its largest value at least (0 Hz is not);
-        scalars ``averages`` and ``resolution``.
+        ``magnitude`` (over a force in 1/kg) and ``phase`` in rad over ``estimator`` (H1, H2, Hv),
+        ``channel`` and ``frequency`` in Hz; ``coherence``, and ``random_error``, the standard
+        deviation of the magnitude relative to it, over ``channel`` and ``frequency``; ``box_psd``
+        in m2/s4/Hz (of a force ``force_psd`` in N2/Hz) and ``excited``, whether that is a hundredth
+        of its largest value at least (0 Hz is not); scalars ``averages``, ``resolution`` and, of
+        knocks, ``window_decay`` in 1/s, which the exponential window adds to that of the structure.
+        The coherence of a single knock, which would be 1, is NaN.
+
+    Warns
+    -----
+    UserWarning
+        Where knocks are double hits, which are left out.
 
     Notes
     -----
-    H1 is right where the noise is on the response, H2 where it is on the box's channel, Hv where
+    H1 is right where the noise is on the response, H2 where it is on the excitation, Hv where
     both channels have the same (Shin and Hammond, Fundamentals of Signal Processing, 2008, 9.2).
     The random error is ``sqrt((1 - c)/(2 c n))`` for a coherence c and n independent averages
     (Bendat and Piersol, Random Data, 4th ed., 9.2.4). Mean values are removed from each segment.
@@ -73,49 +93,72 @@ def frf(
     >>> float(answer.magnitude.sel(estimator="H1", channel="acceleration1").idxmax())
     12.5
     """
-    from scipy.signal import csd, welch
-
-    channels = Channels.from_record(record, (BOX,))
+    channels = Channels.from_record(record)
+    driven, drive = what_drives(record, channels)
     names, responses = channels.responses()
     if not names:
-        raise InputError("record: no acceleration1; expected it beside the box's, in m/s2")
-    segments = averaging(channels, resolution, window, overlap, fewest=2)
-    rate, options = channels.sample_rate, segments.options
-    frequency, box = welch(channels.box, rate, **options)
-    response = welch(responses, rate, **options)[1]
-    cross = csd(channels.box, responses, rate, **options)[1]
+        raise InputError("record: no acceleration1; expected it beside the excitation, in m/s2")
+    knocks = None if driven == BOX else Knocks.from_force(drive, channels, resolution)
+    if knocks is not None:
+        window, overlap = "force and exponential", 0.0
+        averages, spacing = float(len(knocks.starts)), channels.sample_rate / knocks.length
+        frequency, box, response, cross = knocks.spectra(drive, responses)
+    else:
+        segments = averaging(channels, resolution, window, overlap, fewest=2)
+        averages, spacing = segments.independent, segments.resolution
+        frequency, box, response, cross = segments.spectra(drive, responses, channels.sample_rate)
+    made = frf_variables(driven, averages, frequency, box, response, cross)
+    made["resolution"] = variable((), spacing, "Hz", "distance of the lines")
+    if knocks is not None:
+        text = "rate at which the exponential window falls"
+        made["window_decay"] = variable((), knocks.decay, "1/s", text)
+    text = f"estimator: noise on the response, on the {KINDS[driven][0]}, on both"
+    coordinates: dict[str, Variable] = {
+        "estimator": ("estimator", np.array(ESTIMATORS), {"long_name": text})
+    }
+    coordinates |= channel_coordinate(names) | frequency_coordinate(frequency)
+    settings = {"window": window, "overlap": overlap, "excitation": driven}
+    words = attributes("frf", "Frequency response", channels.title, **settings)
+    return xr.Dataset(made, coordinates, words)
+
+
+def what_drives(record: xr.Dataset, channels: Channels) -> tuple[str, Floats]:
+    """Return name and values of the channel that excites: the box's, or a force."""
+    if BOX in channels.names:
+        return BOX, channels.box
+    given = [name for name in FORCES if name in record]
+    if len(given) != 1:
+        lacking = " and ".join(given) if given else f"no {BOX}"
+        text = f"expected {BOX} over time, in m/s2, or one of force1 and force2, in N"
+        raise InputError(f"record: {lacking}; {text}")
+    return given[0], finite(given[0], record[given[0]], channels.time)
+
+
+def frf_variables(
+    driven: str, averages: float, frequency: Floats, box: Floats, response: Floats, cross: Floats
+) -> dict[str, Variable]:
+    """Return the estimates and their errors from spectra of what drives and of the responses."""
     with np.errstate(divide="ignore", invalid="ignore"):
         estimates = estimate(box, response, cross)
         coherence = np.minimum(np.abs(cross) ** 2 / (box * response), 1.0)
-        error = np.sqrt((1.0 - coherence) / (2.0 * coherence * segments.independent))
+        coherence = np.where(averages > 1.0, coherence, np.nan)
+        error = np.sqrt((1.0 - coherence) / (2.0 * coherence * averages))
+    word, density, density_unit, quotient, unit = KINDS[driven]
     excited = (box >= EXCITED * box.max()) & (frequency > 0.0)
     over_all = ("estimator", "channel", "frequency")
     over_channels = ("channel", "frequency")
     text = "standard deviation of the magnitude over the magnitude"
-    return xr.Dataset(
-        {
-            "magnitude": variable(over_all, np.abs(estimates), "1", "acceleration over the box's"),
-            "phase": variable(over_all, np.angle(estimates), "rad", "phase against the box's"),
-            "coherence": variable(over_channels, coherence, "1", "coherence with the box"),
-            "random_error": variable(over_channels, error, "1", text),
-            "box_psd": variable("frequency", box, "m2/s4/Hz", "power spectral density of the box"),
-            "excited": yes_or_no(
-                "frequency", excited, "whether the box shakes the structure there"
-            ),
-            "averages": variable((), segments.independent, "1", "independent averages"),
-            "resolution": variable((), segments.resolution, "Hz", "distance of the lines"),
-        },
-        {
-            "estimator": (
-                "estimator",
-                np.array(ESTIMATORS),
-                {"long_name": "estimator: noise on the response, on the box, on both"},
-            ),
-            **channel_coordinate(names),
-            **frequency_coordinate(frequency),
-        },
-        attributes("frf", "Frequency response", channels.title, window=window, overlap=overlap),
-    )
+    density_text = f"power spectral density of the {word}"
+    excited_text = f"whether the {word} shakes the structure there"
+    return {
+        "magnitude": variable(over_all, np.abs(estimates), unit, quotient),
+        "phase": variable(over_all, np.angle(estimates), "rad", f"phase against the {word}'s"),
+        "coherence": variable(over_channels, coherence, "1", f"coherence with the {word}"),
+        "random_error": variable(over_channels, error, "1", text),
+        density: variable("frequency", box, density_unit, density_text),
+        "excited": yes_or_no("frequency", excited, excited_text),
+        "averages": variable((), averages, "1", "independent averages"),
+    }
 
 
 def estimate(box: Floats, response: Floats, cross: Floats) -> Floats:

@@ -61,7 +61,10 @@ MISTAKES = {  # options of each command, then what its line says
         --eta 1 --set E=0.5 : E: no parameter | did you mean e?
     """,
     "shake": """
-        : nothing given | --swept-sine, --stepped-sine, --random, --shock, --record
+        : nothing given | --swept-sine, --stepped-sine, --random, --shock, --hammer, --record
+        --hammer 20 : --hammer 20 | two numbers
+        --hammer 20:0.004 --half 3 : --half 3 | 1 to 2
+        --hammer 20:0.004 --length 1 : --length | with --shock alone
         --swept-sine 8:20 --g 1 --shock trapezoid : --swept-sine and --shock given | one of
         --swept-sine 8:20 --g 1 : nothing given | one of duration and rate
         --swept-sine 8:20 --duration 2 : level | --g and --acceleration

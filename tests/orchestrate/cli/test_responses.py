@@ -267,6 +267,10 @@ def test_a_motion(ask, folder):
             ("--shock", "half-sine", "--length", "0.011", "--acceleration", "49"),
             ("acceleration of the box: ", "4 impacts", "; 0 begin permanent contact"),
         ),
+        (
+            ("--hammer", "20:0.01", "--half", "2", "--at", "0.1", "--duration", "0.3", "--beside"),
+            ("force on mass 2: ", "impacts"),
+        ),
     ],
 )
 def test_shaken_as_in_the_laboratory(ask, folder, options, words):
@@ -394,3 +398,15 @@ def test_a_plan(ask, folder):
     done = ask("plan", "--structure", "beam", *test, "--units", "rpm,m/s2").success()
     assert "rpm at 0.0196 m/s2" in done.out and " g" not in done.out.splitlines()[0]
     ask("plan", "--structure", "beam", "--hz", "10").complaint("frequencies", "two at least")
+
+
+def test_forces_of_a_file_act_or_are_refused(ask, tmp_path):
+    """Of an excitation in the structure's file: commands take them, or say that they do not."""
+    path = tmp_path / "pushed.toml"
+    path.write_text(
+        "[structure]\nm1 = 1.0\nm2 = 1.0\nk1 = 1000.0\nk2 = 1300.0\nd1 = 0.5\nd2 = 0.5\n"
+        "[excitation]\nfrequency_hz = 5.0\namplitude = 0.0\nforce1 = 2.0\n"
+    )
+    done = ask("simulate", "--structure", path, "--periods", "3", "--plot", "none")
+    assert done.code == 0 and "impacts" in done.out, done.err
+    ask("orbit", "--structure", path).complaint("excitation.force1", "orbit does not know it")

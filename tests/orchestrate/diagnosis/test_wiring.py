@@ -240,7 +240,7 @@ def test_signs_need_no_base_and_a_verdict_without_one_is_refused(tmp_path):
     time, rng = np.arange(COUNT) / RATE, np.random.default_rng(3)
     phase = 2.0 * np.pi * (20.0 * time + 1.5 * time**2)
     force = 10.0 * np.sin(phase) + 0.3 * np.sin(2.0 * phase)
-    made = Channels(time, RATE, (BASE,), force[None], "force")
+    made = Channels(time, RATE, (BASE,), force[None], "force1")
     face = 0.7 * (SoundStructure(45.0, 0.01).acceleration(made) - force)
     rattling = face + 0.2 * np.abs(face) + rng.normal(0.0, 0.01 * face.std(), COUNT)
     path = tmp_path / "shaker.csv"
@@ -248,11 +248,11 @@ def test_signs_need_no_base_and_a_verdict_without_one_is_refused(tmp_path):
     lines = "".join(f"{t:.12g},{f:.12g},{a:.12g}\n" for t, f, a in rows)
     path.write_text(f"t [s],force cell [V],tip [m/s2]\n{lines}")
     excited = read_record(path, sensitivity="force=22 mV/N")
-    assert excited.force.attrs["units"] == "N" and np.allclose(excited.force, force)
+    assert excited.force1.attrs["units"] == "N" and np.allclose(excited.force1, force)
     sound = signs(excited, seeds=2).isel(channel=0)
-    assert abs(float(sound.sound_f) - 45.0) < 0.2 and sound.attrs["reference"] == "force"
+    assert abs(float(sound.sound_f) - 45.0) < 0.2 and sound.attrs["reference"] == "force1"
     assert not (sound.exceeds == 1).any() and sound.exceeds.sel(sign="order_2") == 0
-    opened = record(sample_rate=RATE, acceleration1=rattling, force=force)
+    opened = record(sample_rate=RATE, acceleration1=rattling, force1=force)
     assert signs(opened, seeds=2).exceeds.sel(sign="order_2").item() == 1
     alone = signs(record(sample_rate=RATE, acceleration1=rattling), seeds=2).isel(channel=0)
     own = alone.sel(sign="order_2")
@@ -261,4 +261,4 @@ def test_signs_need_no_base_and_a_verdict_without_one_is_refused(tmp_path):
     with pytest.raises(InputError, match="excited by a force; a verdict needs it: measure a swept"):
         detect(opened, guess)
     with pytest.raises(InputError, match="what excites it is unknown; .*orchestrate.signs does"):
-        detect(opened.drop_vars("force"), guess)
+        detect(opened.drop_vars("force1"), guess)

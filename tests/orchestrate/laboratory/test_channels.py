@@ -31,7 +31,7 @@ def written(tmp_path, headings, unit="m/s2"):
         ("Zeit;Referenz;Antwort 1;Antwort 2", (BASE, FACE1, FACE2), 2),
         ("Zeit;Kanal 1;Kanal 2;Kanal 3", (BASE, FACE1, FACE2), 0),  # no name is known
         ("Time;left;Base;right", (FACE1, BASE, FACE2), 2),
-        ("Time;Force;left;right", ("force", FACE1, FACE2), 2),
+        ("Time;Force;left;right", ("force1", FACE1, FACE2), 2),
         ("Time;Control;Response", (BASE, FACE1), 0),  # the one that is left
         ("Time;Base;Face 1;right", (BASE, FACE1, None), 0),  # a known face: no guess beside it
         ("Time;Base;a;b;c", (BASE, None, None, None), 0),

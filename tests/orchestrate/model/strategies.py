@@ -3,7 +3,7 @@
 from hypothesis import strategies as st
 
 from orchestrate.model import Drive, Excitation, Structure
-from orchestrate.model.ranges import STRUCTURE, Quantity
+from orchestrate.model.ranges import PUSHES, STRUCTURE, Quantity
 
 SCALE = st.floats(1e-6, 1e6)
 LOSS = st.one_of(st.just(0.0), SCALE)
@@ -34,7 +34,10 @@ STRUCTURES = st.builds(
 NUMBERS = st.fixed_dictionaries(
     {"mu": SMALL, "kappa": SMALL, "D1": RATIO, "D2": RATIO, "e": st.floats(0.0, 1.0)}
 )
-EXCITATIONS = st.builds(Excitation, frequency=SCALE, amplitude=LOSS, phase=st.floats(-1e3, 1e3))
+PUSHED = st.floats(-1e3, 1e3)
+OF_BOX = {"frequency": SCALE, "amplitude": LOSS, "phase": st.floats(-1e3, 1e3)}
+EXCITATIONS = st.builds(Excitation, **OF_BOX)
+WITH_FORCES = st.builds(Excitation, **OF_BOX, **dict.fromkeys(PUSHES, PUSHED))
 DRIVES = st.builds(
     Drive,
     box_mass=SCALE,

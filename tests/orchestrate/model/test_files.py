@@ -10,7 +10,7 @@ from orchestrate.errors import InputError, StoreError
 from orchestrate.model import SETS, Drive, Excitation, Structure, read, resolve, write
 from orchestrate.model.ranges import ADDED
 
-from .strategies import DRIVES, EXCITATIONS, STRUCTURES
+from .strategies import DRIVES, STRUCTURES, WITH_FORCES
 
 QUICK = {
     "structure": {
@@ -64,7 +64,7 @@ def file(tmp_path):
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25)
-@given(STRUCTURES, EXCITATIONS, DRIVES)
+@given(STRUCTURES, WITH_FORCES, DRIVES)
 def test_what_is_written_is_read(tmp_path, structure, excitation, drive):
     path = tmp_path / "all.toml"
     write(path, structure=structure, excitation=excitation, drive=drive)

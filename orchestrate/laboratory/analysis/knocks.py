@@ -1,0 +1,96 @@
+"""The knocks of an impulse hammer in a record of force, and the spectra of what follows them."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import InputError
+from ..pieces import Floats
+from .channels import FEWEST_LINES, Channels, checked_number
+
+BEYOND = 0.05  # of the largest force: a knock's part
+SPARSE = 0.1  # of a record: knocks take less of it, forces of other kinds more
+BOUNCE = 0.1  # of the longest time between knocks: a second one before is a double hit
+LEFT = 0.01  # what the exponential window leaves at a segment's end
+
+
+@dataclass(frozen=True)
+class Knocks:
+    """Knocks with the same time after each, by one rule.
+
+    - A knock is a part in which the force is beyond ``BEYOND`` of its largest value; parts closer
+      than the longest of them are one. Together they take less than ``SPARSE`` of the record.
+    - Another within ``BOUNCE`` of the longest time between two (or to the end) is a double hit,
+      which is left out and named.
+    - A segment begins a knock's length before it and ends before the next one, or by the
+      resolution.
+    - The force window is 0 further than a knock's length from it.
+    - The exponential window, on force and responses alike, falls to ``LEFT`` at the segment's end.
+    """
+
+    starts: tuple[int, ...]  # first samples of the segments
+    length: int  # samples of a segment
+    width: int  # samples of the longest knock
+    rate: float  # Hz
+
+    @classmethod
+    def from_force(
+        cls, force: Floats, channels: Channels, resolution: float | None
+    ) -> Knocks | None:
+        """Find the knocks in a force; None if it is of another kind."""
+        beyond = np.flatnonzero(np.abs(force) > BEYOND * np.abs(force).max())
+        if not 0 < len(beyond) < SPARSE * len(force):
+            return None
+        parts = np.split(beyond, np.flatnonzero(np.diff(beyond) > 1) + 1)
+        width = max(part[-1] - part[0] + 1 for part in parts)
+        parts = np.split(beyond, np.flatnonzero(np.diff(beyond) > width) + 1)
+        width = int(max(part[-1] - part[0] + 1 for part in parts))
+        begins = np.array([part[0] for part in parts]) - width
+        gaps = np.diff([*begins, len(force)])
+        first = np.diff(begins, prepend=-len(force)) > BOUNCE * gaps.max()
+        single = first & (gaps > BOUNCE * gaps.max()) & (begins >= 0)
+        name_left_out(channels.time[np.maximum(begins[first & ~single], 0)], first.sum())
+        length = int(gaps[single].min())
+        if resolution is not None:
+            finest, coarsest = (channels.sample_rate / n for n in (length, FEWEST_LINES))
+            checked = checked_number("resolution", resolution, finest, coarsest, "Hz")
+            length = round(channels.sample_rate / checked)
+        starts = tuple(int(begin) for begin in begins[single])
+        return cls(starts, length, width, channels.sample_rate)
+
+    @property
+    def decay(self) -> float:
+        """Rate of the exponential window, 1/s, which is added to that of every vibration."""
+        return -math.log(LEFT) * self.rate / self.length
+
+    def spectra(self, force: Floats, responses: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return lines, Hz, and mean spectra of the force, the responses and between them."""
+        from scipy.fft import rfft, rfftfreq
+
+        time = np.arange(self.length) / self.rate
+        fading, struck = np.exp(-self.decay * time), np.arange(self.length) < 3 * self.width
+        rows = np.vstack([force, responses])
+        rows = rows - np.median(rows, axis=1, keepdims=True)
+        segments = np.stack([rows[:, n : n + self.length] for n in self.starts])
+        segments[:, 0] *= struck
+        lines = rfft(segments * fading, axis=2)
+        one, others = lines[:, :1], lines[:, 1:]
+        scale = 2.0 / (self.rate * self.length)
+        powers = [np.mean(np.abs(part) ** 2, axis=0) * scale for part in (one, others)]
+        cross = np.mean(np.conj(one) * others, axis=0) * scale
+        return rfftfreq(self.length, 1.0 / self.rate), powers[0][0], powers[1], cross
+
+
+def name_left_out(times: Floats, count: int) -> None:
+    """Warn of knocks that are left out; raise if none is left."""
+    if not len(times):
+        return
+    listed = ", ".join(f"{time:.6g}" for time in times)
+    text = f"double hits, or too near the record's beginning, at {listed} s"
+    if len(times) == count:
+        raise InputError(f"record: {text}; expected a knock after which the hammer stays away")
+    warnings.warn(f"{len(times)} of {count} knocks left out: {text}", UserWarning, stacklevel=4)

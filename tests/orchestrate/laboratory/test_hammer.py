@@ -1,0 +1,218 @@
+"""Knocks of a hammer: the motion, what sensors read, responses over the force, and the guess."""
+
+import functools
+import operator
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from orchestrate import (
+    Hammer,
+    InputError,
+    Sensor,
+    Structure,
+    SweptSine,
+    frf,
+    halves,
+    measure,
+    plot,
+    read_record,
+    record,
+    shake,
+    write_record,
+)
+
+from ...fmu.event_driven import Motion
+from ...sparing import ordinary
+
+BEAM = Structure.from_halves(
+    m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.009, e=0.6, clearance=1e-3
+)
+KNOCK = Hammer(peak=20.0, width=0.004, at=0.05, duration=0.5)
+
+
+def force(knock):
+    """The half-sine by its definition."""
+
+    def at(t):
+        part = (t - knock.at) / knock.width
+        return knock.peak * np.sin(np.pi * part) if 0.0 <= part <= 1.0 else 0.0
+
+    return at
+
+
+def knocks(count, apart, **one):
+    """Equal knocks one after the other."""
+    many = (Hammer(at=0.1 + n * apart, duration=(n + 1) * apart, **one) for n in range(count))
+    return functools.reduce(operator.add, many)
+
+
+def test_pieces_are_the_half_sine_within_their_bound():
+    for sign in (1.0, -1.0):
+        knock = Hammer(peak=sign * 20.0, width=0.004, at=0.05)
+        pieces, time = knock.pieces(1e-7), np.linspace(0.0, 0.06, 4001)
+        away = np.abs(pieces(time) - np.vectorize(force(knock))(time)).max()
+        assert 0.2 * pieces.error < away <= pieces.error <= 1e-7 * 20.0
+
+
+@pytest.mark.parametrize("half", [1, 2])
+@pytest.mark.parametrize("bonded", [False, True])
+def test_a_soft_knock_moves_the_linear_oscillator(half, bonded):
+    knock = Hammer(peak=-20.0, width=0.004, at=0.05, half=half, duration=0.3)
+    data = shake(BEAM.replace(bonded=bonded), knock, sample_rate=2000.0, accuracy=1e-9)
+    own = ("1", "2") if bonded else (str(half),)
+    m, k, d = (sum(getattr(BEAM, letter + n) for n in own) for letter in "mkd")
+    given, time = force(knock), data.time.values
+
+    def rates(t, y):
+        return [y[1], (given(t) - k * y[0] - d * y[1]) / m]
+
+    run = solve_ivp(rates, (0, 0.3), [0, 0], "DOP853", time, rtol=1e-11, atol=1e-15, max_step=2e-4)
+    x = data[f"x{half}"].values
+    assert np.abs(x - run.y[0]).max() <= 1e-7 * np.abs(x).max() and data.sizes["impact"] == 0
+    felt = (np.vectorize(given)(time) - k * run.y[0] - d * run.y[1]) / m
+    assert np.abs(data[f"a{half}_abs"].values - felt).max() <= 1e-6 * np.abs(felt).max()
+    assert bonded or not data[f"a{3 - half}_abs"].any()
+    assert "box_acceleration" not in data and data[f"force{half}"].attrs["units"] == "N"
+
+
+@pytest.mark.parametrize("half", [1, 2])
+def test_impacts_after_a_hard_knock_are_those_of_an_event_driven_integration(half):
+    beam = BEAM.replace(clearance=2e-4)
+    knock = Hammer(peak=(300.0, -300.0)[half - 1], width=0.004, at=0.01, half=half, duration=0.15)
+    data = shake(beam, knock, sample_rate=2000.0, accuracy=1e-10)
+    values = {name: getattr(beam, name) for name in ("m1", "m2", "k1", "k2", "d1", "d2")}
+    values |= {"e": beam.e, "gamma": beam.gamma, "clearance": beam.clearance}
+    values |= {"x1_start": 0.0, "x2_start": 0.0, "box_amplitude": 0.0, "box_frequency": 0.0}
+    motion, given = Motion(values), force(knock)
+    motion.force = lambda n, t: given(t) if n == half else 0.0
+    for end in (knock.at, knock.at + knock.width, 0.15):  # the pulse's corners
+        motion.run(end)
+    impacts = np.array(motion.impacts)
+    assert len(impacts) == data.sizes["impact"] > 5
+    assert np.abs(impacts - data.impact_time.values).max() <= 1e-7 / beam.f1
+
+
+@pytest.mark.parametrize("clearance", [2e-4, -1e-4])
+def test_sensors_solve_the_motion_under_the_force(clearance):
+    """Samples of the history are met through impacts, contact and release; filters are causal."""
+    knock = Hammer(peak=600.0, width=0.004, at=0.05, duration=0.3)
+    history = shake(BEAM.replace(clearance=clearance), knock, sample_rate=2000.0, accuracy=1e-8)
+    assert history.sizes["impact"] > 20
+    felt = measure(history, Sensor(bandwidth=1000.0, noise=0.1), excitation=knock)
+    assert felt.attrs["reconstruction_error"] <= 1e-9 * float(abs(history.a1_abs).max())
+    assert set(felt.data_vars) == {"force1", "acceleration1", "acceleration2"}
+    assert 580.0 < float(felt.force1.max()) < 605.0 and not felt.force1[:100].any()
+
+
+def receptance(mass, spring, damper, frequency, decay):
+    """Acceleration over force of an oscillator, in an exponential window."""
+    s = 2j * np.pi * frequency + decay
+    return s * s / (mass * s * s + damper * s + spring)
+
+
+def test_frequency_response_over_the_force_is_the_oscillators():
+    """H1 of three knocks against the closed form; a double hit is left out and named."""
+    history = shake(BEAM, knocks(3, 4.0, peak=20.0, width=0.004))
+    answer = frf(history)
+    frequency, used = answer.frequency.values, answer.excited.values > 0
+    decay = float(answer.window_decay)
+    exact = receptance(BEAM.m1, BEAM.k1, BEAM.d1, frequency, decay)
+    for estimator in ("H1", "H2", "Hv"):
+        own = answer.sel(channel="acceleration1", estimator=estimator)
+        curve = own.magnitude.values * np.exp(1j * own.phase.values)
+        assert np.abs(curve - exact)[used].max() <= 5e-3 * np.abs(exact).max()
+    assert answer.magnitude.attrs["units"] == "1/kg" and answer.averages == 3
+    struck = knocks(3, 4.0, peak=20.0, width=0.004) + Hammer(peak=5.0, width=0.004, at=4.15)
+    with pytest.warns(UserWarning, match=r"1 of 3 knocks left out: double hits.* at 4\.0\d+ s"):
+        assert frf(shake(BEAM, struck, sample_rate=2000.0)).averages == 2
+    twice = Hammer(peak=5.0, width=0.004, at=0.1) + Hammer(peak=5.0, width=0.004, at=0.15)
+    with pytest.raises(InputError, match="double hits.*expected a knock"):
+        frf(shake(BEAM, twice, sample_rate=2000.0))
+    assert plot(history) and plot(answer)
+
+
+def test_a_continuous_force_is_averaged_as_the_box_is():
+    """A stinger's random force: Welch's method, H1 of the oscillator in the middle of the band."""
+    rng, rate = np.random.default_rng(1), 1000.0
+    given = rng.normal(size=200_000)
+    f = np.fft.rfftfreq(len(given), 1.0 / rate)
+    answer = np.fft.rfft(given) * receptance(2.0, 2.0 * (2 * np.pi * 50.0) ** 2, 30.0, f, 0.0)
+    made = record(sample_rate=rate, force2=given, acceleration2=np.fft.irfft(answer, len(given)))
+    own = frf(made, resolution=0.1).sel(estimator="H1", channel="acceleration2")
+    exact = np.abs(receptance(2.0, 2.0 * (2 * np.pi * 50.0) ** 2, 30.0, own.frequency.values, 0.0))
+    assert np.abs(own.magnitude - exact)[400:600].max() <= 0.02 * exact.max()
+    assert "window_decay" not in own and own.averages > 30
+
+
+@pytest.mark.parametrize("seed", ordinary(range(20), 2))
+def test_noisy_knocks_make_the_guess(seed, tmp_path):
+    """Frequencies within 2 %, damping within 20 %, masses within 5 %."""
+    draw = np.random.default_rng(seed).uniform
+    m1, f1 = draw(0.5, 2.0), draw(15.0, 60.0)
+    true = {"m1": m1, "m2": m1 * draw(0.4, 2.0), "f1": f1, "f2": f1 * draw(1.1, 1.8)}
+    true |= {"zeta1": draw(0.003, 0.02), "zeta2": draw(0.003, 0.02)}
+    beam, records = Structure.from_halves(**true, clearance=0.01), []
+    for half in (1, 2):
+        knock = knocks(3, 5.0, peak=draw(5.0, 20.0), width=draw(0.1, 0.2) / f1, half=half)
+        history = shake(beam, knock, sample_rate=100.0 * f1)
+        largest = {f"acceleration{half}": float(abs(history[f"a{half}_abs"]).max())}
+        largest |= {f"force{half}": 0.5 * knock.parts[0].peak}  # rms of 1 % and 0.5 %
+        sensors = {
+            name: Sensor(bandwidth=20.0 * f1, noise=0.01 * peak / np.sqrt(25.6 * f1), seed=seed)
+            for name, peak in largest.items()
+        }
+        records.append(measure(history, sensors, excitation=knock))
+    found = halves(*records[::-1], output=tmp_path / "beam.toml")
+    for structure in (
+        Structure.from_attributes(found.attrs),
+        Structure.from_file(tmp_path / "beam.toml"),
+    ):
+        off = {name: abs(getattr(structure, name) / value - 1.0) for name, value in true.items()}
+        assert max(off["f1"], off["f2"]) < 0.02 and max(off["zeta1"], off["zeta2"]) < 0.2, off
+        assert max(off["m1"], off["m2"]) < 0.05
+
+
+def test_a_sound_beam_is_split_by_its_layers_and_touching_halves_are_refused():
+    knock = {"peak": 10.0, "width": 0.01}
+    sound = shake(BEAM.as_bonded(), knocks(1, 5.0, **knock), sample_rate=1000.0)
+    found = halves(sound, thicknesses=(3.0, 2.0))
+    one = Structure.from_attributes(found.attrs)
+    assert one.m1 + one.m2 == pytest.approx(BEAM.m1 + BEAM.m2, rel=1e-3)
+    assert one.omega_3 * one.f1 == pytest.approx(BEAM.omega_3 * BEAM.f1, rel=1e-4)
+    touching = [
+        shake(BEAM.replace(clearance=0.0), knocks(1, 5.0, half=n, **knock), sample_rate=1000.0)
+        for n in (1, 2)
+    ]
+    with pytest.raises(InputError, match=r"one oscillator leaves \d+ % .* softer knocks"):
+        halves(*touching)
+    for wrong, words in (
+        (lambda: halves(sound), "neither of other and thicknesses"),
+        (lambda: halves(sound, sound), "both knock on half 1"),
+        (lambda: halves(sound.rename(force1="box_acceleration"), thicknesses=(1, 1)), "no force"),
+        (
+            lambda: frf(sound.drop_vars("force1")),
+            "no box_acceleration; expected box_acceleration over time, in m/s2, or one",
+        ),
+        (lambda: KNOCK + SweptSine(first=1, last=2, duration=1, acceleration=1.0), "a sum of"),
+        (lambda: KNOCK + Hammer(peak=1.0, width=0.1, half=2), "a sum of force1 and force2"),
+        (lambda: Hammer(peak=1.0, width=0.1, half=3), "half = 3"),
+        (lambda: Hammer(peak=1.0, width=0.0), "width = 0.0"),
+        (lambda: Hammer(peak=1.0, width=0.1, duration=0.05), "duration = 0.05"),
+        (lambda: measure(sound, {"box_acceleration": Sensor(bandwidth=100.0)}), "force1"),
+    ):
+        with pytest.raises(InputError, match=words):
+            wrong()
+
+
+@pytest.mark.parametrize("ending", ["csv", "mat", "nc", "uff"])
+def test_files_keep_the_force_with_its_unit(tmp_path, ending):
+    history = shake(BEAM, KNOCK, sample_rate=500.0)
+    made = record(
+        time=history.time.values, force1=history.force1.values, acceleration1=history.a1_abs.values
+    )
+    again = read_record(write_record(made, tmp_path / f"knock.{ending}"))
+    for name in ("force1", "acceleration1"):
+        assert np.array_equal(again[name], made[name]), name
+        assert again[name].attrs["units"] == made[name].attrs["units"]
