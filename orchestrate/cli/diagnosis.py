@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import logging
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -67,8 +67,8 @@ class DiagnosedRecords(Options):
         ".csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .nc; one beam each", position=True, needed=True
     )
     other: list[Path] = option(
-        "record of the same beam at another level or in the other direction, for the signs; may be "
-        "repeated",
+        "record of the same beam at another level or in the other direction: the verdict is on "
+        "all; may be repeated",
         (),
     )
     participation: str | None = option(
@@ -104,6 +104,7 @@ what it needs:
 what it gives:
   delaminated      the faces part and strike each other
   no opening seen  up to the level and over the frequencies of the record; never "intact"
+  something strikes: stop or softer face   one sensor or one level does not tell which
   not described    the beam, its clamp or the sensors do something else
   undecided        this record does not tell; the report says which one would
   and for each record a report to read, print and sign (.html), the answers (.nc), a picture"""
@@ -126,7 +127,7 @@ what it gives:
         log.info("reading %s", ", ".join(path.name for path in self.records))
         records, refused = self.read_all_records()
         names = {one: self.file_stem(one, guess) for one in records}
-        verdicts = self.compute_verdicts(records, names, guess) if records else {}
+        verdicts = self.compute_verdicts(records, names, guess, others) if records else {}
         units = self.read_record_units()
         for sweep, verdict in verdicts.items():
             for line in self.verdict_lines(sweep, with_units(verdict, units)):
@@ -149,7 +150,8 @@ what it gives:
         """Return the name of a record's results, unique for content, guess and reading."""
         read_as = [self.channels, self.participation, *self.given(Reading).items()]
         number = f"_sweep{sweep.number}" if sweep.number else ""
-        part = digest(file_checksum(sweep.path), guess.parameters(), read_as)
+        others = [file_checksum(path) for path in self.other]
+        part = digest(file_checksum(sweep.path), others, guess.parameters(), read_as)
         return f"diagnose_{sweep.path.stem}{number}_{part}"
 
     def read_all_records(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
@@ -206,12 +208,13 @@ what it gives:
         records: Mapping[Sweep, xr.Dataset],
         names: Mapping[Sweep, str],
         guess: Structure,
+        others: Sequence[xr.Dataset] = (),
     ) -> dict[Sweep, xr.Dataset]:
-        """Compute or load each record's verdict; store with it where it comes from."""
+        """Compute or load each beam's verdict; store with it where it comes from."""
         from .. import detect_all
         from ..running.store import write_netcdf
 
-        named = {names[sweep]: record for sweep, record in records.items()}
+        named = {names[sweep]: [record, *others] for sweep, record in records.items()}
         running = self.running(self.output)
         factors = self.participation_by_sensor()
         verdicts = detect_all(named, guess, participation=factors, **running)
@@ -274,27 +277,26 @@ what it gives:
 
 
 def plan_lines(data: xr.Dataset) -> Iterator[str]:
-    """Yield the recommended sweep, whether it tells, and what each level shows."""
-    level = text_of(data, data.recommended_level, "m/s2", ".3g")
+    """Yield the recommended sweep, whether it decides, and what each rehearsed level shows."""
+    level, second = (
+        text_of(data, one, "m/s2", ".3g") for one in (data.recommended_level, data.second_level)
+    )
     ends = range_text(data, float(data.recommended_first), float(data.recommended_last), "Hz")
-    yield f"sweep {ends} at {level}, up and down, {float(data.recommended_duration):.0f} s each way"
+    seconds, rate = float(data.recommended_duration), float(data.recommended_rate)
+    yield f"sweep {ends} at {level}, then at {second}, {seconds:.0f} s each, {rate:.0f} samples a s"
     if not data.counts:
-        yield "orders 2 and 3 do not count at any of these levels: raise --g, or lower the --noise"
-    opens = data.opening_level.values
-    if (opens > 0.0).any():
-        at = int(opens.argmin())
-        where = text_of(data, data.frequency[at], "Hz", ".4g")
-        lowest = text_of(data, opens[at], "m/s2", ".3g")
-        times = float(data.recommended_level) / opens[at]
-        yield f"pressed together: it opens from {lowest}, at {where}: {times:.2g} times less"
+        yield "no verdict is right at these levels: raise --g, or lower the --noise"
+    opens = float(data.opening_level)
+    if opens > 0.0:
+        times = float(data.recommended_level) / opens
+        lowest = text_of(data, data.opening_level, "m/s2", ".3g")
+        yield f"pressed together: it opens from {lowest}: {times:.2g} times less"
     elif not data.attrs["clearance"]:
         yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
-    best = data.distance_harmonics.max("frequency")
     rows = parameter_column(data, "level", data.level.values, ".3g")
-    title = f"orders 2 and 3 over noise (seen from {float(data.threshold):g} on)"
-    rows[title] = [f"{value:.3g}" if value < 1e3 else f"{value:,.0f}" for value in best.values]
-    gaps = data[["opening"]].max("frequency", keep_attrs=True)
-    for name, cells in columns_of(gaps, "opening", form=".3g").items():
+    rows["verdict on the guess"] = [str(word) for word in data.verdict.values]
+    rows["on its sound twin"] = [str(word) for word in data.sound_verdict.values]
+    for name, cells in columns_of(data, "opening", form=".3g").items():
         rows[name.replace("opening", "largest gap")] = cells
     if data.overload.any():
         rows["sensor"] = ["overload" if flag else "" for flag in data.overload.values]
@@ -302,12 +304,11 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
 
 
 class Plan(OfStructure, Command, Results):
-    """Plan a test: frequencies and levels of a sweep at which a delamination would show."""
+    """Plan a test: rehearse it, and recommend the lowest level at which the verdict is right."""
 
     calls = "plan_test"
     hz: Listed = option(
-        "frequencies in Hz, FIRST:LAST:STEP (default: 0.8 times the lower to 1.2 times the higher "
-        "natural frequency of the halves)",
+        "the sweep's ends in Hz, FIRST,LAST (default: 0.65 to 1.4 times the bonded resonance)",
         value="VALUES",
     )
     g: Listed = option(
@@ -317,22 +318,20 @@ class Plan(OfStructure, Command, Results):
     range: float | None = option("of the sensor, g (default: none)")
     examples = """
   {program} plan --structure beam.toml
-  {program} plan --structure beam.toml --hz 30:60:0.5 --g 0.05,0.1,0.2,0.5 --noise 3e-4
+  {program} plan --structure beam.toml --hz 30,60 --g 0.05,0.1,0.2,0.5 --noise 3e-4
   {program} plan --structure beam.toml --set clearance=-20um --range 50"""
 
     def ask(self) -> tuple[Structure, Question]:
-        from .. import Sensor
-
         structure = self.read_structure()
         hz = self.hz
         question: Question = {**self.keywords(), "frequencies": hz}
         if self.noise is not None or self.range is not None:
-            from ..diagnosis.plan_test import USUAL_NOISE
+            from ..diagnosis.plan_test import USUAL_NOISE, usual_ends, usual_sensor
 
-            question["sensor"] = Sensor(
-                bandwidth=40.0 * (hz[-1] if hz else 1.2 * max(structure.f1, structure.f2)),
-                noise=USUAL_NOISE if self.noise is None else self.noise,
-                range=GRAVITY * (math.inf if self.range is None else self.range),
+            question["sensor"] = usual_sensor(
+                (hz or usual_ends(structure))[-1],
+                USUAL_NOISE if self.noise is None else self.noise,
+                GRAVITY * (math.inf if self.range is None else self.range),
             )
         return structure, question
 

@@ -23,11 +23,10 @@ module                  idea
 :mod:`.linear`          residuals around a minimum as a linear model, by regression
 :mod:`.errors`          standard errors from simulated noise and from blocks of windows
 :mod:`.even_orders`     whether faces open: order 2 above its floor, two faces that move apart
-:mod:`.bursts`          whether something strikes: bursts at high frequencies once a period
 :mod:`.impact_timing`   when in the period something strikes, and by that what does
 :mod:`.search_job`      all searches of a record as a job, in parallel
 :mod:`.fit`             the numbers of a structure from a record
-:mod:`.decision_rule`   the rule by which fits and signs become a verdict
+:mod:`.decision_rule`   the rule by which the records of a beam become a verdict
 :mod:`.detect`          the verdict on a record
 :mod:`.detect_all`      verdicts on many records, in parallel
 ======================  ===========================================================================

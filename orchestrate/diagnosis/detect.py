@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
+from ..errors import InputError
 from ..fmu import finder
 from ..laboratory.record_checks import clipped_share
 from ..lazy import Unpack, xr
@@ -20,29 +21,29 @@ from ..response.questions import checked_structure
 from ..running.job import Table
 from ..running.options import Running
 from ..running.runner import answer
-from .bursts import burst_excess
-from .decision_rule import DELAMINATED, NOT_SEEN, Findings, resampled_share
+from .decision_rule import DELAMINATED, NOT_SEEN, Beam, Findings
 from .even_orders import smallest_openings, thresholds
 from .evidence import Participation
 from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 from .impact_timing import strikes
 from .orders import RecordOrders
-from .search_job import SearchJob, cached_orders
-from .settings import Changes, checked_settings
+from .search_job import RecordData, SearchJob, bonded_even, cached_evidence, cached_orders
+from .settings import Changes, Settings, checked_settings
 from .wiring import WiringSettings, wiring_notes
 
-STATED = {  # numbers of the rule: their names there, units and long names
-    "share": ("share", "1", "share of records put together of blocks in which the ratio decides"),
-    "ratio": ("ratio", "1", "misfit of sound over that of delaminated"),
+STATED = {  # numbers of the fitted record: their names there, units and long names
     "faces_apart": ("apart", "1", "difference of two sensors over its threshold"),
-    "bursts": ("bursts", "1", "power of bursts once a period over its threshold"),
     "smallest_opening": ("smallest", "m", "smallest opening at a sensor that would be detected"),
     "level_low": ("low", "m/s2", "lowest level of the base"),
     "level_high": ("high", "m/s2", "highest level of the base"),
     "frequency_low": ("first", "Hz", "lowest frequency"),
     "frequency_high": ("last", "Hz", "highest frequency"),
 }
+UNSIZED = (
+    "What decides is that faces strike: two masses describe this structure only so well, and their "
+    "numbers are not stated."
+)
 WITHOUT_GUESS = "both halves have the same mass: no guess was given"
 ASSUMED = (
     "the masses of both halves have the ratio of the guess",
@@ -55,7 +56,7 @@ ASSUMED = (
 
 
 def detect(
-    record: xr.Dataset,
+    record: xr.Dataset | Sequence[xr.Dataset],
     guess: Structure | None = None,
     *,
     free: Sequence[str] = FREE,
@@ -63,14 +64,14 @@ def detect(
     settings: Changes = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Decide whether a record is that of a delaminated structure.
+    """Decide whether a record, or several of one beam, are those of a delaminated structure.
 
     Parameters
     ----------
-    record : xarray.Dataset
+    record : xarray.Dataset or sequence of xarray.Dataset
         Of a swept or stepped sine, with ``box_acceleration`` and one or both of ``acceleration1``
         and ``acceleration2``, as :func:`orchestrate.record` or :func:`orchestrate.read_record` make
-        it.
+        it. Several are of one beam at other levels, in other directions, by other sensors.
     guess : Structure, optional
         Estimate of the delaminated structure. Frequencies may be off by 10 %; of the masses only
         the ratio matters. By default halves of equal mass at both sides of the record's resonance.
@@ -80,7 +81,7 @@ def detect(
         Participation factors of the sensors that are known, as for :func:`fit`.
     settings : mapping of str to float, optional
         Thresholds that differ from those of :class:`orchestrate.diagnosis.settings.Settings`, such
-        as ``{"ratio": 2.0}``.
+        as ``{"hidden": 0.05}``.
     **running
         ``jobs``, ``progress``, ``store`` and others, see
         :class:`orchestrate.running.options.Running`.
@@ -88,14 +89,13 @@ def detect(
     Returns
     -------
     xarray.Dataset
-        ``verdict``: ``"delaminated"``, ``"no opening seen"``, ``"not described"`` or
-        ``"undecided"``; ``share`` of the records put together of blocks of this one in which the
-        ratio of misfits decides for a delamination; ``ratio`` (misfit of the best sound
-        hypothesis over that of the delaminated one), ``faces_apart`` (difference of two sensors
-        over the threshold from which it counts; 0 with one), ``bursts`` (power at high frequencies
-        once a period, over the threshold from which impacts count as heard; NaN below some 11
-        samples in the shortest
-        period), ``smallest_opening`` of faces at a sensor that would be seen at every frequency,
+        ``verdict``: ``"delaminated"``, ``"something strikes: stop or softer face"``, ``"no opening
+        seen"``, ``"not described"`` or ``"undecided"``; ``opening_level`` of the base in m/s2, the
+        lowest at which faces strike (NaN where none do). Over ``record``: ``record_level`` in m/s2
+        and ``record_strikes``, what strikes in it. All else is of the one that was fitted, which
+        hears most: ``ratio`` (misfit of the best sound hypothesis over that of the delaminated
+        one), ``faces_apart`` (difference of two sensors over the threshold from which it counts; 0
+        with one), ``smallest_opening`` of faces at a sensor that would be seen at every frequency,
         in m; the range in which the structure moves enough (``level_low``, ``level_high`` in m/s2,
         ``frequency_low``, ``frequency_high`` in Hz); of the whole record ``sample_rate``,
         ``record_duration``, ``sweep_low`` and ``sweep_high``; ``order2`` and its
@@ -106,8 +106,7 @@ def detect(
         ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
         ``seen_up_to``, ``assumed``, ``direction`` of the sweep and ``wiring``, the doubts about the
         channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`); and ``strikes``, what strikes
-        by its timing (:meth:`orchestrate.diagnosis.impact_timing.Strikes.word`), which does not
-        act on the verdict.
+        with the numbers that decide it (:class:`orchestrate.diagnosis.impact_timing.Strikes`).
 
     Raises
     ------
@@ -121,10 +120,10 @@ def detect(
 
     Notes
     -----
-    Sound hypotheses are one mass on a linear spring, on one that hardens or softens, with dry
-    friction, or with a stop on one side (a breathing crack, a clamp with play), and two linear
-    modes. The rule is that of :meth:`orchestrate.diagnosis.decision_rule.Findings.verdict`;
-    what stopped a verdict is in ``reason``.
+    The rule is that of :meth:`orchestrate.diagnosis.decision_rule.Beam.verdict`; what stopped a
+    verdict is in ``reason``. Fits do not act on it: they size what is decided, with two masses or
+    with sound hypotheses (one mass on a linear spring, on one that hardens or softens, with dry
+    friction or a stop on one side, and two linear modes).
     There is no verdict "intact": a structure that is pressed together moves as a bonded one below
     the level that opens it. See :doc:`/diagnosis`.
 
@@ -138,36 +137,84 @@ def detect(
     >>> str(answer.verdict.values)
     'no opening seen'
     """
-    chosen, changed = checked_free(free), checked_settings(settings)
+    rest = checked_free(free), participation, checked_settings(settings)
+    return answer(beam_job(record, guess, *rest), running, finder(running))
+
+
+def beam_job(
+    record: xr.Dataset | Sequence[xr.Dataset],
+    guess: Structure | None,
+    free: tuple[str, ...],
+    participation: Participation,
+    settings: Settings,
+    name: str = "",
+) -> DetectJob:
+    """Return the job that decides on the records of a beam, and fits the one that hears most."""
     structure = None if guess is None else delaminated_guess(guess)
-    data = checked_data(record, structure, participation, changed)
-    made = structure or halves_around(cached_orders(data).resonance)
-    job = DetectJob(
-        name=f"detect_{checked_structure(guess or made).label()}",
-        data=data,
+    every = checked_records(record, structure, participation, settings)
+    made = structure or halves_around(cached_orders(every[0]).resonance)
+    shown = [record_findings(one, made, structure is not None) for one in every]
+    fitted = int(np.argmax([one.strikes.heard * one.is_usable for one in shown]))
+    return DetectJob(
+        name=name or f"detect_{checked_structure(guess or made).label()}",
+        data=every[fitted],
+        others=(every[:fitted], every[fitted + 1 :]),
         guess=made,
-        free=chosen,
+        free=free,
         is_guessed=guess is not None,
     )
-    return answer(job, running, finder(running))
+
+
+def checked_records(
+    record: xr.Dataset | Sequence[xr.Dataset],
+    guess: Structure | None,
+    participation: Participation,
+    settings: Settings,
+) -> tuple[RecordData, ...]:
+    """Check one record or several of one beam; a message names which of them is wrong."""
+    if not isinstance(record, (list, tuple)):
+        return (checked_data(record, guess, participation, settings),)
+    if not record:
+        raise InputError("record: an empty list; expected one record or more of one beam")
+    found = []
+    for number, one in enumerate(record, 1):
+        try:
+            found.append(checked_data(one, guess, participation, settings))
+        except InputError as error:
+            raise InputError(f"record {number} of {len(record)}: {error}") from None
+    return tuple(found)
 
 
 @dataclass(frozen=True, kw_only=True)
 class DetectJob(SearchJob):
-    """Fit all hypotheses to a record and decide which verdict they give."""
+    """Decide on the records of a beam, and fit all hypotheses to the one that hears most."""
 
     asked: ClassVar[str] = "detect"
+    others: tuple[tuple[RecordData, ...], tuple[RecordData, ...]] = ((), ())  # before it, after it
     is_guessed: bool = True  # by the caller, not from the record's resonance
 
+    def beam(self) -> Beam:
+        """Return what all records show."""
+        every = (*self.others[0], self.data, *self.others[1])
+        return Beam(tuple(record_findings(one, self.guess, self.is_guessed) for one in every))
+
     def dataset(self, table: Table) -> xr.Dataset:
-        results = Results.from_table(self, table)
-        findings, even = findings_from_results(results), results.even
+        results, beam = Results.from_table(self, table), self.beam()
+        findings, even = beam.records[len(self.others[0])], results.even
         whole = cached_orders(self.data)
         every, coordinates = results.comparison()
         same = WiringSettings(clipped=findings.settings.clipped)
         wiring = "; ".join(note.text for note in wiring_notes(whole.channels, same))
+        ratio = results.misfit[: len(self.sound)].min() / results.misfit[len(self.sound) :].min()
+        words = [beam.word(one) for one in beam.records]
         scalars = {
-            "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
+            "verdict": ((), beam.verdict(), {"long_name": "verdict"}),
+            "ratio": variable((), ratio, "1", "misfit of sound over that of delaminated"),
+            "opening_level": variable((), beam.opening_level, "m/s2", "level at which it opens"),
+            "record_level": variable(
+                "record", [one.high for one in beam.records], "m/s2", "highest level of a record"
+            ),
+            "record_strikes": ("record", words, {"long_name": "what strikes in a record"}),
             **{
                 name: variable((), getattr(findings, of), *at) for name, (of, *at) in STATED.items()
             },
@@ -175,31 +222,24 @@ class DetectJob(SearchJob):
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
-        stated = stated_hypotheses(results, findings)
+        stated = stated_hypotheses(results, beam.verdict())
         numbers = results.parameters(stated)
         best = int(np.argmin(np.where(stated, results.misfit, np.inf)))
         unclear = dict.fromkeys(results.undetermined(best).values()) if stated[best] else ()
         del numbers["asked"]
+        unsized = beam.verdict() == DELAMINATED and not stated.any()
+        notes = [beam.reason(), *([UNSIZED] if unsized else []), *(f"{one}." for one in unclear)]
         return xr.Dataset({**scalars, **every, **numbers}, coordinates).assign_attrs(
             analysis="detect",
-            title=f"Verdict: {findings.verdict()}",
-            reason=" ".join([findings.reason(), *(f"{text}." for text in unclear)]),
-            settle="Mend the wiring, and ask again." if wiring else findings.next_measurement(),
-            seen_up_to=findings.seen_up_to(),
+            title=f"Verdict: {beam.verdict()}",
+            reason=" ".join(notes),
+            settle="Mend the wiring, and ask again." if wiring else beam.next_measurement(),
+            seen_up_to=beam.seen_up_to(),
             assumed="; ".join(ASSUMED if self.is_guessed else (WITHOUT_GUESS, *ASSUMED[1:])),
             direction=sweep_direction(whole.windows.frequency),
             wiring=wiring,
-            strikes=self.what_strikes(whole),
+            strikes=f"{beam.word(findings)} ({findings.strikes.numbers()})",
         )
-
-    def what_strikes(self, orders: RecordOrders) -> str:
-        """Return the word of the sensor that hears most by impact timing, with its numbers."""
-        half = self.guess
-        shut = math.sqrt((half.k1 + half.k2) / (half.m1 + half.m2)) / TURN
-        known = shut if self.is_guessed else math.nan
-        every = (strikes(orders.channels, row, known) for row in orders.rows)
-        one = max(every, key=lambda strike: strike.heard)
-        return f"{one.word()} ({one.numbers()})"
 
 
 def halves_around(resonance: float) -> Structure:
@@ -229,37 +269,32 @@ def sweep_direction(frequency: NDArray[np.float64]) -> str:
     return "up" if covered > 0.0 else "down"
 
 
-def stated_hypotheses(results: Results, findings: Findings) -> NDArray[np.bool_]:
+def stated_hypotheses(results: Results, verdict: str) -> NDArray[np.bool_]:
     """Return of each hypothesis whether its numbers are stated: it describes a decided record."""
-    word, count = findings.verdict(), len(results.job.sound)
-    sound = word == NOT_SEEN and results.misfit[:count] <= findings.settings.sound
-    is_parted = word == DELAMINATED and findings.is_described
-    parted = is_parted & (results.misfit[count:] <= findings.settings.delaminated)
-    return np.concatenate([np.full(count, sound), parted])
+    count, settings = len(results.job.sound), results.job.data.settings
+    sound, parted = results.misfit[:count], results.misfit[count:]
+    most = min(settings.delaminated, float(sound.min()) / settings.ratio)
+    return np.concatenate(
+        [
+            (verdict == NOT_SEEN) & (sound <= settings.sound),
+            (verdict == DELAMINATED) & (parted <= most),
+        ]
+    )
 
 
-def findings_from_results(results: Results) -> Findings:
-    """Collect the quantities that the decision rule needs from the results of the fits."""
-    job, even = results.job, results.even
-    count, evidence = len(job.sound), job.evidence
-    sound = int(np.argmin(results.misfit[:count]))
-    other = count + int(np.argmin(results.misfit[count:]))
-    opening = smallest_openings(evidence, job.guess.m1, job.guess.m2)
+def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Findings:
+    """Collect the quantities that the decision rule needs from a record."""
+    evidence, whole, even = cached_evidence(data), cached_orders(data), bonded_even(data)
+    shut = math.sqrt((guess.k1 + guess.k2) / (guess.m1 + guess.m2)) / TURN
+    opening = smallest_openings(evidence, guess.m1, guess.m2)
     observed = evidence.frequency[np.isfinite(opening)]
-    whole = cached_orders(job.data)
-    highest = float(whole.windows.frequency.max())
     response = (np.abs(evidence.measured[:, 0]) / evidence.level).max(axis=0)
-    low, high = sorted((job.guess.f1, job.guess.f2))
-    findings = Findings(
+    low, high = sorted((guess.f1, guess.f2))
+    return Findings(
         excess=even.excess,
         order2=even.largest,
         apart=even.moved_apart,
-        bursts=burst_excess(whole.channels, highest, evidence.settings),
-        sound=job.hypotheses[sound].name,
-        sound_misfit=float(results.misfit[sound]),
-        delaminated=job.hypotheses[other].name,
-        delaminated_misfit=float(results.misfit[other]),
-        share=math.nan,
+        strikes=strikes(whole.channels, shut if is_guessed else math.nan),
         sensors=len(evidence.masses),
         low=float(evidence.level.min()),
         high=float(evidence.level.max()),
@@ -270,9 +305,7 @@ def findings_from_results(results: Results) -> Findings:
         clipped=max(clipped_share(row) for row in whole.channels.values),
         end_response=float(max(response[0], response[-1]) / response.max()),
         resonance=evidence.resonance,
+        displacement=evidence.displacement,
         guessed=(low, high),
-        settings=evidence.settings,
-        alike=job.hypotheses[sound].alike,
+        settings=data.settings,
     )
-    residuals = results.residuals[sound], results.residuals[other]
-    return replace(findings, share=resampled_share(*residuals, findings.deciding_ratio))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from ..errors import InputError
 from ..fmu import finder
@@ -10,15 +11,15 @@ from ..lazy import Unpack, xr
 from ..model import Structure
 from ..running.options import Running
 from ..running.runner import gather
-from .detect import DetectJob
+from .detect import DetectJob, beam_job
 from .evidence import Participation
-from .fit import checked_data, checked_free, delaminated_guess
+from .fit import checked_free
 from .hypotheses import FREE
-from .settings import Changes, Settings, checked_settings
+from .settings import Changes, checked_settings
 
 
 def detect_all(
-    records: Mapping[str, xr.Dataset],
+    records: Mapping[str, xr.Dataset | Sequence[xr.Dataset]],
     guess: Structure,
     *,
     free: Sequence[str] = FREE,
@@ -26,12 +27,12 @@ def detect_all(
     settings: Changes = None,
     **running: Unpack[Running],
 ) -> dict[str, xr.Dataset]:
-    """Decide for each of many records whether it is that of a delaminated structure.
+    """Decide for each of many beams whether its records are those of a delaminated structure.
 
     Parameters
     ----------
-    records : mapping of str to xarray.Dataset
-        By names of your own, which are the names of the files. Each as for
+    records : mapping of str to xarray.Dataset, or to sequences of them
+        By names of your own, which are the names of the files. One beam each, as for
         :func:`orchestrate.detect`.
     guess : Structure
         Of all of them.
@@ -65,22 +66,16 @@ def detect_all(
     """
     if not isinstance(records, Mapping) or not records:
         raise InputError("records: expected one record or more, by names")
-    rest = delaminated_guess(guess), checked_free(free), participation, checked_settings(settings)
-    jobs = [checked_job(name, record, *rest) for name, record in records.items()]
+    rest = guess, checked_free(free), participation, checked_settings(settings)
+    jobs = [named_job(name, record, *rest) for name, record in records.items()]
     return dict(zip(records, gather(jobs, running, finder(running)), strict=True))
 
 
-def checked_job(
-    name: str,
-    record: xr.Dataset,
-    guess: Structure,
-    free: tuple[str, ...],
-    participation: Participation,
-    settings: Settings,
+def named_job(
+    name: str, record: xr.Dataset | Sequence[xr.Dataset], guess: Structure, *rest: Any
 ) -> DetectJob:
-    """Check one record and return the job that decides on it."""
+    """Return the job of one beam; a message about its records names it."""
     try:
-        data = checked_data(record, guess, participation, settings)
+        return beam_job(record, guess, *rest, name=name)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
-    return DetectJob(name=name, data=data, guess=guess, free=free)

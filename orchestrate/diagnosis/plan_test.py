@@ -1,20 +1,21 @@
-"""The frequencies and levels at which a test shows a delamination best."""
+"""A test that decides: the rule of ``detect`` on rehearsals of a guess and its sound twin."""
 
 from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..constants import GRAVITY
+from ..constants import GRAVITY, TURN
 from ..errors import InputError
-from ..laboratory.analysis.channels import Channels, attributes, checked_number
-from ..laboratory.analysis.orders import fit_windows
+from ..fmu import finder
+from ..laboratory.analysis.channels import attributes, checked_number
 from ..laboratory.pieces import Floats
 from ..laboratory.sensors import Sensor, measure, sensor_by_channel
 from ..laboratory.shake import shake
@@ -22,58 +23,26 @@ from ..laboratory.swept_sine import SweptSine
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..response.labels import variable, yes_or_no
-from ..running.job import refuse_family
+from ..running.executors import InlineExecutor
+from ..running.job import Job, Table, refuse_family
 from ..running.options import Running
+from ..running.runner import answer
+from .decision_rule import DELAMINATED, NOT_DESCRIBED, NOT_SEEN, STRIKES, UNDECIDED, Beam
+from .detect import record_findings
+from .fit import checked_data
+from .impact_timing import TIMING
 from .opening import largest_opening_force, sweep_rate
-from .undamaged import SoundStructure
 
-SPLITS = (1.0, 0.2)  # parts of the guess's difference between its halves that are computed
 BOX = "box_acceleration"
-NEARLY = 0.5  # of the largest distance: what a sweep covers where less counts
-ROOM, PASSED = 0.1, 0.25  # beyond that and beyond the resonance, over the resonance
-FEWEST = 4.0  # windows at the lowest frequency
+WORDS = (DELAMINATED, STRIKES, NOT_SEEN, NOT_DESCRIBED, UNDECIDED)
+COVERED = (0.65, 1.4)  # of the bonded resonance, and a tenth beyond those of the halves
+WINDOWS = 5.0  # of the timing, while the sweep crosses the resonance's width
+SAMPLES = 25.6  # in a period of the highest frequency: fewer do not show when something strikes
+LONGEST = 120.0  # s
 USUAL_NOISE = 1e-3  # (m/s2)/sqrt(Hz)
 USUAL_LEVELS = tuple(float(f"{level:.2g}") for level in np.geomspace(0.01, 1.0, 9))  # g
 
-
-@dataclass(frozen=True)
-class Sweep:
-    """Hold the orders of a computed sweep over the frequency."""
-
-    # complex amplitudes, m/s2
-    delaminated: Floats
-    sound: Floats
-    opening: Floats  # largest gap around a frequency, m
-    peak: float  # largest reading, m/s2
-    level: float  # of the box, m/s2
-
-    def scaled_to(self, level: float) -> Sweep:
-        """Scale the sweep to another level, which does not matter to the structure."""
-        names = ("delaminated", "sound", "opening", "peak")
-        scaled = {name: level / self.level * getattr(self, name) for name in names}
-        return replace(self, level=level, **scaled)
-
-
-@dataclass(frozen=True)
-class Noise:
-    """Describe the noise and gain errors that sensors add to an order in a window."""
-
-    density: Floats  # one-sided, (m/s2)/sqrt(Hz)
-    periods: float  # in a window
-    gain_error: float  # of the sensors against each other, relative
-
-    def distances(self, sweep: Sweep, frequency: Floats) -> tuple[Floats, Floats]:
-        """Compute the distance between both structures by order 1, and by orders 2 and 3.
-
-        In standard deviations of a complex amplitude, by least squares with Hann's weights: of n
-        samples of noise of variance s^2 = c^2 r/2 it is 6 s^2/n, with n = r periods/f.
-        """
-        variance = 3.0 * self.density[:, None] ** 2 * frequency / self.periods
-        gap = np.abs(sweep.delaminated - sweep.sound) ** 2
-        doubt = (self.gain_error * np.abs(sweep.sound[:, 0])) ** 2
-        first = (gap[:, 0] / (variance + doubt)).sum(axis=0)
-        higher = (np.nansum(gap[:, 1:], axis=1) / variance).sum(axis=0)
-        return np.sqrt(first), np.sqrt(higher)
+HERE: Running = {"jobs": 1, "cluster": InlineExecutor(), "progress": False}  # in a worker
 
 
 def plan_test(
@@ -83,57 +52,45 @@ def plan_test(
     levels: ArrayLike | None = None,
     g: ArrayLike | None = None,
     frequencies: ArrayLike | None = None,
-    periods: float = 16.0,
-    gain_error: float = 0.03,
-    threshold: float = 5.0,
-    margin: float = 4.0,
+    reserve: float = 2.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Find frequencies and levels at which a delamination shows best.
+    """Rehearse a test, and recommend the lowest level at which :func:`orchestrate.detect` decides.
 
     Parameters
     ----------
     structure : Structure
-        A guess of the delaminated beam; the sound one is its bonded form.
+        A guess of the delaminated beam; its sound twin is its bonded form.
     sensor : Sensor or mapping of str to Sensor
-        As for :func:`orchestrate.measure`; its noise must be known. By default a noise of
-        1e-3 (m/s2)/sqrt(Hz), of usual accelerometers, up to 40 times the highest frequency.
+        As for :func:`orchestrate.measure`; its noise must be known. By default two of
+        1e-3 (m/s2)/sqrt(Hz), of usual accelerometers, with 25.6 samples in a period of the highest
+        frequency.
     levels : array_like
         Peak accelerations of the box, m/s2; nine from 0.01 to 1 g by default.
     g : array_like
         The same in g.
     frequencies : array_like
-        Hz, ascending, two at least; by default from 0.8 times the lower to 1.2 times the higher
-        natural frequency of the halves.
-    periods : float
-        Of the excitation, in a window of the orders.
-    gain_error : float
-        Doubt about the sensors' gains, relative: it makes differences of order 1 worth less.
-    threshold : float
-        Standard deviations from which a difference counts.
-    margin : float
-        Of the recommended level over the one at which differences count, and over the one at which
-        pressed faces open: neither the noise nor the preload is known exactly.
+        Hz, ascending, two at least: the sweep goes from the first to the last. By default from 0.65
+        to 1.4 times the bonded resonance, and a tenth beyond both halves' natural frequencies.
+    reserve : float
+        Of the recommended level over the lowest one that decides: the beam is not the guess.
     **running
-        As for :func:`orchestrate.shake`, but for ``store``.
+        ``jobs``, ``progress``, ``store`` and others, see
+        :class:`orchestrate.running.options.Running`.
 
     Returns
     -------
     xarray.Dataset
-        Over ``level`` in m/s2 and ``frequency`` in Hz: ``distance`` between the delaminated and
-        the sound structure in standard deviations of the noise in one window, and its parts
-        ``distance_first`` (order 1, which a sound beam of other numbers may imitate) and
-        ``distance_harmonics`` (orders 2 and 3, which no linear one has); ``opening``, the largest
-        gap in m; ``closing_force`` in N: faces pressed together by more stay shut there, and half
-        way to the neighbouring frequencies.
-        Over ``frequency``: ``smallest_level`` in m/s2 from which orders 2 and 3 count (with
-        clearance, preload or ``e_slope`` one of ``levels``; infinite where none is enough), and
-        ``opening_level`` in m/s2 from which a preloaded structure opens (0 without preload). Over
-        ``level``: ``smallest_opening`` in m and ``smallest_split`` (difference between the halves'
-        frequencies, relative to the guess's) that count at the best frequency, and ``overload``,
-        whether the readings reach the sensor's range. Scalars ``recommended_level``,
-        ``recommended_first``, ``recommended_last`` and ``recommended_duration`` of a swept sine,
-        and ``counts``, whether orders 2 and 3 count there.
+        Over ``level`` in m/s2: ``verdict`` and ``sound_verdict`` of the rule on the guess and on
+        its sound twin, ``decides`` (whether both are right), ``heard`` and ``sound_heard`` (how far
+        strikes rise over noise, which one sensor tells from ``threshold`` on), ``opening``, the
+        largest gap in m, ``closing_force`` in N (faces pressed together by more stay shut),
+        ``overload``, whether the readings reach the sensor's range. Scalars ``recommended_level``
+        (``reserve`` times the lowest level from which all decide, or the next higher one) and
+        ``second_level`` (twice that, or the next higher one), ``recommended_first``,
+        ``recommended_last``, ``recommended_duration`` and ``recommended_rate`` (samples a second)
+        of a swept sine; ``counts``, whether both levels decide; ``opening_level`` in m/s2 from
+        which a preloaded structure opens (0 without).
 
     Raises
     ------
@@ -141,132 +98,182 @@ def plan_test(
 
     Notes
     -----
-    One sweep over all frequencies is computed for the guess, and one for a fifth of its split, at
-    most 120 s long. A structure without clearance and with a constant e is the same at all levels;
-    another is computed at each. The recommended sweep passes the bonded resonance, as
-    :func:`orchestrate.detect` needs it, and is as slow as ISO 7626-2 asks for; sweep it up and
-    down.
+    Each level is shaken twice, measured by the sensors as stated, and judged by
+    :meth:`orchestrate.diagnosis.decision_rule.Beam.verdict`. The sweep is as slow as ISO 7626-2
+    asks for, stays five windows of the impact timing in the resonance, and takes two minutes at
+    most. Where no level decides, the highest without overload is recommended.
 
     Examples
     --------
     >>> import orchestrate
-    >>> beam = orchestrate.Structure.from_file("beam").replace(D=0.02)
-    >>> plan = orchestrate.plan_test(beam, g=[0.002, 0.02], frequencies=[10, 11, 12, 13, 14])
-    >>> float(plan.distance_harmonics.max("frequency").values.argmax()), bool(plan.counts)
-    (1.0, True)
+    >>> beam = orchestrate.Structure.from_halves(m1=0.15, m2=0.12, f1=42.0, f2=53.0, zeta1=0.02)
+    >>> plan = orchestrate.plan_test(beam, g=[0.1, 0.2, 0.4], progress=False)
+    >>> bool(plan.counts), plan.sound_verdict.values.tolist()
+    (True, ['no opening seen', 'no opening seen', 'no opening seen'])
     """
     refuse_family("plan_test", structure)
     if structure.bonded:
         raise InputError("structure: bonded; expected a guess of the delaminated one")
-    if frequencies is None:
-        low, high = sorted((structure.f1, structure.f2))
-        frequencies = np.linspace(0.8 * low, 1.2 * high, 61)
-    f = checked_frequencies(frequencies)
+    f, zeta = bonded_mode(structure)
+    frequencies = usual_ends(structure) if frequencies is None else frequencies
+    first, *_, last = checked_frequencies(frequencies).tolist()
     if levels is not None and g is not None:
         raise InputError("levels and g: expected one of them")
     if levels is None:
         levels = GRAVITY * checked_positive("g", USUAL_LEVELS if g is None else g, "g")
     wanted = np.unique(checked_positive("levels", levels, "m/s2"))
-    sensors = sensor_by_channel(sensor or Sensor(bandwidth=40.0 * float(f[-1]), noise=USUAL_NOISE))
-    limit = checked_number("threshold", threshold, 1e-3, 1e6)
-    above = checked_number("margin", margin, 1.0, 1e3)
-    noise = checked_noise(sensors, checked_number("periods", periods, 2.0, 1e4), gain_error)
-    if running.get("store") is not None:
-        raise InputError("store: expected none; the answer is small, write it by to_netcdf")
-    test = SweepComputation(structure, sensors, f, noise, running)
-    sweeps = test.sweeps_at(wanted)
-    answer = plan_dataset(test, sweeps, limit, test.largest_distances(sweeps[-1]))
-    return answer.assign(recommended_sweep(test, answer, above))
+    job = PlanJob(
+        name=f"plan_{structure.label()}",
+        structure=structure,
+        sensors=checked_sensors(usual_sensor(last) if sensor is None else sensor),
+        levels=tuple(wanted.tolist()),
+        first=first,
+        last=last,
+        duration=slow_enough(f, zeta, first, last),
+        reserve=checked_number("reserve", reserve, 1.0, 1e3),
+    )
+    return answer(job, running, finder(running))
 
 
-@dataclass(frozen=True)
-class SweepComputation:
-    """Compute sweeps of a structure and of its sound form at the planned frequencies."""
+def bonded_mode(structure: Structure) -> tuple[float, float]:
+    """Return natural frequency in Hz and damping ratio of the bonded structure."""
+    m, k = structure.m1 + structure.m2, structure.k1 + structure.k2
+    return math.sqrt(k / m) / TURN, (structure.d1 + structure.d2) / (2.0 * math.sqrt(k * m))
 
+
+def usual_ends(structure: Structure) -> tuple[float, float]:
+    """Return the frequencies in Hz between which a sweep passes the resonance."""
+    f, halves = bonded_mode(structure)[0], (structure.f1, structure.f2)
+    return min(COVERED[0] * f, 0.9 * min(halves)), max(COVERED[1] * f, 1.1 * max(halves))
+
+
+def usual_sensor(last: float, noise: float = USUAL_NOISE, range: float = math.inf) -> Sensor:
+    """Return an accelerometer that samples a sweep up to ``last`` Hz as the rule needs it."""
+    rate = SAMPLES * last
+    return Sensor(bandwidth=0.39 * rate, sample_rate=rate, noise=noise, range=range)
+
+
+def slow_enough(f: float, zeta: float, first: float, last: float) -> float:
+    """Return the duration, s, of a sweep that shows a resonance and what strikes in it."""
+    width = 2.0 * zeta * f
+    rate = min(sweep_rate(f, zeta), width * f / (WINDOWS * TIMING.periods))
+    return min((last - first) / max(rate, 1e-9), LONGEST)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanJob(Job):
+    """Rehearse a sweep at each level with a structure and its sound twin."""
+
+    asked: ClassVar[str] = "plan_test"
+    item: ClassVar[str] = "level"
     structure: Structure
-    sensors: dict[str, Sensor]
-    frequency: Floats  # hz
-    noise: Noise
-    running: Running  # keywords of orchestrate.running.options.Running
+    sensors: tuple[tuple[str, Sensor], ...]
+    levels: tuple[float, ...]  # m/s2
+    first: float  # Hz
+    last: float
+    duration: float  # s
+    reserve: float
 
-    @property
-    def sound(self) -> SoundStructure:
-        """The bonded structure as a linear oscillator: natural frequency and damping ratio."""
-        return SoundStructure.from_structure(self.structure)
+    def items(self) -> Sequence[float]:
+        """Return the levels."""
+        return self.levels
 
-    @property
-    def duration(self) -> float:
-        """Duration of a sweep over all frequencies, s, as ISO 7626-2 asks for."""
-        rate = max(sweep_rate(self.sound.f, self.sound.zeta), 1e-9)
-        fewest = FEWEST * self.noise.periods / self.frequency[0]
-        return max(float(self.frequency[-1] - self.frequency[0]) / rate, fewest)
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[float], previous: Table | None
+    ) -> Table:
+        """Rehearse the test at some levels with the structure and with its sound twin."""
+        pair = self.structure, self.structure.as_bonded()
+        rows = [[self.rehearsal(one, level, fmus) for one in pair] for level in items]
+        names = ("word", "heard", "opening", "peak")
+        return dict(zip(names, np.moveaxis(np.array(rows), 2, 0), strict=True))
 
-    def sweeps_at(self, levels: Floats) -> list[Sweep]:
-        """Compute the sweep at each level; one is scaled where the level does not matter."""
-        if self.structure.has_scale:
-            return [self.simulated_sweep(self.structure, level) for level in levels]
-        computed = self.simulated_sweep(self.structure, float(levels[-1]))
-        return [computed.scaled_to(level) for level in levels]
-
-    def largest_distances(self, highest: Sweep) -> Floats:
-        """Return the largest distance by orders 2 and 3 for each of ``SPLITS``."""
-        smaller = [scale_split(self.structure, part) for part in SPLITS[1:]]  # the first is whole
-        sweeps = [highest, *(self.simulated_sweep(one, highest.level) for one in smaller)]
-        distances = (self.noise.distances(one, self.frequency)[1] for one in sweeps)
-        return np.array([float(one.max()) for one in distances])
-
-    def simulated_sweep(self, structure: Structure, level: float) -> Sweep:
-        """Simulate a sweep over all frequencies at this level, and return its orders."""
-        f = self.frequency
-        duration = min(self.duration, 120.0)  # a lighter damping would ask for more
-        first, last = float(f[0]), float(f[-1])
-        sine = SweptSine(first=first, last=last, duration=duration, acceleration=level)
-        rate = 20.0 * float(f[-1])
-        history = shake(structure, sine, sample_rate=rate, **self.running)
-        ideal: Any = {"noise": 0.0, "range": math.inf, "resolution": 0.0, "sample_rate": rate}
-        every = {BOX: next(iter(self.sensors.values())), **self.sensors}
-        quiet = {name: replace(one, **ideal) for name, one in every.items()}
+    def rehearsal(
+        self, structure: Structure, level: float, fmus: Mapping[str, Path]
+    ) -> tuple[float, float, float, float]:
+        """Shake and measure; return verdict, heard, largest gap and largest reading."""
+        ends = {"first": self.first, "last": self.last, "duration": self.duration}
+        sine, rate = SweptSine(**ends, acceleration=level), 20.0 * self.last
+        history = shake(structure, sine, sample_rate=rate, fmu=fmus, **HERE)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit
-            channels = Channels.from_record(measure(history, quiet, excitation=sine), (BOX,))
-        names, responses = channels.responses()
-        shares = np.array([[self.sensors[name].participation] for name in names])
-        mass = self.sound.acceleration(channels)
-        linear = shares * mass + (1.0 - shares) * channels.box
-        rows = np.concatenate([channels.values[:1], responses, linear])
-        sound_names = (f"sound {name}" for name in names)
-        both = Channels(channels.time, rate, (BOX, *names, *sound_names), rows, channels.title)
-        windows, amplitudes, _ = fit_windows(both, (1.0, 2.0, 3.0), None, self.noise.periods, 0.5)
-        at = np.array([window.frequency for window in windows])
-        found = interpolate_amplitudes(f, at, amplitudes[1:])
-        measured, linear_orders = np.split(found, 2)
-        sound = np.zeros_like(measured)
-        sound[:, 0] = linear_orders[:, 0]
-        gaps = [largest_gap(history, both.time[one.part]) for one in windows]
-        peak = float(np.abs(responses).max())
-        return Sweep(measured, sound, np.interp(f, at, gaps), peak, level)
+            felt = measure(history, dict(self.sensors), excitation=sine)
+        faces = [name for name, _ in self.sensors if name != BOX]
+        peak = max(float(np.abs(felt[name]).max()) for name in faces)
+        gap = 0.0 if structure.bonded else float(history.x_rel.max())
+        try:
+            findings = record_findings(checked_data(felt), self.structure, is_guessed=True)
+        except InputError:  # noise leaves no sine
+            return float(WORDS.index(UNDECIDED)), math.nan, gap, peak
+        word = Beam((findings,)).verdict()
+        return float(WORDS.index(word)), findings.strikes.heard, gap, peak
+
+    def dataset(self, table: Table) -> xr.Dataset:
+        """Return the verdicts over the level, and what is recommended."""
+        words = [[WORDS[int(one)] for one in row] for row in table["word"]]
+        right = np.array([row == [DELAMINATED, NOT_SEEN] for row in words])
+        ranges = np.array([one.range for name, one in self.sensors if name != BOX]).min()
+        cut = table["peak"].max(axis=1) >= ranges
+        levels = np.array(self.levels)
+        level, second, counts = recommended_levels(levels, right & ~cut, ~cut, self.reserve)
+        force = float(
+            largest_opening_force(self.structure, np.array([self.first, self.last])).max()
+        )
+        text, rate = "rehearsed verdict on the", dict(self.sensors)[BOX].rate
+        heard, over = table["heard"], "how far strikes rise over noise, of the"
+        return xr.Dataset(
+            {
+                "verdict": ("level", [row[0] for row in words], {"long_name": f"{text} guess"}),
+                "sound_verdict": (
+                    "level",
+                    [row[1] for row in words],
+                    {"long_name": f"{text} twin"},
+                ),
+                "decides": yes_or_no("level", right, "whether both verdicts are right"),
+                "heard": variable("level", heard[:, 0], "1", f"{over} guess"),
+                "sound_heard": variable("level", heard[:, 1], "1", f"{over} sound twin"),
+                "threshold": variable((), TIMING.heard, "1", "from here something strikes"),
+                "opening": variable("level", table["opening"][:, 0], "m", "largest gap"),
+                "closing_force": variable(
+                    "level", levels * force, "N", "preload above which the faces stay shut"
+                ),
+                "overload": yes_or_no("level", cut, "whether readings reach the sensor's range"),
+                "opening_level": variable(
+                    (), self.structure.preload / force, "m/s2", "level from which the faces open"
+                ),
+                "recommended_level": variable((), level, "m/s2", "level to test at"),
+                "second_level": variable((), second, "m/s2", "second level to test at"),
+                "recommended_first": variable((), self.first, "Hz", "frequency to begin at"),
+                "recommended_last": variable((), self.last, "Hz", "frequency to end at"),
+                "recommended_duration": variable((), self.duration, "s", "time of the sweep"),
+                "recommended_rate": variable((), rate, "Hz", "samples a second"),
+                "counts": yes_or_no((), counts, "whether both recommended levels decide"),
+            },
+            {"level": variable("level", levels, "m/s2", "peak acceleration of the box")},
+            attributes("plan_test", "Plan of a test", self.structure.label()),
+        )
 
 
-def interpolate_amplitudes(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:
-    """Interpolate the windows' amplitudes linearly at other frequencies."""
-    flat = amplitudes.reshape(-1, len(at))
-    return np.array([np.interp(frequency, at, row) for row in flat]).reshape(
-        *amplitudes.shape[:-1], len(frequency)
-    )
+def recommended_levels(
+    levels: Floats, right: np.ndarray, usable: np.ndarray, reserve: float
+) -> tuple[float, float, bool]:
+    """Return the level that is recommended, a second one, and whether both decide.
 
-
-def largest_gap(history: xr.Dataset, times: Floats) -> float:
-    """Return the largest gap of a history within these times, m."""
-    return float(history.x_rel.sel(time=slice(times[0], times[-1])).max())
-
-
-def scale_split(structure: Structure, part: float) -> Structure:
-    """Scale the difference between a structure's halves, with the same bonded form."""
-    share = structure.m1 / (structure.m1 + structure.m2)
-    k, d = structure.k1 + structure.k2, structure.d1 + structure.d2
-    k1 = share * k + part * (structure.k1 - share * k)
-    d1 = share * d + part * (structure.d1 - share * d)
-    return structure.replace(k1=k1, k2=k - k1, d1=d1, d2=d - d1)
+    - All usable levels from the lowest one that decides on have to decide.
+    - The recommended one is the next at or above ``reserve`` times that, the second one the next at
+      or above twice the recommended one.
+    - Where there is none, the highest usable level stands for it, or the lowest of all.
+    """
+    top = int(np.flatnonzero(usable)[-1]) if usable.any() else 0
+    wrong = np.flatnonzero(usable & ~right)
+    least = int(wrong[-1]) + 1 if len(wrong) else 0
+    if least > top or not (usable & right)[least : top + 1].any():
+        return float(levels[top]), float(levels[top]), False
+    chosen = []
+    for factor, start in ((reserve, levels[least]), (2.0, None)):
+        wanted = factor * (chosen[-1] if start is None else start) * (1.0 - 1e-9)
+        above = [one for one in levels[: top + 1] if one >= wanted]
+        chosen.append(float(above[0] if above else levels[top]))
+    return chosen[0], chosen[1], True
 
 
 # -- what is asked --------------------------------------------------------------------------------
@@ -292,9 +299,9 @@ def checked_positive(name: str, given: ArrayLike, unit: str) -> Floats:
     return values
 
 
-def checked_noise(sensors: dict[str, Sensor], periods: float, gain_error: float) -> Noise:
-    """Check that the responses' sensors have a noise, and return it with their gain error."""
-    error = checked_number("gain_error", gain_error, 0.0, 1.0)
+def checked_sensors(sensor: Sensor | dict[str, Sensor]) -> tuple[tuple[str, Sensor], ...]:
+    """Check that the responses' sensors have a noise, and return all with one for the box."""
+    sensors = sensor_by_channel(sensor)
     responses = {name: one for name, one in sensors.items() if name != BOX}
     if not responses:
         raise InputError("sensor: on the box alone; expected one on acceleration1 or acceleration2")
@@ -302,106 +309,4 @@ def checked_noise(sensors: dict[str, Sensor], periods: float, gain_error: float)
         if not one.noise:
             text = "expected its density in (m/s2)/sqrt(Hz), > 0: without it every level counts"
             raise InputError(f"sensor on {name}: noise = 0.0; {text}")
-    return Noise(np.array([one.noise for one in responses.values()]), periods, error)
-
-
-# -- the answer -----------------------------------------------------------------------------------
-
-
-def plan_dataset(
-    test: SweepComputation, sweeps: Sequence[Sweep], limit: float, split_distances: Floats
-) -> xr.Dataset:
-    """Assemble the dataset of a plan from a sweep at each level."""
-    f, levels = test.frequency, np.array([sweep.level for sweep in sweeps])
-    distances = [test.noise.distances(one, f) for one in sweeps]
-    first, higher = (np.stack(rows) for rows in zip(*distances, strict=True))
-    opening = np.stack([sweep.opening for sweep in sweeps])
-    over, unit = ("level", "frequency"), "standard deviations of the noise in a window"
-    kept = levels[:, None] * largest_opening_force(test.structure, f)
-    splits = smallest_splits(levels, limit, split_distances)
-    split = "smallest difference between the halves that counts, relative to the guess's"
-    return xr.Dataset(
-        {
-            "distance": variable(over, np.hypot(first, higher), "1", f"difference in {unit}"),
-            "distance_first": variable(over, first, "1", f"of order 1, in {unit}"),
-            "distance_harmonics": variable(over, higher, "1", f"of orders 2 and 3, in {unit}"),
-            "opening": variable(over, opening, "m", "largest gap"),
-            "closing_force": variable(over, kept, "N", "preload above which the faces stay shut"),
-            "threshold": variable((), limit, "1", f"difference that counts, in {unit}"),
-            "smallest_split": variable("level", splits, "1", split),
-            **smallest_detectable(test, sweeps, limit, higher, opening),
-        },
-        {
-            "level": variable("level", levels, "m/s2", "peak acceleration of the box"),
-            "frequency": variable("frequency", f, "Hz", "frequency of the box"),
-        },
-        attributes("plan_test", "Plan of a test", test.structure.label()),
-    )
-
-
-def smallest_detectable(
-    test: SweepComputation, sweeps: Sequence[Sweep], limit: float, higher: Floats, opening: Floats
-) -> dict[str, Any]:
-    """Return variables: the smallest levels and openings that count, and levels that overload."""
-    force = largest_opening_force(test.structure, test.frequency)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        levels = np.array([[sweep.level] for sweep in sweeps])
-        if test.structure.has_scale:  # not in proportion to the level
-            smallest = np.where(higher >= limit, levels, np.inf).min(axis=0)
-        else:
-            smallest = np.where(higher[-1] > 0.0, limit * levels[-1] / higher[-1], np.inf)
-        open_from = test.structure.preload / force
-        smallest_gap = np.where(higher > 0.0, opening * limit / higher, np.inf).min(axis=1)
-    ranges = min(one.range for name, one in test.sensors.items() if name != BOX)
-    cut = np.array([sweep.peak > ranges for sweep in sweeps])
-    level, opens = "level from which orders 2 and 3 count", "level from which the faces open"
-    return {
-        "smallest_level": variable("frequency", smallest, "m/s2", level),
-        "opening_level": variable("frequency", open_from, "m/s2", opens),
-        "smallest_opening": variable("level", smallest_gap, "m", "smallest gap that counts"),
-        "overload": yes_or_no("level", cut, "whether readings reach the sensor's range"),
-    }
-
-
-def smallest_splits(levels: Floats, limit: float, distances: Floats) -> Floats:
-    """Return the smallest part of the guess's split that shows at each level; infinity if none.
-
-    Between the computed splits the distance is a power of the split; below the smallest one it is
-    taken to be proportional to it.
-    """
-    log_distance, log_split = np.log(np.maximum(distances, 1e-300)), np.log(SPLITS)
-    wanted = np.log(limit * levels[-1] / levels)
-    ascending = np.maximum.accumulate(log_distance[::-1])
-    inside = np.interp(wanted, ascending, log_split[::-1])
-    below = log_split[-1] + np.minimum(wanted - log_distance[-1], 0.0)
-    parts = np.where(wanted < log_distance[-1], below, inside)
-    return np.where(wanted > ascending[-1], np.inf, np.exp(parts))
-
-
-def recommended_sweep(test: SweepComputation, answer: xr.Dataset, margin: float) -> dict[str, Any]:
-    """Recommend a level, and a sweep over the bonded resonance and all frequencies that count.
-
-    The lowest level without overload at which orders 2 and 3 reach ``margin * threshold`` and
-    preloaded faces open with ``margin``; else the highest without overload; else the lowest.
-    """
-    higher, limit = answer.distance_harmonics.values, float(answer.threshold)
-    fits = np.flatnonzero(answer.overload.values == 0)
-    shut = answer.level.values < margin * np.fmin.reduce(answer.opening_level.values)
-    enough = [i for i in fits if higher[i].max() >= margin * limit and not shut[i]]
-    row = int(enough[0] if enough else fits[-1] if len(fits) else 0)
-    f, curve = test.frequency, higher[row]
-    counting = np.flatnonzero(curve >= min(limit, NEARLY * float(curve.max())))
-    low, high = float(f[counting[0]]), float(f[counting[-1]])
-    room, passed = ROOM * max(high - low, test.sound.f), PASSED * test.sound.f
-    first = max(min(low - room, test.sound.f - passed), float(f[0]))
-    last = min(max(high + room, test.sound.f + passed), float(f[-1]))
-    rate = sweep_rate(test.sound.f, test.sound.zeta)
-    duration = max((last - first) / max(rate, 1e-9), FEWEST * test.noise.periods / first)
-    text = "whether orders 2 and 3 count in the recommended sweep"
-    return {
-        "recommended_level": variable((), answer.level.values[row], "m/s2", "level to test at"),
-        "recommended_first": variable((), first, "Hz", "frequency to begin at"),
-        "recommended_last": variable((), last, "Hz", "frequency to end at"),
-        "recommended_duration": variable((), duration, "s", "time of the sweep, one way"),
-        "counts": yes_or_no((), bool(curve.max() >= limit), text),
-    }
+    return tuple({BOX: next(iter(responses.values())), **sensors}.items())

@@ -18,7 +18,7 @@ from ..model import Structure
 from ..running.job import Job, Table
 from .curve_evidence import COARSE_SAMPLES, CurveData
 from .errors import Estimate, estimate
-from .even_orders import even_orders
+from .even_orders import EvenOrders, even_orders
 from .evidence import Evidence
 from .fitting import Search, Solution, difference_step, distinct_minima, without_neighbours
 from .hypotheses import SOUND, Delaminated, DelaminatedWithClearance, Hypothesis, Onset
@@ -82,20 +82,19 @@ def cached_coarse_evidence(data: RecordData | CurveData) -> Evidence:
     return data.coarse_evidence()
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=8)
+def bonded_even(data: RecordData | CurveData) -> EvenOrders:
+    """Return order 2 of a record beyond that of a bonded structure, by a short fit."""
+    evidence = cached_evidence(data)
+    search = Search(SOUND[0], evidence)
+    best = search.minima(SOUND[0].starts(evidence))[0]
+    motion = SOUND[0].displacements(best.values, evidence, None)
+    return even_orders(evidence, evidence.fitted_orders(motion))
+
+
 def is_worth_a_search(data: RecordData | CurveData) -> bool:
-    """Return whether the verdict may depend on the delaminated fit, by short sound fits."""
-    evidence, described = cached_evidence(data), data.settings.sound
-    for sound in SOUND:
-        search = Search(sound, evidence)
-        best = search.minima(sound.starts(evidence))[0]
-        if sound is SOUND[0]:
-            motion = sound.displacements(best.values, evidence, None)
-            if even_orders(evidence, evidence.fitted_orders(motion)).is_opening_seen:
-                return True
-        if best.misfit <= described or search.polish(best).misfit <= described:
-            return False
-    return True
+    """Return whether two masses are searched: only of an opening their numbers are stated."""
+    return bonded_even(data).is_opening_seen
 
 
 @lru_cache(maxsize=2)

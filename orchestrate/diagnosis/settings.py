@@ -16,28 +16,21 @@ Changes = Mapping[str, float] | None  # of a caller: names of settings with othe
 class Settings:
     """Thresholds of the verdict and of what counts as seen, errors of models, effort of searches.
 
-    Change ``ratio``, ``share`` and ``sound`` for a bolder or more careful verdict,
+    Change ``hidden`` and ``order2_noise`` for a bolder or more careful verdict,
     ``gain_deviation`` and ``delay_deviation`` for sensors that are calibrated better or worse,
     ``starts`` and ``steps`` where a search ends in a wrong minimum.
     """
 
-    # -- the verdict: see `decision_rule.Findings.verdict` --
-    # by which the delaminated misfit has to be smaller than the best sound one: where order 2 is
-    # seen, where two faces move apart as well, and where their difference is all that is seen
+    # -- the verdict: see `decision_rule.Beam.verdict`, and `impact_timing` for what strikes --
+    # of a displacement between two levels, L and 2 L, and the shift of the resonance's logarithm
+    grows: float = 1.35
+    shift: float = 0.03
+    # by which the delaminated misfit has to be smaller than the best sound one for its numbers
     ratio: float = 1.5
-    ratio_apart: float = 1.1
-    ratio_difference: float = 5.0
-    # largest misfit of a sound hypothesis, and of a delaminated one, that describes a record: real
+    # largest misfit of a sound hypothesis, and of a delaminated one, whose numbers are stated: real
     # contacts are not the model's
     sound: float = 1.2
     delaminated: float = 3.0
-    # of records put together of blocks in which the ratio has to be exceeded: of a ratio that one
-    # of twenty blocks makes, it is at most 0.64
-    share: float = 0.75
-    # bursts over their threshold where faces are not seen to move apart: two masses that stay shut
-    # came to 3.2, one mass in a loose clamp to 21, those that part and meet to 55 and more, but to
-    # 10 and more where a sweep of a third of the resonance has no quiet ends
-    heard: float = 30.0
     hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
     clipped: float = CLIPPED  # share of a channel's samples at its extremes: it is saturated
     # response at an end of the sweep over the largest one: above, the resonance is not passed
@@ -55,16 +48,6 @@ class Settings:
     difference: float = 0.03
     difference_order2: float = 0.2
     response: float = 0.1  # of the largest order 1: windows where less moves are not taken
-
-    # -- what counts as heard: see `bursts` --
-    burst_time: float = 2.0  # s of each mean of the power
-    quiet: float = 0.2  # quantile of the means that is taken for the power of noise
-    burst_rise: float = 1.5  # power over that of noise
-    burst_deviations: float = 6.0  # standard deviations of a mean by which noise may exceed it
-    burst_periods: float = 1.0 / 3.0  # share of an interval's periods: fewer are lost samples
-    # power beyond noise of the even part over that of the odd one: below, both ends of the stroke
-    # burst, as of dry friction
-    one_sided: float = 0.4
 
     # -- errors that a good model and good sensors may have: see `evidence` --
     model_error: float = 0.03  # of orders 1, 2, 3, over the size of order 1

@@ -8,9 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
 from ..units import as_shown
 from .analysis import note_hidden
@@ -76,63 +74,26 @@ def write_values(
 @draws("plan_test")
 @styled
 def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw over frequency and level where a test would show a delamination; return the figure."""
+    """Draw what was heard in the rehearsals over the level; return the figure."""
     title = title or plain_title(str(data.attrs["title"]))
-    heights: Any = {"sharex": True, "height_ratios": (1.5, 1.0)}
-    figure, (plane, below) = make_panels(2, 1, (8.0, 6.2), title, **heights)
+    figure, (axes,) = make_panels(1, 1, (8.0, 3.8), title)
     data = as_shown(data)
-    if data.sizes["level"] > 1:
-        draw_distance_map(figure, plane, data)
-    else:
-        draw_distances(plane, data)
-    unit = typeset_array_unit(data.level)
-    recommended = int(np.abs(data.level.values - float(data.recommended_level)).argmin())
-    shown = data.isel(level=sorted({0, recommended, data.sizes["level"] - 1}))
-    for (_, at), colour in zip(shown.groupby("level"), COLOURS, strict=False):
-        words = f"at {float(at.level.item()):.3g} {unit}"
-        draw_line(below, data.frequency, at.closing_force.squeeze(), "-", colour, 1.1, words)
-    below.set_yscale("log")
-    across = label_with_unit("frequency of the box", data.frequency)
-    below.set(xlabel=across, ylabel="preload that keeps\nit shut, in N")
-    legend_below(figure, [plane, below], 4)
+    right = data.decides.values > 0
+    rows = (("guess", data.heard, BLUE), ("sound twin", data.sound_heard, ORANGE))
+    for words, values, colour in rows:
+        draw_line(axes, data.level, values, "-", colour, 1.1, words)
+    axes.plot(data.level[right], data.heard[right], "o", color=GREEN, label="both verdicts right")
+    axes.axhline(
+        float(data.threshold), color=RED, linewidth=1.0, label="from here something strikes"
+    )
+    for level, words in ((data.recommended_level, "recommended"), (data.second_level, "second")):
+        axes.axvline(float(level), color=GREY, linestyle="--", linewidth=1.0)
+        place: Any = {"xycoords": ("data", "axes fraction"), "fontsize": 7, "rotation": 90}
+        axes.annotate(f" {words}", (float(level), 0.02), **place)
+    axes.set(xscale="log", yscale="log", ylabel="strikes over the limit of noise")
+    axes.set_xlabel(label_with_unit("level of the box", data.level))
+    legend_below(figure, [axes], 4)
     return figure
-
-
-def draw_distance_map(figure: Figure, plane: Axes, data: xr.Dataset) -> None:
-    """Draw the distance by orders 2 and 3 over frequency and level, with the recommended sweep."""
-    values = data.distance_harmonics
-    limit = float(data.threshold)
-    top = max(float(values.max()), 10.0 * limit)
-    norm = LogNorm(min(1e-4 * top, 0.5 * limit), top)
-    colours: Any = {"norm": norm, "shading": "nearest", "rasterized": True}
-    mesh = plane.pcolormesh(data.frequency, data.level, np.maximum(values, 1e-4 * top), **colours)
-    ends = float(data.level.min()) / 1.3, float(data.level.max()) * 1.3
-    if bool(((data.smallest_level >= ends[0]) & (data.smallest_level <= ends[1])).any()):
-        draw_line(plane, data.frequency, data.smallest_level, "-", RED, 1.6, "level that counts")
-    first, last = float(data.recommended_first), float(data.recommended_last)
-    level = float(data.recommended_level)
-    frame: Any = {"fill": False, "edgecolor": BLACK, "linewidth": 1.6}
-    corner, height = (first, level / 1.12), level * (1.12 - 1.0 / 1.12)
-    box = Rectangle(corner, last - first, height, label="recommended sweep", **frame)
-    plane.add_patch(box)
-    plane.set_ylim(ends)
-    use_plain_log(plane)
-    plane.set_ylabel(label_with_unit("level of the box", data.level))
-    plane.grid(visible=False)
-    words = "difference by orders 2 and 3 in standard\ndeviations of the noise; above red it counts"
-    bar = figure.colorbar(mesh, ax=plane, label=words, aspect=20)
-    bar.ax.axhline(limit, color=RED, linewidth=1.6)
-
-
-def draw_distances(plane: Axes, data: xr.Dataset) -> None:
-    """Draw the distances by orders 1 to 3 over frequency, at the first level."""
-    at = data.isel(level=0)
-    plane.semilogy(at.frequency, at.distance_harmonics, color=BLUE, label="orders 2 and 3")
-    plane.semilogy(at.frequency, at.distance_first, color=ORANGE, label="order 1")
-    plane.axhline(float(data.threshold), color=RED, linewidth=1.0, label="from here it counts")
-    ends = float(at.recommended_first), float(at.recommended_last)
-    plane.axvspan(*ends, color=GREY, alpha=0.15, zorder=0)
-    plane.set_ylabel("difference in standard\ndeviations of the noise")
 
 
 @draws("detect", "fit")

@@ -34,6 +34,10 @@ def make_verdict(answer: xr.Dataset) -> Verdict:
             "None of the structures that were tried, sound or delaminated, describes this record: "
             "the beam, its clamp or the sensors do something else."
         ),
+        "something strikes: stop or softer face": lambda _: (
+            "Something strikes once a period: a stop, a clamp with play, or a face that is softer "
+            "than the guess."
+        ),
         "undecided": lambda _: "This record does not tell a delaminated beam from a sound one.",
     }
     statement = sentences[word](answer) + fitted_frequencies(answer)
@@ -54,13 +58,12 @@ def fitted_frequencies(answer: xr.Dataset) -> str:
 
 def delaminated_statement(answer: xr.Dataset) -> str:
     """Return the statement on a delaminated beam."""
-    ratio = scalar(answer, "ratio")
-    times = "" if math.isnan(ratio) else f", {format_number(ratio)} times closer than any sound one"
-    apart = "the faces are seen to move apart, and " if scalar(answer, "faces_apart") > 1.0 else ""
-    return (
-        f"The record is that of two halves that part and strike each other: {apart}the delaminated "
-        f"structure describes it{times}."
-    )
+    level = format_level(answer, scalar(answer, "opening_level"))
+    lowest = f" from {level} on" if level else ""
+    times = scalar(answer, "ratio") if stated_fits(answer) else math.nan
+    closer = f": {format_number(times)} times closer to the record than any sound beam"
+    sized = f" Two masses size it{closer}." if math.isfinite(times) else ""
+    return f"The record is that of two halves that part and strike each other{lowest}.{sized}"
 
 
 def no_opening_statement(answer: xr.Dataset) -> str:
@@ -170,12 +173,6 @@ def decision_section(answer: xr.Dataset) -> Section:
     """Return a section on what decided the verdict and what would change it."""
     reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
     points = [f"What decided: {make_sentence(reason)}"] if reason else []
-    share = scalar(answer, "share")
-    if math.isfinite(share):
-        points.append(
-            f"The ratio of misfits decides in {100.0 * share:.0f} % of the records put together of "
-            "blocks of this one: how even the record is, no probability."
-        )
     if settle:
         points.append(f"What would change or settle it: {make_sentence(settle)}")
     return Section("Why", points=points, place="front")

@@ -13,11 +13,11 @@ RATE = 600.0
 
 
 @functools.cache
-def record(structure=BEAM, noise=0.0, both=True, gain=1.0, seed=1, sweep=SWEEP):
-    """What sensors of 250 Hz read, with noise as a part of each channel's rms."""
-    history = orchestrate.shake(structure, sweep, sample_rate=RATE, progress=False)
+def record(structure=BEAM, noise=0.0, both=True, gain=1.0, seed=1, sweep=SWEEP, rate=RATE):
+    """What sensors of a bandwidth of rate/2.4 read, with noise as a part of each channel's rms."""
+    history = orchestrate.shake(structure, sweep, sample_rate=rate, progress=False)
     felt = orchestrate.measure(
-        history, orchestrate.Sensor(bandwidth=250.0, sample_rate=RATE), excitation=sweep
+        history, orchestrate.Sensor(bandwidth=rate / 2.4, sample_rate=rate), excitation=sweep
     )
     rng = np.random.default_rng(seed)
     names = ["box_acceleration", "acceleration1", *(["acceleration2"] if both else [])]

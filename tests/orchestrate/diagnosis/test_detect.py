@@ -2,7 +2,6 @@
 
 import inspect
 import warnings
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -29,9 +28,9 @@ LIMIT = {"jobs": 1, "progress": False}
 @pytest.mark.slow  # an ordinary run has the numbers of tests/orchestrate/cli/test_diagnose.py
 @pytest.mark.parametrize("factor", [1.566, 0.532])  # at the tip, and at the middle
 def test_a_delamination_is_found_with_its_numbers_wherever_the_sensor_is(factor):
-    answer = orchestrate.detect(seen_at(factor, noise=0.01), guess(), **LIMIT)
+    answer = orchestrate.detect(seen_at(factor, noise=0.01, rate=1250.0), guess(), **LIMIT)
     assert str(answer.verdict.values) == "delaminated", answer.attrs["reason"]
-    assert answer.ratio > 3.0 and answer.share > 0.99
+    assert answer.ratio > 3.0
     best = answer.sel(hypothesis="delaminated")
     assert best.participation.item() == pytest.approx(factor, rel=0.05)
     for name in ("f1", "f2"):
@@ -225,7 +224,7 @@ def test_the_search_for_pressed_faces_starts_at_the_preload_that_opens_where_ord
     data = checked_data(record(BEAM.as_bonded()))
     silent = DetectJob(name="x", data=data, guess=guess(), free=FREE)
     assert silent.hypotheses[-1].onset is None and not is_worth_a_search(data)
-    assert is_worth_a_search(replace(data, settings=replace(data.settings, sound=0.0)))
+    assert is_worth_a_search(checked_data(pressed))
 
 
 @pytest.mark.slow

@@ -15,34 +15,42 @@ from ...sparing import ordinary
 
 KINDS = {**recipe.KINDS, **STRIKERS}
 FACES = Strikes(
-    heard=60.0, base=1.2, locked=0.99, one_sided=0.85, blow=0.5, stiffness=1.0,
-    place=0.02, spread=0.5, order2=0.2,
+    heard=60.0, base=1.2, locked=0.99, one_sided=0.85, blow=0.5, opposite=math.nan,
+    order2=0.2, spread=0.5, stiffness=1.0,
 )  # fmt: skip
-WORDS = {
-    "nothing heard": {"heard": 5.0},
-    "base strikes": {"base": 30.0},
-    "not locked": {"locked": 0.4},
-    "kinks": {"blow": 0.02},
-    "stop": {"spread": 0.08},
-    "stop or softer face": {"stiffness": math.nan},
-    "something small strikes": {"order2": 0.02},
-    "faces strike": {},
+WORDS = {  # on both sides of each threshold
+    "nothing heard": [{"heard": 2.9}],
+    "something faint": [{"heard": 3.1}, {"heard": 9.9}],
+    "base strikes": [{"base": 16.0}],
+    "not locked": [{"locked": 0.89}, {"one_sided": 0.49}, {"locked": 0.8, "opposite": -0.99}],
+    "kinks": [{"blow": 0.1}, {"blow": 0.1, "opposite": -0.99}],
+    "something small strikes": [{"order2": 0.049}],
+    "stop": [{"spread": 0.32}, {"spread": 0.1, "stiffness": math.nan, "opposite": 0.9}],
+    "stop or softer face": [{"stiffness": x} for x in (math.nan, 0.89, 1.07)]
+    + [{"opposite": -0.94}],
+    "faces strike": [
+        {"heard": 10.1, "base": 2.9, "locked": 0.91, "one_sided": 0.51, "blow": 0.12},
+        {"order2": 0.051, "spread": 0.34, "stiffness": 1.05},
+        {"stiffness": 0.91},
+        {"heard": 3.5, "opposite": -0.96, "spread": 0.1, "order2": 0.01, "stiffness": math.nan},
+    ],
 }
 
 
 @pytest.mark.parametrize("word", WORDS)
 def test_each_quantity_has_its_word(word):
-    assert replace(FACES, **WORDS[word]).word() == word
+    for changes in WORDS[word]:
+        assert replace(FACES, **changes).word() == word, changes
 
 
-def timed(kind, seed):
+def timed(kind, seed, sensors=1):
     """Draw a record of a kind; return what strikes in it, shut faces' frequency 3 % uncertain."""
     rng = np.random.default_rng([seed, 17])
-    case = recipe.draw(rng, kind, recipe.Conditions(sensors=1), kinds=KINDS)
+    case = recipe.draw(rng, kind, recipe.Conditions(sensors=sensors), kinds=KINDS)
     truth, guess = case.truth, case.guess
     masses, turns = np.array([guess.m1, guess.m2]), np.array([truth.f1, truth.f2])
     shut = math.sqrt((masses * turns**2).sum() / masses.sum()) * rng.uniform(0.97, 1.03)
-    return strikes(checked_channels(case.record), 1, shut)
+    return strikes(checked_channels(case.record), shut)
 
 
 @pytest.mark.parametrize("kind", ["delaminated", "stop", *ordinary(["sound", "crack", "play"])])
@@ -51,3 +59,10 @@ def test_faces_are_told_from_stops_and_kinks(kind):
     word = timed(kind, 203).word()
     assert (word == "faces strike") == (kind == "delaminated"), word
     assert (word == "stop") == (kind in ("stop", "play")), word
+
+
+@pytest.mark.parametrize("kind", ["delaminated", "stop"])
+def test_two_faces_are_struck_in_opposite_directions(kind):
+    struck = timed(kind, 203, sensors=2)
+    assert struck.opposite < -0.97 if kind == "delaminated" else struck.opposite > 0.9
+    assert (struck.word() == "faces strike") == (kind == "delaminated")

@@ -46,27 +46,18 @@ def test_every_known_sign_has_its_bar_and_the_others_are_named(signs):
     assert figure.get_suptitle() == "Beam A"
 
 
-@pytest.fixture(scope="module")
-def plan(exported):
-    beam = orchestrate.Structure.from_file("beam").replace(D=0.03)
-    sensor = orchestrate.Sensor(bandwidth=200.0, noise=1e-3)
-    frequencies = np.linspace(10.0, 15.0, 11)
-    return orchestrate.plan_test(
-        beam, sensor=sensor, levels=[0.02, 0.2], frequencies=frequencies, progress=False
-    )
-
-
-def test_a_plan_shows_map_recommended_sweep_and_preload(plan):
-    figure = orchestrate.plot(plan)
-    words = texts(figure)
-    assert {"level that counts", "recommended sweep", "at 0.02 m/s$^2$"} <= set(words)
-    high = plan.assign(smallest_level=0.0 * plan.smallest_level)
-    assert "level that counts" not in texts(orchestrate.plot(high))  # it is not in the picture
-    (box,) = (patch for patch in figure.axes[0].patches if patch.get_width() > 0.0)
-    assert box.get_x() == float(plan.recommended_first)
-    low, high = box.get_y(), box.get_y() + box.get_height()
-    assert low < float(plan.recommended_level) < high
-    assert len(figure.axes[1].lines) == 2
+def test_a_plan_shows_what_was_heard_and_the_recommended_levels():
+    level = ("level", [0.1, 0.2, 0.4], {"units": "m/s2", "long_name": "level"})
+    made = {"heard": ("level", [2.0, 20.0, 60.0]), "sound_heard": ("level", [1.5, 1.6, 1.7])}
+    made |= {"decides": ("level", [0, 1, 1]), "recommended_level": ((), 0.4), "second_level": 0.4}
+    made |= {"threshold": 10.0}
+    data = xr.Dataset(made, {"level": level}, {"analysis": "plan_test", "title": "Plan"})
+    figure = orchestrate.plot(data)
+    assert {"guess", "sound twin", "both verdicts right"} <= set(texts(figure))
+    (axes,) = figure.axes
+    marks = next(line for line in axes.lines if line.get_marker() == "o")
+    np.testing.assert_array_equal(marks.get_xydata(), [[0.2, 20.0], [0.4, 60.0]])
+    assert sum(list(line.get_xdata()) == [0.4, 0.4] for line in axes.lines) == 2
 
 
 def test_curves_below_an_axis_are_named():

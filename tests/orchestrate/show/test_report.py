@@ -143,7 +143,6 @@ def verdict():
     return xr.Dataset(
         {
             "verdict": ((), "delaminated"),
-            "share": ((), 1.0),
             "misfit": ("hypothesis", [2.0, 0.5]),
             "value": (("hypothesis", "parameter"), [[0.3, np.nan], [np.nan, 42.0]]),
             "standard_error": (("hypothesis", "parameter"), [[0.1, np.nan], [np.nan, 0.5]]),
@@ -189,8 +188,6 @@ def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is(verdict):
     assert make_verdict(verdict).sentence.endswith("frequencies fitted: f1 = 42.00 ± 0.50 Hz.")
     doubted = make_verdict(verdict.assign_attrs(wiring="face 1: polarity?")).sentence
     assert doubted.startswith("The wiring is doubtful: face 1: polarity?.")
-    (share,) = [words for words in sections["Why"].points if "blocks" in words]
-    assert "decides in 100 % of the records" in share and " to 1" not in share
     without = verdict.assign_attrs(m1=float("nan"))
     sections = {section.heading: section for section in verdict_sections(without)}
     assert not any("kg" in words for words in sections["What was assumed"].points)
