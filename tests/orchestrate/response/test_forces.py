@@ -168,8 +168,8 @@ def test_structures_in_files_and_what_contradicts_itself(tmp_path):
         Structure(stroke=0.1, clearance=0.2)
     with pytest.raises(InputError, match="wall = 1.0"):
         Structure(wall=1.0)
-    with pytest.raises(InputError, match="force1=0.3"):
-        write(path, excitation=Excitation(frequency=1.0, amplitude=1.0, force1=0.3))
+    pushed = Excitation(frequency=1.0, amplitude=1.0, force1=0.3, box_acceleration=-9.81)
+    assert Excitation.from_file(write(path, excitation=pushed)) == pushed
 
 
 def test_starts_lie_where_the_masses_can_be():
