@@ -147,7 +147,6 @@ def beam_job(
     free: tuple[str, ...],
     participation: Participation,
     settings: Settings,
-    name: str = "",
 ) -> DetectJob:
     """Return the job that decides on the records of a beam, and fits the one that hears most."""
     structure = None if guess is None else delaminated_guess(guess)
@@ -156,7 +155,7 @@ def beam_job(
     shown = [record_findings(one, made, structure is not None) for one in every]
     fitted = int(np.argmax([one.strikes.heard * one.is_usable for one in shown]))
     return DetectJob(
-        name=name or f"detect_{checked_structure(guess or made).label()}",
+        name=f"detect_{checked_structure(guess or made).label()}",
         data=every[fitted],
         others=(every[:fitted], every[fitted + 1 :]),
         guess=made,
@@ -172,7 +171,7 @@ def checked_records(
     settings: Settings,
 ) -> tuple[RecordData, ...]:
     """Check one record or several of one beam; a message names which of them is wrong."""
-    if not isinstance(record, (list, tuple)):
+    if isinstance(record, xr.Dataset) or not isinstance(record, Sequence):
         return (checked_data(record, guess, participation, settings),)
     if not record:
         raise InputError("record: an empty list; expected one record or more of one beam")
@@ -195,6 +194,7 @@ class DetectJob(SearchJob):
 
     def beam(self) -> Beam:
         """Return what all records show."""
+        assert isinstance(self.data, RecordData)  # a resonance curve has no strikes
         every = (*self.others[0], self.data, *self.others[1])
         return Beam(tuple(record_findings(one, self.guess, self.is_guessed) for one in every))
 

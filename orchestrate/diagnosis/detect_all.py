@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from ..errors import InputError
@@ -71,11 +72,9 @@ def detect_all(
     return dict(zip(records, gather(jobs, running, finder(running)), strict=True))
 
 
-def named_job(
-    name: str, record: xr.Dataset | Sequence[xr.Dataset], guess: Structure, *rest: Any
-) -> DetectJob:
+def named_job(name: str, record: xr.Dataset | Sequence[xr.Dataset], *rest: Any) -> DetectJob:
     """Return the job of one beam; a message about its records names it."""
     try:
-        return beam_job(record, guess, *rest, name=name)
+        return replace(beam_job(record, *rest), name=name)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None

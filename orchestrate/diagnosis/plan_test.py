@@ -191,9 +191,11 @@ class PlanJob(Job):
         self, structure: Structure, level: float, fmus: Mapping[str, Path]
     ) -> tuple[float, float, float, float]:
         """Shake and measure; return verdict, heard, largest gap and largest reading."""
-        ends = {"first": self.first, "last": self.last, "duration": self.duration}
-        sine, rate = SweptSine(**ends, acceleration=level), 20.0 * self.last
-        history = shake(structure, sine, sample_rate=rate, fmu=fmus, **HERE)
+        sine = SweptSine(
+            first=self.first, last=self.last, duration=self.duration, acceleration=level
+        )
+        here: Running = {**HERE, "fmu": {name: str(path) for name, path in fmus.items()}}
+        history = shake(structure, sine, sample_rate=20.0 * self.last, **here)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit
             felt = measure(history, dict(self.sensors), excitation=sine)
@@ -268,7 +270,7 @@ def recommended_levels(
     least = int(wrong[-1]) + 1 if len(wrong) else 0
     if least > top or not (usable & right)[least : top + 1].any():
         return float(levels[top]), float(levels[top]), False
-    chosen = []
+    chosen: list[float] = []
     for factor, start in ((reserve, levels[least]), (2.0, None)):
         wanted = factor * (chosen[-1] if start is None else start) * (1.0 - 1e-9)
         above = [one for one in levels[: top + 1] if one >= wanted]

@@ -111,8 +111,8 @@ LIGHT = orchestrate.Structure.from_halves(
 
 def followed(structure, guess, sensor, plan, level):
     """The verdict on a structure that is measured as a plan says."""
-    ends = (float(plan[f"recommended_{name}"]) for name in ("first", "last", "duration"))
-    sine = orchestrate.SweptSine(*ends, acceleration=float(level))
+    ends = {name: float(plan[f"recommended_{name}"]) for name in ("first", "last", "duration")}
+    sine = orchestrate.SweptSine(**ends, acceleration=float(level))
     history = orchestrate.shake(structure, sine, progress=False)
     felt = orchestrate.measure(history, sensor, excitation=sine)
     return str(orchestrate.detect(felt, guess, jobs=1, progress=False).verdict.values)
