@@ -104,7 +104,6 @@ what it needs:
 what it gives:
   delaminated      the faces part and strike each other
   no opening seen  up to the level and over the frequencies of the record; never "intact"
-  something strikes: stop or softer face   one sensor or one level does not tell which
   not described    the beam, its clamp or the sensors do something else
   undecided        this record does not tell; the report says which one would
   and for each record a report to read, print and sign (.html), the answers (.nc), a picture"""

@@ -10,7 +10,6 @@ from .settings import SETTINGS, Settings
 
 DELAMINATED = "delaminated"
 NOT_SEEN = "no opening seen"
-STRIKES = "something strikes: stop or softer face"
 NOT_DESCRIBED = "not described"
 UNDECIDED = "undecided"
 SAME_LEVEL = 0.9  # of a level: what a record reaches of the level of another at the same one
@@ -92,7 +91,7 @@ class Findings:
                 if self.excess <= 1.0
                 else "",
             ),
-            Condition(heard == NOTHING, f"By its timing: {heard}."),
+            Condition(heard == NOTHING, f"Something strikes, by its timing: {heard}."),
             Condition(
                 self.hidden <= self.settings.hidden,
                 f"Noise hides an order 2 of up to {digits(100.0 * self.hidden, most)} % of order "
@@ -131,7 +130,7 @@ class Beam:
     records: tuple[Findings, ...]
 
     def verdict(self) -> str:
-        """Apply the rule and return one of the five verdicts.
+        """Apply the rule and return one of the four verdicts.
 
         - "undecided" without a usable record: one whose channels are not saturated (`clipped`),
           whose sweep passes the resonance (`end_response`), which is the guess's (`guess_factor`).
@@ -139,22 +138,27 @@ class Beam:
           one sensor its resonance is known by the guess, or by two levels between which the
           displacement `grows` and the resonance moves by `shift` at most); "undecided" if another
           one, of no lower level, contradicts.
-        - "something strikes: stop or softer face": that is heard in one.
         - "no opening seen": in all of them nothing is heard, order 2 and the difference of the
           faces are below their thresholds, and noise hides no order 2 of `hidden`.
-        - "not described": the base strikes, or what is heard is not locked to the stroke, or kinks.
-          "undecided": all else.
+        - "not described": the base strikes, or what is heard is not locked to the stroke, or kinks,
+          and no stop or softer face strikes.
+        - "undecided": all else. :meth:`reason` says what strikes, :meth:`next_measurement` how to
+          tell a stop from a softer face.
         """
         usable = self.usable
         words = {self.word(one) for one in usable}
         if FACES in words:
             return UNDECIDED if self.against else DELAMINATED
-        if words & {STOP, SOFTER}:
-            return STRIKES
         if usable and all(not one.stops() for one in usable):
             return NOT_SEEN
         is_other = words & {"base strikes", "not locked", "kinks"}
-        return NOT_DESCRIBED if is_other else UNDECIDED
+        return NOT_DESCRIBED if is_other and not self.may_be_a_stop else UNDECIDED
+
+    @property
+    def may_be_a_stop(self) -> bool:
+        """Whether something strikes that is a stop or a softer face, and no faces do."""
+        words = {self.word(one) for one in self.usable}
+        return FACES not in words and bool(words & {STOP, SOFTER})
 
     @property
     def usable(self) -> list[Findings]:
@@ -226,15 +230,18 @@ class Beam:
         one_sensor = all(one.sensors == 1 for one in self.records)
         other = "an accelerometer on the other face" if one_sensor else "a slower sweep"
         second = "" if self.grows is not None else ", or a sweep at twice the level beside this one"
+        if self.may_be_a_stop and not one_sensor:
+            return "Sensors nearer to where it may be open: faces between them strike both ways."
+        if self.may_be_a_stop:
+            return (
+                f"The same sweep with {other}, exactly opposite{second}: blows of two faces are "
+                "opposite, those of a stop are equal."
+            )
         return {
             DELAMINATED: "A sweep in the other direction and another level should give the same "
             "frequencies of the halves; a free clamp or a loose part would not.",
             NOT_SEEN: "A sweep at a higher level: faces that are pressed together open above a "
             "threshold only, and below it no record tells them from bonded ones.",
-            STRIKES: f"The same sweep with {other}, exactly opposite{second}: blows of two faces "
-            "are opposite, those of a stop are equal."
-            if one_sensor
-            else "Sensors nearer to where it may be open: faces between them strike both ways.",
             NOT_DESCRIBED: "Sweeps up and down at two levels after the clamp is tightened and "
             "loose parts are taken away: what is seen is neither a sound beam nor this one.",
             UNDECIDED: (advice or [f"Sweeps up and down at twice the level, with {other}."])[0],

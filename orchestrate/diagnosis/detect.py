@@ -89,8 +89,8 @@ def detect(
     Returns
     -------
     xarray.Dataset
-        ``verdict``: ``"delaminated"``, ``"something strikes: stop or softer face"``, ``"no opening
-        seen"``, ``"not described"`` or ``"undecided"``; ``opening_level`` of the base in m/s2, the
+        ``verdict``: ``"delaminated"``, ``"no opening seen"``, ``"not described"`` or
+        ``"undecided"``; ``opening_level`` of the base in m/s2, the
         lowest at which faces strike (NaN where none do). Over ``record``: ``record_level`` in m/s2
         and ``record_strikes``, what strikes in it. All else is of the one that was fitted, which
         hears most: ``ratio`` (misfit of the best sound hypothesis over that of the delaminated

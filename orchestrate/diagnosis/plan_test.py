@@ -27,14 +27,14 @@ from ..running.executors import InlineExecutor
 from ..running.job import Job, Table, refuse_family
 from ..running.options import Running
 from ..running.runner import answer
-from .decision_rule import DELAMINATED, NOT_DESCRIBED, NOT_SEEN, STRIKES, UNDECIDED, Beam
+from .decision_rule import DELAMINATED, NOT_DESCRIBED, NOT_SEEN, UNDECIDED, Beam
 from .detect import record_findings
 from .fit import checked_data
 from .impact_timing import TIMING
 from .opening import largest_opening_force, sweep_rate
 
 BOX = "box_acceleration"
-WORDS = (DELAMINATED, STRIKES, NOT_SEEN, NOT_DESCRIBED, UNDECIDED)
+WORDS = (DELAMINATED, NOT_SEEN, NOT_DESCRIBED, UNDECIDED)
 COVERED = (0.65, 1.4)  # of the bonded resonance, and a tenth beyond those of the halves
 WINDOWS = 5.0  # of the timing, while the sweep crosses the resonance's width
 SAMPLES = 25.6  # in a period of the highest frequency: fewer do not show when something strikes

@@ -34,10 +34,6 @@ def make_verdict(answer: xr.Dataset) -> Verdict:
             "None of the structures that were tried, sound or delaminated, describes this record: "
             "the beam, its clamp or the sensors do something else."
         ),
-        "something strikes: stop or softer face": lambda _: (
-            "Something strikes once a period: a stop, a clamp with play, or a face that is softer "
-            "than the guess."
-        ),
         "undecided": lambda _: "This record does not tell a delaminated beam from a sound one.",
     }
     statement = sentences[word](answer) + fitted_frequencies(answer)

@@ -52,8 +52,7 @@ def table_rows(names: list[str], seed: int, count: int, budget: float) -> Iterat
             numbers = f"ratio {answer.ratio:.2f}, misfits {answer.misfit.values.round(2).tolist()}"
             spent = f"{time.process_time() - begin:.0f} s"
             yield f"{name} {number}: {verdict}; {numbers}; {spent} {wrong or case.truth}"
-    strikes = "something strikes: stop or softer face"
-    columns = (DELAMINATED, NO_OPENING, strikes, UNDECIDED, "not described", WRONG)
+    columns = (DELAMINATED, NO_OPENING, UNDECIDED, "not described", WRONG)
     yield f"{'':16}" + "".join(f"{column[:16]:>17}" for column in columns)
     for name, row in counts.items():
         yield f"{name:16}" + "".join(f"{row[column]:17d}" for column in columns)

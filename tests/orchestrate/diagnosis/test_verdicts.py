@@ -43,8 +43,8 @@ nothing strikes, no order 2: heard=1.5 excess=0.3 -> no opening seen
 the same, by two sensors that differ: heard=1.5 excess=0.3 apart=4 -> undecided
 something faint: heard=5 excess=0.3 -> undecided
 order 2, and nothing strikes, as of a crack: heard=1.5 -> undecided
-where it strikes does not move: spread=0.1 -> something strikes
-the resonance is not known: stiffness=nan -> something strikes
+where it strikes does not move: spread=0.1 -> undecided
+the resonance is not known: stiffness=nan -> undecided
 the base strikes: base=30 -> not described
 dry friction: locked=0.3 -> not described
 a channel is saturated: clipped=0.01 -> undecided
@@ -53,10 +53,10 @@ the times are in ms: resonance=0.046 -> undecided
 noise: heard=1.5 excess=0.3 hidden=0.19 -> undecided
 opens from the higher level on: heard=1.5 excess=0.3 | high=8 displacement=2e-3 -> delaminated
 the higher level contradicts: | high=8 displacement=2e-3 heard=1.5 excess=0.3 -> undecided
-at a stop the stroke does not grow: | high=8 -> something strikes
-it stiffens: | high=8 displacement=2e-3 resonance=48 -> something strikes
+at a stop the stroke does not grow: | high=8 -> undecided
+it stiffens: | high=8 displacement=2e-3 resonance=48 -> undecided
 two levels in place of a frequency: stiffness=nan | high=8 displacement=2e-3 -> delaminated
-less than twice the level says nothing: stiffness=nan | high=5 stiffness=nan -> something strikes
+less than twice the level says nothing: stiffness=nan | high=5 stiffness=nan -> undecided
 one record is saturated: clipped=0.01 | -> delaminated
 nothing at both levels: heard=1.5 excess=0.3 | heard=1.5 excess=0.3 high=8 -> no opening seen
 """  # what is changed of a record in which faces strike, or of several -> their verdict
@@ -74,7 +74,7 @@ def test_each_case_has_its_word(case):
     name, _, rest = case.partition(": ")
     changes, expected = rest.split("-> ") if "-> " in rest else ("", rest)
     beam = Beam(tuple(changed(text) for text in changes.split("|")))
-    assert beam.verdict().partition(":")[0] == expected, name
+    assert beam.verdict() == expected, name
     advice = beam.next_measurement()
     assert advice and "intact" not in f"{advice} {beam.reason()} {beam.seen_up_to()}"
 
