@@ -82,7 +82,9 @@ class Diagnose(DiagnosedRecords, OfStructure, InColumns, Reading, Command, Resul
     """Whether a measured beam is delaminated: a verdict, its evidence, a report."""
 
     structure: Any = option(
-        "guess of the beam: TOML file with a [structure], or the name of a set", value="SET|FILE"
+        "guess of the beam: TOML file with a [structure], or the name of a set (default: halves of "
+        "equal mass around the record's resonance)",
+        value="SET|FILE",
     )
     notes: str | None = option(
         "below the title of the report: which beam, who, when", value="WORDS"
@@ -97,8 +99,8 @@ class Diagnose(DiagnosedRecords, OfStructure, InColumns, Reading, Command, Resul
 what it needs:
   a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
   table, the clamp; in Python and in files of this package box_acceleration) and of one face of
-  the beam, or of both faces (acceleration1, acceleration2); and a guess of the beam in a file,
-  within some 10 %: masses of both halves and their natural frequencies, see 'quantities'.
+  the beam, or of both faces (acceleration1, acceleration2); and better with a guess of the beam
+  in a file, within some 10 %: masses of both halves and their natural frequencies, see 'quantities'.
   Several records are of several beams; several sweeps in a file give a verdict each, and the
   signs compare their levels.
 what it gives:
@@ -115,11 +117,10 @@ what it gives:
 
         Files.from_options(self, "", fresh=True)  # before records are read
         self.participation_by_sensor()
-        if self.structure is None:
-            check_file(self.records[0])  # a name may be wrong too
-            text = "expected a TOML file with a guess of the beam, within some 10 %"
-            raise InputError(f"--structure is missing; {text}")
-        guess = self.read_structure()
+        check_file(self.records[0])  # a name may be wrong too
+        if self.structure is None and self.set:
+            raise InputError("--set: of a guess; expected --structure FILE.toml with it")
+        guess = None if self.structure is None else self.read_structure()
         others = [self.read_one_record(path) for path in self.other]
         if others and len(self.records) > 1:
             raise InputError("--other: of one beam; expected one record with it")
@@ -144,13 +145,13 @@ what it gives:
     def file_stem(
         self,
         sweep: Sweep,
-        guess: Structure,
+        guess: Structure | None,
     ) -> str:
         """Return the name of a record's results, unique for content, guess and reading."""
         read_as = [self.channels, self.participation, *self.given(Reading).items()]
         number = f"_sweep{sweep.number}" if sweep.number else ""
         others = [file_checksum(path) for path in self.other]
-        part = digest(file_checksum(sweep.path), others, guess.parameters(), read_as)
+        part = digest(file_checksum(sweep.path), others, guess and guess.parameters(), read_as)
         return f"diagnose_{sweep.path.stem}{number}_{part}"
 
     def read_all_records(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
@@ -206,7 +207,7 @@ what it gives:
         self,
         records: Mapping[Sweep, xr.Dataset],
         names: Mapping[Sweep, str],
-        guess: Structure,
+        guess: Structure | None,
         others: Sequence[xr.Dataset] = (),
     ) -> dict[Sweep, xr.Dataset]:
         """Compute or load each beam's verdict; store with it where it comes from."""
@@ -239,7 +240,7 @@ what it gives:
             "record_converted": record.attrs.get("converted", ""),
             "record_time_base": record.attrs.get("time_base", ""),
             "sensors": record.attrs.get("sensors", ""),
-            "guess_file": str(self.structure),
+            "guess_file": str(self.structure or ""),
             "command": getattr(self, "command_line", ""),
         }
         return {name: text for name, text in words.items() if text}

@@ -21,7 +21,7 @@ from .settings import Changes, checked_settings
 
 def detect_all(
     records: Mapping[str, xr.Dataset | Sequence[xr.Dataset]],
-    guess: Structure,
+    guess: Structure | None = None,
     *,
     free: Sequence[str] = FREE,
     participation: Participation = None,
@@ -35,7 +35,7 @@ def detect_all(
     records : mapping of str to xarray.Dataset, or to sequences of them
         By names of your own, which are the names of the files. One beam each, as for
         :func:`orchestrate.detect`.
-    guess : Structure
+    guess : Structure, optional
         Of all of them.
     free : sequence of str
         As for :func:`orchestrate.detect`.

@@ -35,7 +35,7 @@ def sine(tmp_path):
 
 
 MISTAKES = """
-    FILE : --structure is missing | guess of the beam
+    FILE --set e=0.4 : --set: of a guess | --structure FILE.toml
     lost.csv : lost.csv: no such file; expected a record
     FILE GUESS --participation 99 : --participation 99: expected -10 to 10
     FILE --structure lost.toml : lost.toml
