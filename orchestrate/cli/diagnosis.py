@@ -100,7 +100,7 @@ what it needs:
   a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
   table, the clamp; in Python and in files of this package box_acceleration) and of one face of
   the beam, or of both faces (acceleration1, acceleration2); and better with a guess of the beam
-  in a file, within some 10 %: masses of both halves and their natural frequencies, see 'quantities'.
+  in a file, within some 10 %: masses and natural frequencies of both halves, see 'quantities'.
   Several records are of several beams; several sweeps in a file give a verdict each, and the
   signs compare their levels.
 what it gives:

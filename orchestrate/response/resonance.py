@@ -122,12 +122,16 @@ class ResonanceJob(SweepJob):
 
     def jumps(self, data: xr.Dataset) -> dict[str, Variable]:
         """Return dataset variables of the jumps of the largest gap, by direction."""
-        rows, sizes = [], []
+        rows, sizes, name = [], [], self.series.name
         for curve in self.curves(data):
             down = str(curve.direction.values) == "down"
-            passed = curve.isel({self.series.name: np.s_[::-1]}) if down else curve
+            passed = curve.isel({name: np.s_[::-1]}) if down else curve
             gaps = passed.x_rel_max.values
+            here = {"structure": str(curve.structure.values)}
+            differ = self.directions_differ(data.sel(here | {name: passed[name].values}))
             for index in jump_indices(gaps, self.jump):
+                if not (differ[index] or differ[index + 1]):
+                    continue  # both directions alike: steep, or a gap between frequencies
                 rows.append(passed.isel({self.series.name: index + 1}))
                 sizes.append((gaps[index], gaps[index + 1]))
         text = "largest gap {} the jump"
@@ -137,6 +141,12 @@ class ResonanceJob(SweepJob):
             "jump_before": variable("jump", before, "m", text.format("before")),
             "jump_after": variable("jump", after, "m", text.format("after")),
         }
+
+    def directions_differ(self, data: xr.Dataset) -> NDArray[np.bool_]:
+        """Return where the largest gaps up and down differ as by a jump; of one direction: all."""
+        values = data.x_rel_max.transpose("direction", self.series.name).values
+        high, low = values.max(axis=0), values.min(axis=0)
+        return (high - low > self.jump * high) | (len(values) == 1)
 
     def locations(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
         """Return variables of structure, direction and frequency for peaks or jumps."""
@@ -273,7 +283,8 @@ def resonance(
         ``impacts_per_period``, ``multiplicity`` and ``multiplicity_decided``,
         ``permanent_contact``. Over ``peak`` and ``jump``: structure, direction and frequency of
         each, and how large it is. What peaks is the larger one of both displacements; what jumps is
-        the largest gap, in which a change from one motion to another shows best.
+        the largest gap, in which a change from one motion to another shows best. Where both
+        directions are computed, a step at which they are alike is steep, and no jump.
         With a clearance, ``threshold_amplitude`` and ``threshold_acceleration`` of the box, at
         which the linear response of the delaminated structure first opens or touches, see
         :func:`orchestrate.contact_threshold`.

@@ -53,6 +53,18 @@ def test_where_two_motions_exist_both_jumps_are_told():
     np.testing.assert_array_equal(one_way.x1_max[:, 0], found.x1_max.sel(direction="up"))
 
 
+def test_a_steep_step_that_both_directions_have_is_no_jump():
+    """Two of its frequencies lie at both sides of an impact's end; with finer ones it is steep."""
+    halves = {"m1": 0.15, "m2": 0.12, "f1": 42.0, "f2": 53.0, "zeta1": 0.007, "zeta2": 0.007}
+    frequency = 2.0 * np.pi * np.arange(47.0, 51.1, 0.25)
+    asked = {"frequency": frequency, "amplitude": 0.49 / 300.0**2}
+    both = resonance(Structure.from_halves(**halves, e=0.6), **asked)
+    assert (
+        both.sizes["jump"] == 0
+        and resonance(Structure.from_halves(**halves, e=0.6), **asked, direction="up").sizes["jump"]
+    )
+
+
 @given(st.lists(st.booleans(), min_size=1, max_size=40))
 def test_ranges_of_irregular_responses_reach_over_narrow_windows_alone(irregular):
     inside = inside_irregular(irregular)
