@@ -107,6 +107,13 @@ def ask_plan(q: Draw) -> xr.Dataset:
     return o.plan_test(q.halves(), sensor=sensor, levels=[0.4, 10.0], **QUIET)
 
 
+def ask_halves(q: Draw) -> xr.Dataset:
+    """The halves by a knock on each, with a gap between them."""
+    apart = q.halves().replace(clearance=0.01)
+    knocks = [o.Hammer(peak=5.0, width=0.004, half=half, duration=4.0) for half in (1, 2)]
+    return o.halves(*(o.shake(apart, one, sample_rate=2000.0, **QUIET) for one in knocks))
+
+
 QUIET: dict[str, Any] = {"progress": False, "jobs": 1}
 GUESS = o.Structure.from_halves(m1=1.5, m2=1.2, f1=31.5, f2=36.5, zeta1=0.03, zeta2=0.015, e=0.6)
 PLANE: dict[str, Any] = {"y": ("v_rel", -1.0, 1.0, 10), "transient": 50, "longest": 500, **QUIET}
@@ -180,6 +187,7 @@ QUESTIONS: dict[str, Ask] = {
     "detect": lambda q: o.detect(q.record(), GUESS, **QUIET),
     "detect_all": lambda q: o.detect_all({"one": q.record()}, GUESS, **QUIET)["one"],
     "plan_test": ask_plan,
+    "halves": ask_halves,
     "cosimulate": lambda q: o.cosimulate(
         *q.system,
         inputs={"voltage": q.ends[0] * q.system.drive.volts(q.system.structure)},

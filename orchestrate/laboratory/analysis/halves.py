@@ -75,7 +75,7 @@ def halves(
     >>> knocks = [orchestrate.Hammer(peak=5.0, width=0.01, half=n, duration=8.0) for n in (1, 2)]
     >>> records = [orchestrate.shake(beam, one, sample_rate=500.0) for one in knocks]
     >>> orchestrate.halves(*records).frequency.values.round(2).tolist()
-    [12.5, 12.5]
+    [11.94, 13.08]
     """
     if (other is None) == (thicknesses is None):
         given = "neither" if other is None else "both"

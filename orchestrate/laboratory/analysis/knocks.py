@@ -26,8 +26,8 @@ class Knocks:
       than the longest of them are one. Together they take less than ``SPARSE`` of the record.
     - Another within ``BOUNCE`` of the longest time between two (or to the end) is a double hit,
       which is left out and named.
-    - A segment begins a knock's length before it and ends before the next one, or by the
-      resolution.
+    - A segment begins a knock's length before it, or with the record, which does not begin within a
+      knock, and ends before the next one, or by the resolution.
     - The force window is 0 further than a knock's length from it.
     - The exponential window, on force and responses alike, falls to ``LEFT`` at the segment's end.
     """
@@ -49,11 +49,12 @@ class Knocks:
         width = max(part[-1] - part[0] + 1 for part in parts)
         parts = np.split(beyond, np.flatnonzero(np.diff(beyond) > width) + 1)
         width = int(max(part[-1] - part[0] + 1 for part in parts))
-        begins = np.array([part[0] for part in parts]) - width
+        knocks = np.array([part[0] for part in parts])
+        begins = np.maximum(knocks - width, 0)
         gaps = np.diff([*begins, len(force)])
         first = np.diff(begins, prepend=-len(force)) > BOUNCE * gaps.max()
-        single = first & (gaps > BOUNCE * gaps.max()) & (begins >= 0)
-        name_left_out(channels.time[np.maximum(begins[first & ~single], 0)], first.sum())
+        single = first & (gaps > BOUNCE * gaps.max()) & (knocks > 0)
+        name_left_out(channels.time[begins[first & ~single]], first.sum())
         length = int(gaps[single].min())
         if resolution is not None:
             finest, coarsest = (channels.sample_rate / n for n in (length, FEWEST_LINES))
@@ -90,7 +91,7 @@ def name_left_out(times: Floats, count: int) -> None:
     if not len(times):
         return
     listed = ", ".join(f"{time:.6g}" for time in times)
-    text = f"double hits, or too near the record's beginning, at {listed} s"
+    text = f"double hits, or knocks in which the record begins, at {listed} s"
     if len(times) == count:
         raise InputError(f"record: {text}; expected a knock after which the hammer stays away")
     warnings.warn(f"{len(times)} of {count} knocks left out: {text}", UserWarning, stacklevel=4)

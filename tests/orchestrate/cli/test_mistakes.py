@@ -77,7 +77,7 @@ MISTAKES = {  # options of each command, then what its line says
         --random 5:1,9:1 : --random | --duration
         --shock sawtooth --g 1 : --shock | --length
         --record no.csv : no.csv: no such file; expected a record
-        --record a.csv --g 1 : --g: expected with --swept-sine or --stepped-sine or --shock alone
+        --record a.csv --g 1 : --g: expected with --swept-sine | --random alone
         --swept-sine 8:20 --g 1 --unit g : --unit | with --record alone
     """,
     "analyse": """

@@ -128,10 +128,11 @@ QUESTIONS: Mapping[str, tuple[int, Ask]] = {  # with the items of a chunk
             **{"voltage": (1.5, 1.6), "count": 2, "tolerance": 0.05, "step": 0.4},
         ),
     ),
+    "PlanJob": (1, asked(orchestrate.plan_test, BEAM, levels=[0.5, 5.0], frequencies=[40.0, 56.0])),
     "FitJob": (1, fit),
     "DetectJob": (1, detect),
 }
-SLOW = ("JumpVoltagesJob", "CaptureJob", "DriveBranchJob", "DetectJob", "BorderJob")
+SLOW = ("JumpVoltagesJob", "CaptureJob", "DriveBranchJob", "DetectJob", "PlanJob", "BorderJob")
 
 
 def kinds_of_questions() -> set[type[Job]]:
