@@ -177,7 +177,11 @@ def parse_breakpoints(option: str, text: str) -> tuple[tuple[float, float], ...]
 def parse_density(option: str, text: str) -> tuple[tuple[float, float], ...]:
     """Parse a density over frequency in (m/s2)^2/Hz, or in g2/Hz with that unit behind it."""
     squared = 1.0 if text == (number := text.removesuffix("g2/Hz")) else GRAVITY**2
-    return tuple((f, squared * value) for f, value in parse_breakpoints(option, number))
+    try:
+        return tuple((f, squared * value) for f, value in parse_breakpoints(option, number))
+    except InputError:
+        expected = "expected HZ:VALUE,HZ:VALUE,... such as 10:0.5,200:0.5, or 10:2e-3,200:2e-3g2/Hz"
+        raise InputError(f"{option} {text}: {expected}") from None
 
 
 Density = Annotated[tuple[tuple[float, float], ...] | None, parse_density]

@@ -395,8 +395,16 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
             picture.write_pictures(partial(draw, first, label, dict(others)))
 
     def warn_without_sensor(self, records: Mapping[str, xr.Dataset]) -> None:
-        """Warn if simulated accelerations without impulses are compared with measured ones."""
+        """Warn if simulated accelerations without impulses are compared with measured ones.
+
+        Raise where sensors are given, and no motion is simulated.
+        """
         simulated = [label for label, record in records.items() if "impulse" in record]
+        if self.sensor is not None and not simulated:
+            raise InputError(
+                f"--sensor {self.sensor}: of simulated motions; expected a result of shake, or a "
+                "record without it"
+            )
         if self.sensor is None and 0 < len(simulated) < len(records):
             warnings.warn(
                 f"{', '.join(simulated)}: accelerations between impacts, compared with a record "

@@ -102,10 +102,14 @@ class OfStructure(Options):
     def read_structure(self) -> Structure:
         """Return the ``Structure`` of ``--structure`` with the changes of ``--set``."""
         from ..model import Structure
+        from ..model.files import parse, resolve
 
         changes = parse_changes(self.set)
         structure = Structure.from_file(self.structure).replace(**changes)
         print_assumptions(structure, self.structure, changes)
+        file = {} if self.structure in SET_NAMES else parse(resolve(self.structure))
+        if not structure.bonded and "e" not in {**file.get("structure", {"e": 0}), **changes}:
+            print(f"assumed: e = {structure.e:g} ({self.structure} has none; --set e=VALUE)")
         return structure
 
 

@@ -317,7 +317,7 @@ def basin(
         if x is None and y is None and at is None:
             at = known.samples.mean(axis=0)
     if hasattr(at, "data_vars"):
-        at = mean_state(at)  # type: ignore[arg-type]
+        at = mean_state(at, point.excitation.frequency)  # type: ignore[arg-type]
     sides = (
         known.default_axis("x_rel") if x is None and known else checked_axis("x", x),
         known.default_axis("v_rel") if y is None and known else checked_axis("y", y),
@@ -334,7 +334,7 @@ def basin(
     )
 
 
-def mean_state(found: xr.Dataset) -> Floats:
+def mean_state(found: xr.Dataset, frequency: float) -> Floats:
     """Return the mean of a state on each attractor of :func:`attractors`, at one parameter."""
     over = [name for name in found.get("state", xr.DataArray()).dims if name != "coordinate"]
     if "attractor" not in over or any(
@@ -344,6 +344,10 @@ def mean_state(found: xr.Dataset) -> Floats:
             f"at: a dataset over {', '.join(map(str, found.sizes))}; expected a result of "
             "attractors at one frequency"
         )
+    there = float(found.frequency)
+    if not math.isclose(there, frequency, rel_tol=1e-6):
+        text = f"expected those at frequency = {frequency:.6g} rad/s"
+        raise InputError(f"at: attractors at {there:.6g} rad/s; {text}")
     return np.nanmean(found.state.values.reshape(-1, len(STATE)), axis=0)
 
 

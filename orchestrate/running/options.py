@@ -72,6 +72,11 @@ class RunOptions:
     build_folder: str | os.PathLike[str] | None = None
 
     def __post_init__(self) -> None:
+        if isinstance(self.force, float):
+            text = (
+                "expected true or false, to compute anew; a force on a half is force1= or force2="
+            )
+            raise InputError(f"force = {self.force!r}: {text}")
         for name in ("progress", "force", "keep_stale"):
             object.__setattr__(self, name, checked_flag(name, getattr(self, name)))
         for name, value in self.paths():
