@@ -344,7 +344,7 @@ def mean_state(found: xr.Dataset, frequency: float) -> Floats:
             f"at: a dataset over {', '.join(map(str, found.sizes))}; expected a result of "
             "attractors at one frequency"
         )
-    there = float(found.frequency)
+    there = float(np.ravel(found.frequency)[0])
     if not math.isclose(there, frequency, rel_tol=1e-6):
         text = f"expected those at frequency = {frequency:.6g} rad/s"
         raise InputError(f"at: attractors at {there:.6g} rad/s; {text}")
