@@ -45,7 +45,7 @@ class Overlay(Options):
 class Asked(Command):
     """A command that asks its public function and shows the result."""
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure | None, Question]:
         """Return the structure and the keywords of the public function, at one frequency."""
         structure = self.read_structure()
         excitation = self.read_excitation(structure, si=True, one=True)
@@ -68,7 +68,7 @@ class Asked(Command):
     def __call__(self) -> None:
         """Ask, print the summary, write result and picture."""
         structure, question = self.ask()
-        if not getattr(self, "beside", False):
+        if structure is None or not getattr(self, "beside", False):
             self.answer(structure, question)
             return
         for name in ("store", "start"):
@@ -81,7 +81,7 @@ class Asked(Command):
 
     def answer(
         self,
-        structure: Structure,
+        structure: Structure | None,
         question: Question,
         *,
         picture: bool = True,
@@ -93,19 +93,21 @@ class Asked(Command):
         import orchestrate
 
         function = function or self.calls
-        branches = self.read_overlay(structure, question)
+        branches = self.read_overlay(structure, question) if structure else []
         over = f"over_{digest(*branches)}" if branches else ""
         file = getattr(self, "structure", "") or getattr(self, "start", None) or "paper"
         name = result_name(function, file, structure, question)
         files = Files.from_options(self, f"{name}_{ending}" if ending else name, over)
         picture = picture and self.has_picture(question)
-        print_frequency_notes(self, structure, question)
+        if structure:
+            print_frequency_notes(self, structure, question)
         with importing_matplotlib(picture and files.lacks_pictures()):
             running = self.running(files.result)
             data: xr.Dataset = getattr(orchestrate, function)(structure, **question, **running)
         asked = with_units(data, self.display_units(question))
         (shown,) = with_readable_lengths(asked)
-        for line in (*trivial_notes(structure, question, shown), *self.summary(shown)):
+        notes = trivial_notes(structure, question, shown) if structure else ()
+        for line in (*notes, *self.summary(shown)):
             print(line)
         draw = partial(self.draw, shown, *branches, *beside)
         files.write(asked, draw if picture else None)

@@ -110,6 +110,8 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
   {program} cosimulate --drive shaker.fmu --list
   {program} cosimulate --structure beam --drive shaker.fmu --duration 2 --step 1e-3
       --connect box_acceleration=table_acc box_force=-force --input volts=3 --record amperes
+  {program} cosimulate --structure none --drive shaker.fmu --connect box_acceleration=table_acc
+      --input volts=3 --duration 2 --step 1e-3                the drive alone
   {program} cosimulate --structure beam --drive shaker.fmu --connect box_velocity=v box_force=f
       --input volts=volts.csv --duration 2 --step 1e-3"""
 
@@ -120,11 +122,15 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
         else:
             super().__call__()
 
-    def ask(self) -> tuple[Structure, Question]:
-        structure = self.read_structure()
+    def ask(self) -> tuple[Structure | None, Question]:
+        alone = self.structure == "none"
+        if alone and self.set:
+            raise InputError("--set: --structure none has no parameters; leave it out")
+        structure = None if alone else self.read_structure()
         if self.structure == "paper" and not self.set:
             raise InputError(
-                "--structure is missing; expected one in SI units, as the drive has them"
+                "--structure is missing; expected one in SI units, as the drive has them, or none "
+                "for the drive alone"
             )
         question = self.keywords()
         for name in ("duration", "step"):
@@ -140,9 +146,15 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
         }
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        yield from extents(data, "x1 x2")
-        yield f"impacts: {data.sizes['impact']} in {float(data.time[-1]):.6g} s"
-        worst = text_of(data, data.coupling_error.max(), "m", ".2g")
-        yield f"coupling error of the displacements: {worst} (from a second run with half the step)"
+        if self.structure == "none":
+            from ..weak_drive.connection import MOTION
+
+            yield f"no structure: the drive alone for {float(data.time[-1]):.6g} s"
+            yield from extents(data, " ".join(name for name in MOTION if name in data))
+        else:
+            yield from extents(data, "x1 x2")
+            yield f"impacts: {data.sizes['impact']} in {float(data.time[-1]):.6g} s"
+            worst = text_of(data, data.coupling_error.max(), "m", ".2g")
+            yield f"coupling error of the displacements: {worst} (a second run with half the step)"
         if data.attrs["inputs_at_start"]:
             yield f"no input was given for {data.attrs['inputs_at_start']}, which stays so"

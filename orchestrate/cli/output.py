@@ -218,12 +218,12 @@ def check_output(folder: Path, option: str = "--output") -> None:
 
 
 def result_name(
-    command: str, structure_file: str, structure: Structure, question: Mapping[str, Any]
+    command: str, structure_file: str, structure: Structure | None, question: Mapping[str, Any]
 ) -> str:
     """Return a result's file name: command, the structure's name, and a digest of all."""
     stem = Path(structure_file).stem
     own = OWN_NAME.fullmatch(stem)
-    digits = digest(structure.parameters(), question)
+    digits = digest(structure.parameters() if structure else {}, question)
     return f"{command}_{own[1] if own else stem}_{digits}"
 
 

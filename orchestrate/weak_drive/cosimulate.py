@@ -98,10 +98,11 @@ class Coupling:
         connection = job.begin_drive(drive, self.inputs)
         connection = replace(connection, recorded=job.record)
         self.h = job.step / parts
-        scheme = Scheme(self.h)
+        fixed = drive.description.has_fixed_step or drive.description.internal_step
+        goes_back = drive.description.has_states and not fixed
+        scheme = Scheme(self.h, halves_discarded=goes_back)
         self.master = Master(oscillator, drive, scheme, connection, inverse_mass=inverse_mass)
         knows = "box_acceleration" in connection.links
-        fixed = drive.description.has_fixed_step or drive.description.internal_step
         self.divides_first = not knows and not fixed
 
     def advance(self, items: Sequence[int]) -> Table:
@@ -488,7 +489,8 @@ def cosimulate(
         Where a connection cannot be made, a name is not the drive's, or a number is out of its
         range.
     FmuError
-        Where an FMU refuses or discards a step, or returns early from it.
+        Where an FMU refuses a step, returns early from it, or discards it: at last, for a drive
+        that can go back is tried with parts of the step, down to 1/64.
 
     Notes
     -----

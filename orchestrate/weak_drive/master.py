@@ -46,6 +46,7 @@ class Scheme:
     halvings: int = 6  # how often `h` is halved at most
     easy: float = 1.0 / 64.0  # part of the tolerance
     first_passes: int = 3  # of the first step, where the drive can go back
+    halves_discarded: bool = False  # a step that the drive discards, where it can go back
 
     def __post_init__(self) -> None:
         """Check step length and tolerance."""
@@ -58,7 +59,8 @@ class Scheme:
 
     def most_rows(self, intervals: int) -> int:
         """Return how many steps a number of intervals may take."""
-        return intervals << self.halvings if self.tolerance else intervals
+        halves = self.tolerance or self.halves_discarded
+        return intervals << self.halvings if halves else intervals
 
 
 STATES: dict[int, tuple[str, ...]] = {3: ("GetFMUState", "SetFMUState", "FreeFMUState")}
@@ -111,7 +113,7 @@ class Pair(ctypes.Structure):
     _fields_ = [
         *((name, Side) for name in ("oscillator", "drive")),
         *((name, c_double) for name in ("tolerance", "easy")),
-        *((name, c_int) for name in ("halvings", "first_passes")),
+        *((name, c_int) for name in ("halvings", "first_passes", "halves_discarded")),
         *((name, Links) for name in ("force", "motion")),
         ("cubic", c_int),
         ("recorded", POINTER(c_uint)),
@@ -281,6 +283,7 @@ class Master:
             setattr(pair, name, getattr(self.scheme, name))
         goes_back = drive.instance.description.has_states
         pair.first_passes = self.scheme.first_passes if goes_back else 1
+        pair.halves_discarded = self.scheme.halves_discarded and goes_back
         pair.force, pair.motion = Links.of(drive.forces), Links.of(drive.motions)
         names = () if self._reads_itself else connection.recorded
         pair.cubic, pair.recorded = connection.cubic, references(drive.instance, names)

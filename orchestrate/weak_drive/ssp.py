@@ -1,9 +1,12 @@
-"""Write the coupled system as an SSP 1.0 package, for simulation in other tools.
+"""Write the coupled system as an SSP package, for simulation in other tools.
 
 What all tools read alike was found by trying: parameter bindings of the components, none of the
 system; connections between components only; no connector for the voltage, which some tools would
 set to 0 where nothing is connected to it; a Boolean only where it is true, since FMPy takes any
-other for true as well.
+other for true as well. Importers of SSP 1.0 need not read 2.0, whose types are those of FMI 3.0.
+Neither has terminals: those stand in the FMUs alone.
+
+A sign and a unit are a connection's linear transformation, in place of the tool's own conversion.
 
 What a tool makes of it depends on its master. Most hold inputs constant over a fixed step
 (Jacobi): negative damping, and the step has to be very short. OMSimulator reads the step
@@ -18,6 +21,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from os import PathLike
 from pathlib import Path
+from typing import Literal
 from xml.etree import ElementTree as ET
 
 from ..errors import InputError
@@ -27,7 +31,7 @@ from ..fmu.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
 from ..model.drive import Drive
 from ..model.shaker import Shaker
 from ..model.structure import Structure
-from .connection import checked_links
+from .connection import FORCE, MOTION, Link, checked_links, checked_units
 from .cosimulate import checked_parameters
 from .run import oscillator_start
 from .schedule import check
@@ -61,7 +65,9 @@ class Component:
 
 
 Components = Mapping[str, Component]  # "oscillator" and "shaker"
-Links = Mapping[str, str]  # the shaker's variables by the oscillator's
+Names = Mapping[str, str]  # the shaker's variables by the oscillator's
+Links = Mapping[str, Link]
+REAL = {"1.0": "Real", "2.0": "Float64"}  # types, by the version of SSP
 
 
 def qualified_tag(prefix: str, name: str) -> str:
@@ -91,10 +97,12 @@ def add_units(root: ET.Element, components: Components) -> None:
     for name, unit in sorted(used.items()):
         element = ET.SubElement(parent, qualified_tag("ssc", "Unit"), name=name)
         powers = {base: str(power) for base, power in unit.exponents.items()}
+        if unit.factor != 1.0:
+            powers["factor"] = repr(unit.factor)
         ET.SubElement(element, qualified_tag("ssc", "BaseUnit"), powers)
 
 
-def add_component(elements: ET.Element, name: str, one: Component) -> None:
+def add_component(elements: ET.Element, name: str, one: Component, version: str) -> None:
     """Add one FMU with its connectors and parameter file to the XML document."""
     source, kind = f"resources/{one.path.name}", "application/x-fmu-sharedlibrary"
     component = ET.SubElement(
@@ -107,7 +115,7 @@ def add_component(elements: ET.Element, name: str, one: Component) -> None:
                 connectors, qualified_tag("ssd", "Connector"), name=port, kind=kind
             )
             unit = {"unit": one.unit(port)} if one.unit(port) else {}
-            ET.SubElement(connector, qualified_tag("ssc", "Real"), unit)
+            ET.SubElement(connector, qualified_tag("ssc", REAL[version]), unit)
     bindings = ET.SubElement(component, qualified_tag("ssd", "ParameterBindings"))
     ET.SubElement(
         bindings, qualified_tag("ssd", "ParameterBinding"), source=parameter_file_path(name)
@@ -134,28 +142,42 @@ def add_master(system: ET.Element, step: float) -> None:
     )
 
 
+def add_connection(connections: ET.Element, ours: str, link: Link, given: bool) -> None:
+    """Add a connection from the oscillator if the variable is ``given`` by it, else to it."""
+    ends = [("oscillator", ours), ("shaker", link.theirs)]
+    (start, output), (end, taken) = ends if given else reversed(ends)
+    places = {"startElement": start, "startConnector": output}
+    places |= {"endElement": end, "endConnector": taken}
+    factor = 1.0 / link.scale if given else link.scale
+    if factor != 1.0:
+        places["suppressUnitConversion"] = "true"
+    connection = ET.SubElement(connections, qualified_tag("ssd", "Connection"), places)
+    if factor != 1.0:
+        transformation = qualified_tag("ssc", "LinearTransformation")
+        ET.SubElement(connection, transformation, factor=repr(factor), offset="0.0")
+
+
 def system_description(
-    description: str, stop_time: float, step: float, components: Components, links: Links
+    description: str,
+    times: tuple[float, float],
+    components: Components,
+    links: Links,
+    version: str,
 ) -> bytes:
     """Build the XML file that describes both FMUs and their connections."""
+    stop_time, step = times
     root = ET.Element(
-        qualified_tag("ssd", "SystemStructureDescription"), name="WeakDrive", version="1.0"
+        qualified_tag("ssd", "SystemStructureDescription"), name="WeakDrive", version=version
     )
     system = ET.SubElement(
         root, qualified_tag("ssd", "System"), name="WeakDrive", description=description
     )
     elements = ET.SubElement(system, qualified_tag("ssd", "Elements"))
     for name, one in components.items():
-        add_component(elements, name, one)
+        add_component(elements, name, one, version)
     connections = ET.SubElement(system, qualified_tag("ssd", "Connections"))
-    for ours, theirs in links.items():
-        ends = [("oscillator", ours), ("shaker", theirs)]
-        if ours in components["oscillator"].inputs:
-            ends.reverse()
-        (start, output), (end, taken) = ends
-        places = {"startElement": start, "startConnector": output}
-        places |= {"endElement": end, "endConnector": taken}
-        ET.SubElement(connections, qualified_tag("ssd", "Connection"), places)
+    for ours, link in links.items():
+        add_connection(connections, ours, link, ours in OSCILLATES)
     add_master(system, step)
     add_units(root, components)
     ET.SubElement(
@@ -164,9 +186,9 @@ def system_description(
     return xml_bytes(root)
 
 
-def parameter_values(values: Values) -> bytes:
+def parameter_values(values: Values, version: str) -> bytes:
     """Build the XML file of a component's parameters; false ones are left out."""
-    root = ET.Element(qualified_tag("ssv", "ParameterSet"), version="1.0", name=SET)
+    root = ET.Element(qualified_tag("ssv", "ParameterSet"), version=version, name=SET)
     group = ET.SubElement(root, qualified_tag("ssv", "Parameters"))
     for variable, value in values.items():
         if value is False:
@@ -175,7 +197,7 @@ def parameter_values(values: Values) -> bytes:
         if value is True:
             ET.SubElement(parameter, qualified_tag("ssv", "Boolean"), value="true")
         else:
-            ET.SubElement(parameter, qualified_tag("ssv", "Real"), value=repr(float(value)))
+            ET.SubElement(parameter, qualified_tag("ssv", REAL[version]), value=repr(float(value)))
     return xml_bytes(root)
 
 
@@ -192,12 +214,14 @@ def write_ssp(
     drive: Drive | Shaker | str | PathLike[str],
     *,
     voltage: float | None = None,
-    connect: Links | None = None,
+    connect: Names | None = None,
+    units: Names | None = None,
     parameters: Values | None = None,
     speed_start: float | None = None,
     stop_time: float | None = None,
     step: float | None = None,
     fmus: Sequence[str | PathLike[str]] | None = None,
+    version: Literal["1.0", "2.0"] = "1.0",
 ) -> Path:
     """Write the coupled system of a structure and a drive as an SSP package.
 
@@ -211,9 +235,11 @@ def write_ssp(
         Or anybody's FMU, of FMI 2.0 for most tools.
     voltage : float
         Of a motor, V.
-    connect : mapping of str to str, optional
-        The drive's names by ``box_acceleration`` and ``box_force``, as for
-        :func:`orchestrate.cosimulate`; tools know no other sign and unit.
+    connect, units : mapping of str to str, optional
+        The drive's names by ``box_acceleration`` and ``box_force``, and units, as for
+        :func:`orchestrate.cosimulate`. Another sign or unit is a linear transformation of the
+        connection, which FMPy and others do not apply. Velocity and position are shown, not
+        connected.
     parameters : mapping of str to float, optional
         Start values of other drives, of their inputs too.
     speed_start : float, optional
@@ -225,6 +251,8 @@ def write_ssp(
         place for one in a package.
     fmus : sequence of path-like, optional
         Of structure and drive; by default those of FMI 2.0, which most tools read.
+    version : {"1.0", "2.0"}
+        Of SSP; tools that read 1.0 need not read 2.0.
 
     Returns
     -------
@@ -249,6 +277,8 @@ def write_ssp(
     >>> names[:3]
     ['SystemStructure.ssd', 'resources/oscillator.ssv', 'resources/shaker.ssv']
     """
+    if version not in REAL:
+        raise InputError(f"version = {version!r}: expected {' or '.join(map(repr, REAL))}")
     stop = 100.0 / structure.omega if stop_time is None else stop_time
     check("stop_time", stop, "s", low=0.0)
     length = 1e-3 / structure.omega if step is None else step
@@ -257,7 +287,7 @@ def write_ssp(
     if isinstance(drive, Drive):
         shaker, links, text = motor_component(drive, other, voltage, speed_start)
     else:
-        shaker, links = drive_component(drive, other, connect, parameters)
+        shaker, links = drive_component(drive, other, connect, units, parameters)
         text = shaker.fmu.name
     state = "bonded (undamaged)" if structure.bonded else "delaminated"
     path_of_own = own or fmu_path(OSCILLATOR)
@@ -266,10 +296,11 @@ def write_ssp(
     oscillator = Component(path_of_own, describe(path_of_own), inputs, OSCILLATES, start)
     components = {"oscillator": oscillator, "shaker": shaker}
     text = f"{text} with a {state} structure"
-    system = system_description(text, float(stop), float(length), components, links)
+    times = float(stop), float(length)
+    system = system_description(text, times, components, links, version)
     files = {"SystemStructure.ssd": system}
     for name, one in components.items():
-        files[parameter_file_path(name)] = parameter_values(one.values)
+        files[parameter_file_path(name)] = parameter_values(one.values, version)
     files |= {f"resources/{one.path.name}": one.path.read_bytes() for one in components.values()}
     return write_whole(path, lambda temporary: write_archive(temporary, files))
 
@@ -292,7 +323,7 @@ def motor_component(
     check("speed_start", speed, "rad/s")
     path = fmu or fmu_path(SHAKER)
     values = {**drive.parameters(), "speed_start": speed, "voltage": voltage}
-    links = {name: name for name in ("box_force", "box_acceleration", "box_jerk")}
+    links = {name: Link(name, 1.0) for name in ("box_force", "box_acceleration", "box_jerk")}
     component = Component(path, describe(path), ("box_force",), MOTOR_GIVES, values)
     return component, links, f"Motor and box at {voltage:g} V"
 
@@ -300,7 +331,8 @@ def motor_component(
 def drive_component(
     drive: Shaker | str | PathLike[str],
     fmu: Path | None,
-    connect: Links | None,
+    connect: Names | None,
+    units: Names | None,
     parameters: Values | None,
 ) -> tuple[Component, Links]:
     """Return another drive's component and connections; raise where tools could not have them."""
@@ -312,16 +344,14 @@ def drive_component(
     description, needed = describe(path), ("box_force", "box_acceleration")
     if connect is None and isinstance(drive, Shaker):
         connect = {name: name for name in needed}
-    links = checked_links(connect or {}, description, {})
-    if sorted(links) != sorted(needed):
-        raise InputError(f"connect: {', '.join(links)}; expected {' and '.join(needed)}")
-    for ours, link in links.items():
-        if link.scale != 1.0:
-            raise InputError(
-                f"connect: {ours} is {link.scale:g} times {link.theirs}; expected a variable of "
-                "the same sign and unit, since most tools convert neither"
-            )
+    links = checked_links(connect or {}, description, checked_units(units, description))
+    taken = [name for name in links if name in FORCE[1:]]
+    if taken or "box_acceleration" not in links:
+        raise InputError(
+            f"connect: {', '.join(links)}; expected box_force and box_acceleration, with or "
+            "without velocity and position: what tools exchange is these two"
+        )
     start = dict(checked_parameters(values, description))
-    force, acceleration = (links[name].theirs for name in needed)
-    component = Component(path.resolve(), description, (force,), (acceleration,), start)
-    return component, {"box_force": force, "box_acceleration": acceleration}
+    shown = tuple(link.theirs for name, link in links.items() if name in MOTION)
+    component = Component(path.resolve(), description, (links["box_force"].theirs,), shown, start)
+    return component, {name: links[name] for name in needed}

@@ -14,6 +14,7 @@
  *   the step `first_passes` times, if the drive can go back.
  * - With a `tolerance` a step is halved, for both, where the energy defect is a larger part of the work exchanged in it; one with less than `easy` of that is
  *   followed by one twice as long.
+ * - A step that the drive discards is halved too, to the end of its interval, where the drive can go back (`halves_discarded`).
  *
  * weak_drive/master.py has the same structures.
  */
@@ -60,7 +61,7 @@ typedef struct {  /* places of our variables in what is set or read of the drive
 typedef struct {
     Side oscillator, drive;
     double tolerance, easy;
-    int halvings, first_passes;
+    int halvings, first_passes, halves_discarded;
     Links force, motion;
     int cubic;  /* place among the drive's other inputs from which on they are cubics, four of each, or -1 */
     const unsigned *recorded;
@@ -299,6 +300,12 @@ static bool oscillate(Pair *p, const double *now, double *next, const Cubic acce
 
 static bool restore_both(Pair *p) { return restore(&p->oscillator) && restore(&p->drive); }
 
+/* Go back behind a step that the drive did not do. */
+static bool discarded(Pair *p) {
+    p->drive.fmi.status = 0;
+    return restore_both(p);
+}
+
 static double relative_defect(Pair *p, const double *now, const double *next, const Cubic acceleration, double h) {
     Cubic force;
     force_over(p, force, now, next, h);
@@ -319,7 +326,12 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
         if (i && !restore_both(p)) return false;
         if (!oscillate(p, now, next, acceleration, h)) return false;
         force_over(p, force, now, next, h);
-        if (!put_force(p, inputs, force) || !advance(&p->drive, now[TIME], h) || !feel(p, next, inputs, h, w + 1)) return false;
+        if (!put_force(p, inputs, force)) return false;
+        if (!advance(&p->drive, now[TIME], h)) {
+            *refused = may_refuse && p->halves_discarded && p->drive.fmi.status == DISCARD;
+            return *refused && discarded(p);
+        }
+        if (!feel(p, next, inputs, h, w + 1)) return false;
         acceleration_over(p, acceleration, now, next, h);
     }
     given = next[FORCE];
@@ -330,7 +342,7 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
     }
     if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h) || !look(p, next, inputs, h)) return false;
     *defect = p->tolerance != 0.0 ? relative_defect(p, now, next, acceleration, h) : 0.0;
-    *refused = may_refuse && *defect > p->tolerance;
+    *refused = may_refuse && p->tolerance != 0.0 && *defect > p->tolerance;
     if (*refused) return restore_both(p);
     next[TIME] = now[TIME] + h, next[H] = h, next[LEVEL] = now[LEVEL];
     for (int i = 0; i < 4; i++) next[THEN + i] = acceleration[i];
@@ -343,7 +355,7 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
 /* An interval in steps, the row after each of them: `*at` is the last that there is. */
 static bool interval(Pair *p, double *now, double **at, size_t width, const double *inputs, double h) {
     size_t first = inputs_at(p);
-    int halvings = p->tolerance != 0.0 ? p->halvings : 0, level = (int)now[LEVEL], done = 0;
+    int halvings = p->tolerance != 0.0 || p->halves_discarded ? p->halvings : 0, level = p->tolerance != 0.0 ? (int)now[LEVEL] : 0, done = 0;
     double end = now[TIME] + h, defect;
     bool known = p->cubic < 0, refused;
     for (size_t i = first; i < width; i++) known = known && now[i] == inputs[i - first];
@@ -367,6 +379,7 @@ static bool interval(Pair *p, double *now, double **at, size_t width, const doub
             done += size;
             *at = next;
             for (size_t i = 0; i < width; i++) now[i] = next[i];
+            for (size_t i = first + p->cubic; p->cubic >= 0 && level && i < width; i += 4) end_derivatives(now + i, now + i, h / (1 << level));
             if (defect < p->tolerance * p->easy && done % (2 * size) == 0 && level) level--;
         }
         now[LEVEL] = level;

@@ -151,3 +151,16 @@ def test_the_list_says_why_a_connection_is_proposed(drives, capsys):
         "  box_position      acc": " output in mm",
         "  box_force         force": " input in N and a name like it",
     }
+
+
+def test_a_drive_runs_without_a_structure(drives, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    line = ["cosimulate", "--structure", "none", "--drive", str(drives / "plain.fmu"), *RUN]
+    assert cli.main([*line, "--connect", A, "--input", "command=1"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "no structure: the drive alone for 0.1 s"
+    assert lines[1].startswith("acceleration of the box: ")
+    assert len(list((tmp_path / "results").glob("cosimulate_none_*.nc"))) == 1
+    for more, words in ((["--set", "m1=2"], "--set: --structure none has"), ([], "has no struct")):
+        assert cli.main([*line, "--connect", A, F, *more]) == 2
+        assert words in capsys.readouterr().err

@@ -110,6 +110,22 @@ def test_what_ends_a_run_is_said_with_its_cause(tmp_path, form, does):
     assert "\n" not in str(raised.value)
 
 
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_a_discarded_step_is_halved_where_the_drive_can_go_back(tmp_path, fmi):
+    """Into quarters here: as in a run with a quarter of the step; the points of time stay."""
+    found = run(tmp_path, "DISCARDS_LONG", fmi, has_states=True)
+    coarse = run(tmp_path, fmi=fmi, has_states=True)
+    fine = run(tmp_path, fmi=fmi, has_states=True, step=2.5e-3).isel(time=slice(None, None, 4))
+    assert found.time.values.tobytes() == coarse.time.values.tobytes()
+    for name in ("x1", "x2", "box_acceleration"):
+        errors = [abs(one[name].values - fine[name].values).max() for one in (found, coarse)]
+        assert errors[0] < 1e-6 * errors[1]
+    with pytest.raises(FmuError, match="coil too hot"):
+        run(tmp_path, "DISCARDS", fmi, has_states=True)
+    with pytest.raises(FmuError, match=r"from t = 0 s to 0.01 s: coil too hot"):
+        run(tmp_path, "DISCARDS_LONG", fmi)
+
+
 @pytest.mark.parametrize(("does", "words"), [("WARNS", "coil is warm"), ("WARNS_SILENTLY", "step")])
 def test_a_warning_is_shown_once_and_the_run_goes_on(tmp_path, form, does, words):
     with warnings.catch_warnings(record=True) as shown:

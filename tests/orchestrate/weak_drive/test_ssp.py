@@ -130,12 +130,17 @@ def test_it_says_which_structure_it_is_for(tmp_path):
         assert path.read_bytes() == write(tmp_path, system, "again.ssp").read_bytes()
 
 
+def check_schema(name, tree):
+    """FMPy has the schema of SSP 1.0."""
+    path = Path(fmpy.__file__).parent / "ssp" / "schema" / f"SystemStructure{name}.xsd"
+    etree.XMLSchema(etree.parse(str(path))).assertValid(tree)
+
+
 def test_connectors_have_the_units_of_the_variables(case):
     """Each is declared, by its powers of SI units, and the document is valid."""
     path, _ = case
     tree = etree.fromstring(zipfile.ZipFile(path).read("SystemStructure.ssd"))
-    schema = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureDescription.xsd"
-    etree.XMLSchema(etree.parse(str(schema))).assertValid(tree)
+    check_schema("Description", tree)
     space = {"ssd": NAMESPACES["ssd"], "ssc": NAMESPACES["ssc"]}
     declared = {
         unit.get("name"): dict(unit.find("ssc:BaseUnit", space).attrib)
@@ -153,6 +158,32 @@ def test_connectors_have_the_units_of_the_variables(case):
     assert used["oscillator", "box_force"] == used["shaker", "box_force"] == "N"
     assert used["oscillator", "box_jerk"] == used["shaker", "box_jerk"] == "m/s3"
     assert declared["N"] == {"kg": "1", "m": "1", "s": "-2"}
+
+
+@pytest.mark.parametrize("version", ["1.0", "2.0"])
+def test_sign_and_unit_are_linear_transformations(tmp_path, version):
+    """In place of the tool's conversion; the drive's velocity is shown, not connected."""
+    connect = {"box_force": "-box_force[kN]", "box_acceleration": "-box_acceleration"}
+    connect |= {"box_velocity": "box_velocity", "box_position": "box_position[mm]"}
+    path = write_ssp(tmp_path / "x.ssp", BEAM, SHAKER, connect=connect, version=version)
+    archive = zipfile.ZipFile(path)
+    tree = etree.fromstring(archive.read("SystemStructure.ssd"))
+    space = {"ssd": NAMESPACES["ssd"], "ssc": NAMESPACES["ssc"], "ssv": NAMESPACES["ssv"]}
+    factors = {}
+    for link in tree.iterfind(".//ssd:Connection", space):
+        (transformation,) = link
+        factors[link.get("startConnector")] = float(transformation.get("factor"))
+        assert link.get("suppressUnitConversion") == "true"
+    assert factors == {"box_force": -1e-3, "box_acceleration": -1.0}  # end = factor * start
+    shown = {one.get("name") for one in tree.iterfind(".//ssd:Component[2]//ssd:Connector", space)}
+    assert shown == set(connect)
+    values = etree.fromstring(archive.read("resources/shaker.ssv"))
+    assert tree.get("version") == values.get("version") == version
+    kinds = {etree.QName(value).localname for value in values.iterfind(".//ssv:Parameter/*", space)}
+    assert kinds - {"Boolean"} == {"Real" if version == "1.0" else "Float64"}
+    if version == "1.0":
+        check_schema("Description", tree)
+        check_schema("ParameterValues", values)
 
 
 def test_omsimulator_finds_its_step(tmp_path):
@@ -184,13 +215,11 @@ def test_mistakes(tmp_path):
         write_ssp(tmp_path / "x.ssp", *QUICK, voltage=1.0, step=0.0)
     with pytest.raises(InputError, match="voltage = nan V: expected a finite number"):
         write_ssp(tmp_path / "x.ssp", *QUICK, voltage=float("nan"))
-    names = {"box_force": "box_force", "box_acceleration": "box_acceleration"}
-    for connect, text in (
-        ({**names, "box_force": "-box_force"}, "box_force is -1 times box_force; expected a"),
-        ({**names, "box_velocity": "box_velocity"}, "box_velocity; expected box_force and box_acc"),
-    ):
-        with pytest.raises(InputError, match=text):
+    for connect in ({"box_force": "box_force", "box_velocity": "box_velocity"}, OURS):
+        with pytest.raises(InputError, match="expected box_force and box_acceleration, with or"):
             write_ssp(tmp_path / "x.ssp", BEAM, SHAKER, connect=connect)
+    with pytest.raises(InputError, match="version = '3.0': expected '1.0' or '2.0'"):
+        write_ssp(tmp_path / "x.ssp", *QUICK, voltage=1.0, version="3.0")
     with pytest.raises(InputError, match="voltage: expected with a motor"):
         write_ssp(tmp_path / "x.ssp", *QUICK)
     with pytest.raises(StoreError, match="nowhere"):

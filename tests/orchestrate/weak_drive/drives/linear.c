@@ -19,7 +19,7 @@
 #endif
 
 enum { N = 4, OK = 0, WARNING = 1, DISCARD = 2, ERROR = 3 };
-enum { NOTHING, WARNS, WARNS_SILENTLY, DISCARDS, DISCARDS_SILENTLY, ENDS, ENDS_AFTER, RETURNS_EARLY, FAILS };
+enum { NOTHING, WARNS, WARNS_SILENTLY, DISCARDS, DISCARDS_SILENTLY, ENDS, ENDS_AFTER, RETURNS_EARLY, FAILS, DISCARDS_LONG };
 
 typedef void Log3(void *environment, int status, const char *category, const char *message);
 typedef void Log2(void *environment, const char *name, int status, const char *category, const char *message, ...);
@@ -94,6 +94,7 @@ static int advance(Drive *m, double time, double h, bool *end, bool *early, doub
     *end = *early = false, *last = time;
     if (does == FAILS) say(m, ERROR, "fuse blown");
     if (does == FAILS) return ERROR;
+    if (DOES == DISCARDS_LONG) does = h > 3e-3 ? DISCARDS : NOTHING;  /* from the start on */
     if (does == DISCARDS) say(m, DISCARD, "coil too hot");
     if (does == DISCARDS || does == DISCARDS_SILENTLY) return DISCARD;
     *end = does == ENDS || (DOES == ENDS_AFTER && time + h > AT * (1.0 - 1e-9));
