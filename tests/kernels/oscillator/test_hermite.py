@@ -72,20 +72,20 @@ def test_each_coefficient_counts_for_having_no_root():
 
 def test_a_part_is_clear_where_its_coefficients_are():
     clear = 0
-    for rng, quintic, b in quintics(2, 3000):
+    for rng, quintic, b in quintics(2, 1000):
         s = float(rng.uniform(0.05, 1.0))
         part = part_coefficients(quintic, s)
         lowest = min(part)
         if abs(lowest) > 1e-12:
             assert hermite.part_is_clear(*b, s) == (lowest >= 0.0)
             clear += lowest >= 0.0
-    assert 300 < clear < 2700
+    assert 100 < clear < 900
 
 
 def test_the_clear_part_ends_closely_before_the_last_root():
     """Of a quintic that falls throughout, if Newton's method gets there; any has no root in it."""
     short, tried = [], 0
-    for rng, quintic, b in quintics(3, 2000):
+    for rng, quintic, b in quintics(3, 500):
         part = hermite.clear_part(*b)
         assert not part or quintic(part * S[1:]).min() > 0.0
         falling = np.sort(rng.normal(size=6))[::-1]
@@ -111,17 +111,18 @@ def test_no_summit_is_overlooked_and_a_clear_slope_is_seen(sign):
     """What the quintic misses is added or taken: the remainder times 20 s^3 (1 - s)^3 / (5/16)."""
     seen = 0
     bump = Polynomial([0.0, 0.0, 0.0, 1.0]) * Polynomial([1.0, -1.0]) ** 3
-    for rng, quintic, _ in quintics(4, 2000, spread=0.3):
+    for rng, quintic, b in quintics(4, 600, spread=0.1):
         tilted = quintic + Polynomial([0.0, float(rng.normal(scale=3.0))])
-        low = float(np.exp(rng.uniform(-9.0, -1.0)))
+        low = float(np.exp(rng.uniform(-6.0, 0.0)))
         m = interval(tilted, low)
-        a, z = np.sort(rng.uniform(0.0, 1.0, 2)).tolist()
+        a = float(rng.uniform(0.0, 1.0))
+        z = a + (1.0 - a) * float(rng.uniform(0.0, 1.0)) ** 2
         slope = (tilted + sign * 40.0 * low * bump).deriv()(a + (z - a) * S)
         summit = hermite.has_summit(m, 2.0 + H * a, 2.0 + H * z)
         assert summit or slope.min() > 0.0 or slope.max() < 0.0
-        first, second = abs(tilted.deriv()(a)), abs(tilted.deriv(2)(a))
-        third = np.abs(tilted.deriv(3)(S)).max()
-        if first > (second + 1.7 * third * (z - a)) * (z - a) + 300.0 * low:
+        length, third = z - a, 60.0 * np.abs(np.diff(b, 3)).max() + 240.0 * low
+        change = (abs(tilted.deriv(2)(a)) + 15.0 * low + 0.5 * third * length) * length
+        if abs(tilted.deriv()(a)) > 1.1 * (change + 2.15 * low):
             seen += 1
             assert not summit
-    assert seen > 200
+    assert seen > 80
