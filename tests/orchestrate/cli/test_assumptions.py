@@ -63,7 +63,7 @@ def test_nothing_is_said_of_a_set_or_a_file_as_it_is(ask, tmp_path):
             0
         ]
         assert "assumed" not in out
-    assert "assumed" not in said(ask, "--structure", path, *HALVES)[0]
+    assert "assumed: e = 0.7" in said(ask, "--structure", path, *HALVES)[0]
 
 
 def test_a_file_of_frequencies_needs_the_masses(ask, tmp_path):
