@@ -164,6 +164,9 @@ def test_a_root_by_taylor_is_found_where_all_bends_down_a_little():
             assert kernel.taylor_root(*row[:5], 1.01 * limit, step, wanted) == 0.0
         assert kernel.taylor_root(*row[:5], 0.0, 0.66, wanted) == 0.0
         assert kernel.taylor_root(*row[:5], 0.0, 1.01, wanted) == 0.0
+    for h3, h4, root in ((1.9, -6.0, 1.0), (2.1, -6.0, 0.0), (-1.0, 5.9, 1.0), (-1.0, 6.1, 0.0)):
+        row = 1.0 - h3 / 6.0 - h4 / 24.0, -1.0, 0.0, h3, h4  # what rises may turn the slope
+        assert kernel.taylor_root(*row, 0.0, 0.999, 0.3) == pytest.approx(root)
     for bound, root in ((23.0, 1.0), (25.0, 0.0)):  # 24 may turn the slope before the root
         assert kernel.taylor_root(1.0, -1.0, 0.0, 0.0, 0.0, bound, 0.9, 0.3) == root
 
