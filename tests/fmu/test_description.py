@@ -203,6 +203,7 @@ STARTS = {
         {**TOUCHING, "v1_start": 1.0, "e": 0.05, "gamma": 0.9, "force1_amplitude": 0.5},
         {"stroke": 0.5, "x2_start": 0.5, "v2_start": 1.0, "e": 0.05, "gamma": 0.9, "force2": 2.0},
         {"wall": True, "clearance": -0.5},
+        {**TOUCHING, "e": 0.0, "v1_start": 0.250000001, "v2_start": 0.25},
         {"wall": True, "v1_start": 1.0, "e": 0.05, "gamma": 0.9, "phase_start": 1.0},
     ],
     "MotorShaker": [MOTOR, {**MOTOR, "armature_inductance": 0.1, "current_start": 0.3}],
@@ -219,6 +220,10 @@ STARTS = {
             {"current_limit": 0.2, "coil_inductance": 0.1, "current_start": 0.2, "command": 20.0},
             {"current_limit": 0.2},
             {"voltage_limit": 1.0},
+            {
+                **{"current_control": True, "coil_inductance": 0.1, "voltage_limit": 6.0},
+                **{"command": 0.6000000000000001, "current_start": 0.3},
+            },
         )
     ],
 }

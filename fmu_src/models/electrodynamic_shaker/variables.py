@@ -160,7 +160,10 @@ OUTPUTS = (
         "J",
         "Electrical work of the amplifier since the start, integral of power; a commanded current "
         "puts the energy of coil_inductance in by its first jump, from zero, too",
-        ("coil_inductance", "current_control", "voltage_limit", "current_limit", "command"),
+        (
+            *("coil_inductance", "current_start", "current_control"),
+            *("voltage_limit", "current_limit", "command"),
+        ),
         dependencies=("command",),
     ),
     output("coil_heat", "J", "Heat of coil_resistance since the start"),

@@ -335,7 +335,7 @@ SCALARS = (
         "impact_velocity",
         "m/s",
         "Closing speed before the last impact; 0 before the first",
-        CLOSING,
+        (*CLOSING, "k1", "m1"),  # in whose time speeds are kept, with its rounding
         minimum=0.0,
         **DISCRETE,
     ),

@@ -126,6 +126,19 @@ def test_a_discarded_step_is_halved_where_the_drive_can_go_back(tmp_path, fmi):
         run(tmp_path, "DISCARDS_LONG", fmi)
 
 
+def test_inputs_as_cubics_go_on_in_halves_of_a_discarded_step():
+    """The house's shaker discards long steps, under a limit of its evaluations."""
+    times = np.linspace(0.0, 0.2, 21)
+    command = {"command": (times, 3.0 * np.sin(30.0 * times))}
+    more = {"inputs": command, "duration": 0.2, "estimate": False, "progress": False}
+    shaker, ends = orchestrate.Shaker.from_file("shaker_1kN"), []
+    for step, limit in ((0.01, {"evaluation_limit": 30}), (0.005, {}), (0.01, {})):
+        found = orchestrate.cosimulate(STRUCTURE, shaker, step=step, parameters=limit, **more)
+        ends.append([float(found[name][-1]) for name in ("x1", "box_acceleration")])
+    assert ends[0] == pytest.approx(ends[1], rel=1e-6)
+    assert ends[0] != pytest.approx(ends[2], rel=1e-4)
+
+
 @pytest.mark.parametrize(("does", "words"), [("WARNS", "coil is warm"), ("WARNS_SILENTLY", "step")])
 def test_a_warning_is_shown_once_and_the_run_goes_on(tmp_path, form, does, words):
     with warnings.catch_warnings(record=True) as shown:
