@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-
 from orchestrate.diagnosis.bursts import mean_power
+
 from orchestrate.diagnosis.decision_rule import (
     DELAMINATED,
     NOT_DESCRIBED,
