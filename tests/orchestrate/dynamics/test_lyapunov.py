@@ -141,3 +141,12 @@ def test_a_sweep_s_responses_are_followed_on():
         lyapunov(PAPER, eta=0.9, start=swept)
     with pytest.raises(InputError, match="2 states; expected one, or one for each of 3"):
         lyapunov(PAPER, eta=etas, start=swept.end_state.values[:2])
+
+
+@pytest.mark.usefixtures("exported")
+def test_pressed_by_gravity_a_gap_has_no_exponent_of_free_masses():
+    pressed = {"eta": 2.0, "box_acceleration": -30.0, "progress": False}
+    with pytest.raises(InputError, match="0 impacts"):
+        lyapunov(make(clearance=0.2, D1=0.05, D2=0.02), **pressed, periods=50, transient=20)
+    alike = lyapunov(make(kappa=1.0, D=0.03), **pressed, periods=50, transient=20)
+    assert float(alike.exponent[0]) == pytest.approx(-0.03)
