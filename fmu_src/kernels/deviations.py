@@ -10,7 +10,7 @@ memory, for its constants and certified roots; tables follow.
 
 from .numerics.elementary import fraction, sincos_turns
 from .oscillator import memory as at
-from .oscillator.excitation import begin_segment
+from .oscillator.excitation import begin_segment, drive_at
 from .oscillator.impact import common_velocity
 from .oscillator.motion import begin_state, set_phase
 from .oscillator.parameters import derive
@@ -76,12 +76,13 @@ def write_saltation(m, row, matrix):
     v1, v2 = m[row + 3] / m[at.OMEGA], m[row + 4] / m[at.OMEGA]
     common = common_velocity(m, v1, v2)
     b1, b2 = common + mu * closing * share, common - closing * share
-    sine, _ = sincos_turns(fraction(m[at.ETA_TURNS] * m[at.OMEGA] * m[row]))
-    drive = m[at.FORCING] * sine + m[at.CUBIC]
-    after_1 = acceleration(m, at.OSCILLATOR_1, drive, m[row + 1], v1)
-    after_2 = acceleration(m, at.OSCILLATOR_2, drive, m[row + 2], v2)
-    before_1 = acceleration(m, at.OSCILLATOR_1, drive, m[row + 1], b1)
-    before_2 = acceleration(m, at.OSCILLATOR_2, drive, m[row + 2], b2)
+    sine, cosine = sincos_turns(fraction(m[at.ETA_TURNS] * m[at.OMEGA] * m[row]))
+    drive_1, _ = drive_at(m, at.OSCILLATOR_1, cosine, sine, 0.0)
+    drive_2, _ = drive_at(m, at.OSCILLATOR_2, cosine, sine, 0.0)
+    after_1 = acceleration(m, at.OSCILLATOR_1, drive_1, m[row + 1], v1)
+    after_2 = acceleration(m, at.OSCILLATOR_2, drive_2, m[row + 2], v2)
+    before_1 = acceleration(m, at.OSCILLATOR_1, drive_1, m[row + 1], b1)
+    before_2 = acceleration(m, at.OSCILLATOR_2, drive_2, m[row + 2], b2)
     scale = 1.0 / max(closing, SMALLEST)
     add_jump(m, matrix, (v1 - b1) * scale)
     add_jump(m, matrix + 4, (v2 - b2) * scale)

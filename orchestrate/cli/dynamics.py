@@ -260,15 +260,14 @@ class Orbit(OfStructure, OfBox, Asked, Stored, Results):
   {program} orbit --structure beam --hz 16.7 --g 0.02
 Floquet multipliers: of a stable orbit all lie inside the unit circle."""
 
-    def has_picture(self, question: Question) -> bool:
-        return not question["box_acceleration"]
-
     def draw(self, data: xr.Dataset, *_: xr.Dataset) -> Any:
         import orchestrate
 
         from ..model import Structure
+        from ..model.ranges import PUSHES
 
         excitation: Question = dict(ast.literal_eval(str(data.attrs["excitation"])))
+        excitation |= {name: data.attrs[name] for name in PUSHES}
         motion = orchestrate.simulate(
             Structure.from_attributes({str(name): value for name, value in data.attrs.items()}),
             **excitation,

@@ -23,9 +23,9 @@ from .bifurcations import KINDS, Kind
 from .branches import (
     NODES,
     OF_SETTING,
-    acceleration_at_start,
     checked_limits,
     complete_excitation,
+    pushes_at_start,
     require_inside_limits,
     require_orbit_dataset,
     start_nodes,
@@ -34,7 +34,7 @@ from .branches import (
 from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_points
 from .continuation import SOLVER_ERRORS, Root, newton_correct, unit_vector
-from .families import ACCELERATION, Family, Setting, check_parameters
+from .families import Family, Setting, check_parameters
 from .orbit_records import (
     branch_dataset,
     located_table,
@@ -140,6 +140,8 @@ def border(
     frequency: ArrayLike | None = None,
     amplitude: ArrayLike | None = None,
     box_acceleration: float | None = None,
+    force1: float | None = None,
+    force2: float | None = None,
     longest: Number = 0.03,
     most: Count = 500,
     **running: Unpack[Running],
@@ -159,7 +161,7 @@ def border(
         The parameters; the first one is that of the branch.
     limits : array_like, shape (2, 2)
         Between which each is followed.
-    eta, frequency, amplitude, box_acceleration, longest, most
+    eta, frequency, amplitude, box_acceleration, force1, force2, longest, most
         As in :func:`orchestrate.branch`.
     **running
         ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.
@@ -211,12 +213,13 @@ def border(
     nodes, kind = start_nodes(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
     excitation = excitation_arguments(eta, frequency, amplitude)
-    given = complete_excitation(start.isel(point=0), names, excitation, pairs[0], structure)
-    acceleration = acceleration_at_start(start, box_acceleration)
-    second = second_start_value(structure, names[1], given, acceleration)
+    pushes = pushes_at_start(start, box_acceleration=box_acceleration, force1=force1, force2=force2)
+    first = start.isel(point=0)
+    given = complete_excitation(first, names, excitation, pairs[0], structure, pushes)
+    second = second_start_value(structure, names[1], given)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):
         require_inside_limits(name, number, pair)
-    setting = varied_setting(structure, given, names, pairs, acceleration)
+    setting = varied_setting(structure, given, names, pairs)
     own = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "kind": kind}
     return as_given(f"_{'_'.join(names)}", values=(value, second), **own)
 
@@ -231,16 +234,12 @@ def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[floa
 
 
 def second_start_value(
-    structure: Structure,
-    name: str,
-    arguments: tuple[tuple[str, float], ...],
-    box_acceleration: float,
+    structure: Structure, name: str, arguments: tuple[tuple[str, float], ...]
 ) -> float:
-    """Return the second parameter's start value: of excitation, structure or acceleration."""
-    if name == ACCELERATION:
-        return box_acceleration
+    """Return the second parameter's start value: of excitation or structure."""
     if name in EXCITATION_PARAMETERS and name not in dict(arguments):
-        forms = "; ".join(f"{given} = {value!r}" for given, value in arguments)
+        box = (pair for pair in arguments if pair[0] in EXCITATION_PARAMETERS)
+        forms = "; ".join(f"{given} = {value!r}" for given, value in box)
         expected = "eta alone" if name == "eta" else "frequency and amplitude in place of eta"
         raise InputError(f"over = {name!r} with {forms}: expected {expected}")
     return dict(arguments)[name] if name in dict(arguments) else structure.get(name)

@@ -16,7 +16,7 @@ from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Number, checked_integer, checked_number
-from ..model.ranges import OF_LENGTH
+from ..model.ranges import OF_LENGTH, PUSHES
 from ..response.questions import OF_EXCITATION, Question, excitation_numbers, require_delaminated
 from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
@@ -24,7 +24,7 @@ from ..running.options import Running
 from .bifurcations import KINDS
 from .branch_switching import leaving_branch
 from .continuation import SOLVER_ERRORS
-from .families import ACCELERATION, Setting, check_parameters
+from .families import Setting, check_parameters
 from .orbit_records import (
     branch_dataset,
     located_table,
@@ -53,7 +53,7 @@ OF_OMEGA = {"m1", "k1", "omega", "f1"}  # what changes eta at one frequency
 OrbitSegment = BranchSegment[OrbitPoint]
 
 
-OF_SETTING = ("over", "limits", "box_acceleration")  # with an excitation
+OF_SETTING = ("over", "limits", *PUSHES)  # with an excitation
 
 
 class BranchJob(Question):
@@ -134,6 +134,8 @@ def branch(
     amplitude: ArrayLike | None = None,
     period: int = 1,
     box_acceleration: float | None = None,
+    force1: float | None = None,
+    force2: float | None = None,
     longest: Number = 0.03,
     most: Count = 1000,
     **running: Unpack[Running],
@@ -148,8 +150,8 @@ def branch(
         default the orbit that :func:`orchestrate.orbit` finds at the excitation given, or at the
         lower limit.
     over : str
-        The parameter: ``"eta"``, ``"frequency"``, ``"amplitude"``, ``"box_acceleration"`` or any of
-        a structure, such as ``"e"``, ``"D"``, ``"mu"``, ``"kappa"``.
+        The parameter: ``"eta"``, ``"frequency"``, ``"amplitude"``, ``"box_acceleration"``,
+        ``"force1"``, ``"force2"`` or any of a structure, such as ``"e"``, ``"D"``, ``"mu"``.
     limits : array_like of 2 floats
         Between which it is followed, both included.
     switch : int, optional
@@ -159,7 +161,7 @@ def branch(
         The excitation, where it does not vary; by default that of ``start``.
     period : int
         Excitation periods of the orbit, without ``start``.
-    box_acceleration : float, optional
+    box_acceleration, force1, force2 : float, optional
         As in :func:`orchestrate.orbit`; by default that of ``start``, else 0.
     longest : float
         Longest step along the branch: about the limits' span, and phases in rad, are measured in 1.
@@ -202,19 +204,17 @@ def branch(
         require_orbit_dataset(start, several=switch is not None)
         require_same_parameter(start, over, switch)
     low_high = checked_limits(over, limits)
-    acceleration = acceleration_at_start(start, box_acceleration)
+    pushes = pushes_at_start(start, box_acceleration=box_acceleration, force1=force1, force2=force2)
     given = complete_excitation(
-        start, (over,), excitation_arguments(eta, frequency, amplitude), low_high, structure
+        start, (over,), excitation_arguments(eta, frequency, amplitude), low_high, structure, pushes
     )
     if start is None:
-        start, value = find_first_orbit(
-            structure, over, low_high, given, period, acceleration, running
-        )
+        start, value = find_first_orbit(structure, over, low_high, given, period, running)
     else:
-        value = start_value(start, over, switch, structure, acceleration)
+        value = start_value(start, over, switch, structure, pushes)
     require_inside_limits(over, value, low_high)
     nodes, kind = start_nodes(start, "switch", switch)
-    setting = varied_setting(structure, given, (over,), (low_high,), acceleration)
+    setting = varied_setting(structure, given, (over,), (low_high,))
     own = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "switch": kind}
     return as_given(f"_{over}", value=value, **own)
 
@@ -224,11 +224,11 @@ def varied_setting(
     given: tuple[tuple[str, float], ...],
     over: tuple[str, ...],
     limits: tuple[tuple[float, float], ...],
-    box_acceleration: float,
 ) -> Setting:
     """Return a setting whose parameters vary; raise where a limit is out of its range."""
-    fixed = tuple((name, number) for name, number in given if name not in over)
-    setting = Setting(structure, fixed, over, limits, box_acceleration)
+    kept = {name: number for name, number in given if name not in over}
+    fixed = tuple((name, number) for name, number in kept.items() if number or name not in PUSHES)
+    setting = Setting(structure, fixed, over, limits)
     for corner in zip(*limits, strict=True):
         setting.form(np.array(corner))
     return setting
@@ -259,14 +259,14 @@ def require_same_parameter(start: xr.Dataset, over: str, switch: int | None) -> 
         )
 
 
-def acceleration_at_start(start: xr.Dataset | None, argument: float | None) -> float:
-    """Return the box's constant acceleration, m/s2: the argument, else that of the start, or 0."""
-    if argument is not None or start is None:
-        return checked_number(ACCELERATION, 0.0 if argument is None else argument)
-    stored = start[ACCELERATION] if ACCELERATION in start.coords else None
-    if stored is not None and not stored.ndim:  # a point of a branch along it
-        return float(stored)
-    return float(start.attrs.get(ACCELERATION, 0.0))
+def pushes_at_start(start: xr.Dataset | None, **arguments: float | None) -> dict[str, float]:
+    """Return what pushes beside the box's motion: the arguments, else of the start, or 0."""
+    known = {} if start is None else {**start.attrs, **start.coords}
+    pushes = {}
+    for name, argument in arguments.items():
+        stored = float(np.ravel(known.get(name, 0.0))[0])
+        pushes[name] = stored if argument is None else checked_number(name, argument)
+    return pushes
 
 
 def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
@@ -274,6 +274,8 @@ def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
     pair = excitation_numbers(over, limits)
     if not isinstance(pair, tuple) or len(pair) != 2 or not pair[0] < pair[1]:
         raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
+    if over == "amplitude" and pair[0] == 0.0:
+        raise InputError(f"limits = {limits!r}: expected amplitudes > 0, the unit of the motion")
     return pair[0], pair[1]
 
 
@@ -283,13 +285,15 @@ def complete_excitation(
     arguments: tuple[tuple[str, float], ...],
     limits: tuple[float, float],
     structure: Structure,
+    pushes: Mapping[str, float],
 ) -> tuple[tuple[str, float], ...]:
     """Return the excitation as (name, number) pairs, taken from ``start`` where not given."""
+    acts = any(pushes.values()) or not pushes.keys().isdisjoint(varied)
     over, names = varied[0], [name for name, _ in arguments]
     if start is not None and not arguments:
         by_frequency = not {"frequency", "amplitude"}.isdisjoint(varied)
         wanted = ("frequency", "amplitude") if by_frequency else ("eta",)
-        levels = structure.has_scale or not {*OF_LENGTH, "amplitude"}.isdisjoint(varied)
+        levels = acts or structure.has_scale or not {*OF_LENGTH, "amplitude"}.isdisjoint(varied)
         eta, amplitude = (float(start[name].values.flat[0]) for name in ("eta", "amplitude"))
         if levels and not math.isclose(amplitude * eta**2, 1.0, rel_tol=1e-12):
             if "eta" in varied:
@@ -301,10 +305,11 @@ def complete_excitation(
         asked_by_frequency = "frequency" in str(start.attrs.get("excitation", ""))
         if "eta" in wanted and not OF_OMEGA.isdisjoint(varied) and asked_by_frequency:
             wanted = ("frequency", "amplitude")
-        return tuple((name, float(start[name].values.flat[0])) for name in wanted)
+        arguments = tuple((name, float(start[name].values.flat[0])) for name in wanted)
+        return (*arguments, *pushes.items())
     if over in ("eta", "frequency", "amplitude") and over not in names:
-        return (*arguments, (over, limits[0]))
-    return arguments
+        arguments = (*arguments, (over, limits[0]))
+    return (*arguments, *pushes.items())
 
 
 def find_first_orbit(
@@ -313,33 +318,26 @@ def find_first_orbit(
     limits: tuple[float, float],
     arguments: tuple[tuple[str, float], ...],
     period: int,
-    box_acceleration: float,
     running: Mapping[str, Any],
 ) -> tuple[xr.Dataset, float]:
     """Find an orbit to begin a branch without ``start``; return it and the parameter's value."""
     excitation: dict[str, Any] = dict(arguments)
     value = excitation[over] if over in excitation else limits[0]
-    if over == ACCELERATION:
-        value = box_acceleration
-    elif over not in excitation:
+    if over not in excitation:
         own = structure.get(over)
         value = own if limits[0] <= own <= limits[1] else limits[0]
         structure = structure.replace(**{over: value})
     require_inside_limits(over, value, limits)
-    return orbit_at(structure, excitation, period, box_acceleration, running), value
+    return orbit_at(structure, excitation, period, running), value
 
 
 def orbit_at(
-    structure: Structure,
-    excitation: Mapping[str, Any],
-    period: int,
-    box_acceleration: float,
-    running: Mapping[str, Any],
+    structure: Structure, excitation: Mapping[str, Any], period: int, running: Mapping[str, Any]
 ) -> xr.Dataset:
     """Return the orbit that :func:`orchestrate.orbit` finds, computed by the same FMU."""
     kept = {name: running[name] for name in running.keys() & {"fmu", "build_folder", "progress"}}
     options: dict[str, Any] = {**excitation, **kept}
-    return orbit(structure, period=period, box_acceleration=box_acceleration, **options)
+    return orbit(structure, period=period, **options)
 
 
 def require_inside_limits(over: str, value: float, limits: tuple[float, float]) -> None:
@@ -352,17 +350,21 @@ def require_inside_limits(over: str, value: float, limits: tuple[float, float]) 
 
 
 def start_value(
-    start: xr.Dataset, over: str, switch: int | None, structure: Structure, acceleration: float
+    start: xr.Dataset,
+    over: str,
+    switch: int | None,
+    structure: Structure,
+    pushes: Mapping[str, float],
 ) -> float:
     """Return the parameter's value at the start: of the orbit, or of bifurcation ``switch``."""
     if switch is not None:
         return float(
             start["bifurcation_value"].values[checked_bifurcation_index(start, "switch", switch)]
         )
+    if over in pushes:
+        return pushes[over]
     if over in start.coords:
         return float(start[over])
-    if over == ACCELERATION:
-        return acceleration
     return structure.get(over)
 
 

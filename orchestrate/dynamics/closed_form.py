@@ -28,9 +28,8 @@ def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
 
 
 def has_closed_form(point: tuple[Structure, Excitation]) -> bool:
-    """Return whether formulas of orbits and deviations hold: no wall, stroke, force or gravity."""
-    structure, excitation = point
-    return not (structure.wall or structure.stroke or any(excitation.pushes))
+    """Return whether formulas of orbits and deviations hold: no wall, no stroke."""
+    return not (point[0].wall or point[0].stroke)
 
 
 @dataclass(frozen=True)
@@ -46,10 +45,12 @@ class ClosedForm:
     # D_i (8) and omega_i^2 (7)
     damping: Floats
     stiffness: Floats
-    # a_i and b_i of (11)
+    drive: Floats  # amplitude of the harmonic right-hand side of each; 1 by the box alone
+    # a_i and b_i of (11), times it
     cosine: Floats
     sine: Floats
-    offset: Floats  # displacement by a constant acceleration of the box
+    push: float  # constant right-hand side, by a constant acceleration of the box
+    offset: Floats  # displacement by it, and by the clearance
     # coefficients of the contact force f (18)
     force_v: float
     force_x: float
@@ -57,15 +58,13 @@ class ClosedForm:
     load: Floats  # acceleration of each oscillator at no displacement, by the clearance
 
     @classmethod
-    def from_structure(
-        cls, structure: Structure, excitation: Excitation, box_acceleration: float = 0.0
-    ) -> ClosedForm:
-        """Return the coefficients for a structure, an excitation, and a constant acceleration."""
+    def from_structure(cls, structure: Structure, excitation: Excitation) -> ClosedForm:
+        """Return the coefficients for a structure under an excitation."""
         omega, m1, m2 = structure.omega, structure.m1, structure.m2
         both, springs = m1 + m2, structure.k1 + structure.k2
         unit = omega * omega
         if not has_closed_form((structure, excitation)):
-            raise InputError("wall, stroke, force1, force2: orbits and their borders have none yet")
+            raise InputError("wall, stroke: orbits and their borders have none yet; expected none")
         eta = excitation.frequency / omega
         dampers = np.array(
             [structure.d1 / m1, structure.d2 / m2, (structure.d1 + structure.d2) / both]
@@ -75,11 +74,14 @@ class ClosedForm:
         stiffness[0] = 1.0
         detuning, loss = stiffness - eta * eta, 2.0 * damping * eta
         reach = detuning**2 + loss**2
-        push = 0.0
-        if box_acceleration:
-            push = -box_acceleration / (excitation.amplitude * excitation.frequency**2)
+        shaken = excitation.amplitude != 0.0
+        level = excitation.amplitude * excitation.frequency**2
+        level = level if shaken else unit * excitation.length(structure)  # m/s2 that is 1 here
+        push, force1, force2 = (each / level for each in excitation.pushes)
+        forces = np.array([force1 / m1, force2 / m2, (force1 + force2) / both])
+        drive, push = shaken + forces, 0.0 - push
         with np.errstate(divide="ignore", invalid="ignore"):
-            cosine, sine = -loss / reach, detuning / reach
+            cosine, sine = -loss / reach * drive, detuning / reach * drive
         offset, load, gap_offset = push / stiffness, np.zeros(3), 0.0
         if structure.gap_offset != 0.0:
             gap_offset = structure.gap_offset / excitation.length(structure)
@@ -93,8 +95,10 @@ class ClosedForm:
             e_slope=structure.e_slope * omega * excitation.length(structure),
             damping=damping,
             stiffness=stiffness,
+            drive=drive,
             cosine=cosine,
             sine=sine,
+            push=push,
             offset=offset,
             force_v=float(2.0 * (damping[0] - damping[1])),
             force_x=float(stiffness[0] - stiffness[1]),
@@ -104,8 +108,8 @@ class ClosedForm:
 
     @property
     def rests_in_contact(self) -> bool:
-        """Whether a preload presses the masses together at rest."""
-        return self.gap_offset != 0.0 and bool(self.offset[1] < self.offset[0])
+        """Whether a preload or a constant acceleration presses the masses together at rest."""
+        return bool(self.offset[1] < self.offset[0])
 
     @property
     def fastest(self) -> float:
@@ -200,7 +204,7 @@ class ClosedForm:
     ) -> Floats:
         """Return d(state)/d(tau), the right-hand side of (6), for states (n, 4) at phases."""
         which = oscillators(contact)
-        drive = np.sin(phase)[:, None] + self.offset[0] * self.stiffness[0]
+        drive = np.sin(phase)[:, None] * self.drive[which] + self.push
         rates = np.empty((len(phase), 4))
         rates[:, :2] = state[:, 2:]
         rates[:, 2:] = drive - 2.0 * self.damping[which] * state[:, 2:]
@@ -209,11 +213,15 @@ class ClosedForm:
             rates[:, 2:] += self.load[which]
         return rates
 
-    def force(self, position: Floats, velocity: Floats) -> Floats:
-        """Return the contact force f (18) from position and velocity; negative: pressed."""
-        force = self.force_rate(position, velocity)
+    def gap_drive(self, phase: Floats) -> Floats:
+        """Return the difference of the masses' harmonic right-hand sides, by forces on them."""
+        return float(self.drive[1] - self.drive[0]) * np.sin(phase)
+
+    def force(self, phase: Floats, position: Floats, velocity: Floats) -> Floats:
+        """Return the contact force f (18) at phases, from position and velocity; < 0: pressed."""
+        force = self.force_rate(position, velocity) + self.gap_drive(phase)
         return force if self.gap_offset == 0.0 else force + float(self.load[1])
 
     def force_rate(self, position: Floats, velocity: Floats) -> Floats:
-        """Return the contact force's derivative from the derivatives of position and velocity."""
+        """Return what the derivatives of position and velocity add to the contact force's."""
         return self.force_v * velocity + self.force_x * position

@@ -30,10 +30,9 @@ from ..response.respond import Response, respond
 from .closed_form import has_closed_form
 from .clusters import SettlingRun, run_until_settled
 from .continuation import SOLVER_ERRORS
-from .families import Setting
+from .families import Setting, acting
 from .orbit_search import (
     Guess,
-    begin_at_state,
     guess_from_impacts,
     least_periods,
     solve_orbit,
@@ -62,8 +61,8 @@ class MotionDecider:
         excitation = point.excitation
         if not has_closed_form(point):
             self.eventful = None  # states that repeat decide
-        arguments = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
-        self.system = Setting.fixed(point.structure, arguments)
+        box = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
+        self.system = Setting.fixed(point.structure, (*box, *acting(vars(excitation))))
         self.values = np.array([excitation.frequency])
         self.known: list[SettledMotion] = []
 
@@ -222,14 +221,14 @@ class MotionDecider:
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
         form, span = self.system.form(self.values), periods * self.point.excitation.period
-        begin_at_state(instance, self.point, form, state)
+        begin(instance, *self.point, state)
         times = instance.impacts(0.0, span).time
         if not len(times):
             return (ImpactSequence(periods, ()), np.zeros((0, 4))), 0.0
         stretches = np.diff(np.append(times, times[0] + span))
         longest = int(stretches.argmax())
         begun = float(times[longest] + 0.5 * stretches[longest]) % span
-        begin_at_state(instance, self.point, form, state)
+        begin(instance, *self.point, state)
         if begun > 0.0:
             instance.impacts(0.0, begun)
         impacts = instance.impacts(begun, begun + span)
@@ -266,7 +265,7 @@ class MotionDecider:
         begun = motion.free_phase / self.point.excitation.frequency
         end = begun + motion.multiplicity * self.point.excitation.period
         try:
-            begin_at_state(instance, self.point, orbit.form, motion.states[0])
+            begin(instance, *self.point, motion.states[0])
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
         if begun > 0.0:

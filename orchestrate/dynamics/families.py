@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
 from ..model import PARAMETERS, Structure
-from ..model.ranges import expected_one_of
-from ..response.questions import EXCITATION_PARAMETERS, Point, make_point
+from ..model.ranges import PUSHES, expected_one_of
+from ..response.questions import QUANTITIES, Point, make_point
 from .closed_form import ClosedForm, Floats
 from .periodic_orbit import POSITION, ImpactSequence, PeriodicOrbit
 
-ACCELERATION = "box_acceleration"
 SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
 RESIDUAL = 1e-10  # of the motion's size: what a root may leave of the equations
 
@@ -25,44 +25,30 @@ class Setting:
     """A structure and excitation with the names and limits of the parameters that vary."""
 
     structure: Structure
-    excitation: tuple[tuple[str, float], ...]  # `eta`, or `frequency` and `amplitude`
+    # `eta`, or `frequency` and `amplitude`, and what pushes beside the box's harmonic motion
+    excitation: tuple[tuple[str, float], ...]
     over: tuple[str, ...]  # names of the parameters that vary
     limits: tuple[tuple[float, float], ...]  # between which
-    box_acceleration: float = 0.0  # constant acceleration of the box beside the harmonic one, m/s2
 
     @classmethod
-    def fixed(
-        cls,
-        structure: Structure,
-        excitation: tuple[tuple[str, float], ...],
-        box_acceleration: float = 0.0,
-    ) -> Setting:
+    def fixed(cls, structure: Structure, excitation: tuple[tuple[str, float], ...]) -> Setting:
         """Return a setting for a single orbit, in which parameters do not really vary."""
         name, value = excitation[0]
         limits = ((value * SPREAD[0], value * SPREAD[1]),)
-        return cls(structure, excitation, (name,), limits, box_acceleration)
+        return cls(structure, excitation, (name,), limits)
 
     def point(self, values: Floats) -> Point:
         """Return structure and excitation with the varying parameters at these values."""
         varied = zip(self.over, map(float, values), strict=True)
-        parameters = {**dict(self.excitation), **dict(varied)}
-        parameters.pop(ACCELERATION, None)
-        return make_point(self.structure, parameters)
+        return make_point(self.structure, {**dict(self.excitation), **dict(varied)})
 
     def orbit_call(self, values: Floats, period: int, guess: str) -> str:
         """Return Python source of the ``orbit(...)`` call at these values of the parameters."""
         point, arguments = self.point(values), dict(self.excitation)
         arguments.update(zip(self.over, map(float, values), strict=True))
-        shown = {name: arguments[name] for name in EXCITATION_PARAMETERS if name in arguments}
-        if self.acceleration(values):
-            shown[ACCELERATION] = self.acceleration(values)
+        shown = {name: arguments[name] for name in QUANTITIES if name in arguments}
         parts = [f"{name}={value!r}" for name, value in {**shown, "period": period}.items()]
         return f"orbit({', '.join([repr(point.structure), *parts, f'guess={guess}'])})"
-
-    def acceleration(self, values: Floats) -> float:
-        """Return the constant box acceleration, m/s2, at these values of the parameters."""
-        parameters = dict(zip(self.over, map(float, values), strict=True))
-        return parameters.get(ACCELERATION, self.box_acceleration)
 
     def form(self, values: Floats) -> ClosedForm:
         """Return the closed-form coefficients at these values of the parameters."""
@@ -72,18 +58,20 @@ class Setting:
 @functools.lru_cache(maxsize=64)
 def closed_form(setting: Setting, values: bytes) -> ClosedForm:
     """Return the coefficients at values of the varying parameters, given as the array's bytes."""
-    numbers = np.frombuffer(values)
-    point = setting.point(numbers)
+    point = setting.point(np.frombuffer(values))
     point.excitation.check(point.structure)
-    return ClosedForm.from_structure(*point, setting.acceleration(numbers))
+    return ClosedForm.from_structure(*point)
+
+
+def acting(pushes: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
+    """Return what pushes beside the box's harmonic motion, as (name, number), where not zero."""
+    return tuple((name, float(pushes[name])) for name in PUSHES if pushes[name] != 0.0)
 
 
 def check_parameters(over: tuple[str, ...]) -> None:
     """Raise ``InputError`` unless all names are parameters that can vary."""
-    box = (
-        name for name in EXCITATION_PARAMETERS if name != "level"
-    )  # the amplitude varies instead
-    known = (*box, *PARAMETERS, ACCELERATION)
+    box = (name for name in QUANTITIES if name != "level")  # the amplitude varies instead
+    known = (*box, *PARAMETERS)
     for name in over:
         if name not in known:
             raise InputError(f"over = {name!r}: no parameter; {expected_one_of(name, known)}")

@@ -103,6 +103,9 @@ def impact_statistics(
     eta: Values = None,
     frequency: Values = None,
     amplitude: Values = None,
+    box_acceleration: Values = 0.0,
+    force1: Values = 0.0,
+    force2: Values = 0.0,
     over: str | None = None,
     values: ArrayLike | None = None,
     transient: Transient = 500,
@@ -115,7 +118,7 @@ def impact_statistics(
     Parameters
     ----------
     structure : Structure
-    eta, frequency, amplitude, over, values
+    eta, frequency, amplitude, box_acceleration, force1, force2, over, values
         As in :func:`orchestrate.sweep`.
     transient, periods, start
         As in :func:`orchestrate.lyapunov`.

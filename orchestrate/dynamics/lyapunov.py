@@ -80,10 +80,12 @@ def exact_exponent_without_impacts(point: Point) -> Exponent | None:
     if exceeds_threshold(*point):
         return None
     mu, kappa = structure.mu, structure.kappa
+    alike = structure.D1 == structure.D2 and kappa / mu == 1.0
+    if any(point.excitation.pushes) and not (structure.bonded or alike):
+        return None
     if structure.gap_offset > 0.0:
         each = decay_rate(structure.D1, 1.0), decay_rate(structure.D2, kappa / mu)
         return Exponent(-min(each), 0.0)
-    alike = structure.D1 == structure.D2 and kappa / mu == 1.0
     if not (structure.bonded or alike or structure.gap_offset < 0.0):
         return None
     return Exponent(-decay_rate(structure.D3, (1.0 + kappa) / (1.0 + mu)), 0.0)
@@ -195,6 +197,9 @@ def lyapunov(
     eta: Values = None,
     frequency: Values = None,
     amplitude: Values = None,
+    box_acceleration: Values = 0.0,
+    force1: Values = 0.0,
+    force2: Values = 0.0,
     over: str | None = None,
     values: ArrayLike | None = None,
     transient: Transient = 500,
@@ -213,7 +218,7 @@ def lyapunov(
     ----------
     structure : Structure
         Masses of different damping, and overdamped ones, included.
-    eta, frequency, amplitude, over, values
+    eta, frequency, amplitude, box_acceleration, force1, force2, over, values
         As in :func:`orchestrate.sweep`.
     transient : int
         Excitation periods dropped at each value.

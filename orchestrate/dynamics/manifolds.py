@@ -20,7 +20,7 @@ from ..response.questions import require_delaminated
 from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
-from .branches import acceleration_at_start, complete_excitation, orbit_at, require_orbit_dataset
+from .branches import complete_excitation, orbit_at, pushes_at_start, require_orbit_dataset
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS, fix_sign
 from .curve_growth import (
@@ -32,7 +32,6 @@ from .curve_growth import (
     GrownCurve,
     GrowthSettings,
 )
-from .families import ACCELERATION
 from .orbit_records import pad_rows
 from .orbit_search import solve_orbit
 from .orbits import (
@@ -187,11 +186,9 @@ class ManifoldJob(SingleOrbitQuestion):
         """Return a function s -> point of one side, which iterates the stroboscopic map."""
         point = self.setting.point(self.values)
         time = saddle.periods_per_return * point.excitation.period
-        push = self.box_acceleration
-        more: dict[str, Any] = {ACCELERATION: push} if push else {}
 
         def run(faces: Floats, returns: int) -> tuple[Floats, Floats]:
-            begin(instance, *point, point.from_faces(faces.copy()), **more)
+            begin(instance, *point, point.from_faces(faces.copy()))
             if returns:
                 instance.step(0.0, returns * time)
             values = np.array(instance.get("x1", "x2", "v1", "v2", *COUNTS), dtype=float)
@@ -291,6 +288,8 @@ def manifold(
     amplitude: ArrayLike | None = None,
     period: int = 1,
     box_acceleration: Annotated[float | None, checked_number] = None,
+    force1: Annotated[float | None, checked_number] = None,
+    force2: Annotated[float | None, checked_number] = None,
     length: Positive = 5.0,
     spacing: Positive = 0.005,
     angle: Positive = 0.2,
@@ -310,7 +309,7 @@ def manifold(
         The excitation; by default that of ``start``.
     period : int
         Excitation periods of the orbit, without ``start``.
-    box_acceleration : float, optional
+    box_acceleration, force1, force2 : float, optional
         As in :func:`orchestrate.orbit`; by default that of ``start``, else 0.
     length : float
         Arclength of each side, over the orbit's size.
@@ -366,9 +365,10 @@ def manifold(
     arguments = excitation_arguments(eta, frequency, amplitude)
     if start is not None:
         require_orbit_dataset(start, several=False)
-    acceleration = acceleration_at_start(start, box_acceleration)
+    pushes = pushes_at_start(start, box_acceleration=box_acceleration, force1=force1, force2=force2)
     if start is None:
-        start = orbit_at(structure, dict(arguments), period, acceleration, running)
-    excitation = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure)
-    own = {"box_acceleration": acceleration, "period": start.sizes["sample"]}
-    return as_given(excitation=excitation, start=guess_from_result(start), **own)
+        start = orbit_at(structure, {**dict(arguments), **pushes}, period, running)
+    given = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure, pushes)
+    excitation = tuple(pair for pair in given if pair[0] not in pushes)
+    own = {**pushes, "excitation": excitation, "period": start.sizes["sample"]}
+    return as_given(start=guess_from_result(start), **own)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..fmu import EventInstance
 from ..lazy import xr
 from ..model.outcomes import UNDECIDED
+from ..model.ranges import PUSHES
 from ..response.labels import (
     Variable,
     flags,
@@ -21,7 +22,7 @@ from ..response.labels import (
 from ..response.questions import Point
 from ..running.job import Table
 from .closed_form import Floats
-from .families import ACCELERATION, Family, Setting
+from .families import Family, Setting
 from .orbit_search import check_orbit_in_fmu
 from .periodic_orbit import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .turning_points import (
@@ -146,14 +147,10 @@ def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Var
         "frequency": [excitation.frequency for excitation in excitations],
         "amplitude": [excitation.amplitude for excitation in excitations],
     }
-    along.update(
-        {n: table["values"][:, i] for i, n in enumerate(setting.over) if n != ACCELERATION}
-    )
+    pushed = [name for name in PUSHES if name in dict(setting.excitation)]
+    along |= {name: [getattr(excitation, name) for excitation in excitations] for name in pushed}
+    along |= {name: table["values"][:, i] for i, name in enumerate(setting.over)}
     parameters = {name: parameter_variable(name, row, values) for name, values in along.items()}
-    if ACCELERATION in setting.over:
-        column = table["values"][:, setting.over.index(ACCELERATION)]
-        text = "constant acceleration of the box beside the harmonic one"
-        parameters[ACCELERATION] = variable(row, column, "m/s2", text)
     periods = np.arange(table["zero"].shape[1])
     return {
         **parameters,

@@ -12,7 +12,7 @@ from ..fmu import EventInstance, Impacts, begin
 from ..response.questions import Point
 from .closed_form import ClosedForm, Floats
 from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
-from .families import ACCELERATION, Family, Setting
+from .families import Family, Setting
 from .periodic_orbit import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 from .turning_points import (
     nearest_miss,
@@ -30,18 +30,9 @@ def guess_from_state(
     instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
 ) -> Guess:
     """Run the FMU some periods from a state at phase 0; return its impacts as an orbit guess."""
-    begin_at_state(instance, point, form, state)
+    begin(instance, *point, state)
     impacts = instance.impacts(0.0, periods * point.excitation.period)
     return guess_from_impacts(impacts, point, form, periods)
-
-
-def begin_at_state(instance: EventInstance, point: Point, form: ClosedForm, state: Floats) -> None:
-    """Initialise the FMU at a state at phase 0, with the constant box acceleration of ``form``."""
-    constant = -float(form.offset[0] * form.stiffness[0])
-    push = constant * point.excitation.amplitude * point.excitation.frequency**2
-    begin(
-        instance, point.structure, point.excitation, state, **({ACCELERATION: push} if push else {})
-    )
 
 
 def guess_from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
@@ -87,16 +78,11 @@ def guess_from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats
 
 
 def close_returns(
-    instance: EventInstance,
-    point: Point,
-    form: ClosedForm,
-    periods: int,
-    transient: int,
-    max_periods: int,
+    instance: EventInstance, point: Point, periods: int, transient: int, max_periods: int
 ) -> Iterator[tuple[Floats, float]]:
     """Yield stroboscopic states that nearly repeat after some periods, the closest return first."""
     period = point.excitation.period
-    begin_at_state(instance, point, form, np.zeros(4))
+    begin(instance, *point, np.zeros(4))
     instance.impacts(0.0, transient * period)
     states = np.empty((max_periods, 4))
     for i, state in enumerate(states):
@@ -165,7 +151,7 @@ def check_orbit_in_fmu(
     """Run the FMU through an orbit; return whether impacts agree, and the error of its return."""
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
-    begin_at_state(instance, point, orbit.form, point.from_faces(state))
+    begin(instance, *point, point.from_faces(state))
     end = orbit.sequence.periods * point.excitation.period
     observed = instance.impacts(0.0, end)
     after = point.faces(instance.read("x1", "x2", "v1", "v2"))

@@ -20,7 +20,6 @@ from .periodic_orbit import (
     POSITION,
     RELEASE,
     STICK,
-    VELOCITY,
     ImpactSequence,
     PeriodicOrbit,
 )
@@ -75,7 +74,7 @@ class OrbitPoint:
         """Return each impact's margin in the sticking condition (17): negative where it sticks."""
         orbit, form = self.orbit, self.orbit.form
         nodes = orbit.nodes
-        force = form.force(nodes[:, POSITION], nodes[:, VELOCITY])
+        force = form.force(*nodes[:, :CLOSING].T)
         margins = 2.0 * form.parting(nodes[:, CLOSING]) + form.sticking_time * force
         return np.where(force < 0.0, margins, np.inf)
 
@@ -261,7 +260,7 @@ def estimated_next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
     """Return the node of the impact after a short flight, estimated as a parabola."""
     phase, position, velocity, closing = orbit.nodes[node]
     parting = orbit.form.parting(closing)
-    time = 2.0 * parting / -float(orbit.form.force(position, velocity))
+    time = 2.0 * parting / -float(orbit.form.force(phase, position, velocity))
     if not 0.0 < time < orbit.durations[node]:
         raise NoConvergenceError("no time is left for another impact")
     return np.array([phase + orbit.form.eta * time, position + velocity * time, velocity, parting])

@@ -30,7 +30,7 @@ from ..running.job import Fmus, Table
 from ..running.options import Running
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
-from .families import ACCELERATION, Setting
+from .families import Setting, acting
 from .orbit_records import orbit_coordinates, orbit_row, orbit_table, orbit_variables
 from .orbit_search import (
     Guess,
@@ -86,8 +86,8 @@ class SingleOrbitQuestion(Question, ABC):
 
     @property
     def setting(self) -> Setting:
-        """Return structure, excitation and box acceleration as setting of the orbit's equations."""
-        return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
+        """Return structure and excitation as setting of the orbit's equations."""
+        return Setting.fixed(self.structure, (*self.excitation, *acting(vars(self))))
 
     @property
     def values(self) -> Floats:
@@ -102,9 +102,7 @@ class OrbitJob(SingleOrbitQuestion):
 
     def call_text(self) -> str:
         frequency = self.setting.point(self.values).excitation.frequency
-        arguments = {**dict(self.excitation), "period": self.period}
-        if self.box_acceleration:
-            arguments[ACCELERATION] = self.box_acceleration
+        arguments = {**dict(self.setting.excitation), "period": self.period}
         parts = [f"{self.structure!r}", *(f"{name}={value!r}" for name, value in arguments.items())]
         if self.guess is None:
             parts += [f"{name}={getattr(self, name)}" for name in ("transient", "search", "tries")]
@@ -157,7 +155,7 @@ def orbit_guesses(
         for shift in np.arange(12) * TURN / 12:
             yield guess_from_phases(form, sequence, phases[:, 0] + shift)
     else:
-        returns = close_returns(instance, point, form, job.period, job.transient, job.search)
+        returns = close_returns(instance, point, job.period, job.transient, job.search)
         for state, _ in islice(list(returns), job.tries):
             yield guess_from_state(instance, point, form, state, job.period)
         yield from single_impact_guesses(form, job.period)
@@ -215,6 +213,8 @@ def orbit(
     period: Annotated[int, whole(1, MAX_PERIODS)] = 1,
     guess: ArrayLike | Mapping[Any, Any] | None = None,
     box_acceleration: Number = 0.0,
+    force1: Number = 0.0,
+    force2: Number = 0.0,
     transient: Transient = 500,
     search: int = 200,
     tries: Count = 20,
@@ -235,8 +235,9 @@ def orbit(
         distances matter most; or an orbit found before, at another parameter. By default
         the closest returns of the response from rest, then orbits with a single impact: the first
         stable orbit among what is found, or the first.
-    box_acceleration : float
-        Constant acceleration of the box beside the harmonic one, m/s2: it opens or closes the gap.
+    box_acceleration, force1, force2 : float
+        As in :func:`orchestrate.simulate`: a constant acceleration of the box in m/s2, amplitudes
+        of forces on the masses in N, in phase with the box.
     transient, search, tries : int
         Periods of the response that are dropped and searched for close returns, and how many of
         these are tried, where there is no guess.
@@ -276,7 +277,8 @@ def orbit(
     >>> found.multipliers.sel(part="real").values.round(4)
     array([-3.3595, -0.5903, -0.5903, -0.1421])
     """
-    point = checked_point(structure, eta, frequency, amplitude)
+    pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
+    point = checked_point(structure, eta, frequency, amplitude, **pushes)
     require_delaminated(structure)
     point.excitation.check(structure)
     count = checked_integer("period", period, 1, MAX_PERIODS)

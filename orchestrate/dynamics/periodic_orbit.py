@@ -161,9 +161,8 @@ class PeriodicOrbit:
         residual[:, 1:] -= after[:, 1:]
         released = of_next(self.sequence.releases)
         if released.any():
-            _, position, velocity, closing = after[released].T
-            residual[released, 0] = self.form.force(position, velocity)
-            residual[released, 3] = closing
+            residual[released, 0] = self.form.force(*after[released, :CLOSING].T)
+            residual[released, 3] = after[released, CLOSING]
         return residual.ravel()
 
     def segment_jacobians(self) -> tuple[Floats, Floats]:
@@ -186,6 +185,7 @@ class PeriodicOrbit:
         released = of_next(sequence.releases)
         before[released] *= np.array([0.0, 1.0, 1.0, 0.0])[:, None]
         after[released, 0] = [0.0, form.force_x, form.force_v, 0.0]
+        after[released, 0, PHASE] = form.gap_drive(self.ends[released] + 0.5 * np.pi)
         after[released, 3] = [0.0, 0.0, 0.0, 1.0]
         return before, after
 

@@ -145,10 +145,12 @@ def pressing_force(
     form, state = orbit.form, orbit.states(segment, phase)
     position, velocity = state[:, 0], state[:, 2]
     acceleration = form.field(state, phase, True)[:, 2]
-    jerk = form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
+    jerk = form.drive[2] * form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
     jerk -= form.stiffness[2] * velocity
     first, second = form.force_rate(velocity, acceleration), form.force_rate(acceleration, jerk)
-    return -form.force(position, velocity), -first, -second
+    first = first + form.eta * form.gap_drive(phase + 0.5 * np.pi)
+    second = second - form.eta**2 * form.gap_drive(phase)
+    return -form.force(phase, position, velocity), -first, -second
 
 
 def stroboscopic_states(orbit: PeriodicOrbit, phase: float = 0.0) -> Floats:

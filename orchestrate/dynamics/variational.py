@@ -50,10 +50,10 @@ def call_of(impacts: Impacts, end: float, point: Point) -> Call:
     """Return a call about non-dimensional impacts up to an end in tau."""
     structure, excitation = point
     if not has_closed_form(point):
-        text = "exponents and releases do not know them yet; expected none"
-        raise InputError(f"wall, stroke, box_acceleration, force1, force2: {text}")
+        raise InputError("wall, stroke: exponents and releases do not know them; expected none")
     values = [float(getattr(structure, name)) for name in DEVIATING]
-    numbers = np.array([*values, excitation.amplitude, excitation.frequency, 0.0])
+    box = excitation.amplitude, excitation.frequency
+    numbers = np.array([*values, *box, *excitation.pushes])
     states, omega = point.from_faces(impacts.state), structure.omega
     columns = impacts.time / omega, states, impacts.closing * point.speed, impacts.sticks
     rows, count = np.column_stack(columns).astype(float), len(impacts.time)
@@ -82,10 +82,11 @@ def contact_durations(
     form: ClosedForm, phase: Floats, position: Floats, velocity: Floats, spans: Floats
 ) -> Floats:
     """Return how long permanent contacts last, in tau; infinite if not released in the span."""
-    mu, eta, push = form.mu, form.eta, -form.offset[0] * form.stiffness[0]
+    mu, eta = form.mu, form.eta
     dampers = 2.0 * form.damping[0], 2.0 * form.damping[1] * mu
     half = 1.0, mu, 1.0, mu * form.stiffness[1], *dampers, form.e, 1.0, 0.0
-    numbers = np.array([*half, form.gap_offset, 0.0, eta**-2.0, eta, push])
+    forces = (form.drive[:2] - 1.0) * [1.0, mu]  # beside a shaken box
+    numbers = np.array([*half, form.gap_offset, 0.0, eta**-2.0, eta, -form.push, *forces])
     durations, memory = np.empty(len(spans)), np.empty(library().exponent_size(1))
     columns = phase / eta, position, position, velocity, velocity, 0.0 * phase, 1.0 + 0.0 * phase
     for i, row in enumerate(np.column_stack(columns)):

@@ -141,7 +141,7 @@ class Excitation(Described):
         --------
         >>> Excitation(frequency=1.0, amplitude=1.0).check(Structure.nondimensional(D=1e-3))
         """
-        if self.amplitude == 0.0:
+        if not (self.amplitude or self.force1 or self.force2):
             return
         frequency = self.frequency
         for name, stiffness, mass, dampers in oscillators(structure):

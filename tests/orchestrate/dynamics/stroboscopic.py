@@ -19,7 +19,8 @@ def flown(structure, excitation, states, periods=1):
 def assert_multipliers(found, structure, excitation, periods=1, within=1e-5):
     """An orbit's multipliers are eigenvalues of the map's derivative there."""
     omega, state = structure.omega, found.state.values[0]
-    scale = np.array([1.0, 1.0, omega, omega]) * excitation.amplitude
+    scale = np.array([1.0, 1.0, omega, omega])
+    scale *= excitation.amplitude or excitation.length(structure)
     steps = 1e-6 * np.diag(scale)
     ends = [flown(structure, excitation, state + sign * steps, periods) for sign in (1.0, -1.0)]
     seen = np.linalg.eigvals((ends[0] - ends[1]).T / scale[:, None] / 2e-6)

@@ -26,6 +26,7 @@ from .test_variational import monodromy
 
 make = Structure.nondimensional
 PAPER = make()
+PUSHED = {"force1": 0.3, "force2": -0.4, "box_acceleration": 0.1}
 
 
 @pytest.fixture(scope="module")
@@ -69,11 +70,15 @@ def test_of_a_periodic_response_it_is_that_of_its_multipliers(instances, structu
 
 
 @pytest.mark.parametrize(
-    ("eta", "expected"), [(0.8, CHAOTIC), (1.13, CHAOTIC), (1.047, PERIODIC), (2.655, NEUTRAL)]
+    ("eta", "pushes", "expected"),
+    [
+        *((0.8, {}, CHAOTIC), (1.13, {}, CHAOTIC), (1.047, {}, PERIODIC), (2.655, {}, NEUTRAL)),
+        *((0.8, PUSHED, CHAOTIC), (1.047, PUSHED, PERIODIC)),
+    ],
 )
-def test_it_agrees_with_two_neighbours_of_the_fmu(instances, eta, expected):
+def test_it_agrees_with_two_neighbours_of_the_fmu(instances, eta, pushes, expected):
     plain, eventful = instances
-    point, periods = Point(PAPER, Excitation.nondimensional(eta, PAPER)), 400
+    point, periods = Point(PAPER, Excitation.nondimensional(eta, PAPER, **pushes)), 400
     start, span = settled(plain, point, 3000), period_in_tau(eta)
     impacts = follow_impacts(eventful, point, start, periods)
     exponent, error = largest_exponent(impacts, periods * span, point)
@@ -136,3 +141,12 @@ def test_a_sweep_s_responses_are_followed_on():
         lyapunov(PAPER, eta=0.9, start=swept)
     with pytest.raises(InputError, match="2 states; expected one, or one for each of 3"):
         lyapunov(PAPER, eta=etas, start=swept.end_state.values[:2])
+
+
+@pytest.mark.usefixtures("exported")
+def test_pressed_by_gravity_a_gap_has_no_exponent_of_free_masses():
+    pressed = {"eta": 2.0, "box_acceleration": -30.0, "progress": False}
+    with pytest.raises(InputError, match="0 impacts"):
+        lyapunov(make(clearance=0.2, D1=0.05, D2=0.02), **pressed, periods=50, transient=20)
+    alike = lyapunov(make(kappa=1.0, D=0.03), **pressed, periods=50, transient=20)
+    assert float(alike.exponent[0]) == pytest.approx(-0.03)

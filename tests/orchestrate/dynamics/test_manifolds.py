@@ -12,6 +12,7 @@ from orchestrate import InputError, Structure
 from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.curve_growth import CurveGrower, CurvePoint, GrowthSettings
 from orchestrate.fmu import OSCILLATOR, Instance, begin
+from orchestrate.model.ranges import PUSHES
 from orchestrate.response.questions import make_point
 
 from ...processors import printed_on_each
@@ -125,7 +126,8 @@ def job_fields():
     found = manifolds.guess_from_result(start)
     numbers = {"length": 2.0, "spacing": 0.005, "angle": 0.2, "distance": 1e-5, "most": 100}
     names = {"name": "manifold", "structure": PAPER, "excitation": (("eta", 3.0),)}
-    return {**names, "box_acceleration": 0.0, "start": found, "period": 1, **numbers}
+    pushes = dict.fromkeys(PUSHES, 0.0)
+    return {**names, **pushes, "start": found, "period": 1, **numbers}
 
 
 def exported_path():

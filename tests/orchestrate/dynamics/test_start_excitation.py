@@ -24,26 +24,28 @@ def asked(excitation):
 @pytest.mark.parametrize("over", ["k1", "m1", "omega", "f1"])
 def test_where_omega_varies_the_frequency_is_kept_that_was_asked_for(over):
     for varied in ((over,), ("e", over)):
-        kept = complete_excitation(asked(BY_FREQUENCY), varied, (), (0.0, 1.0), BEAM)
+        kept = complete_excitation(asked(BY_FREQUENCY), varied, (), (0.0, 1.0), BEAM, {})
         assert kept == (("frequency", 97.4), ("amplitude", 1e-4))
-        kept = complete_excitation(asked("[['eta', 1.3]]"), varied, (), (0.0, 1.0), BEAM)
+        kept = complete_excitation(asked("[['eta', 1.3]]"), varied, (), (0.0, 1.0), BEAM, {})
         assert kept == (("eta", 1.3),)
-    kept = complete_excitation(asked(BY_FREQUENCY), ("e",), (), (0.0, 1.0), BEAM)
+    kept = complete_excitation(asked(BY_FREQUENCY), ("e",), (), (0.0, 1.0), BEAM, {})
     assert kept == (("eta", 1.3),)
 
 
-def test_the_constant_acceleration_of_the_start_is_kept(monkeypatch):
+def test_what_pushes_at_the_start_is_kept(monkeypatch):
     """Of an orbit that is stable, whose manifold is refused after that."""
-    start = orbit(PAPER, eta=1.7, box_acceleration=0.05)
+    pushes = {"box_acceleration": 0.05, "force1": 0.02}
+    start = orbit(PAPER, eta=1.7, **pushes)
     monkeypatch.setattr(questions, "answer", lambda job, *rest: job)
     kept = branch(PAPER, start=start, limits=(1.6, 1.8))
-    assert kept.setting.box_acceleration == 0.05
+    assert dict(kept.setting.excitation) == pushes
     given = branch(PAPER, start=start, limits=(1.6, 1.8), box_acceleration=0.0)
-    assert given.setting.box_acceleration == 0.0
+    assert dict(given.setting.excitation) == {"force1": 0.02}
     along = branch(PAPER, start=start, over="box_acceleration", limits=(0.0, 0.1))
-    assert along.value == 0.05
+    assert along.value == 0.05 and dict(along.setting.excitation)["force1"] == 0.02
     monkeypatch.setattr(manifolds.ManifoldJob, "saddle", lambda job: None)
-    assert manifolds.manifold(PAPER, start=start).box_acceleration == 0.05
+    kept = manifolds.manifold(PAPER, start=start)
+    assert {name: getattr(kept, name) for name in pushes} == pushes
 
 
 def test_a_branch_leaves_along_the_parameter_of_the_one_that_it_leaves():

@@ -10,7 +10,6 @@ import pytest
 import orchestrate
 from orchestrate import Excitation, InputError, Structure
 from orchestrate.dynamics.attractors import random_starts
-from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.explorer.page import explore
 from orchestrate.model import write
 from orchestrate.response.questions import Point
@@ -187,11 +186,11 @@ def test_starts_lie_where_the_masses_can_be():
 
 @pytest.mark.parametrize("kind", ["two masses", "wall and play"])
 def test_attractors_basins_and_sections_agree(kind):
-    """By states that repeat, without Newton's method, whose formulas know none of it."""
+    """By orbits with forces and gravity; with a wall or a stroke by states that repeat."""
     structure = KINDS[kind]
     asked = {**BOX, **pushes_of(structure), **QUICK}
     found = orchestrate.attractors(structure, **asked, starts=6).isel(frequency=0)
-    assert np.isnan(found.multiplier).all()
+    assert np.isnan(found.multiplier).all() == bool(structure.wall)
     plane = {"x": ("x_rel", 0.0, 0.2, 4), "y": ("v_rel", -0.5, 0.5, 3)}
     basin = orchestrate.basin(structure, **asked, **plane)
     outside = basin.attractor_of.values == -1
@@ -251,20 +250,10 @@ def test_diagnosis_refuses_them_by_name():
             check(WALL)
 
 
-def test_forces_without_a_formula_are_refused_by_name():
-    pushed = Excitation(frequency=1.0, amplitude=1.0, force1=0.1)
-    with pytest.raises(InputError, match="force1"):
-        ClosedForm.from_structure(Structure(), pushed)
-    with pytest.raises(InputError, match="force1"):
-        orchestrate.poincare(Structure(), eta=1.0, force1=0.1, at="releases", periods=4)
-    with pytest.raises(InputError, match="force1"):
-        orchestrate.map(
-            Structure(), eta=[1.0, 2.0], e=[0.5, 0.6], force1=0.1, exponent=True, periods=9
-        )
-    for name in ("force1", "stroke", "box_acceleration"):
-        with pytest.raises(InputError, match=f"over = '{name}': lyapunov"):
-            orchestrate.lyapunov(Structure(), over=name, values=[0.1], eta=1.0)
-    for name in ("wall", "force1"):
+def test_what_has_no_formula_is_refused_by_name():
+    with pytest.raises(InputError, match="over = 'stroke': lyapunov"):
+        orchestrate.lyapunov(Structure(), over="stroke", values=[0.1], eta=1.0)
+    for name in ("wall", "stroke"):
         with pytest.raises(InputError, match=name):
             orchestrate.branch(Structure(), eta=1.3, over=name, limits=(0.1, 1.0))
     with pytest.raises(InputError, match="force2: mass 2 is a wall"):

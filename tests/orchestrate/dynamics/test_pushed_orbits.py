@@ -1,0 +1,91 @@
+"""Orbits and branches with forces and gravity, against the FMU's own map and its sweeps."""
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate.dynamics.bifurcations import Kind
+from orchestrate.dynamics.families import Setting, central_difference
+from orchestrate.dynamics.orbit_search import solve_orbit
+from orchestrate.dynamics.orbits import guess_from_result
+from orchestrate.errors import InputError
+from orchestrate.model import Excitation, Structure
+
+from ...draws import draw_structure
+from .stroboscopic import assert_multipliers, flown
+
+QUICK = {"progress": False, "jobs": 1}
+PUSHES = "box_acceleration", "force1", "force2"
+
+
+def draw_pushed(random):
+    """A structure of 3 kg and 7 rad/s, an eta, and pushes of the size of the box's own."""
+    drawn, eta = draw_structure(random)
+    units = {"m": 3.0, "k": 3.0 * 49.0, "d": 3.0 * 7.0}
+    names = [f"{quantity}{mass}" for quantity in units for mass in (1, 2)]
+    structure = drawn.replace(**{name: units[name[0]] * drawn.get(name) for name in names})
+    sizes = random.uniform(-1.5, 1.5, 3) * 49.0 * [1.0, structure.m1, structure.m2]
+    return structure, eta, dict(zip(PUSHES, map(float, sizes), strict=True))
+
+
+@pytest.mark.parametrize("at_rest", [False, True], ids=["box", "box at rest"])
+def test_orbits_of_random_structures_are_those_of_the_fmus_own_map(at_rest):
+    """States after a period to 1e-10, multipliers by differences; permanent contact among them."""
+    random, sequences, contacts = np.random.default_rng(5), [], 0
+    while len(sequences) < (3 if at_rest else 10):
+        structure, eta, pushes = draw_pushed(random)
+        box = {"frequency": eta * structure.omega, "amplitude": 0.0 if at_rest else eta**-2.0}
+        try:
+            found = orchestrate.orbit(structure, **box, **pushes, **QUICK)
+        except InputError as reason:
+            assert "no orbit found" in str(reason)
+            continue
+        excitation, state = Excitation(**box, **pushes), found.state.values[0]
+        assert found.fmu_same_impacts
+        unit, largest = excitation.length(structure), np.hypot(*found.multipliers.values.T).max()
+        away = flown(structure, excitation, state)[0] - state
+        assert np.abs(away).max() < 1e-10 * unit * max(1.0, largest)
+        contacts += bool(found.permanent_contact)
+        sequences += [found.node_kind.values.tolist()] * bool((found.node_kind >= 0).any())
+        if found.xi_rel > 1e-2:  # in contact at phase 0 there is no neighbour beyond
+            assert_multipliers(found, structure, excitation, within=1e-6)
+    assert contacts > 0 and max(map(len, sequences)) > (0 if at_rest else 3)
+
+
+def test_newtons_matrix_is_that_of_differences_at_a_release_too():
+    structure = Structure.nondimensional(e=0.4, D1=0.02, D2=0.05, mu=1.3)
+    excitation = (("eta", 0.4), ("box_acceleration", -0.1), ("force1", 0.3), ("force2", -0.2))
+    found = orchestrate.orbit(structure, **dict(excitation), **QUICK)
+    assert {1, 2} <= set(found.node_kind.values.tolist())
+    setting, guess = Setting.fixed(structure, excitation), guess_from_result(found).as_guess(1)
+    family, root = solve_orbit(setting, guess, np.array([0.4]))
+    places = [(i, *root.unknowns[i] + [-1.0, 1.0]) for i in range(family.size)]
+    seen = [central_difference(family.residual, root.unknowns, *each, 1e-5) for each in places]
+    matrix = family.jacobian(root.unknowns)[:, : family.size]
+    assert np.abs(np.array(seen).T - matrix).max() < 1e-6 * np.abs(matrix).max()
+
+
+OPEN = Structure.nondimensional(e=0.7, D=0.02, clearance=0.3)
+
+
+def bifurcations(found, kind):
+    return found.bifurcation_value.values[found.bifurcation_kind.values == kind]
+
+
+def test_sweeps_change_where_a_branch_with_a_force_folds_and_doubles():
+    asked = {"force1": 0.4, "longest": 0.3, **QUICK}
+    along = orchestrate.branch(OPEN, eta=1.2, over="eta", limits=(1.1, 1.31), **asked)
+    (flip,), (fold,) = bifurcations(along, Kind.FLIP), bifurcations(along, Kind.FOLD)
+    etas = np.array([1.2, 1.13, flip + 4e-3, flip - 4e-3])
+    run = {"direction": "given", "transient": 900, "samples": 40, "force1": 0.4, **QUICK}
+    assert orchestrate.sweep(OPEN, eta=etas, **run).multiplicity.values.tolist() == [1, 1, 1, 2]
+    last = along.isel(point=np.flatnonzero(along.stable & (along.eta > 1.28))[-1])
+    etas = np.append(fold - (fold - float(last.eta)) * np.array([1.0, 0.5, 0.2]), fold + 1e-4)
+    run |= {"start": last.state.values[0]}
+    gaps = orchestrate.sweep(OPEN, eta=etas, **run).xi_rel_max.values
+    steps = np.abs(np.diff(gaps))
+    assert steps[:-1].max() < 0.1 * steps[-1]
+    start = orchestrate.orbit(OPEN, eta=flip, force1=0.41, **QUICK)
+    along = orchestrate.branch(OPEN, start=start, over="force1", limits=(0.38, 0.42), **QUICK)
+    assert bifurcations(along, Kind.FLIP) == pytest.approx([0.4], abs=1e-9)
+    assert along.force1.values.min() == 0.38 and along.eta.values == pytest.approx(flip)
