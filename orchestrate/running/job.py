@@ -141,7 +141,9 @@ def refuse_family(asked: str, structure: Any) -> None:
     for name in ("wall", "stroke"):
         value = getattr(structure, name, None)
         if isinstance(value, (bool, float)) and value and not structure.bonded:
-            raise InputError(f"{name} = {value!r}: {asked} does not know it yet; expected none")
+            raise InputError(
+                f"{name} = {value!r}: {asked} does not know it yet; expected a question without it"
+            )
 
 
 def last_entries(table: Table) -> Table:
