@@ -113,11 +113,8 @@ what it gives:
     def __call__(self) -> None:
         import orchestrate
 
-        from ..laboratory.record_files import check_file
-
         Files.from_options(self, "", fresh=True)  # before records are read
         self.participation_by_sensor()
-        check_file(self.records[0])  # a name may be wrong too
         if self.structure is None and self.set:
             raise InputError("--set: of a guess; expected --structure FILE.toml with it")
         guess = None if self.structure is None else self.read_structure()
