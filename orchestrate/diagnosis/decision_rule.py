@@ -12,8 +12,6 @@ DELAMINATED = "delaminated"
 NOT_SEEN = "no opening seen"
 NOT_DESCRIBED = "not described"
 UNDECIDED = "undecided"
-SAME_LEVEL = 0.9  # of a level: what a record reaches of the level of another at the same one
-DOUBLED = 1.5  # a level over another from which both tell whether the response grows with it
 
 
 @dataclass(frozen=True)
@@ -135,9 +133,9 @@ class Beam:
         - "undecided" without a usable record: one whose channels are not saturated (`clipped`),
           whose sweep passes the resonance (`end_response`), which is the guess's (`guess_factor`).
         - "delaminated": in a usable record faces strike (:meth:`.impact_timing.Strikes.word`; with
-          one sensor its resonance is known by the guess, or by two levels between which the
-          displacement `grows` and the resonance moves by `shift` at most); "undecided" if another
-          one, of no lower level, contradicts.
+          one sensor its resonance is known by the guess, or by two levels, `doubled`, between which
+          the displacement `grows` and the resonance moves by `shift` at most); "undecided" if
+          another one, of no lower level (`same_level`), contradicts.
         - "no opening seen": in all of them nothing is heard, order 2 and the difference of the
           faces are below their thresholds, and noise hides no order 2 of `hidden`.
         - "not described": the base strikes, or what is heard is not locked to the stroke, or kinks,
@@ -178,7 +176,7 @@ class Beam:
     def grows(self) -> bool | None:
         """Whether the response grows with the level at the same resonance; None of one level."""
         usable = self.usable
-        if not usable or usable[0].high < DOUBLED * usable[-1].high:
+        if not usable or usable[0].high < usable[0].settings.doubled * usable[-1].high:
             return None
         high, low = usable[0], usable[-1]
         settings, octaves = high.settings, math.log2(high.high / low.high)
@@ -197,11 +195,11 @@ class Beam:
     @property
     def against(self) -> list[Findings]:
         """Records of no lower level than the one at which faces strike that show otherwise."""
-        least = SAME_LEVEL * self.opening_level  # NaN: none
+        level = self.opening_level  # NaN: none
         return [
             one
             for one in self.usable
-            if one.high >= least and self.word(one) not in (FACES, SOFTER)
+            if one.high >= one.settings.same_level * level and self.word(one) not in (FACES, SOFTER)
         ]
 
     def stops(self) -> list[Condition]:

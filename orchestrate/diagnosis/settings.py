@@ -25,6 +25,8 @@ class Settings:
     # of a displacement between two levels, L and 2 L, and the shift of the resonance's logarithm
     grows: float = 1.35
     shift: float = 0.03
+    doubled: float = 1.5  # a level over another from which both tell whether the response grows
+    same_level: float = 0.9  # of a level: what another record reaches of it at the same one
     # by which the delaminated misfit has to be smaller than the best sound one for its numbers
     ratio: float = 1.5
     # largest misfit of a sound hypothesis, and of a delaminated one, whose numbers are stated: real

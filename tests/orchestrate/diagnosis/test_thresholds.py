@@ -51,6 +51,12 @@ def test_each_threshold_of_two_levels(level, displacement, resonance, verdict):
     assert Beam((UNKNOWN, high)).verdict() == verdict
 
 
+@pytest.mark.parametrize(("level", "verdict"), [(0.89, DELAMINATED), (0.91, UNDECIDED)])
+def test_a_record_of_the_same_level_contradicts_and_one_of_a_lower_does_not(level, verdict):
+    quiet = replace(QUIET, high=level * OPENED.high)
+    assert Beam((OPENED, quiet)).verdict() == verdict
+
+
 @pytest.mark.parametrize(
     ("factor", "delay", "kinds"),
     [
