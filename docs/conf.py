@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from docutils import nodes
+from docutils.parsers.rst import directives
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
+from sphinx.util.typing import OptionSpec
 
 import orchestrate
 
@@ -102,13 +104,15 @@ class Public(SphinxDirective):
     """``.. public:: PLACE``: all that the public face has from there, so that none is left out."""
 
     required_arguments = 1
+    option_spec: ClassVar[OptionSpec] = {"inherited": directives.flag}  # with bases' members
 
     def run(self) -> list[nodes.Node]:
         """Describe each name by its docstring."""
+        more = "\n   :inherited-members:" if "inherited" in self.options else ""
         found = {name: getattr(orchestrate, name) for name in orchestrate.__all__}
         place = f"orchestrate.{self.arguments[0]}"
         names = [name for name, what in found.items() if is_from(what, place)]
-        text = "\n\n".join(f".. auto{kind_of(found[name])}:: {name}" for name in names)
+        text = "\n\n".join(f".. auto{kind_of(found[name])}:: {name}{more}" for name in names)
         return self.parse_text_to_nodes(f".. currentmodule:: orchestrate\n\n{text}\n")
 
 

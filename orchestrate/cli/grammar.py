@@ -325,8 +325,8 @@ def parse_with_unit(option: str, name: str, value: str, other: str = "") -> floa
 
 def check_name(name: str) -> None:
     """Raise unless a name is that of a parameter of the structure or of a drive."""
+    from ..model import PARAMETERS
     from ..model.ranges import DRIVE
-    from ..model.structure import PARAMETERS
 
     known = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)
     if name not in (*known, *DRIVE):

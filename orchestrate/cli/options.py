@@ -275,7 +275,7 @@ class Beside(Options):
 
 def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
     """Print which parameters of the user's beam are taken from a shipped set; warn of per cent."""
-    from ..model.structure import warn_of_per_cent
+    from ..model.conversions import warn_of_per_cent
 
     warn_of_per_cent({name: changes[name] for name in ("zeta1", "zeta2") if name in changes})
     if source not in SET_NAMES or not changes.keys() & {"f1", "f2"}:

@@ -4,7 +4,8 @@ from .drive import Drive
 from .excitation import Excitation
 from .files import SETS, read, resolve, write
 from .shaker import Shaker
-from .structure import PARAMETERS, Structure
+from .structure import Structure
+from .structure_numbers import PARAMETERS
 
 __all__ = [
     "PARAMETERS",

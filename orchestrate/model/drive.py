@@ -9,9 +9,10 @@ from os import PathLike
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from .conversions import damping_from_ratio
 from .described import Described
 from .ranges import DRIVE, RATIO_QUANTITIES, construct_or_explain, exact_inverse
-from .structure import Structure, damping_from_ratio
+from .structure import Structure
 
 if TYPE_CHECKING:
     import numpy as np

@@ -28,7 +28,8 @@ from .ranges import (
     expected_one_of,
 )
 from .shaker import Shaker
-from .structure import FLAGS, Structure
+from .structure import Structure
+from .structure_numbers import FLAGS
 
 TO_RAD_S: dict[str, Callable[[float], float]] = {
     "hz": lambda value: TURN * value,

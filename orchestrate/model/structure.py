@@ -4,36 +4,30 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
 from ..errors import InputError
+from .conversions import (
+    checked_thicknesses,
+    damping_from_ratio,
+    stiffness_from_frequency,
+    warn_of_per_cent,
+)
 from .described import Described
 from .ranges import (
     ADDED,
-    OF_LENGTH,
     RATIO_QUANTITIES,
     STRUCTURE,
     checked_flag,
     construct_or_explain,
-    exact_inverse,
     expected_one_of,
 )
+from .structure_numbers import FLAGS, HALVES, OF_MASS_2, PARAMETERS, RATIOS
+from .structure_text import StructureText
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-Values = TypeVar("Values", float, "NDArray[np.float64]")
-SI = tuple(STRUCTURE)
-RATIOS = ("mu", "kappa", "D", "D1", "D2", "omega")
-HALVES = ("f1", "f2", "zeta1", "zeta2")
-OF_MASS_2 = ("m2", "k2", "d2", "mu", "kappa", "D2", "f2", "zeta2")
-FLAGS = ("bonded", "wall")
-PARAMETERS = (*SI, *RATIOS, *HALVES)
 ALTERNATIVES = {  # names that set the same value
     "mu": ("m2",),
     "kappa": ("k2",),
@@ -46,59 +40,6 @@ ALTERNATIVES = {  # names that set the same value
     "zeta1": ("d1", "D", "D1"),
     "zeta2": ("d2", "D", "D2"),
 }
-
-
-def stiffness_from_frequency(f: float, mass: float) -> float:
-    """Return the stiffness, N/m, that gives a mass the natural frequency f, Hz: m (2 pi f)^2."""
-    omega = 2.0 * math.pi * f
-    return mass * (omega * omega)
-
-
-def damping_from_ratio(ratio: float, omega: float, mass: float) -> float:
-    """Return the damping constant, N s/m, from a damping ratio D: d = 2 D omega m (8)."""
-    return 2.0 * ratio * omega * mass
-
-
-def natural_frequency(spring: float, mass: float) -> float:
-    """Return a mass's natural frequency, Hz; inverse of :func:`stiffness_from_frequency`."""
-    guess = math.sqrt(spring / mass) / (2.0 * math.pi)
-    return exact_inverse(guess, lambda f: stiffness_from_frequency(f, mass), spring)
-
-
-def damping_ratio(damper: float, f: float, mass: float) -> float:
-    """Return the damping ratio (1: critical) from a damping constant and a frequency, Hz."""
-    omega = 2.0 * math.pi * f
-    ratio = damper / (2.0 * omega * mass)
-    return exact_inverse(ratio, lambda guess: damping_from_ratio(guess, omega, mass), damper)
-
-
-def checked_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:
-    """Return two layer thicknesses as floats; raise ``InputError`` unless both are > 0."""
-    try:
-        h1, h2 = (float(h) for h in thicknesses)
-        share = h1 / (h1 + h2)
-    except (TypeError, ValueError, ZeroDivisionError, OverflowError):
-        share = math.nan
-    if not (0.0 < share < 1.0 and h1 > 0.0):
-        text = "expected two numbers > 0, of layers 1 and 2"
-        raise InputError(f"thicknesses = {thicknesses!r}: {text}")
-    return h1, h2
-
-
-def warn_of_per_cent(ratios: Mapping[str, float]) -> None:
-    """Warn about damping ratios, by name, so large that per cent was probably meant."""
-    for name, ratio in ratios.items():
-        if ratio > 0.3:  # damping ratio above which a half of a beam would hardly ring
-            warnings.warn(
-                f"{name} = {ratio:g} is {100.0 * ratio:.4g} % of critical damping: a ratio is "
-                f"meant, {ratio:g} % is {0.01 * ratio:g}",
-                stacklevel=3,
-            )
-
-
-def format_short(value: float) -> str:
-    """Format a float for a file name: all its digits, without a trailing ``.0``."""
-    return repr(value).removesuffix(".0")
 
 
 def with_table(kind: type[Described]) -> type[Described]:
@@ -117,7 +58,7 @@ def with_table(kind: type[Described]) -> type[Described]:
 
 @dataclass(frozen=True, kw_only=True)
 @with_table
-class Structure(Described):
+class Structure(StructureText, Described):
     """Two masses on springs and dampers that touch without being glued (Figure 1 of the paper).
 
     Parameters
@@ -233,11 +174,6 @@ class Structure(Described):
         """
         alike: dict[str, Any] = {"m1": m, "m2": m, "k1": k, "k2": k, "d1": d, "d2": d}
         return cls(**alike, clearance=clearance, stroke=stroke, wall=True, **added)
-
-    def needs_mass_2(self, name: str) -> None:
-        """Raise ``InputError`` if mass 2, of which a parameter is made, is a wall."""
-        if self.wall:
-            raise InputError(f"{name}: mass 2 is a wall (wall = True); expected a mass")
 
     @classmethod
     def nondimensional(
@@ -463,126 +399,6 @@ class Structure(Described):
         own: dict[str, Any] = {name: bool(flag) for name, flag in flags.items()}
         return cls(**numbers, **own)
 
-    @property
-    def omega(self) -> float:
-        """Unit of frequency sqrt(k1/m1), rad/s (2)."""
-        return math.sqrt(self.k1 / self.m1)
-
-    @property
-    def mu(self) -> float:
-        """Mass ratio m2/m1 (2)."""
-        self.needs_mass_2("mu")
-        return exact_inverse(self.m2 / self.m1, lambda mu: mu * self.m1, self.m2)
-
-    @property
-    def kappa(self) -> float:
-        """Stiffness ratio k2/k1 (2)."""
-        self.needs_mass_2("kappa")
-        return exact_inverse(self.k2 / self.k1, lambda kappa: kappa * self.k1, self.k2)
-
-    @property
-    def D1(self) -> float:
-        """Damping ratio d1/(2 omega m1) of mass 1 (8)."""
-        omega, m1 = self.omega, self.m1
-        ratio = self.d1 / (2.0 * omega * m1)
-        return exact_inverse(ratio, lambda D: damping_from_ratio(D, omega, m1), self.d1)
-
-    @property
-    def D2(self) -> float:
-        """Damping ratio d2/(2 omega m2) of mass 2 (8)."""
-        self.needs_mass_2("D2")
-        omega, m1, mu = self.omega, self.m1, self.mu
-        ratio = self.d2 / (2.0 * omega * self.m2)
-        return exact_inverse(ratio, lambda D: damping_from_ratio(D, omega, m1) * mu, self.d2)
-
-    @property
-    def f1(self) -> float:
-        """Natural frequency of mass 1 alone, Hz."""
-        return natural_frequency(self.k1, self.m1)
-
-    @property
-    def f2(self) -> float:
-        """Natural frequency of mass 2 alone, Hz."""
-        self.needs_mass_2("f2")
-        return natural_frequency(self.k2, self.m2)
-
-    @property
-    def zeta1(self) -> float:
-        """Damping ratio of mass 1 alone at its own frequency, d1/(2 sqrt(k1 m1))."""
-        return damping_ratio(self.d1, self.f1, self.m1)
-
-    @property
-    def zeta2(self) -> float:
-        """Damping ratio of mass 2 alone at its own frequency, d2/(2 sqrt(k2 m2))."""
-        return damping_ratio(self.d2, self.f2, self.m2)
-
-    @property
-    def D3(self) -> float:
-        """Damping ratio of both masses together, in contact (8)."""
-        self.needs_mass_2("D3")
-        return (self.d1 + self.d2) / (2.0 * self.omega * (self.m1 + self.m2))
-
-    @property
-    def omega_1(self) -> float:
-        """Natural frequency of mass 1 over omega: 1 (7)."""
-        return 1.0
-
-    @property
-    def omega_2(self) -> float:
-        """Natural frequency of mass 2 over omega, sqrt(kappa/mu) (7)."""
-        return math.sqrt(self.kappa / self.mu)
-
-    @property
-    def omega_3(self) -> float:
-        """Natural frequency of both masses together over omega, in contact (7)."""
-        return math.sqrt((1.0 + self.kappa) / (1.0 + self.mu))
-
-    @property
-    def alike(self) -> bool:
-        """Return whether both masses have equal frequency and damping: together they stay so."""
-        return self.kappa == self.mu and self.D1 == self.D2
-
-    @property
-    def gap_offset(self) -> float:
-        """Gap between the masses at unloaded springs, m: the clearance, 0 where bonded."""
-        return 0.0 if self.bonded else self.clearance
-
-    @property
-    def preload(self) -> float:
-        """Force pressing the masses together at rest, N: -clearance k1 k2/(k1 + k2), or 0."""
-        if self.wall:
-            return max(0.0, -self.clearance) * self.k1
-        return max(0.0, -self.gap_offset) * self.k2 / (1.0 + self.kappa)
-
-    @property
-    def at_rest(self) -> tuple[float, float]:
-        """Return displacements x1, x2 at rest, m: -F/k1 and F/k2 with the preload F."""
-        return 0.0 - self.preload / self.k1, 0.0 if self.wall else self.preload / self.k2
-
-    @property
-    def has_scale(self) -> bool:
-        """Return whether the response is nonlinear in amplitude: with a clearance or e(v)."""
-        return any(getattr(self, name) != 0.0 for name in OF_LENGTH)
-
-    def restitution(self, closing: Values) -> Values:
-        """Return the restitution coefficient at closing speeds, m/s: e/(1 + e_slope v).
-
-        It is the limit for slow impacts, ``e``, times the Pade approximant [0/1] of the law of Hunt
-        and Crossley (Journal of Applied Mechanics 42, 1975, 440-445), whose contact force
-        k d^n (1 + 3/2 e_slope d') has the restitution 1 - e_slope v + (e_slope v)^2 - ... at a
-        speed v. The separation e(v) v grows with v.
-
-        Parameters
-        ----------
-        closing : float or ndarray
-
-        Examples
-        --------
-        >>> Structure(e=0.8, e_slope=0.5).restitution(2.0)
-        0.4
-        """
-        return self.e / (1.0 + self.e_slope * closing)
-
     def as_bonded(self) -> Structure:
         """Return a copy without delamination: both masses move as one (clearance kept unused)."""
         return dataclasses.replace(self, bonded=True)
@@ -590,26 +406,6 @@ class Structure(Described):
     def as_delaminated(self) -> Structure:
         """Return a delaminated copy of equal parameters: its masses can separate and impact."""
         return dataclasses.replace(self, bonded=False)
-
-    def get(self, name: str) -> float:
-        """Return a parameter's value by its name, SI or non-dimensional, any of ``PARAMETERS``.
-
-        Raises
-        ------
-        InputError
-            Where there is none of that name; for ``D`` too where D1 and D2 differ.
-        """
-        if name not in PARAMETERS:
-            raise InputError(
-                f"{name}: no parameter of a structure; {expected_one_of(name, PARAMETERS)}"
-            )
-        if name in OF_MASS_2:
-            self.needs_mass_2(name)
-        if name != "D":
-            return float(getattr(self, name))
-        if not self.wall and self.D1 != self.D2:
-            raise InputError(f"D: D1 = {self.D1!r} and D2 = {self.D2!r}; expected D1 or D2")
-        return self.D1
 
     def replace(self, **changes: Any) -> Structure:
         """Return a copy with some parameters changed, given as keywords, SI or non-dimensional.
@@ -651,7 +447,8 @@ class Structure(Described):
         }
         fixed = dataclasses.replace(self, **changes)
         if ratios:
-            new = {k: v for k, v in fixed._by_ratios(ratios).items() if k not in changes}
+            with_mass_2 = dataclasses.replace(fixed, wall=False)  # whose ratios are numbers
+            new = {k: v for k, v in with_mass_2._by_ratios(ratios).items() if k not in changes}
             fixed = construct_or_explain(ratios, lambda: dataclasses.replace(fixed, **new))
         if halves:
             by_halves = fixed._by_halves(halves)
@@ -659,109 +456,6 @@ class Structure(Described):
             fixed = construct_or_explain(halves, lambda: dataclasses.replace(fixed, **new))
         return fixed
 
-    def _by_halves(self, changes: dict[str, float]) -> dict[str, float]:
-        """Return the SI values k and d that change if f1, f2, zeta1 or zeta2 are set."""
-        new = {}
-        for half, mass in (("1", self.m1), ("2", self.m2)):
-            f, zeta = f"f{half}", f"zeta{half}"
-            if f in changes:
-                new[f"k{half}"] = stiffness_from_frequency(changes[f], mass)
-            if f in changes or zeta in changes:
-                ratio = changes.get(zeta, getattr(self, zeta))
-                omega = 2.0 * math.pi * changes.get(f, getattr(self, f))
-                new[f"d{half}"] = damping_from_ratio(ratio, omega, mass)
-        return new
-
-    def _by_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
-        """Return the SI values that change if ratios of the paper (mu, kappa, D, omega) are set."""
-        if self.wall:
-            return dataclasses.replace(self, wall=False)._by_ratios(ratios)
-        both = {"D1": ratios["D"], "D2": ratios["D"]} if "D" in ratios else {}
-        all_ratios = {**ratios, **both}
-        omega, mu = all_ratios.get("omega", self.omega), all_ratios.get("mu", self.mu)
-        k1 = self.m1 * omega**2 if "omega" in all_ratios else self.k1
-        new = {}
-        if "omega" in all_ratios:
-            new["k1"] = k1
-        if "mu" in all_ratios:
-            new["m2"] = mu * self.m1
-        if all_ratios.keys() & {"kappa", "omega"}:
-            new["k2"] = all_ratios.get("kappa", self.kappa) * k1
-        if all_ratios.keys() & {"D1", "omega"}:
-            new["d1"] = damping_from_ratio(all_ratios.get("D1", self.D1), omega, self.m1)
-        if all_ratios.keys() & {"D2", "mu", "omega"}:
-            new["d2"] = damping_from_ratio(all_ratios.get("D2", self.D2), omega, self.m1) * mu
-        return new
-
     def parameters(self) -> dict[str, float | bool]:
         """Return all parameters by name in SI, as the FMU takes them at its start."""
         return dict(vars(self))
-
-    def _pair(self, letter: str) -> str:
-        """Return a letter and its parameter of both halves, for a label: ``k1.0-2.0``."""
-        return letter + "-".join(format_short(self.get(f"{letter}{half}")) for half in self.halves)
-
-    @property
-    def halves(self) -> str:
-        """Return the numbers of the masses, of a wall that of the first alone."""
-        return "1" if self.wall else "12"
-
-    @property
-    def kind(self) -> str:
-        """Return what it is in a word or some: bonded, delaminated, or against a wall."""
-        return "bonded" if self.bonded else "against a wall" if self.wall else "delaminated"
-
-    def _described(self) -> dict[str, str]:
-        """Return texts of the halves' masses, frequencies and damping, of e, and of what is set."""
-        halves = {
-            "masses": ("m", " kg"),
-            "natural frequencies": ("f", " Hz"),
-            "damping": ("zeta", " %"),
-        }
-        texts = {}
-        for words, (letter, unit) in halves.items():
-            scale = 100.0 if letter == "zeta" else 1.0
-            pair = [
-                f"{scale * float(getattr(self, f'{letter}{half}')):.4g}" for half in self.halves
-            ]
-            texts[words] = " and ".join(pair) + unit
-        texts["e"] = f"{self.e:g}"
-        added = {name: getattr(self, name) for name in ADDED if getattr(self, name)}
-        return texts | {name: f"{value:g} {STRUCTURE[name].unit}" for name, value in added.items()}
-
-    def __str__(self) -> str:
-        """Return the structure in a line, frequencies in Hz and damping ratios in per cent."""
-        return f"{self.kind}: " + ", ".join(
-            f"{name} {text}" for name, text in self._described().items()
-        )
-
-    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
-        """Print the line of ``str`` in IPython."""
-        printer.text(f"Structure({self})")
-
-    def _repr_html_(self) -> str:
-        """Return a table for notebooks."""
-        rows = {"structure": self.kind, **self._described()}
-        cells = (f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in rows.items())
-        return f"<table>{''.join(cells)}</table>"
-
-    def label(self) -> str:
-        """Return a short text of the parameters for file names and titles, unique per structure."""
-        default = type(self)()
-        if (self.m1, self.k1) == (1.0, 1.0):
-            damping_ratios = dict.fromkeys(format_short(self.get(f"D{i}")) for i in self.halves)
-            parts = [f"e{format_short(self.e)}", f"D{'-'.join(damping_ratios)}"]
-            names: tuple[str, ...] = (*(() if self.wall else ("mu", "kappa")), "gamma", *ADDED)
-        else:
-            masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
-            halves = [self._pair(letter) for letter in ("f", "zeta")]
-            own = [name for name in HALVES if name[-1] in self.halves]
-            numbers = self._by_halves({name: self.get(name) for name in own})
-            exact = all(getattr(self, name) == value for name, value in numbers.items())
-            shorter = exact and len("".join(halves)) < len("".join(si))
-            parts = [f"e{format_short(self.e)}", masses, *(halves if shorter else si)]
-            names = ("gamma", *ADDED)
-        for name in names:
-            if self.get(name) != default.get(name):
-                parts.append(f"{name}{format_short(self.get(name))}")
-        return "_".join([*parts, *(name for name in FLAGS if getattr(self, name))])
