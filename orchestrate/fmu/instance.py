@@ -27,9 +27,12 @@ Prepared = Callable[[], None]
 
 def function_addresses(instance: Instance, names: Sequence[str]) -> tuple[int, ...]:
     """Return the addresses of an instance and of functions of FMI, for compiled code."""
-    dll, prefix = instance._fmu.dll, "fmi3" if instance.is_fmi3 else "fmi2"
-    functions = (cast(dll[f"{prefix}{name}"], c_void_p).value or 0 for name in names)
-    return (instance._fmu.component, *functions)
+    dll, known = instance._fmu.dll, instance._addresses
+    prefix = "fmi3" if instance.is_fmi3 else "fmi2"
+    for name in names:
+        if name not in known:  # looking one up takes longer than a step
+            known[name] = cast(dll[f"{prefix}{name}"], c_void_p).value or 0
+    return (instance._fmu.component, *(known[name] for name in names))
 
 
 class Transfer(NamedTuple):
@@ -66,6 +69,7 @@ class Instance:
         self.warnings: dict[str, None] = {}  # texts of all calls that answered a warning, in order
         self._readers: dict[tuple[str, ...], tuple[Transfer, NDArray[np.float64]]] = {}
         self._transfers: dict[tuple[str, ...], list[Transfer]] = {}
+        self._addresses: dict[str, int] = {}  # of FMI's functions, as far as they are known
         self.cache: dict[object, Any] = {}  # what callers prepare once for this instance
         self._open = False
         try:
