@@ -228,7 +228,7 @@ def test_the_search_for_pressed_faces_starts_at_the_preload_that_opens_where_ord
 
 def test_two_masses_are_searched_only_where_timing_says_that_faces_strike():
     """Order 2 is seen in both; of a beam that is not called their numbers are not stated."""
-    called = beam_job(record(noise=0.02, both=False), guess(), FREE, None, SETTINGS)
+    called = beam_job(record(noise=0.02), guess(), FREE, None, SETTINGS)
     unknown = beam_job(record(noise=0.02, both=False), None, FREE, None, SETTINGS)
     assert called.is_worth_a_search and not unknown.is_worth_a_search
     assert unknown.beam().verdict() == "undecided" and unknown.beam().records[0].excess > 1.0
