@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from .impact_timing import FACES, NOTHING, SOFTER, STOP, Strikes
 from .settings import SETTINGS, Settings
@@ -144,7 +145,7 @@ class Beam:
           tell a stop from a softer face.
         """
         usable = self.usable
-        words = {self.word(one) for one in usable}
+        words = {self.words[one] for one in usable}
         if FACES in words:
             return UNDECIDED if self.against else DELAMINATED
         if usable and all(not one.stops() for one in usable):
@@ -155,24 +156,22 @@ class Beam:
     @property
     def may_be_a_stop(self) -> bool:
         """Whether something strikes that is a stop or a softer face, and no faces do."""
-        words = {self.word(one) for one in self.usable}
+        words = {self.words[one] for one in self.usable}
         return FACES not in words and bool(words & {STOP, SOFTER})
 
-    @property
+    @cached_property
     def usable(self) -> list[Findings]:
         """Usable records, the highest level first."""
         usable = [one for one in self.records if one.is_usable]
         return sorted(usable, key=lambda one: -one.high)
 
-    def word(self, record: Findings) -> str:
-        """Return what strikes in a record, with what all records say of the stiffness."""
-        grows = self.grows
-        if grows is None:
-            return record.strikes.word()
-        stiffness = 1.0 if grows else math.nan
-        return replace(record.strikes, stiffness=stiffness).word()
+    @cached_property
+    def words(self) -> dict[Findings, str]:
+        """What strikes in each record, with what all records say of the stiffness."""
+        known = {} if self.grows is None else {"stiffness": 1.0 if self.grows else math.nan}
+        return {one: replace(one.strikes, **known).word() for one in self.records}
 
-    @property
+    @cached_property
     def grows(self) -> bool | None:
         """Whether the response grows with the level at the same resonance; None of one level."""
         usable = self.usable
@@ -186,20 +185,21 @@ class Beam:
             and moved <= settings.shift
         )
 
-    @property
+    @cached_property
     def opening_level(self) -> float:
         """Lowest level of the base at which faces strike, m/s2; NaN where none do."""
-        levels = [one.high for one in self.usable if self.word(one) == FACES]
+        levels = [one.high for one in self.usable if self.words[one] == FACES]
         return min(levels, default=math.nan)
 
-    @property
+    @cached_property
     def against(self) -> list[Findings]:
         """Records of no lower level than the one at which faces strike that show otherwise."""
         level = self.opening_level  # NaN: none
         return [
             one
             for one in self.usable
-            if one.high >= one.settings.same_level * level and self.word(one) not in (FACES, SOFTER)
+            if one.high >= one.settings.same_level * level
+            and self.words[one] not in (FACES, SOFTER)
         ]
 
     def stops(self) -> list[Condition]:
@@ -207,14 +207,14 @@ class Beam:
         if self.verdict() not in (UNDECIDED, NOT_DESCRIBED):
             return []
         if self.against:
-            words = ", ".join(sorted({self.word(one) for one in self.against}))
+            words = ", ".join(sorted({self.words[one] for one in self.against}))
             text = f"Faces strike in one record, another of no lower level contradicts: {words}."
             return [Condition(False, text)]
         return [stop for one in self.usable or self.records for stop in one.stops()]
 
     def reason(self) -> str:
         """Return sentences that say by which numbers the verdict was decided, or stopped."""
-        sentences = [one.seen(self.word(one)) for one in self.records]
+        sentences = [one.seen(self.words[one]) for one in self.records]
         if self.grows is not None:
             word = "grows" if self.grows else "does not grow"
             sentences.append(f"The response {word} with the level at the same resonance.")

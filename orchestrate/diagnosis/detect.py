@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -153,6 +154,7 @@ def beam_job(
     every = checked_records(record, structure, participation, settings)
     made = structure or halves_around(cached_orders(every[0]).resonance)
     shown = [record_findings(one, made, structure is not None) for one in every]
+    verdict = Beam(tuple(shown)).verdict()
     fitted = int(np.argmax([one.strikes.heard * one.is_usable for one in shown]))
     return DetectJob(
         name=f"detect_{checked_structure(guess or made).label()}",
@@ -161,6 +163,7 @@ def beam_job(
         guess=made,
         free=free,
         is_guessed=guess is not None,
+        is_delaminated=verdict == DELAMINATED,
     )
 
 
@@ -191,6 +194,12 @@ class DetectJob(SearchJob):
     asked: ClassVar[str] = "detect"
     others: tuple[tuple[RecordData, ...], tuple[RecordData, ...]] = ((), ())  # before it, after it
     is_guessed: bool = True  # by the caller, not from the record's resonance
+    is_delaminated: bool = True  # by the rule
+
+    @property
+    def is_worth_a_search(self) -> bool:
+        """Whether two masses are searched: their numbers are stated of delaminated beams only."""
+        return self.is_delaminated and super().is_worth_a_search
 
     def beam(self) -> Beam:
         """Return what all records show."""
@@ -206,7 +215,7 @@ class DetectJob(SearchJob):
         same = WiringSettings(clipped=findings.settings.clipped)
         wiring = "; ".join(note.text for note in wiring_notes(whole.channels, same))
         ratio = results.misfit[: len(self.sound)].min() / results.misfit[len(self.sound) :].min()
-        words = [beam.word(one) for one in beam.records]
+        words = [beam.words[one] for one in beam.records]
         scalars = {
             "verdict": ((), beam.verdict(), {"long_name": "verdict"}),
             "ratio": variable((), ratio, "1", "misfit of sound over that of delaminated"),
@@ -238,7 +247,7 @@ class DetectJob(SearchJob):
             assumed="; ".join(ASSUMED if self.is_guessed else (WITHOUT_GUESS, *ASSUMED[1:])),
             direction=sweep_direction(whole.windows.frequency),
             wiring=wiring,
-            strikes=f"{beam.word(findings)} ({findings.strikes.numbers()})",
+            strikes=f"{beam.words[findings]} ({findings.strikes.numbers()})",
         )
 
 
@@ -282,6 +291,7 @@ def stated_hypotheses(results: Results, verdict: str) -> NDArray[np.bool_]:
     )
 
 
+@lru_cache(maxsize=4)
 def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Findings:
     """Collect the quantities that the decision rule needs from a record."""
     evidence, whole, even = cached_evidence(data), cached_orders(data), bonded_even(data)

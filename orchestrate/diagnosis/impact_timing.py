@@ -153,8 +153,8 @@ def timed_windows(
         hertz = settings.periods * channels.sample_rate / (end - begin)
         waves = np.exp(-1j * np.outer(ORDERS, here))
         moved = channels.values[rows[0], begin:end] - base
-        size = 2.0 / len(here) * (waves @ (moved - moved.mean()))
-        level = 2.0 / len(here) * abs(waves[0] @ base)
+        size = 2.0 / len(here) * np.einsum("ns,s", waves, moved - moved.mean())  # without threads
+        level = 2.0 / len(here) * abs(np.einsum("s,s", waves[0], base))
         # a displacement is opposite to its acceleration: the top of the stroke is at 0
         own = here + np.angle(-size[0])
         at_base, *errors = (

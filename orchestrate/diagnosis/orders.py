@@ -333,7 +333,9 @@ def least_squares_matrix(one: Window, sample_rate: float) -> Complexes:
             columns += [one.offset * sine, one.offset * cosine]
     basis = np.stack(columns)
     weighted = basis * one.weights
-    solution = np.linalg.pinv(weighted @ basis.T, hermitian=True) @ weighted
+    # products as small as these wait for the threads of a BLAS, up to 20 times as long as they take
+    normal = np.einsum("is,js->ij", weighted, basis)
+    solution = np.einsum("ij,js->is", np.linalg.pinv(normal, hermitian=True), weighted)
     found = np.full((len(orders), len(one.offset)), np.nan, dtype=complex)
     for n, row in first.items():
         found[orders.index(n)] = solution[row] + 1j * solution[row + 1]

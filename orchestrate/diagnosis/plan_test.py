@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import ClassVar
 
@@ -15,9 +16,9 @@ from numpy.typing import ArrayLike
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from ..fmu import finder
-from ..laboratory.analysis.channels import attributes, checked_number
+from ..laboratory.analysis.channels import BOX, Channels, attributes, checked_number
 from ..laboratory.pieces import Floats
-from ..laboratory.sensors import Sensor, measure, sensor_by_channel
+from ..laboratory.sensors import CHANNELS, Sensor, measure, sensor_by_channel
 from ..laboratory.shake import shake
 from ..laboratory.swept_sine import SweptSine
 from ..lazy import Unpack, xr
@@ -29,11 +30,10 @@ from ..running.options import Running
 from ..running.runner import answer
 from .decision_rule import DELAMINATED, NOT_DESCRIBED, NOT_SEEN, UNDECIDED, Beam
 from .detect import record_findings
-from .fit import checked_data
 from .impact_timing import TIMING
 from .opening import largest_opening_force, sweep_rate
+from .search_job import RecordData
 
-BOX = "box_acceleration"
 WORDS = (DELAMINATED, NOT_SEEN, NOT_DESCRIBED, UNDECIDED)
 COVERED = (0.65, 1.4)  # of the bonded resonance, and a tenth beyond those of the halves
 WINDOWS = 5.0  # of the timing, while the sweep crosses the resonance's width
@@ -98,7 +98,8 @@ def plan_test(
 
     Notes
     -----
-    Each level is shaken twice, measured by the sensors as stated, and judged by
+    Structure and twin are shaken (once, where their motion is proportional to the level), measured
+    at each level by the sensors as stated, and judged by
     :meth:`orchestrate.diagnosis.decision_rule.Beam.verdict`. The sweep is as slow as ISO 7626-2
     asks for, stays five windows of the impact timing in the resonance, and takes two minutes at
     most. Where no level decides, the highest without overload is recommended.
@@ -190,24 +191,24 @@ class PlanJob(Job):
     def rehearsal(
         self, structure: Structure, level: float, fmus: Mapping[str, Path]
     ) -> tuple[float, float, float, float]:
-        """Shake and measure; return verdict, heard, largest gap and largest reading."""
-        sine = SweptSine(
-            first=self.first, last=self.last, duration=self.duration, acceleration=level
-        )
-        here: Running = {**HERE, "fmu": {name: str(path) for name, path in fmus.items()}}
-        history = shake(structure, sine, sample_rate=20.0 * self.last, **here)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit
-            felt = measure(history, dict(self.sensors), excitation=sine)
-        faces = [name for name, _ in self.sensors if name != BOX]
-        peak = max(float(np.abs(felt[name]).max()) for name in faces)
-        gap = 0.0 if structure.bonded else float(history.x_rel.max())
+        """Measure and judge; return verdict, heard, largest gap and largest reading."""
+        # in the other structures everything grows with the level, but the noise
+        at = level if structure.has_scale and not structure.bonded else 1.0
+        felt, gap = readings(self, structure, at, tuple(fmus.items()))
+        times = level / at
+        rows = {
+            name: own.digitised(times * felt[name].values, list(CHANNELS).index(name))
+            for name, own in self.sensors
+        }
+        peak = max(float(np.abs(row).max()) for name, row in rows.items() if name != BOX)
+        rate, values = dict(self.sensors)[BOX].rate, np.array(list(rows.values()))
+        data = Channels(felt.time.values, rate, tuple(rows), values, "record")
         try:
-            findings = record_findings(checked_data(felt), self.structure, is_guessed=True)
+            findings = record_findings(RecordData.from_channels(data), self.structure, True)
         except InputError:  # noise leaves no sine
-            return float(WORDS.index(UNDECIDED)), math.nan, gap, peak
+            return float(WORDS.index(UNDECIDED)), math.nan, times * gap, peak
         word = Beam((findings,)).verdict()
-        return float(WORDS.index(word)), findings.strikes.heard, gap, peak
+        return float(WORDS.index(word)), findings.strikes.heard, times * gap, peak
 
     def dataset(self, table: Table) -> xr.Dataset:
         """Return the verdicts over the level, and what is recommended."""
@@ -253,6 +254,23 @@ class PlanJob(Job):
             {"level": variable("level", levels, "m/s2", "peak acceleration of the box")},
             attributes("plan_test", "Plan of a test", self.structure.label()),
         )
+
+
+@lru_cache(maxsize=2)  # the structure and its twin
+def readings(
+    job: PlanJob, structure: Structure, level: float, fmus: tuple[tuple[str, Path], ...]
+) -> tuple[xr.Dataset, float]:
+    """Shake a structure; return what sensors without noise or limits read, and the largest gap."""
+    sine = SweptSine(first=job.first, last=job.last, duration=job.duration, acceleration=level)
+    here: Running = {**HERE, "fmu": {name: str(path) for name, path in fmus}}
+    history = shake(structure, sine, sample_rate=20.0 * job.last, **here)
+    ideal = {
+        name: replace(own, noise=0.0, range=math.inf, resolution=0.0) for name, own in job.sensors
+    }
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit
+        felt = measure(history, ideal, excitation=sine)
+    return felt, 0.0 if structure.bonded else float(history.x_rel.max())
 
 
 def recommended_levels(

@@ -92,11 +92,6 @@ def bonded_even(data: RecordData | CurveData) -> EvenOrders:
     return even_orders(evidence, evidence.fitted_orders(motion))
 
 
-def is_worth_a_search(data: RecordData | CurveData) -> bool:
-    """Return whether two masses are searched: only of an opening their numbers are stated."""
-    return bonded_even(data).is_opening_seen
-
-
 @lru_cache(maxsize=2)
 def cached_onset(data: RecordData | CurveData) -> Onset | None:
     """Return where order 2 begins and the bonded fit of the windows without it, or None."""
@@ -131,6 +126,11 @@ class SearchJob(Job):
     def evidence(self) -> Evidence:
         """Evidence of the record or the resonance curve."""
         return cached_evidence(self.data)
+
+    @property
+    def is_worth_a_search(self) -> bool:
+        """Whether two masses are searched: only of an opening their numbers are stated."""
+        return bonded_even(self.data).is_opening_seen
 
     @property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
@@ -171,7 +171,7 @@ class SearchJob(Job):
         hypothesis = self.hypotheses[position]
         search = Search(hypothesis, cached_coarse_evidence(self.data), player)
         starts = hypothesis.starts(self.evidence, part)
-        worth = position < len(self.sound) or is_worth_a_search(self.data)
+        worth = position < len(self.sound) or self.is_worth_a_search
         found = search.minima(starts) if worth else search.rank_starts(starts[:1])
         return solutions_table(position, found, search.evaluations)
 
@@ -189,7 +189,7 @@ class SearchJob(Job):
 
     def finish(self, previous: Table, player: Player) -> Table:
         """Refine the best solutions of each hypothesis, and compute all misfits and errors."""
-        worth = self.delaminated and is_worth_a_search(self.data)
+        worth = self.delaminated and self.is_worth_a_search
         made: list[tuple[Search, list[Solution]]] = []
         for position in range(len(self.hypotheses)):
             search = Search(self.hypotheses[position], self.evidence, player)

@@ -42,6 +42,7 @@ class WiringSettings:
     away: float = 5.0  # Hz between that line and orders 1/2, 1, 2 and 3
     coherence: float = 0.8  # of that line from one window to the next
     jump: float = 0.35  # rad of the base's phase, without whole turns
+    band: float = 2.0  # of the highest frequency of the base: what its phase is taken of
     moves: float = 0.5  # of the base's median amplitude: where it is less, no jump is looked for
     usual: float = 10.0  # times the usual change, by noise, that a jump is
     samples: float = 10.0  # in a period of the resonance
@@ -71,7 +72,7 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
       face's; one is a velocity (n = 1) or displacement (2) where the formula describes that one
       times ``(i w)^n`` within `misfit`, `derived` times better; a sensor is dead that is above the
       `floor` in half of the windows at most, or below `dead` times the base and without a `peak`.
-    - Samples are lost where the base `moves` and its phase, continued from both sides, jumps by
+    - Samples are lost where the base `moves` and its phase (up to `band` of its frequency), continued from both sides, jumps by
       `jump`, whole turns aside, and, times the level, `usual` times as far as it usually does.
     - A line of the `mains` is hum if it is `hum` times those `beside` it and keeps its phase
       (`coherence`), while the orders are `away`.
@@ -262,7 +263,11 @@ def lost_sample_notes(orders: RecordOrders, settings: WiringSettings) -> Iterato
     count = int(2.0 * channels.sample_rate / windows.frequency.min())  # before and after
     row = np.linalg.pinv(np.vander(np.arange(count) + 0.5, 2))[1]  # a line's value at its end
     kernel = np.concatenate([row[::-1], -row])  # as a convolution: later less earlier samples
-    phase = measured_phase(channels)
+    spectrum = np.fft.rfft(channels.box)
+    hertz = np.fft.rfftfreq(len(channels.time), 1.0 / channels.sample_rate)
+    spectrum[hertz > settings.band * windows.frequency.max()] = 0.0  # noise makes the phase slip
+    box = np.fft.irfft(spectrum, len(channels.time))
+    phase = measured_phase(Channels(channels.time, channels.sample_rate, (BOX,), box[None], ""))
     jump = np.abs(fftconvolve(phase - phase.mean(), kernel, "same"))
     inside = np.zeros(len(phase), bool)
     for part in windows.parts:

@@ -17,7 +17,7 @@ from .columns import Assignment, Columns, assigned_columns, times_in_s, warn_of_
 from .conversion import ACCELERATIONS, FORCES, LENGTHS, SPEEDS, VOLTAGES, plain_unit
 from .record import CHANNELS, SHORT_NAMES
 from .record_checks import ascends
-from .record_files import check_file, file_kind, read_columns
+from .record_files import read_columns
 
 NOT_READ = "not read"
 QUANTITIES = {
@@ -71,23 +71,18 @@ def channels(
     >>> found.role.values.tolist(), found.known.values.tolist()[1:]
     (['time', 'base', 'face 1'], ['by its name', 'what is left'])
     """
-    path = Path(path)
-    kind = file_kind(path)
-    check_file(path)
-    table = read_columns(path, kind)
     setup = ChannelSetup.of(channels)
-    rate = sample_rate or setup.sample_rate or table.sample_rate
-    assignment = assigned_columns(table.at_rate(rate), setup.columns)
+    rate = setup.sample_rate if sample_rate is None else sample_rate
+    table = read_columns(Path(path)).at_rate(rate)
+    assignment = assigned_columns(table, setup.columns)
     warn_of_left_out(table)
-    found = described_columns(table, assignment, setup, rate)
+    found = described_columns(table, assignment, setup)
     if output is not None:
         write_setup(found, setup, Path(output))
     return found
 
 
-def described_columns(
-    table: Columns, assignment: Assignment, setup: ChannelSetup, rate: float | None
-) -> xr.Dataset:
+def described_columns(table: Columns, assignment: Assignment, setup: ChannelSetup) -> xr.Dataset:
     """Return the dataset of :func:`channels`."""
     import xarray as xr
 
@@ -111,6 +106,7 @@ def described_columns(
     parts = zip(texts.items(), zip(*rows, strict=True), strict=True)
     made = {name: variable("column", list(values), "1", text) for (name, text), values in parts}
     names = variable("column", [one.name for one in table.columns], "1", "name in the file")
+    rate = table.sample_rate
     if rate is None and "time" in assignment.places:
         rate = rate_of(table, assignment.places["time"], units)
     words = {"title": f"Columns of {Path(table.path).name}", "sample_rate": rate or 0.0}

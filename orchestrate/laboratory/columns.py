@@ -31,6 +31,7 @@ from .conversion import (
 from .pieces import Floats
 from .record import CHANNELS, FORCES, SHORT_NAMES
 from .record_checks import ascends, first_hole, implausible_times
+from .signals import HERTZ, checked
 
 Named: TypeAlias = "Mapping[str, str | int] | Sequence[str | int] | None"  # columns by a caller
 MOST_NAMES = 12  # of columns in a message
@@ -130,7 +131,12 @@ class Columns:
 
     def at_rate(self, sample_rate: float | None) -> Columns:
         """Return the same columns, sampled at a rate in Hz; None: at the file's own."""
-        return self if sample_rate is None else replace(self, sample_rate=sample_rate)
+        if sample_rate is None:
+            return self
+        try:
+            return replace(self, sample_rate=checked(HERTZ, "sample_rate", sample_rate))
+        except InputError as error:
+            raise InputError(f"{self.path}: {error}") from None
 
 
 def split_heading(heading: str) -> tuple[str, str]:

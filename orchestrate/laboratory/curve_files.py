@@ -29,7 +29,7 @@ from .columns import (
 )
 from .conversion import plain_unit
 from .pieces import Floats
-from .record_files import check_file, file_kind, read_columns
+from .record_files import file_kind, read_columns
 from .resonance_curve import CurveColumns, acceleration_factor, made_curve
 from .signals import LEVEL, checked
 
@@ -100,8 +100,7 @@ def read_curve(
     path = Path(path)
     if file_kind(path) != "csv":
         raise InputError(f"{path}: expected columns of text (.csv, .txt, .tsv, .asc, .dat)")
-    check_file(path)
-    table = read_columns(path, "csv", True)  # fields may be empty
+    table = read_columns(path, True)  # fields may be empty
     warn_of_left_out(table)
     places = curve_places(table, columns)
     known = BY_NAME if columns is None else BY_USER

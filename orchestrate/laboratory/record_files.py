@@ -111,14 +111,11 @@ def read_record(
     >>> read_record(path).box_acceleration.values.round(4).tolist()
     [0.9807, 2.942, -1.9613, 0.0]
     """
-    path = Path(path)
-    kind = file_kind(path)
-    check_file(path)
-    setup = ChannelSetup.of(channels)
+    path, setup = Path(path), ChannelSetup.of(channels)
+    rate = setup.sample_rate if sample_rate is None else sample_rate
+    table, kind = read_columns(path).at_rate(rate), file_kind(path)
     if kind == "wav" and not setup.keyword("scale", scale):
         raise InputError(f"{path}: no scale=; expected for a WAV file: m/s2 at its full scale")
-    rate = setup.sample_rate if sample_rate is None else sample_rate
-    table = read_columns(path, kind).at_rate(rate)
     given = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
     stated = {name: setup.keyword(name, value) for name, value in given.items()}
     unit = stated["unit"]
@@ -281,8 +278,10 @@ COMPILED = (
 )  # readers that a damaged file may harm so that they misread the next one
 
 
-def read_columns(path: Path, kind: str, *arguments: object) -> Columns:
+def read_columns(path: Path, *arguments: object) -> Columns:
     """Read the columns of a file in a process of its own; names and other texts are printable."""
+    kind = file_kind(path)
+    check_file(path)
     reader, keep = READERS[kind], kind not in COMPILED
     content = read_in_process(reader, path, *arguments, expected=EXPECTED[kind], keep=keep)
     columns = [Column(**{n: plain(one) for n, one in each.items()}) for each in content["columns"]]

@@ -1,4 +1,4 @@
-"""Sound beams that something strikes or kinks: a stop, play, a crack, a loose part, a flake."""
+"""Sound beams that something strikes or kinks: stops, play, cracks, parts, bearings, fixtures."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from scipy.linalg import eigh
 
 from orchestrate.constants import TURN
 
-from .lumped import Faces, Halves
+from .lumped import Clamp, Faces, Halves, in_rattling_clamp
 from .recipe import (
     Conditions,
     Maker,
@@ -87,6 +88,53 @@ def draw_with_part(
     return bonded_specimen(own, system)
 
 
+def draw_with_washer(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a bonded beam with a spring washer, pressed on it by less than lifts it at resonance."""
+    own = draw_halves(rng)
+    one, faces = own.bonded_beam(), draw_faces(rng, 600.0, 1500.0)
+    masses = one.mass * np.array([1.0, draw_log_uniform(rng, 0.001, 0.01)])
+    turns = TURN * np.array([one.f, rng.uniform(150.0, 400.0)])
+    spring, between = (masses * turns**2)[1], np.array([[1.0, -1.0], [-1.0, 1.0]])
+    stiffness = np.diag([masses[0] * turns[0] ** 2, 0.0]) + spring * between
+    squares, shapes = eigh(stiffness, np.diag(masses))
+    lifts = level / (2.0 * one.zeta) / turns[1] ** 2  # m, by the washer's inertia
+    gap, play = shapes[1] - shapes[0], -lifts * rng.uniform(0.2, 0.9)
+    system = ModalSystem(
+        frequency=np.sqrt(squares),
+        damping_ratio=np.array([one.zeta, 0.02]),
+        participation=shapes.T @ masses,
+        output_rows=np.array([shapes[0], shapes[0]]),
+        contacts=faces.contacts(gap[np.newaxis], np.array([play]), masses[1]),
+    )
+    return bonded_specimen(own, system)
+
+
+def draw_in_bearing(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a bonded beam whose root has a little play in a hard, hardly centred bearing."""
+    own = draw_halves(rng)
+    balls = Faces(
+        law="hertz",
+        frequency=draw_log_uniform(rng, 600.0, 1500.0),
+        restitution=rng.uniform(0.5, 0.9),
+    )
+    clamp = Clamp(
+        faces=balls,
+        play=draw_log_uniform(rng, 5e-6, 5e-5),
+        mass=rng.uniform(0.05, 0.3),
+        centring=draw_log_uniform(rng, 0.1, 1.0),
+    )
+    return bonded_specimen(own, in_rattling_clamp(own.bonded(), own.bonded_beam().mass, clamp))
+
+
+def draw_on_fixture(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a bonded beam on a fixture whose own mode is 1.1 to 3 times the beam's frequency."""
+    own, mass = draw_halves(rng), rng.uniform(0.3, 3.0)
+    stiffness = (1.0 + mass) * draw_log_uniform(rng, 1.1, 3.0) ** 2
+    fixture = Clamp(faces=Faces(), mass=mass, centring=stiffness)
+    system = in_rattling_clamp(own.bonded(), own.bonded_beam().mass, fixture)
+    return bonded_specimen(own, replace(system, contacts=None))
+
+
 STRIKERS: dict[str, Maker] = {
     "stop": draw_with_stops,
     "graze": partial(draw_with_stops, place=(0.8, 0.97)),
@@ -95,4 +143,7 @@ STRIKERS: dict[str, Maker] = {
     "crack": draw_cracked,
     "loose part": partial(draw_with_part, loose=True),
     "flake": partial(draw_with_part, loose=False),
+    "washer": draw_with_washer,
+    "bearing": draw_in_bearing,
+    "fixture": draw_on_fixture,
 }

@@ -12,38 +12,51 @@ from ...errors import InputError
 from ..pieces import Floats
 from .channels import FEWEST_LINES, Channels, checked_number
 
-BEYOND = 0.05  # of the largest force: a knock's part
-SPARSE = 0.1  # of a record: knocks take less of it, forces of other kinds more
-BOUNCE = 0.1  # of the longest time between knocks: a second one before is a double hit
-LEFT = 0.01  # what the exponential window leaves at a segment's end
+
+@dataclass(frozen=True)
+class KnockSettings:
+    """Thresholds of the rule of :class:`Knocks`."""
+
+    beyond: float = 0.05  # of the largest force: a knock's part
+    sparse: float = 0.1  # of a record: knocks take less of it, forces of other kinds more
+    bounce: float = 0.1  # of the longest time between knocks: a second one before is a double hit
+    left: float = 0.01  # what the exponential window leaves at a segment's end
+
+
+KNOCKS = KnockSettings()
 
 
 @dataclass(frozen=True)
 class Knocks:
     """Knocks with the same time after each, by one rule.
 
-    - A knock is a part in which the force is beyond ``BEYOND`` of its largest value; parts closer
-      than the longest of them are one. Together they take less than ``SPARSE`` of the record.
-    - Another within ``BOUNCE`` of the longest time between two (or to the end) is a double hit,
+    - A knock is a part in which the force is beyond `beyond` of its largest value; parts closer
+      than the longest of them are one. Together they take less than `sparse` of the record.
+    - Another within `bounce` of the longest time between two (or to the end) is a double hit,
       which is left out and named.
     - A segment begins a knock's length before it, or with the record, which does not begin within a
       knock, and ends before the next one, or by the resolution.
     - The force window is 0 further than a knock's length from it.
-    - The exponential window, on force and responses alike, falls to ``LEFT`` at the segment's end.
+    - The exponential window, on force and responses alike, falls to `left` at the segment's end.
     """
 
     starts: tuple[int, ...]  # first samples of the segments
     length: int  # samples of a segment
     width: int  # samples of the longest knock
     rate: float  # Hz
+    settings: KnockSettings = KNOCKS
 
     @classmethod
     def from_force(
-        cls, force: Floats, channels: Channels, resolution: float | None
+        cls,
+        force: Floats,
+        channels: Channels,
+        resolution: float | None,
+        settings: KnockSettings = KNOCKS,
     ) -> Knocks | None:
         """Find the knocks in a force; None if it is of another kind."""
-        beyond = np.flatnonzero(np.abs(force) > BEYOND * np.abs(force).max())
-        if not 0 < len(beyond) < SPARSE * len(force):
+        beyond = np.flatnonzero(np.abs(force) > settings.beyond * np.abs(force).max())
+        if not 0 < len(beyond) < settings.sparse * len(force):
             return None
         parts = np.split(beyond, np.flatnonzero(np.diff(beyond) > 1) + 1)
         width = max(part[-1] - part[0] + 1 for part in parts)
@@ -52,8 +65,9 @@ class Knocks:
         knocks = np.array([part[0] for part in parts])
         begins = np.maximum(knocks - width, 0)
         gaps = np.diff([*begins, len(force)])
-        first = np.diff(begins, prepend=-len(force)) > BOUNCE * gaps.max()
-        single = first & (gaps > BOUNCE * gaps.max()) & (knocks > 0)
+        bounce = settings.bounce * gaps.max()
+        first = np.diff(begins, prepend=-len(force)) > bounce
+        single = first & (gaps > bounce) & (knocks > 0)
         name_left_out(channels.time[begins[first & ~single]], first.sum())
         length = int(gaps[single].min())
         if resolution is not None:
@@ -61,12 +75,12 @@ class Knocks:
             checked = checked_number("resolution", resolution, finest, coarsest, "Hz")
             length = round(channels.sample_rate / checked)
         starts = tuple(int(begin) for begin in begins[single])
-        return cls(starts, length, width, channels.sample_rate)
+        return cls(starts, length, width, channels.sample_rate, settings)
 
     @property
     def decay(self) -> float:
         """Rate of the exponential window, 1/s, which is added to that of every vibration."""
-        return -math.log(LEFT) * self.rate / self.length
+        return -math.log(self.settings.left) * self.rate / self.length
 
     def spectra(self, force: Floats, responses: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return lines, Hz, and mean spectra of the force, the responses and between them."""

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from orchestrate.diagnosis.impact_timing import Strikes, strikes
+from orchestrate.diagnosis import impact_timing
+from orchestrate.diagnosis.impact_timing import TIMING, Strikes, strikes, strikes_at, timed_power
 from orchestrate.diagnosis.orders import checked_channels
 from tests.benches import recipe
 from tests.benches.strikers import STRIKERS
@@ -25,7 +26,11 @@ WORDS = {  # on both sides of each threshold
     "not locked": [{"locked": 0.89}, {"one_sided": 0.49}, {"locked": 0.8, "opposite": -0.99}],
     "kinks": [{"blow": 0.1}, {"blow": 0.1, "opposite": -0.99}],
     "something small strikes": [{"order2": 0.049}],
-    "stop": [{"spread": 0.32}, {"spread": 0.1, "stiffness": math.nan, "opposite": 0.9}],
+    "stop": [
+        {"spread": 0.32},
+        {"spread": 0.1, "base": 14.9},
+        {"spread": 0.1, "stiffness": math.nan, "opposite": 0.9},
+    ],
     "stop or softer face": [{"stiffness": x} for x in (math.nan, 0.89, 1.07)]
     + [{"opposite": -0.94}],
     "faces strike": [
@@ -35,6 +40,25 @@ WORDS = {  # on both sides of each threshold
         {"heard": 3.5, "opposite": -0.96, "spread": 0.1, "order2": 0.01, "stiffness": math.nan},
     ],
 }
+
+
+@pytest.mark.parametrize(("power", "locked"), [(0.29, 1.0), (0.31, 0.53)])
+def test_windows_as_loud_as_a_part_of_the_loudest_count(monkeypatch, power, locked):
+    """Two windows whose peaks are opposite: the second one counts from `loud` on."""
+    rest = 0.9, 0.5, 1.0, 0.1, 1.0, 40.0, math.nan
+    rows = [(9.0, 1.0, size, at, *rest) for size, at in ((1.0, 0.0), (power, math.pi))]
+    monkeypatch.setattr(impact_timing, "timed_windows", lambda *given: iter(rows))
+    assert strikes_at(None, [0], 40.0, TIMING).locked == pytest.approx(locked, abs=0.01)
+
+
+@pytest.mark.parametrize(("tail", "expected"), [(TIMING.tail, 0.84), (0.05, 1.13)])
+def test_noise_alone_is_far_below_a_strike(tail, expected):
+    """White noise in 10 periods: the loudest of 32 bins over the limit of noise."""
+    rng, phase = np.random.default_rng(3), np.linspace(0.0, 20.0 * math.pi, 1024)
+    settings = replace(TIMING, tail=tail)
+    rises = [timed_power([rng.standard_normal(1024)], phase, settings)[0] for _ in range(500)]
+    assert np.median(rises) == pytest.approx(expected, abs=0.02)
+    assert max(rises) < 0.7 * TIMING.faint
 
 
 @pytest.mark.parametrize("word", WORDS)

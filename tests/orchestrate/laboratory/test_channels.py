@@ -54,6 +54,16 @@ def no_warning():
     return pytest.MonkeyPatch.context()
 
 
+@pytest.mark.parametrize("rate", [0, -1.0, float("nan"), "x"])
+def test_a_rate_that_is_none_is_refused_by_all_that_read_a_file(tmp_path, rate):
+    path, messages = written(tmp_path, "Zeit;Tisch;oben"), []
+    for reader in (read_record, channels):
+        with pytest.raises(InputError, match=r"a\.csv: sample_rate = .* expected") as error:
+            reader(path, sample_rate=rate)
+        messages.append(str(error.value))
+    assert messages[0] == messages[1]
+
+
 def test_a_setup_file_reads_as_it_says_and_again_the_same(tmp_path):
     path = written(tmp_path, "Zeit;Tisch;oben;Strom", "V")
     toml = tmp_path / "setup.toml"

@@ -22,6 +22,8 @@ from orchestrate import (
     shake,
     write_record,
 )
+from orchestrate.laboratory.analysis.channels import Channels
+from orchestrate.laboratory.analysis.knocks import KNOCKS, Knocks
 
 from ...fmu.event_driven import Motion
 from ...sparing import ordinary
@@ -131,6 +133,29 @@ def test_frequency_response_over_the_force_is_the_oscillators():
     with pytest.raises(InputError, match="double hits.*expected a knock"):
         frf(shake(BEAM, twice, sample_rate=2000.0))
     assert plot(history) and plot(answer)
+
+
+@pytest.mark.parametrize(
+    ("beats", "count"),  # begin, width and size of each, of 1,000 samples
+    [
+        (((100, 4, 1.0), (600, 4, 0.049)), 1),
+        (((100, 4, 1.0), (600, 4, 0.051)), 2),  # beyond a twentieth of the largest force
+        (((300, 99, 1.0),), 1),
+        (((300, 101, 1.0),), 0),  # no knocks: a tenth of the record
+        (((100, 4, 1.0), (148, 4, 1.0), (520, 4, 1.0)), 1),  # a double hit: below a tenth of 484
+        (((100, 4, 1.0), (149, 4, 1.0), (520, 4, 1.0)), 3),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:.*left out")
+def test_each_threshold_of_a_knock(beats, count):
+    force = np.zeros(1000)
+    for begin, width, size in beats:
+        force[begin : begin + width] = size
+    channels = Channels(np.arange(1000) / 1e3, 1e3, ("force1",), force[np.newaxis], "x")
+    found = Knocks.from_force(force, channels, None)
+    assert (len(found.starts) if found else 0) == count
+    if found:  # what is left at the end of a segment
+        assert np.exp(-found.decay * found.length / found.rate) == pytest.approx(KNOCKS.left)
 
 
 def test_a_continuous_force_is_averaged_as_the_box_is():
