@@ -127,6 +127,7 @@ class Couple(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Command, Of
         "compute the branches of stationary motions too, and draw them under the ramps"
     )
     ssp: Path | None = option("write the coupled system for other tools instead")
+    ssp_version: Literal["1.0", "2.0"] = option("of SSP", "1.0")
     examples = f"""
   {{program}} couple                               quick: bonded, delaminated, up and down
   {{program}} couple --drive beam                  a delaminated beam on a small motor
@@ -205,7 +206,10 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         own = user_fmus(self.fmu)
         fmus = [find(name, "fmi2", self.build_folder, own.get(name)).path for name in job.models]
         voltage, speed = job.schedule.voltage(0.0), job.speed_start
-        return write_ssp(path, job.structure, drive, voltage=voltage, speed_start=speed, fmus=fmus)
+        start = {"voltage": voltage, "speed_start": speed}
+        return write_ssp(
+            path, job.structure, drive, **start, fmus=fmus, version=self.ssp_version
+        )
 
 
 UNDECIDED, NEITHER = "undecided", "settled at the resonance"
