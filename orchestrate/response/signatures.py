@@ -47,7 +47,8 @@ def question(kind: type[Question]) -> Callable[[Function], Function]:
 
         @wraps(function)
         def ask(*positional: Any, **keywords: Any) -> xr.Dataset:
-            check_keywords(keywords, own)
+            if "running" in own:  # else others are taken too
+                check_keywords(keywords, own)
             changes = function(*positional, **keywords)
             if not isinstance(changes, Changes):
                 return changes

@@ -123,7 +123,7 @@ MISTAKES = {  # options of each command, then what its line says
         --limits 2 : --limits 2 | FIRST:LAST
         --eta 2.5 --limits 2.6:2.4 : --limits | the lower one first
         --eta 3 --limits 2.4:2.6 : eta = 3.0 at the start | inside
-        --over hz --g 1 --limits 2.4:2.6 --set clearance=1e-4 : --g 1: is --amplitude 0.0431259 at 2.4 Hz
+        --over hz --g 1 --limits 2:3 --set clearance=1e-4 : --amplitude 0.0621013 at 2 Hz
         --over frequency --eta 1 --limits 2.4:2.6 : --over frequency | --amplitude
         --over e --limits 2.4:2.6 : frequency: nothing given
     """,
