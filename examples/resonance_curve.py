@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from orchestrate import Structure, plot, resonance
+from orchestrate import Structure, plot, resonance, to_dataframe
 from orchestrate.show import files
 
 beam = Structure(m1=1.5, m2=1.4, k1=8400.0, k2=10100.0, d1=1.1, d2=1.1, e=0.6)  # SI
@@ -16,7 +16,6 @@ for number in range(peaks.sizes["peak"]):
     name = f"{peak.peak_structure.item()}, {peak.peak_direction.item()}"
     print(f"{name:17}: {1e3 * float(peak.peak_x1_max):.2f} mm at {float(peak.peak_hertz):.1f} Hz")
 
-table = found[["x1_max", "x2_max", "a1_max", "a2_max", "impacts_per_period"]]
-table.to_dataframe().to_csv("beam.csv")
+to_dataframe(found, units="Hz,mm,g").to_csv("beam.csv", index=False)
 found.to_netcdf("beam.nc")
 files.save(plot(found), "beam")  # beam.png

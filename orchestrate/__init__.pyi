@@ -57,6 +57,7 @@ from .response.simulate import simulate as simulate
 from .response.spectra import spectra as spectra
 from .response.sweep import sweep as sweep
 from .response.threshold import contact_threshold as contact_threshold
+from .running.formats import to_dataframe as to_dataframe
 from .show.plot import plot as plot
 from .show.report import report as report
 from .version import __version__ as __version__

@@ -36,7 +36,7 @@ class Units:
     """Display units chosen for frequency, length, acceleration and time; empty: not chosen."""
 
     frequency: str = ""  # Hz, rpm, rad/s or eta, the ratio to omega = sqrt(k1/m1)
-    length: str = ""  # m, mm or um, of velocities too
+    length: str = ""  # m, mm or um; beside mm and um speeds are in mm/s
     acceleration: str = ""  # m/s2 or g, 9.80665 m/s2
     time: str = ""  # s, or periods of the box
 
@@ -108,13 +108,13 @@ def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
 
 
 def largest_length(data: xr.Dataset) -> float:
-    """Return the largest absolute value of a dataset's variables with unit m; 0 if it has none."""
-    lengths = [
-        float(abs(array).max())
-        for array in data.data_vars.values()
-        if array.attrs.get("units") == "m" and array.dtype.kind == "f" and array.size
-    ]
-    return max((length for length in lengths if math.isfinite(length)), default=0.0)
+    """Return the largest length of a dataset's variables, axes and gaps, m; 0 if it has none."""
+    shown = [*data.data_vars.values(), *(data[name] for name in data.dims if name in data.coords)]
+    lengths = [array for array in shown if array.attrs.get("units") == "m"]
+    if "xi_rel_max" in data and (unit := length_of_ratio(data)) is not None:
+        lengths.append(data.xi_rel_max * unit)
+    sizes = [float(abs(one).max()) for one in lengths if one.dtype.kind == "f" and one.size]
+    return max(filter(math.isfinite, sizes), default=0.0)
 
 
 def omega_of(data: xr.Dataset | Mapping[str, float]) -> float:
@@ -170,8 +170,8 @@ def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
         factor = omega_of(data) if word == "eta" else FACTORS["frequency"][word]
         factor /= FACTORS["frequency"][unit]
     elif unit in ("m", "m/s") and units.length:
-        word = unit.replace("m", units.length, 1)
-        factor = FACTORS["length"][units.length]
+        length = "mm" if unit == "m/s" and units.length == "um" else units.length
+        word, factor = unit.replace("m", length, 1), FACTORS["length"][length]
     elif unit in OF_ACCELERATION and units.acceleration:
         power, in_g = OF_ACCELERATION[unit]
         word = in_g if units.acceleration == "g" else unit

@@ -132,11 +132,7 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
                 "--structure is missing; expected one in SI units, as the drive has them, or none "
                 "for the drive alone"
             )
-        question = self.keywords()
-        for name in ("duration", "step"):
-            if question[name] is None:
-                raise InputError(f"--{name} is missing; expected seconds, such as --{name} 0.01")
-        return structure, question | {
+        return structure, self.keywords() | {
             "drive": str(self.drive),
             "connect": read_pairs("--connect", split_at_commas(self.connect), PAIR),
             "units": read_pairs("--unit", split_at_commas(self.unit), "NAME=UNIT"),

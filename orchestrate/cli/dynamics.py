@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+from ..constants import TURN
 from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
@@ -344,6 +345,8 @@ The excitation says where a first orbit is looked for; without it that is the lo
             raise InputError("--limits is missing; expected FIRST:LAST")
         over, limits = parse_varied(self.over, self.limits)
         structure, keywords = read_structure_and_question(self)
+        if over == "frequency" and self.g is not None:
+            self.hold_amplitude(structure, limits[0])
         excitation = self.branch_excitation(structure, over, keywords["start"] is not None)
         return structure, {**keywords, **excitation, "over": over, "limits": limits}
 
@@ -364,14 +367,24 @@ The excitation says where a first orbit is looked for; without it that is the lo
             yield "no bifurcation in this range"
         yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
 
+    def hold_amplitude(self, structure: Structure, first: float) -> None:
+        """Replace ``--g`` by the amplitude that it is at the start of a branch over frequency."""
+        usual = self.frequency_option() is None
+        if usual:
+            self.frequency = repr(first)
+        box = self.read_excitation(structure, one=True)
+        frequency, amplitude = box["frequency"], float(f"{box['amplitude']:.6g}")
+        text = f"--g {self.g}: is --amplitude {amplitude:g} at {frequency / TURN:.5g} Hz"
+        if structure.has_scale:
+            raise InputError(f"{text}; a branch over the frequency has one amplitude: expected it")
+        print(f"{text}, constant along the branch; its bifurcations are those of any amplitude")
+        self.g, self.amplitude = None, amplitude
+        if usual:
+            self.frequency = None
+
     def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Question:
         """Return the excitation at which the first orbit is searched, as keywords."""
         name, amplitude = self.frequency_option(), self.read_amplitude()
-        if over == "frequency" and self.g is not None:
-            raise InputError(
-                "--g: a branch over the frequency has one amplitude; expected --amplitude in m "
-                "(impacts and bifurcations do not depend on the level)"
-            )
         if over == "frequency" and amplitude is None and not begun:
             raise InputError(f"--over {self.over}: expected --amplitude in m with it")
         if name is None and (begun or over in ("eta", "frequency")):

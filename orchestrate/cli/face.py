@@ -58,6 +58,7 @@ KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of optio
     "xarray.Dataset": (Path, "FILE.nc"),
     "array_like": (float, "X"),
 }
+NEEDED = " (needed)"
 OF_BOX = ("eta", "frequency", "amplitude", "level")
 READERS: dict[Any, Callable[[str, str], Any]] = {int: read_int, float: read_float}
 STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *SET_NAMES)
@@ -237,9 +238,12 @@ class Command(Debugging, ABC):
 
         arguments = inspect.signature(getattr(orchestrate, self.calls)).parameters
         found: Question = {}
-        for name, (_, kind, of) in self.options().items():
+        for name, (one, kind, of) in self.options().items():
             if of is type(self) and name in arguments:
                 found[name] = getattr(self, name)
+                if found[name] is None and arguments[name].default is inspect.Parameter.empty:
+                    words = one.help.removesuffix(NEEDED)
+                    raise InputError(f"{option_names([name])} is missing ({words})")
                 if kind is State and isinstance(found[name], Path):
                     found[name] = read_earlier_result(option_names([name]), found[name])
         return found
@@ -325,9 +329,10 @@ def options_of_functions(
             else:
                 kind, value = next(KINDS[one] for one in KINDS if typed.startswith(one))
             usual = parameters[name].default if name in parameters else None
-            usual = None if usual is inspect.Parameter.empty else usual
-            default = None if if_given else usual
             words = help_text(meaning)
+            if usual is inspect.Parameter.empty:
+                usual, words = None, words if if_given else f"{words}{NEEDED}"
+            default = None if if_given else usual
             if ";" in takes:
                 words = f"{cyclopts.default_name_transform(function)}: {words}"
             yield name, Option(words, default, value, usual=usual), kind

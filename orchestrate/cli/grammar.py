@@ -91,7 +91,6 @@ def floats(
 
 parse_ends = floats("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,))
 parse_number_or_ends = floats("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
-parse_state = floats("X1,X2,V1,V2, four numbers in m and m/s", ",", (4,))
 Ends = Annotated[tuple[float, ...] | None, parse_ends]
 parse_numbers = floats("a number, or a list such as 0.5,1,2")
 parse_rates = floats("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
@@ -114,6 +113,23 @@ def read_earlier_result(option: str, path: Path) -> xr.Dataset:
         expected = "expected a result of an earlier command"
         raise InputError(f"{option} {path}: its identity is damaged; {expected}") from None
     return data
+
+
+def float_with_unit(name: str, text: str) -> float:
+    """Parse a number of a quantity, with one of its units behind it or none."""
+    number = number_with_unit(name, text)
+    return plain_float(text) if number is None else number
+
+
+def parse_state(option: str, text: str) -> tuple[float, ...]:
+    """Parse x1, x2, v1, v2, each with or without a unit."""
+
+    def split(text: str) -> tuple[float, ...]:
+        pairs = zip(("x1", "x2", "v1", "v2"), text.split(","), strict=True)
+        return tuple(float_with_unit(name, part.strip()) for name, part in pairs)
+
+    expected = "X1,X2,V1,V2, four numbers in m and m/s, or with units such as 20um and 3mm/s"
+    return parse(option, text, expected, split)
 
 
 def read_state(option: str, text: str) -> tuple[float, ...] | Path:
@@ -154,9 +170,10 @@ def parse_plane_side(option: str, text: str) -> AxisSpec:
 
     def split(text: str) -> AxisSpec:
         name, first, last, count = (part.strip() for part in text.split(","))
-        return name, plain_float(first), plain_float(last), plain_int(count)
+        return name, float_with_unit(name, first), float_with_unit(name, last), plain_int(count)
 
-    return parse(option, text, "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60", split)
+    expected = "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60 or x_rel,0,20um,60"
+    return parse(option, text, expected, split)
 
 
 PlaneSide = Annotated[AxisSpec | None, parse_plane_side]
@@ -204,18 +221,19 @@ def with_option_names(message: str, chosen: object) -> str:
     options = vars(chosen)
 
     def given(keyword: re.Match[str]) -> str:  # at the beginning: what is wrong
-        name, missing = keyword["name"], keyword["missing"]
-        if name not in options or (options[name] is None) != bool(missing):
+        name, joint = keyword["name"], keyword["joint"]
+        if name not in options or (options[name] is None) != (joint == " = None"):
             return keyword[0]
-        return f"--{name.replace('_', '-')} {'is missing' if missing else ''}"
+        joint = {" = None": " is missing", " = ": " "}.get(joint, joint)
+        return f"--{name.replace('_', '-')}{joint}"
 
     def named(keyword: re.Match[str]) -> str:  # what to do
-        name = keyword["name"]
-        spelling = f"--{name.replace('_', '-')}{' ' if keyword['quoted'] else ''}"
+        name, value = keyword["name"], keyword["value"].strip("'")
+        spelling = f"--{name.replace('_', '-')}{' ' if value else ''}{value}"
         return spelling if name in options else keyword[0]
 
-    message = re.sub(r"^(?P<name>[a-z_]\w*) = (?P<missing>None)?", given, message)
-    pattern = r"(?<![\w-])(?P<name>[a-z_]\w*)=((?=[\s,;:.)]|$)|(?=(?P<quoted>\")))"
+    message = re.sub(r"^(?P<name>[a-z_]\w*)(?P<joint> = None| = |: )", given, message)
+    pattern = r"(?<![\w-])(?P<name>[a-z_]\w*)=(?P<value>\"[^\"]*\"|'[^']*'|[^\s'\",;)]*)"
     return re.sub(pattern, named, message)
 
 
@@ -313,8 +331,7 @@ def parse_changed_value(name: str, value: str) -> float | bool:
 def parse_with_unit(option: str, name: str, value: str, other: str = "") -> float:
     """Parse a number, with a unit if the parameter of this name allows it."""
     try:
-        number = number_with_unit(name, value)
-        return plain_float(value) if number is None else number
+        return float_with_unit(name, value)
     except ValueError:
         check_name(name)  # before its unit
         known = " or ".join(known_units(name))

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from ..errors import InputError
 from ..lazy import xr
@@ -16,7 +16,6 @@ from .answer import Asked
 from .face import Command, Options, Question, option, option_names
 from .grammar import (
     Density,
-    Ends,
     Listed,
     floats,
     parse_breakpoints,
@@ -55,6 +54,8 @@ KINDS = {  # of excitation: the class, or the reader, whose arguments are its op
     "record": "read_record",
 }
 
+SweepEnds = Annotated[Any, floats("FIRST:LAST in Hz, such as 8:20", ":", (2,))]
+Knock = Annotated[Any, floats("PEAK:WIDTH in N and s, two numbers such as 20:0.004", ":", (2,))]
 LEVELS = ("g", "acceleration")
 LEVEL_OF = {"shock": "peak", "random": "rms"}  # the argument that the level is, if another
 
@@ -77,14 +78,14 @@ class OfExcitation(Options):
         "Random: seed; Shock: length delay; Hammer: at half; read_record: unit scale"
     )
     if_given = True
-    swept_sine: Ends = option("frequencies, Hz; downwards too", value="FIRST:LAST")
+    swept_sine: SweepEnds = option("frequencies, Hz; downwards too", value="FIRST:LAST")
     stepped_sine: Listed = option("frequencies, Hz; or a list A,B,...", value="FIRST:LAST:STEP")
     random: Density = option(
         "density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz, or in g2/Hz with that behind it",
         value="PSD",
     )
     shock: str | None = option("half-sine, sawtooth or trapezoid", value="SHAPE")
-    hammer: Ends = option("largest force, N, and width of a knock, s", value="PEAK:WIDTH")
+    hammer: Knock = option("largest force, N, and width of a knock, s", value="PEAK:WIDTH")
     record: Any = option("measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc", value="FILE")
     g: str | None = option(
         "peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too; "

@@ -6,6 +6,7 @@ import logging
 import math
 import warnings
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..constants import TURN
@@ -15,14 +16,34 @@ from ..units import text_of
 if TYPE_CHECKING:
     from ..model import Structure
 
-FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
-NEAR = 0.1  # of a frequency: so far beside its own ones a structure is still asked about
 OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
     "frequency": (1.0 / TURN, "rad/s", "--hz"),
     "hz": (TURN, "Hz", "--frequency"),
 }
 log = logging.getLogger(__name__)
 Question = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class NoteSettings:
+    """State from which numbers on a user is asked whether they are intended."""
+
+    far: float = 25.0  # frequency ratio, or its inverse, at which there is little to be seen
+    near: float = 0.1  # relative distance within which a frequency is one of the structure's own
+    heavy: float = 20.0  # kg, of a half of a beam
+    unfelt: float = 200.0  # threshold of contact over the level: a clearance is hardly meant
+
+
+SETTINGS = NoteSettings()
+
+
+def mass_note(structure: Structure) -> str:
+    """Return a line that gives heavy masses their unit; empty for lighter ones and in ratios."""
+    masses = {f"m{half}": getattr(structure, f"m{half}") for half in structure.halves}
+    if max(masses.values()) < SETTINGS.heavy or math.isclose(structure.omega, 1.0):
+        return ""
+    text = ", ".join(f"{name} = {mass:g} kg" for name, mass in masses.items())
+    return f"{text}: masses are in kg (150 g is 0.15, or 150g)"
 
 
 def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -> Iterator[str]:
@@ -55,7 +76,7 @@ def print_frequency_notes(arguments: Any, structure: Structure, question: Questi
         print(f"structure: the paper's, {omega} (--structure names another)")
     warn_of_other_unit(arguments, structure, values)
     low, high = (end(values) / structure.omega for end in (min, max))
-    if high > FAR_RATIO or low < 1.0 / FAR_RATIO:
+    if high > SETTINGS.far or low < 1.0 / SETTINGS.far:
         ends = " to ".join(f"{ratio:.3g}" for ratio in dict.fromkeys((low, high)))
         log.warning(
             "frequencies of %s times the structure's %s are far from it: is it the structure that "
@@ -66,7 +87,8 @@ def print_frequency_notes(arguments: Any, structure: Structure, question: Questi
 
 def warn_of_other_unit(arguments: Any, structure: Structure, values: tuple[float, ...]) -> None:
     """Warn if frequencies would fit the structure in the other unit: Hz for rad/s or reverse."""
-    low, high = (1.0 - NEAR) * min(values), (1.0 + NEAR) * max(values)
+    near = SETTINGS.near
+    low, high = (1.0 - near) * min(values), (1.0 + near) * max(values)
     f = [getattr(structure, f"f{half}") for half in structure.halves]
     own = [TURN * each for each in f]
     if math.isclose(structure.omega, 1.0) or any(low <= omega <= high for omega in own):
@@ -101,7 +123,7 @@ def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset)
     if ratio <= 1.0:
         return
     opens = structure.clearance < 0.0
-    if ratio > 200.0:  # times the level from which a clearance is hardly meant
+    if ratio > SETTINGS.unfelt:
         warnings.warn(
             f"clearance = {structure.clearance:g} m: {ratio:.3g} times what this level moves; is "
             "it in m (20 um is 2e-5)?",

@@ -22,6 +22,7 @@ from .grammar import (
     parse_one_or_more,
     positive_number,
 )
+from .notes import mass_note
 
 if TYPE_CHECKING:
     from ..model import Structure
@@ -278,6 +279,8 @@ def print_assumptions(structure: Structure, source: str, changes: Mapping[str, A
     from ..model.conversions import warn_of_per_cent
 
     warn_of_per_cent({name: changes[name] for name in ("zeta1", "zeta2") if name in changes})
+    if note := mass_note(structure):
+        print(note)
     if source not in SET_NAMES or not changes.keys() & {"f1", "f2"}:
         return
     left = [name for name, others in ASSUMED.items() if not changes.keys() & {name, *others}]

@@ -127,6 +127,7 @@ class Couple(OfMotor, Only, OfSchedule, OfController, Stepped, Held, Command, Of
         "compute the branches of stationary motions too, and draw them under the ramps"
     )
     ssp: Path | None = option("write the coupled system for other tools instead")
+    ssp_version: Literal["1.0", "2.0"] = option("of SSP", "1.0")
     examples = f"""
   {{program}} couple                               quick: bonded, delaminated, up and down
   {{program}} couple --drive beam                  a delaminated beam on a small motor
@@ -205,7 +206,8 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         own = user_fmus(self.fmu)
         fmus = [find(name, "fmi2", self.build_folder, own.get(name)).path for name in job.models]
         voltage, speed = job.schedule.voltage(0.0), job.speed_start
-        return write_ssp(path, job.structure, drive, voltage=voltage, speed_start=speed, fmus=fmus)
+        start = {"voltage": voltage, "speed_start": speed}
+        return write_ssp(path, job.structure, drive, **start, fmus=fmus, version=self.ssp_version)
 
 
 UNDECIDED, NEITHER = "undecided", "settled at the resonance"
@@ -430,6 +432,16 @@ def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
     return ", ".join(speeds)
 
 
+ENDS = {  # of a branch, that are no ends of its motions: what was tried, what to do
+    "no convergence": (
+        "Newton's method found no motion beyond, with steps down to 1e-5 of --longest, as where an "
+        "impact or a flight grazes; --longest 0.02 --most 800 looks closer, jump-voltages and "
+        "couple need no branch"
+    ),
+    "most points": "--most takes more than the 200 of one direction",
+}
+
+
 def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     """Yield tables of the bifurcations and of the branches."""
     if count := data.sizes["bifurcation"]:
@@ -447,11 +459,19 @@ def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
         "motions": [str(int(leg.voltage.notnull().sum())) for leg in legs],
         "stable": [str(int(leg.stable.sum())) for leg in legs],
         "ends by": [str(leg.end.item()) for leg in legs],
+        "at": [last_motion(leg) for leg in legs],
     }
     unlocated = [unlocated_changes(leg, data.bifurcation_speed.values) for leg in legs]
     if any(unlocated):
         columns["stability changes near, not located (--period)"] = unlocated
     yield from table(columns, len(legs))
+    yield from (f"{end}: {text}" for end, text in ENDS.items() if end in columns["ends by"])
+
+
+def last_motion(leg: xr.Dataset) -> str:
+    """Return voltage and speed of a branch's last motion, as a text."""
+    last = leg.dropna("point", subset=["voltage"]).isel(point=-1)
+    return f"{float(last.voltage):.5f} V, {text_of(last, last.speed, 'rad/s', '.6g')}"
 
 
 class DriveBranch(OfMotor, Driven, Stored, OfBoth):

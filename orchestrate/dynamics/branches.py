@@ -245,7 +245,7 @@ def require_orbit_dataset(start: Any, several: bool) -> None:
         raise InputError("start: without node_kind; expected a dataset of orbit or branch")
     if start["node_kind"].ndim != 1 and not several:
         raise InputError(
-            "start: several orbits; expected one, such as branch.isel(point=0), or switch="
+            "start: several orbits; expected one (in Python branch.isel(point=0)), or switch="
         )
 
 

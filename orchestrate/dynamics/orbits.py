@@ -188,7 +188,7 @@ def guess_from_result(result: Mapping[Any, Any]) -> FirstGuess:
     """Return the guess that repeats an orbit from a dataset of ``orbit`` or ``branch``."""
     kinds = np.asarray(result["node_kind"])
     if kinds.ndim != 1:
-        raise InputError("guess: several orbits; expected one, such as branch.isel(point=0)")
+        raise InputError("guess: several orbits; expected one (in Python branch.isel(point=0))")
     there = kinds >= 0
     columns = [np.asarray(result[name])[there] for name in NODE]
     rows = tuple(tuple(map(float, row)) for row in np.stack(columns, axis=1))

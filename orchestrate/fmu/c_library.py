@@ -82,12 +82,15 @@ def build_libraries(
 ) -> list[Path]:
     """Compile all C sources of the package for the platforms; return the paths of those made."""
     target, made = default_folder() if folder is None else Path(folder), []
+    left: dict[str, list[str]] = {}  # names by the reason
     for source in SOURCES:
         for platform in chosen(platforms) or usual():
             try:
                 made.append(compile_library(source, platform, target))
             except CannotExport as reason:
-                log.warning("%s left out: %s", sources.file_name(source, platform), reason)
+                left.setdefault(str(reason), []).append(sources.file_name(source, platform))
+    for text, names in left.items():
+        log.warning("left out: %s: %s", ", ".join(names), text)
     return made
 
 

@@ -14,7 +14,7 @@ from fmu_src.export import forms as sources
 from fmu_src.export.errors import CannotExport
 
 from ..errors import InputError, StoreError
-from ..files import is_private, made_once, make_private, open_folder
+from ..files import is_private, made_once, make_private, open_folder, write_whole
 from ..version import __version__
 from .description import Description, describe, describe_runnable
 
@@ -79,7 +79,7 @@ def export(
     announce(folder, level)
     log.info("exporting %s", folder / form / f"{name}.fmu")
     try:
-        path = sources.export(name, form, folder, platforms or None)
+        path = export_or_copy(name, form, folder, platforms)
         if folder == default_folder():
             make_private(path)
             make_private(path.parent)
@@ -87,6 +87,20 @@ def export(
     except OSError as error:
         reason = error.strerror or error
         raise StoreError(f"{folder}: {reason}; expected a folder that can be written") from None
+
+
+def export_or_copy(name: str, form: str, folder: Path, platforms: tuple[str, ...]) -> Path:
+    """Export an FMU; where nothing can be made here, copy the one that a wheel brings."""
+    try:
+        return sources.export(name, form, folder, platforms or None)
+    except CannotExport:
+        if platforms or not up_to_date(form, name, SHIPPED):
+            raise
+    path = folder / form / f"{name}.fmu"
+    log.info("%s is copied from the installed package", path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    shipped = (SHIPPED / form / path.name).read_bytes()
+    return write_whole(path, lambda target: target.write_bytes(shipped))
 
 
 def export_once(name: str, form: str, folder: Path, level: int) -> Description:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,7 @@ class ChannelSetup:
     words: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by key, then channel
     sample_rate: float | None = None
     resample: bool = False
+    file: str = ""  # that it was read from
 
     @classmethod
     def of(cls, channels: Channels) -> ChannelSetup:
@@ -43,7 +44,8 @@ class ChannelSetup:
         if isinstance(channels, (str, os.PathLike)):
             if not Path(channels).is_file():
                 raise InputError(f"channels = {str(channels)!r}: no such file; {text}")
-            return cls.from_mapping(str(channels), parse(Path(channels)))
+            setup = cls.from_mapping(str(channels), parse(Path(channels)))
+            return replace(setup, file=str(channels))
         if isinstance(channels, Mapping):
             return cls.from_mapping("channels", channels)
         if not isinstance(channels, Sequence):

@@ -155,7 +155,9 @@ def write_setup(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
             value = setup.words.get(key, {}).get(name, one.unit.item() if key == "unit" else "")
             lacking = key == "sensitivity" and one.quantity.item() == "voltage"
             if value != "" or lacking or key in ("unit", *SENSOR_WORDS):
-                lines.append(f"{key} = {toml_value(value)}")
+                usual = "s or ms" if name == "time" else "g, m/s2, mm/s, um, N, V"
+                remark = f"  # write it: {usual}" if (key, value) == ("unit", "") else ""
+                lines.append(f"{key} = {toml_value(value)}{remark}")
     text = "\n".join(lines) + "\n"
     return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
 

@@ -217,6 +217,7 @@ def converted_channels(
     columns: Named,
     unit: ByChannel = None,
     sensitivity: ByChannel = None,
+    setup_file: str = "",
 ) -> tuple[Floats | None, dict[str, Channel], dict[str, str]]:
     """Convert a file's columns to SI: return times in s or None, channels, how they were read."""
     assignment = assigned_columns(table, columns)
@@ -235,7 +236,8 @@ def converted_channels(
     stated = text_by_channel("sensitivity", sensitivity, list(places))
     used = {name: table.columns[place] for name, place in places.items()}
     of_all = isinstance(sensitivity, str) and "=" not in sensitivity and {*units} - {"time"}
-    check_units(table, used, units, {} if of_all else stated)  # not all are in volts where some are
+    # not all are in volts where some are
+    check_units(table, used, units, {} if of_all else stated, setup_file)
     channels = {}
     for name, column in used.items():
         own = units.get(name, column.unit)
@@ -265,7 +267,11 @@ def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:
 
 
 def check_units(
-    table: Columns, used: Mapping[str, Column], units: Mapping[str, str], stated: Mapping[str, str]
+    table: Columns,
+    used: Mapping[str, Column],
+    units: Mapping[str, str],
+    stated: Mapping[str, str],
+    setup_file: str,
 ) -> None:
     """Raise where columns have no unit, with the option that gives it to each."""
     known = {n: units.get(n, one.unit) or stated.get(n, one.sensitivity) for n, one in used.items()}
@@ -276,7 +282,9 @@ def check_units(
         option = ",".join(f"{words[n]}={units.get(n) or '...'}" for n in order)
         usual = "N, kN, V" if {*unknown} <= {*FORCES} else "m/s2, g, mm/s, um, V"
         text = f"{labels}: no unit; expected one such as {usual}: give it by unit="
-        raise InputError(f'{table.path}, {text}"{option}"')
+        sections = ", ".join(f"[{words[n]}]" for n in unknown)
+        there = f', or in {setup_file} write unit = "..." below {sections}' if setup_file else ""
+        raise InputError(f'{table.path}, {text}"{option}"{there}')
 
 
 def unit_attributes(

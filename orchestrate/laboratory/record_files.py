@@ -119,7 +119,9 @@ def read_record(
     given = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
     stated = {name: setup.keyword(name, value) for name, value in given.items()}
     unit = stated["unit"]
-    time, read, read_as = converted_channels(table, setup.columns, unit, stated["sensitivity"])
+    time, read, read_as = converted_channels(
+        table, setup.columns, unit, stated["sensitivity"], setup.file
+    )
     if time is None and table.sample_rate is None:
         raise InputError(f"{path}: no column of times; expected one, or sample_rate=")
     words = {"title": f"Record {path.name}", "source": path.name, **table.attributes}

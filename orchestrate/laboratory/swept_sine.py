@@ -66,7 +66,7 @@ class SweptSine(signals.Sine):
         given = [name for name in ("duration", "rate") if getattr(self, name)]
         if len(given) != 1:
             said = " and ".join(f"{name} = {getattr(self, name)!r}" for name in given)
-            raise InputError(f"{said or 'nothing'} given: expected one of duration and rate")
+            raise InputError(f"{said or 'nothing'} given: expected one of duration= and rate=")
         if self.rate:
             rate = signals.checked(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
             put(self, "duration", self._span() / rate)

@@ -135,7 +135,10 @@ def parse(path: Path) -> dict[str, Any]:
         reason = str(error).splitlines()[0]
     except RecursionError:
         reason = "nested too deeply"
-    raise InputError(f"{path}: not readable as TOML ({reason}); expected sections and key = value")
+    expected = "expected sections and key = value"
+    if path.suffix.lower() != ".toml":
+        expected += ", in a file that ends in .toml: this one looks like a record or a result"
+    raise InputError(f"{path}: not readable as TOML ({reason}); {expected}")
 
 
 def write(

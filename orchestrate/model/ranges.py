@@ -20,10 +20,16 @@ from ..errors import InputError
 
 Described = TypeVar("Described")
 WRITTEN_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # in texts, over a parameter's own
-    ("clearance", "preload", "stroke"): {"mm": "1e-3", "um": "1e-6", "µm": "1e-6", "m": "1"},
+    ("clearance", "preload", "stroke", "x1", "x2", "x_rel"): {
+        "mm": "1e-3",
+        "um": "1e-6",
+        "µm": "1e-6",
+        "m": "1",
+    },
     ("zeta1", "zeta2", "D", "D1", "D2"): {"%": "0.01"},
     ("f1", "f2", "f1_hz", "f2_hz"): {"Hz": "1"},
-    ("m1", "m2"): {"kg": "1"},
+    ("m1", "m2"): {"kg": "1", "g": "1e-3"},
+    ("v1", "v2", "v_rel"): {"mm/s": "1e-3", "m/s": "1"},
 }
 
 

@@ -16,6 +16,7 @@ from inspect import Parameter
 from typing import Any, NamedTuple, TypeVar, cast
 
 from ..lazy import xr
+from ..running.options import check_keywords
 from .questions import Question, answer_question, checked_structure
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -41,10 +42,13 @@ def question(kind: type[Question]) -> Callable[[Function], Function]:
 
     def decorate(function: Function) -> Function:
         signature = inspect.signature(function)
+        own = list(signature.parameters)
         take_fields(kind, function.__name__, signature.parameters)
 
         @wraps(function)
         def ask(*positional: Any, **keywords: Any) -> xr.Dataset:
+            if "running" in own:  # else others are taken too
+                check_keywords(keywords, own)
             changes = function(*positional, **keywords)
             if not isinstance(changes, Changes):
                 return changes

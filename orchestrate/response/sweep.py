@@ -335,8 +335,6 @@ def sweep(
     >>> found = sweep(Structure.nondimensional(), eta=[1.046, 1.047], transient=100, samples=40)
     >>> found.xi_rel_max.values.round(2)
     array([21.21, 21.56])
-    >>> len(found.drop_dims(["sample", "coordinate"]).to_dataframe())  # a table, a row per value
-    2
     >>> found = sweep(Structure(), over="e", values=[0.3, 0.7], eta=0.4, transient=50)
     >>> found.impacts_per_period.values
     array([ 9., 30.])

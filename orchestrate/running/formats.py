@@ -25,7 +25,7 @@ from ..errors import InputError
 from ..files import write_whole
 from ..flags import flag_words
 from ..lazy import xr
-from ..units import as_shown
+from ..units import as_shown, with_units
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,6 +57,39 @@ def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
             scalars = [name for name, array in part.coords.items() if not array.dims]
             frames["_".join(dims)] = make_table(part.drop_vars(scalars))
     return frames
+
+
+def to_dataframe(data: xr.Dataset, units: str = "") -> pd.DataFrame:
+    """Return a result as a pandas table, such as the files have it: a row a response.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Any result. What has other rows, as the samples of a sweep, is selected by its names:
+        ``to_dataframe(data[["xi_rel"]])``. (xarray's own method of this name repeats each response
+        for each sample.)
+    units : str
+        Such as ``"Hz,mm,g"``; SI by default.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The variables over the same dimensions that are most, with units in the headings, words in
+        place of flags (``multiplicity_decided`` says which multiplicities are undecided), and
+        converted coordinates of 13 digits.
+
+    Examples
+    --------
+    >>> from orchestrate import Structure, sweep
+    >>> found = sweep(Structure.from_file("beam"), frequency=[95.0, 96.0], amplitude=1e-5)
+    >>> table = to_dataframe(found, units="Hz,mm")
+    >>> table.shape[0], table.columns[0], table.multiplicity_decided.tolist()
+    (2, 'frequency [Hz]', ['repeated', 'repeated'])
+    """
+    if not getattr(data, "data_vars", None):
+        raise InputError(f"data = {data!r}: expected a result, an xarray.Dataset with variables")
+    made = tables(with_units(data, units))
+    return max(made.values(), key=lambda table: table.shape[1])
 
 
 def without_repetition(data: xr.Dataset) -> xr.Dataset:

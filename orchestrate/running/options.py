@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -11,12 +11,17 @@ from typing import TYPE_CHECKING, TypedDict
 
 from ..errors import InputError
 from ..model.arguments import checked_integer, checked_path
-from ..model.ranges import checked_flag
+from ..model.ranges import checked_flag, closest
 
 if TYPE_CHECKING:
     from distributed import Client
 
 MAX_JOBS = 1024  # processes of one machine
+OF_COMMANDS = {  # what users of the command line write, and what it is in Python
+    "hz": "frequency=2*pi*Hz, in rad/s",
+    "rpm": "frequency=2*pi*rpm/60, in rad/s",
+    "g": "amplitude=9.80665*g/frequency**2, in m",
+}
 FmuFiles = str | os.PathLike[str] | Mapping[str, str | os.PathLike[str]]
 
 
@@ -93,13 +98,7 @@ class RunOptions:
     @classmethod
     def from_keywords(cls, running: Mapping[str, object]) -> RunOptions:
         """Return the options from keyword arguments; raise TypeError for an unknown one."""
-        known = [field.name for field in fields(cls)]
-        for name in running:
-            if name not in known:
-                raise TypeError(
-                    f"unexpected keyword argument {name!r}: expected the function's own or "
-                    f"one of {', '.join(known)}"
-                )
+        check_keywords(running)
         return cls(**running)  # type: ignore[arg-type]
 
     def paths(self) -> Iterator[tuple[str, object]]:
@@ -121,3 +120,17 @@ class RunOptions:
             return None
         path = Path(self.store)
         return path if path.suffix == ".nc" else path / f"{name}.nc"
+
+
+def check_keywords(names: Iterable[str], own: Iterable[str] = ()) -> None:
+    """Raise TypeError for a keyword that is neither a function's own nor one of these options."""
+    running = [field.name for field in fields(RunOptions)]
+    known = [*own, *running]
+    for name in names:
+        if name not in known:
+            near = OF_COMMANDS.get(name) or closest(name, known)
+            meant = f"did you mean {near}? " if near else ""
+            raise TypeError(
+                f"unexpected keyword argument {name!r}: {meant}expected the function's own or one "
+                f"of {', '.join(running)}"
+            )

@@ -454,8 +454,10 @@ def cosimulate(
     inputs : mapping, optional
         Its other inputs: a number, times in s with values, a :class:`orchestrate.Course`, or one
         :class:`orchestrate.LevelControl`, which holds the level of the box's acceleration.
-    duration, step : float
-        Of the run, and the communication step, s: the longest, where the duration is no multiple.
+    duration : float
+        Length of the run, s.
+    step : float
+        Communication step, s: the longest one, where the duration is no multiple of it.
     record : sequence of str, optional
         Variables of the drive that are stored.
     start : array_like of 4 floats, optional

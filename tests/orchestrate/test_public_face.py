@@ -21,7 +21,7 @@ FUNCTIONS = (
     *("impact_statistics", "poincare", "basin_entropy", "orbit", "branch", "border", "couple"),
     *("cosimulate", "manifold"),
     *("shake", "measure", "record", "read_record", "write_record", "channels", "halves"),
-    *("resonance_curve", "read_curve"),
+    *("resonance_curve", "read_curve", "to_dataframe"),
 )
 HEAVY = ("xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "pandas", "loky", "tqdm")
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)  # 79 rad/s
@@ -146,6 +146,17 @@ def test_dimensions_are_those_that_were_asked_for(answers):
     assert answers["lyapunov"].exponent.dims == ("frequency",)
     assert answers["basin"].attractor_of.shape == (2, 3)
     assert answers["couple"].speed.dims == ("revolution",)
+
+
+def test_a_table_has_a_row_a_response(answers):
+    sweep = answers["sweep"].assign_coords(frequency=2.0 * np.pi * np.array([46.5, 46.75, 47.0]))
+    table = orchestrate.to_dataframe(sweep, units="Hz,mm")
+    assert table["frequency [Hz]"].tolist() == [46.5, 46.75, 47.0]  # none is 46.75000000000001
+    assert set(table.multiplicity_decided) <= {"repeated", "irregular", "undecided"}
+    assert len(orchestrate.to_dataframe(sweep[["xi_rel"]])) == sweep.xi_rel.size
+    assert len(orchestrate.to_dataframe(answers["resonance"])) == answers["resonance"].x1_max.size
+    with pytest.raises(InputError, match="expected a result"):
+        orchestrate.to_dataframe(sweep[[]])
 
 
 def test_asking_changes_nothing_around_it(exported):

@@ -131,3 +131,43 @@ def test_a_level_below_the_threshold_is_said(ask):
         ask, *HALVES, *MASSES, "--set", "clearance=-2e-5", shaken=("--hz", "48", "--g", "3")
     )
     assert "is linear" not in loud[0] and "no impacts" not in loud[0]
+
+
+@pytest.mark.parametrize(("mass", "note"), [("19.9", False), ("20.1", True), ("20.1kg", True)])
+def test_heavy_masses_are_said_with_their_unit(ask, mass, note):
+    masses = ("--set", f"m1={mass}", "--set", "m2=1.2")
+    out, complaints = said(ask, *HALVES, *masses, *ZETAS)
+    assert complaints == [] and ("masses are in kg" in out) == note
+
+
+def test_grams_are_grams_and_ratios_have_no_mass(ask):
+    light, whole = (
+        ("--set", f"m1={m1}", "--set", f"m2={m2}") for m1, m2 in ((0.15, 0.12), ("150g", "120 g"))
+    )
+    names = {
+        said(ask, *HALVES, *one, *ZETAS)[0].splitlines()[-1].partition(": ")[0]
+        for one in (light, whole)
+    }
+    assert len(names) == 1
+    ratios = ("--set", "m1=150", "--set", "k1=150", "--set", "k2=180", "--set", "m2=150")
+    assert "kg" not in said(ask, *ratios, shaken=("--eta", "1.2"))[0]
+
+
+def test_a_branch_over_the_frequency_takes_g_at_its_start(ask):
+    asked = (
+        "branch",
+        "--structure",
+        "beam",
+        "--over",
+        "hz",
+        "--limits",
+        "16.5:16.6",
+        "--plot",
+        "none",
+    )
+    out = ask(*asked, "--g", "0.02").success().out
+    assert out.startswith(
+        "--g 0.02: is --amplitude 1.82481e-05 at 16.5 Hz, constant along the branch"
+    )
+    same = ask(*asked, "--amplitude", "1.82481e-05").success().out
+    assert same.splitlines()[:2] == out.splitlines()[1:3]

@@ -44,6 +44,7 @@ MISTAKES = {  # options of each command, then what its line says
         --set e=0.1 --set e=0.2 : --set e=0.2 | each name once
         --set e=1.2 : e = 1.2 | 0 <= e <= 1
         --structure nowhere.toml : nowhere.toml | no such file | paper
+        --structure README.md : README.md: not readable as TOML | looks like a record
         --samples 0 : --samples 0 | from 1
         --fmu nowhere.fmu : nowhere.fmu | no such file
     """,
@@ -66,7 +67,8 @@ MISTAKES = {  # options of each command, then what its line says
         --hammer 20:0.004 --half 3 : --half 3 | 1 to 2
         --hammer 20:0.004 --length 1 : --length | with --shock alone
         --swept-sine 8:20 --g 1 --shock trapezoid : --swept-sine and --shock given | one of
-        --swept-sine 8:20 --g 1 : nothing given | one of duration and rate
+        --swept-sine 8:20 --g 1 : nothing given | one of --duration and --rate
+        --swept-sine 8,20 --g 1 --duration 2 : --swept-sine 8,20 | in Hz, such as 8:20
         --swept-sine 8:20 --duration 2 : level | --g and --acceleration
         --swept-sine 8:20 --g 1 --duration 2 --seed 1 : --seed | with --random alone
         --swept-sine 8 --g 1 --duration 2 : --swept-sine 8 | FIRST:LAST
@@ -110,6 +112,7 @@ MISTAKES = {  # options of each command, then what its line says
     "basin": """
         --eta 1:2:0.5 : --eta 1:2:0.5 | 3 values
         --eta 1 --x x_rel,0,1 : --x x_rel,0,1 | NAME,FIRST,LAST,COUNT
+        --eta 1 --x v1,0,1um,3 : --x v1,0,1um,3 | x_rel,0,20um,60
     """,
     "orbit": """
         --eta 1 --period 0 : --period 0
@@ -120,7 +123,7 @@ MISTAKES = {  # options of each command, then what its line says
         --limits 2 : --limits 2 | FIRST:LAST
         --eta 2.5 --limits 2.6:2.4 : --limits | the lower one first
         --eta 3 --limits 2.4:2.6 : eta = 3.0 at the start | inside
-        --over hz --g 1 --limits 2.4:2.6 : --g | --amplitude
+        --over hz --g 1 --limits 2:3 --set clearance=1e-4 : --amplitude 0.0621013 at 2 Hz
         --over frequency --eta 1 --limits 2.4:2.6 : --over frequency | --amplitude
         --over e --limits 2.4:2.6 : frequency: nothing given
     """,

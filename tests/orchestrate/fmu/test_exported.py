@@ -242,3 +242,13 @@ def test_who_waits_for_an_export_does_not_make_it_again(maker, places, monkeypat
         found = list(threads.map(lambda _: find(OSCILLATOR).path, range(2)))
     assert found == [places[0] / "fmi3" / f"{OSCILLATOR}.fmu"] * 2
     assert len(maker.asked) == 1
+
+
+def test_without_a_compiler_those_of_a_wheel_are_copied(maker, places, real, tmp_path):
+    maker.without |= {"fmi3", "fmi2-python"}
+    put(real["fmi3"], places[1])
+    copied = exported.build(tmp_path / "mine", ["fmi3"], [OSCILLATOR])
+    assert copied == [tmp_path / "mine" / "fmi3" / f"{OSCILLATOR}.fmu"]
+    assert copied[0].read_bytes() == real["fmi3"].read_bytes()
+    with pytest.raises(InputError, match="cannot be made"):  # other platforms than it has
+        exported.build(tmp_path / "other", ["fmi3"], [OSCILLATOR], ["aarch64-linux"])

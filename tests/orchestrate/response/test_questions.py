@@ -8,6 +8,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
+from orchestrate import simulate
 from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.response.questions import checked_point, checked_states, excitation_numbers
@@ -149,3 +150,16 @@ def test_the_call_is_one_that_can_be_made_again(exported):
         found = ask(OWN, **asked)
         again = eval(found.attrs["call"], {**names, ask.__name__: ask})
         assert again.identical(found.assign_attrs(history=again.attrs["history"]))
+
+
+@pytest.mark.parametrize(
+    ("asked", "meant"),
+    [
+        ({"hz": 12.0}, r"'hz': did you mean frequency=2\*pi\*Hz"),
+        ({"frequencey": 1.0}, "frequency\\?"),
+        ({"q": 1}, "'q': expected the function's own"),
+    ],
+)
+def test_an_unknown_keyword_is_named_with_the_one_that_is_meant(asked, meant):
+    with pytest.raises(TypeError, match=meant):
+        simulate(OWN, **asked)
