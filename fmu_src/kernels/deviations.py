@@ -10,7 +10,7 @@ memory, for its constants and certified roots; tables follow.
 
 from .numerics.elementary import fraction, sincos_turns
 from .oscillator import memory as at
-from .oscillator.excitation import begin_segment, drive_at
+from .oscillator.excitation import begin_segment, drive_at, mirror
 from .oscillator.impact import common_velocity
 from .oscillator.motion import begin_state, set_phase
 from .oscillator.parameters import derive
@@ -29,7 +29,7 @@ def deviate(m, time):
     """Write a matrix for each impact that maps a deviation before it to that before the next one,
     displacements in m, velocities in m per unit of tau; and how long contact lasts.
     """
-    m[at.SIDE] = 1.0  # impacts at the inner end
+    m[at.SIDE] = 1.0
     derive(m)
     m[at.CUBIC_SET] = 1.0
     begin_segment(m)
@@ -40,6 +40,7 @@ def deviate(m, time):
         if i + 1 < count:
             end = m[row + ROW]
         left, touching = m[at.OMEGA] * (end - m[row]), 0.0
+        go_to_side(m, row)
         write_saltation(m, row, matrix)
         if m[row + 6] != 0.0:
             touching = contact_duration(m, row, left)
@@ -49,11 +50,24 @@ def deviate(m, time):
     return 0
 
 
+def go_to_side(m, row):
+    """Go over to the system, or the mirrored one, in which an impact is at the inner end.
+
+    Deviations have another sign in both, before the impact and after it: their matrix is one.
+    """
+    gap = m[row + 2] - m[row + 1] + m[at.CLEARANCE]
+    side = 1.0 if 2.0 * gap < m[at.LIMIT] else -1.0
+    if side != m[at.SIDE]:  # rarely
+        mirror(m)
+
+
 def write_saltation(m, row, matrix):
     """Write ``R + (F+ - R F-) n^T/(n F-)`` of an impact; where contact follows, that both masses
     move to their centre.
     """
-    mu, share = m[at.MU], m[at.SHARE]
+    side, one, two = m[at.SIDE], m[at.SHARE], m[at.MU] * m[at.SHARE]
+    if m[at.WALL] != 0.0:  # infinitely heavy
+        two = 1.0
     for i in range(STATES):
         for k in range(STATES):
             m[matrix + STATES * i + k] = 0.0
@@ -62,27 +76,27 @@ def write_saltation(m, row, matrix):
     if m[row + 6] != 0.0:
         for i in range(STATES):
             first = 2 * int(i / 2)
-            m[matrix + STATES * i + first] = share
-            m[matrix + STATES * i + first + 1] = mu * share
+            m[matrix + STATES * i + first] = one
+            m[matrix + STATES * i + first + 1] = two
         return
     closing, slope = m[row + 5] / m[at.OMEGA], m[at.E_SLOPE] * m[at.OMEGA]
-    part = (1.0 + m[at.E]) * share
     slower = 1.0 / (1.0 + slope * closing)
-    slower = m[at.E] * slower * slower - m[at.E]  # derivative of the separation speed, less e
-    m[matrix + 10] = 1.0 - mu * (part + slower * share)
-    m[matrix + 11] = mu * (part + slower * share)
-    m[matrix + 14] = part + slower * share
-    m[matrix + 15] = 1.0 - (part + slower * share)
-    v1, v2 = m[row + 3] / m[at.OMEGA], m[row + 4] / m[at.OMEGA]
+    rate = 1.0 + m[at.E] * slower * slower  # of the gap's velocity, by the closing speed
+    m[matrix + 10] = 1.0 - two * rate
+    m[matrix + 11] = two * rate
+    m[matrix + 14] = one * rate
+    m[matrix + 15] = 1.0 - one * rate
+    x1, x2 = side * m[row + 1], side * m[row + 2]
+    v1, v2 = side * m[row + 3] / m[at.OMEGA], side * m[row + 4] / m[at.OMEGA]
     common = common_velocity(m, v1, v2)
-    b1, b2 = common + mu * closing * share, common - closing * share
+    b1, b2 = common + two * closing, common - one * closing
     sine, cosine = sincos_turns(fraction(m[at.ETA_TURNS] * m[at.OMEGA] * m[row]))
     drive_1, _ = drive_at(m, at.OSCILLATOR_1, cosine, sine, 0.0)
     drive_2, _ = drive_at(m, at.OSCILLATOR_2, cosine, sine, 0.0)
-    after_1 = acceleration(m, at.OSCILLATOR_1, drive_1, m[row + 1], v1)
-    after_2 = acceleration(m, at.OSCILLATOR_2, drive_2, m[row + 2], v2)
-    before_1 = acceleration(m, at.OSCILLATOR_1, drive_1, m[row + 1], b1)
-    before_2 = acceleration(m, at.OSCILLATOR_2, drive_2, m[row + 2], b2)
+    after_1 = acceleration(m, at.OSCILLATOR_1, drive_1, x1, v1)
+    after_2 = acceleration(m, at.OSCILLATOR_2, drive_2, x2, v2)
+    before_1 = acceleration(m, at.OSCILLATOR_1, drive_1, x1, b1)
+    before_2 = acceleration(m, at.OSCILLATOR_2, drive_2, x2, b2)
     scale = 1.0 / max(closing, SMALLEST)
     add_jump(m, matrix, (v1 - b1) * scale)
     add_jump(m, matrix + 4, (v2 - b2) * scale)
@@ -106,7 +120,8 @@ def add_jump(m, place, jump):
 def contact_duration(m, row, span):
     """Return how long permanent contact after an impact lasts, in tau, at most a span."""
     set_phase(m, m[at.ETA_TURNS] * m[at.OMEGA] * m[row])
-    x, v = m[row + 1] - m[at.REST_1], m[row + 3] / m[at.OMEGA]
+    side = m[at.SIDE]
+    x, v = side * m[row + 1] - m[at.REST_1], side * m[row + 3] / m[at.OMEGA]
     m[at.MODE] = at.FLIGHT
     m[at.WORK] = 0.0
     m[at.WORK_LIMIT] = WORK
@@ -118,14 +133,15 @@ def contact_duration(m, row, span):
 
 
 def flow(m, matrix, one, other, time):
-    """Multiply a matrix by the free flow of both masses over a time, (10)."""
+    """Multiply a matrix by the free flow of both masses over a time, (10); a wall has none."""
     for mass in range(2):
         b = other
         if mass == 0:
             b = one
         c, s, _ = fundamental_solutions(m, b, time)
         damping, square = m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
+        here = 0.0 if mass == 1 and m[at.WALL] != 0.0 else 1.0
         for k in range(STATES):
-            x, v = m[matrix + STATES * mass + k], m[matrix + STATES * (mass + 2) + k]
+            x, v = here * m[matrix + STATES * mass + k], here * m[matrix + STATES * (mass + 2) + k]
             m[matrix + STATES * mass + k] = (c + damping * s) * x + s * v
             m[matrix + STATES * (mass + 2) + k] = (c - damping * s) * v - square * s * x

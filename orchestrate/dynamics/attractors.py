@@ -353,8 +353,7 @@ def attractors(
     unit circle, and if the response comes nearer to it as they say. So multiplicity and impacts are
     those of the orbit, and two attractors are two orbits. What has not repeated after ``longest``
     periods is irregular, a torus or chaos; how many of these there are depends on
-    ``alike_irregular``. An FMU of FMI 2.0 reports no impacts: there states that repeat decide,
-    as with a wall or a stroke, which Newton's method has not.
+    ``alike_irregular``. An FMU of FMI 2.0 reports no impacts: there states that repeat decide.
 
     Global continuation (Datseris, Rossi and Wagemakers, Chaos 33, 073151, 2023): every attractor
     is carried to both neighbouring values, its state as a further start, or its orbit by Newton's

@@ -113,8 +113,9 @@ class BifurcationCurve:
             return self.orbit(unknowns).nodes[self.place, CLOSING : CLOSING + 1]
         if self.kind == Kind.TOUCHING:
             which = np.array([self.place]), np.array([GAP])
-            rate, _, gap = quantity_derivatives(self.orbit(unknowns), *which, unknowns[-1:])
-            return np.append(gap, rate)
+            orbit = self.orbit(unknowns)
+            rate, _, gap = quantity_derivatives(orbit, *which, unknowns[-1:])
+            return np.append(np.minimum(gap, orbit.form.limit - gap), rate)
         if self.kind == Kind.EARLIER_RELEASE:
             force, rate, _ = pressing_force(
                 self.orbit(unknowns), np.array([self.place]), unknowns[-1:]

@@ -55,6 +55,7 @@ KEPT = ("state", "xi", "multipliers", *NODES)  # variables of orbits that those 
 class BorderJob(Question):
     """Job of :func:`orchestrate.border`: one bifurcation followed over two parameters."""
 
+    takes_family: ClassVar[bool] = True
     setting: Setting  # the two parameters and their limits
     start: FirstGuess  # nodes of the orbit at the bifurcation
     period: int

@@ -53,14 +53,11 @@ def with_touching_impact(point: OrbitPoint) -> OrbitPoint:
     orbit = point.orbit
     _, segment, phase = nearest_miss(orbit, turning_points(orbit))
     state = orbit.states(np.array([segment]), np.array([phase]))[0]
-    share = orbit.form.mu / (1.0 + orbit.form.mu)
-    row = [phase, state[0], state[2] * (1.0 - share) + state[3] * share, 0.0]
-    if not orbit.count:
-        sequence, nodes, node = ImpactSequence(orbit.sequence.periods, (0,)), np.array([row]), 0
-    else:
-        node = segment + 1
-        sequence = orbit.sequence.with_impact(node)
-        nodes = np.insert(orbit.nodes, node, row, axis=0)
+    outer = bool(2.0 * (state[1] - state[0]) > orbit.form.limit)
+    row = [phase, state[0], float(state[2:] @ orbit.form.shares), 0.0]
+    node = segment + 1 if orbit.count else 0
+    sequence = orbit.sequence.with_impact(node, outer)
+    nodes = np.insert(orbit.nodes, node, row, axis=0)
     begin = solve_same_motion(point, sequence, nodes)
     rising = begin.root.tangent[4 * node + CLOSING] > 0.0
     return begin if rising else begin.reversed()

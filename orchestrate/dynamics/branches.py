@@ -59,6 +59,7 @@ OF_SETTING = ("over", "limits", *PUSHES)  # with an excitation
 class BranchJob(Question):
     """Job of :func:`orchestrate.branch`: a branch of orbits continued over one parameter."""
 
+    takes_family: ClassVar[bool] = True
     setting: Setting  # the parameter that varies and its limits
     start: FirstGuess  # nodes of the orbit that it begins with
     value: float  # of the parameter there

@@ -1,9 +1,10 @@
 """Closed-form motion between impacts (10): both masses free, or in contact as one.
 
 All in the paper's units: displacements over a eta^2, time as tau, the excitation by its phase.
-A state is (xi_1, xi_2, xi_1', xi_2'). Oscillators 1 and 2 are the masses, 3 is both as one. With a
-clearance, xi_2 counts from where mass 2 touches mass 1 at xi_1 = 0: the gap is xi_2 - xi_1 always,
-and the clearance is a constant load of the springs, see :meth:`.Point.faces`.
+A state is (xi_1, xi_2, xi_1', xi_2'). Oscillators 1 and 2 are the masses, 3 is both as one, 4 both
+at the outer end of a stroke. With a clearance, xi_2 counts from where mass 2 touches mass 1 at
+xi_1 = 0: the gap is xi_2 - xi_1 always, and the clearance is a constant load of the springs, see
+:meth:`.Point.faces`. A wall is a mass 2 that nothing moves.
 """
 
 from __future__ import annotations
@@ -13,32 +14,29 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
 from ..model import Excitation, Structure
 
 Floats = NDArray[np.float64]
+FREE, INNER, OUTER = 0, 1, 2  # modes: in flight, in permanent contact at either end
+Modes = NDArray[np.int_] | int
+Ends = NDArray[np.bool_] | bool  # whether an end is the outer one
 MASSES = slice(0, 2)  # oscillators 1 and 2
+MOVING = np.array([[0, 1], [2, 2], [3, 3]])  # oscillators that are the two masses, in each mode
+SAME = 1e-14  # of two amplitudes: within their rounding
 
 
-def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
-    """Return indices of the two oscillators that move: (0, 1) in flight, (2, 2) in contact."""
-    if not np.any(contact):
-        return MASSES
-    return np.where(np.reshape(contact, (-1, 1)), 2, np.arange(2))
-
-
-def has_closed_form(point: tuple[Structure, Excitation]) -> bool:
-    """Return whether formulas of orbits and deviations hold: no wall, no stroke."""
-    return not (point[0].wall or point[0].stroke)
+def oscillators(mode: Modes) -> slice | NDArray[np.intp]:
+    """Return indices of the two oscillators that move, (2) in flight alone, else (n, 2)."""
+    return MOVING[np.reshape(mode, -1)] if np.any(mode) else MASSES
 
 
 @dataclass(frozen=True)
 class ClosedForm:
     """Coefficients of the closed-form motion between impacts, non-dimensional."""
 
-    # frequency ratio, mass ratio (2), restitution (15)
+    # frequency ratio, the masses' shares in both, restitution (15)
     eta: float
-    mu: float
+    shares: Floats
     e: float
     sticking_time: float  # gamma (1 - e) over the faster half's frequency: end of chattering (17)
     e_slope: float  # decrease of the restitution with the closing speed
@@ -49,67 +47,85 @@ class ClosedForm:
     # a_i and b_i of (11), times it
     cosine: Floats
     sine: Floats
-    push: float  # constant right-hand side, by a constant acceleration of the box
+    push: Floats  # constant right-hand side, by a constant acceleration of the box
     offset: Floats  # displacement by it, and by the clearance
     # coefficients of the contact force f (18)
     force_v: float
     force_x: float
+    wall: bool  # whether nothing moves mass 2
     gap_offset: float  # the gap where both springs are unloaded
-    load: Floats  # acceleration of each oscillator at no displacement, by the clearance
+    limit: float  # the largest gap; infinite without a stroke
+    load: Floats  # acceleration of each oscillator at no displacement, by clearance and stroke
 
     @classmethod
     def from_structure(cls, structure: Structure, excitation: Excitation) -> ClosedForm:
         """Return the coefficients for a structure under an excitation."""
-        omega, m1, m2 = structure.omega, structure.m1, structure.m2
-        both, springs = m1 + m2, structure.k1 + structure.k2
-        unit = omega * omega
-        if not has_closed_form((structure, excitation)):
-            raise InputError("wall, stroke: orbits and their borders have none yet; expected none")
+        omega, m1, m2, wall = structure.omega, structure.m1, structure.m2, structure.wall
+        unit, length = omega * omega, excitation.length(structure)
+        shares = np.array([0.0, 1.0] if wall else [m1, m2]) / (1.0 if wall else m1 + m2)
+        share = float(shares[1])
         eta = excitation.frequency / omega
-        dampers = np.array(
-            [structure.d1 / m1, structure.d2 / m2, (structure.d1 + structure.d2) / both]
-        )
-        damping = dampers / (2.0 * omega)
-        stiffness = np.array([structure.k1 / m1, structure.k2 / m2, springs / both]) / unit
+        damping = two_and_both(structure.d1 / m1, structure.d2 / m2, share) / (2.0 * omega)
+        stiffness = two_and_both(structure.k1 / m1, structure.k2 / m2, share) / unit
         stiffness[0] = 1.0
+        if wall:
+            damping[:], stiffness[:] = damping[0], 1.0
         detuning, loss = stiffness - eta * eta, 2.0 * damping * eta
         reach = detuning**2 + loss**2
-        shaken = excitation.amplitude != 0.0
-        level = excitation.amplitude * excitation.frequency**2
-        level = level if shaken else unit * excitation.length(structure)  # m/s2 that is 1 here
-        push, force1, force2 = (each / level for each in excitation.pushes)
-        forces = np.array([force1 / m1, force2 / m2, (force1 + force2) / both])
-        drive, push = shaken + forces, 0.0 - push
+        shaken = float(excitation.amplitude != 0.0)
+        level = excitation.amplitude * excitation.frequency**2 if shaken else unit * length
+        push, force1, force2 = (each / level for each in excitation.pushes)  # m/s2 that is 1 here
+        moved = 0.0 if wall else 1.0
+        drive = two_and_both(shaken + force1 / m1, moved * shaken + force2 / m2, share)
         with np.errstate(divide="ignore", invalid="ignore"):
             cosine, sine = -loss / reach * drive, detuning / reach * drive
-        offset, load, gap_offset = push / stiffness, np.zeros(3), 0.0
-        if structure.gap_offset != 0.0:
-            gap_offset = structure.gap_offset / excitation.length(structure)
-            load = gap_offset * stiffness[1] * np.array([0.0, 1.0, m2 / both])
-            offset = offset + load / stiffness
+        pushes = two_and_both(0.0 - push, moved * (0.0 - push), share)
+        gap_offset = structure.gap_offset / length if structure.gap_offset else 0.0
+        limit = structure.stroke / length if structure.stroke else np.inf
+        load = gap_offset * stiffness[1] * np.array([0.0, 1.0, share, share])
+        load[3] -= 0.0 if limit == np.inf else limit * stiffness[1] * share
         return cls(
             eta=eta,
-            mu=m2 / m1,
+            shares=shares,
             e=structure.e,
             sticking_time=structure.gamma * (1.0 - structure.e) / max(1.0, stiffness[1] ** 0.5),
-            e_slope=structure.e_slope * omega * excitation.length(structure),
+            e_slope=structure.e_slope * omega * length,
             damping=damping,
             stiffness=stiffness,
             drive=drive,
             cosine=cosine,
             sine=sine,
-            push=push,
-            offset=offset,
+            push=pushes,
+            offset=(pushes + load) / stiffness,
             force_v=float(2.0 * (damping[0] - damping[1])),
             force_x=float(stiffness[0] - stiffness[1]),
+            wall=wall,
             gap_offset=gap_offset,
+            limit=limit,
             load=load,
         )
 
     @property
-    def rests_in_contact(self) -> bool:
-        """Whether a preload or a constant acceleration presses the masses together at rest."""
-        return bool(self.offset[1] < self.offset[0])
+    def rest_mode(self) -> int:
+        """The mode in which the masses rest: a preload, or what pushes, may press them together."""
+        gap = self.offset[1] - self.offset[0]
+        return INNER if gap < 0.0 else OUTER if gap > self.limit else FREE
+
+    @property
+    def linear_mode(self) -> int:
+        """The mode of the response that never impacts, -1 where there is none.
+
+        In flight its gap, in contact its force (18), is a constant and a harmonic.
+        """
+        mode, gap = self.rest_mode, float(self.offset[1] - self.offset[0])
+        if mode == FREE:
+            swings = np.stack([self.cosine[:2], self.sine[:2]])
+            room, swing = min(gap, self.limit - gap), np.hypot(*np.diff(swings)[:, 0])
+            return FREE if swing <= room + SAME * np.abs(swings).sum() else -1
+        phase = np.array([0.0, 0.5, 1.0]) * np.pi
+        force = self.force(phase, *self.steady(phase, mode)[:, ::2].T, mode == OUTER)
+        middle = 0.5 * (force[0] + force[2])
+        return mode if np.hypot(*(force[:2] - middle)) <= -middle else -1
 
     @property
     def fastest(self) -> float:
@@ -150,78 +166,75 @@ class ClosedForm:
         matrices[:, 1, 1] = cosine - self.damping[i] * sine
         return matrices
 
-    def flight(self, time: Floats) -> Floats:
-        """Return the flow matrices (n, 4, 4) of both free masses after given times."""
+    def flow(self, time: Floats, mode: Modes = FREE) -> Floats:
+        """Return the flow matrices (n, 4, 4) of the motion in modes after given times."""
+        modes = np.broadcast_to(mode, len(time))
         matrices = np.zeros((len(time), 4, 4))
-        matrices[:, 0::2, 0::2] = self.oscillator(0, time)
-        matrices[:, 1::2, 1::2] = self.oscillator(1, time)
+        for held in (False, True):
+            chosen = np.flatnonzero((modes != FREE) == held)
+            for mass in range(0 if len(chosen) else 2, 2):
+                if not (self.wall and (held or mass)):  # what a wall does forgets deviations
+                    own = self.oscillator(2 if held else mass, time[chosen])
+                    matrices[chosen, mass::2, mass::2] = own
         return matrices
 
-    def contact(self, time: Floats) -> Floats:
-        """Return the flow matrices (n, 4, 4) of both masses moving as one after given times."""
-        common = self.oscillator(2, time)
-        matrices = np.zeros((len(time), 4, 4))
-        matrices[:, 0::2, 0::2] = common
-        matrices[:, 1::2, 1::2] = common
-        return matrices
-
-    def steady(self, phase: Floats, contact: NDArray[np.bool_] | bool = False) -> Floats:
+    def steady(self, phase: Floats, mode: Modes = FREE) -> Floats:
         """Return the steady-state response (harmonic part of (10)) at phases, shape (n, 4)."""
-        which = oscillators(contact)
+        which = oscillators(mode)
         cosine, sine = np.cos(phase)[:, None], np.sin(phase)[:, None]
         a, b = self.cosine[which], self.sine[which]
         states = np.empty((len(phase), 4))
         states[:, :2] = a * cosine + b * sine + self.offset[which]
         states[:, 2:] = self.eta * (b * cosine - a * sine)
+        states[:, 1] += self.apart(np.asarray(mode) == OUTER)
         return states
 
-    def common_motion(
-        self, time: Floats, phase: Floats, position: Floats, velocity: Floats
-    ) -> tuple[Floats, Floats]:
-        """Return displacement and velocity a time after contact begins, by (10) with i = 3."""
-        cosine, sine = self.basis(2, time)
-        damping, square = self.damping[2], self.stiffness[2]
-        x, v = self.common_response(phase)
-        free, rate = position - x, velocity - v
-        x, v = self.common_response(phase + self.eta * time)
-        x = x + (cosine + damping * sine) * free + sine * rate
-        return x, v - square * sine * free + (cosine - damping * sine) * rate
-
-    def common_response(self, phase: Floats) -> tuple[Floats, Floats]:
-        """Return displacement and velocity of the steady-state response in contact, at phases."""
-        cosine, sine = np.cos(phase), np.sin(phase)
-        a, b = self.cosine[2], self.sine[2]
-        x: Floats = a * cosine + b * sine + self.offset[2]
-        return x, self.eta * (b * cosine - a * sine)
+    def apart(self, outer: NDArray[np.bool_]) -> Floats:
+        """Return the gap at an end: the limit at the outer one."""
+        return np.where(outer, self.limit, 0.0)
 
     def centre(self) -> Floats:
         """Return the (4, 4) matrix that sets both masses of a state to their centre of mass."""
-        weights = np.array([[1.0, self.mu], [1.0, self.mu]]) / (1.0 + self.mu)
-        return np.asarray(np.kron(np.eye(2), weights), dtype=float)
+        return np.asarray(np.kron(np.eye(2), [self.shares] * 2), dtype=float)
 
-    def field(
-        self, state: Floats, phase: Floats, contact: NDArray[np.bool_] | bool = False
-    ) -> Floats:
+    def field(self, state: Floats, phase: Floats, mode: Modes = FREE) -> Floats:
         """Return d(state)/d(tau), the right-hand side of (6), for states (n, 4) at phases."""
-        which = oscillators(contact)
-        drive = np.sin(phase)[:, None] * self.drive[which] + self.push
+        which = oscillators(mode)
         rates = np.empty((len(phase), 4))
         rates[:, :2] = state[:, 2:]
-        rates[:, 2:] = drive - 2.0 * self.damping[which] * state[:, 2:]
+        rates[:, 2:] = np.sin(phase)[:, None] * self.drive[which] + self.push[which]
+        rates[:, 2:] -= 2.0 * self.damping[which] * state[:, 2:]
         rates[:, 2:] -= self.stiffness[which] * state[:, :2]
-        if self.gap_offset != 0.0:
-            rates[:, 2:] += self.load[which]
+        rates[:, 2:] += self.load[which]
+        outer = np.asarray(mode) == OUTER
+        if outer.any():
+            rates[:, 3] = np.where(outer, rates[:, 2], rates[:, 3])
         return rates
 
-    def gap_drive(self, phase: Floats) -> Floats:
-        """Return the difference of the masses' harmonic right-hand sides, by forces on them."""
-        return float(self.drive[1] - self.drive[0]) * np.sin(phase)
+    def gap_drive(self, phase: Floats, outer: Ends = False) -> Floats:
+        """Return the difference of the masses' harmonic right-hand sides, towards an end."""
+        return inwards(outer) * float(self.drive[1] - self.drive[0]) * np.sin(phase)
 
-    def force(self, phase: Floats, position: Floats, velocity: Floats) -> Floats:
-        """Return the contact force f (18) at phases, from position and velocity; < 0: pressed."""
-        force = self.force_rate(position, velocity) + self.gap_drive(phase)
-        return force if self.gap_offset == 0.0 else force + float(self.load[1])
+    def force(
+        self, phase: Floats, position: Floats, velocity: Floats, outer: Ends = False
+    ) -> Floats:
+        """Return the contact force f (18) at phases, from mass 1 at an end; < 0: pressed."""
+        constant = float(self.load[1] + (self.push[1] - self.push[0]))
+        at_end = constant - self.stiffness[1] * self.apart(outer)
+        rate = self.force_rate(position, velocity, outer)
+        return rate + self.gap_drive(phase, outer) + inwards(outer) * at_end
 
-    def force_rate(self, position: Floats, velocity: Floats) -> Floats:
+    def force_rate(self, position: Floats, velocity: Floats, outer: Ends = False) -> Floats:
         """Return what the derivatives of position and velocity add to the contact force's."""
-        return self.force_v * velocity + self.force_x * position
+        return inwards(outer) * (self.force_v * velocity + self.force_x * position)
+
+
+def inwards(outer: Ends) -> Floats:
+    """Return the sign of the gap's acceleration that parts the masses: -1 at the outer end."""
+    return np.where(outer, -1.0, 1.0)
+
+
+def two_and_both(one: float, two: float, share: float) -> Floats:
+    """Return what both masses have, and twice what they have as one, by mass 2's share."""
+    both = one + share * (two - one)
+    return np.array([one, two, both, both])

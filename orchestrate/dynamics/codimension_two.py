@@ -97,7 +97,9 @@ class CharacteristicPolynomial:
             raise NoConvergenceError("the orbit's matrix is singular for all multipliers")
         values = np.array(signs) * np.exp(np.array(logs) - largest)
         coefficients = np.fft.fft(values).real / (DEGREE + 1)
-        self.coefficients: Floats = coefficients / np.abs(coefficients).max()
+        size = float(np.abs(coefficients).max())
+        self.coefficients: Floats = coefficients / size
+        self.log_size = largest + np.log(size)
 
     def __call__(self, multiplier: complex) -> complex:
         """Return the characteristic polynomial's value at a (complex) multiplier."""
@@ -168,7 +170,10 @@ def points_between(
                 continue
             position = solve_between(value, 0.0, length, **TOLERANCE)
             root = stepper.root_after(position)
-            residual = abs(test_function_value(curve, root, kind))
+            polynomial = characteristic_polynomial(curve, root.unknowns)
+            # beside a wall all of D may vanish: its size counts as at the ends
+            shrunk = min(0.0, polynomial.log_size - max(end.log_size for end in known))
+            residual = abs(test_function_value(curve, root, kind, polynomial)) * np.exp(shrunk)
             is_point = residual < LOCATED and is_point_of_kind(curve, root, kind)
         except SOLVER_ERRORS:
             continue

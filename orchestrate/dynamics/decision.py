@@ -27,7 +27,6 @@ from ..fmu import STATE, EventInstance, Instance, begin, stroboscopic_samples
 from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, respond
-from .closed_form import has_closed_form
 from .clusters import SettlingRun, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting, acting
@@ -59,8 +58,6 @@ class MotionDecider:
     ) -> None:
         self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
         excitation = point.excitation
-        if not has_closed_form(point):
-            self.eventful = None  # states that repeat decide
         box = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
         self.system = Setting.fixed(point.structure, (*box, *acting(vars(excitation))))
         self.values = np.array([excitation.frequency])

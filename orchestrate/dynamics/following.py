@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,6 +27,8 @@ class FollowedResponse(NamedTuple):
 
 class ImpactsQuestion(StartedSeriesQuestion, ABC):
     """Base of questions along a parameter about the impacts of responses after a transient."""
+
+    takes_family: ClassVar[bool] = True
 
     def items(self) -> Sequence[FollowedResponse]:
         points = self.series.points

@@ -21,9 +21,9 @@ from ..model.arguments import Count, Positive, Transient, whole
 from ..response.labels import Variable, flags, make_dataset, variable
 from ..response.questions import Point, Values
 from ..response.signatures import as_given, question
-from ..response.threshold import exceeds_threshold
 from ..running.job import Table
 from ..running.options import Running
+from .closed_form import FREE, INNER, ClosedForm
 from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov_spectrum import (
     STATES,
@@ -77,18 +77,14 @@ def exponent_of(
 def exact_exponent_without_impacts(point: Point) -> Exponent | None:
     """Return the exact exponent of a response that never impacts; None if it may impact."""
     structure = point.structure
-    if exceeds_threshold(*point):
+    form = ClosedForm.from_structure(*point)
+    mode = INNER if structure.bonded else form.linear_mode
+    if mode < 0:
         return None
-    mu, kappa = structure.mu, structure.kappa
-    alike = structure.D1 == structure.D2 and kappa / mu == 1.0
-    if any(point.excitation.pushes) and not (structure.bonded or alike):
-        return None
-    if structure.gap_offset > 0.0:
-        each = decay_rate(structure.D1, 1.0), decay_rate(structure.D2, kappa / mu)
-        return Exponent(-min(each), 0.0)
-    if not (structure.bonded or alike or structure.gap_offset < 0.0):
-        return None
-    return Exponent(-decay_rate(structure.D3, (1.0 + kappa) / (1.0 + mu)), 0.0)
+    if structure.wall and mode != FREE:  # nothing moves
+        return Exponent(-math.inf, math.nan)
+    moving = range(2 - structure.wall) if mode == FREE else (2,)
+    return Exponent(-min(decay_rate(form.damping[i], form.stiffness[i]) for i in moving), 0.0)
 
 
 def decay_rate(damping: float, square: float) -> float:

@@ -112,13 +112,12 @@ def unstable_direction(orbit: PeriodicOrbit) -> Floats:
     values, vectors = np.linalg.eig(orbit.monodromy())
     node = vectors[:, np.argmax(np.abs(values))].real
     form, phase = orbit.form, orbit.nodes[:1, PHASE]
-    contact = bool(orbit.contact[-1])
-    arrival = np.linalg.solve(orbit.reduction, np.append(0.0, node[1:]))
-    rate = form.field(orbit.arrivals[-1:], orbit.ends[-1:], contact)[0]
+    mode = orbit.modes[-1:]
+    arrival = np.linalg.solve(orbit.reductions[-1], np.append(0.0, node[1:]))
+    rate = form.field(orbit.arrivals[-1:], orbit.ends[-1:], mode)[0]
     deviation = arrival - rate * node[PHASE] / form.eta
-    flow = form.contact if contact else form.flight
-    vector = flow(-phase / form.eta)[0] @ deviation
-    if contact:
+    vector = form.flow(-phase / form.eta, mode)[0] @ deviation
+    if orbit.contact[-1]:
         vector = form.centre() @ vector
     vector = fix_sign(vector / np.linalg.norm(vector))
     gap = vector[1] - vector[0]
@@ -361,7 +360,7 @@ def manifold(
     >>> float(curve.multiplier.round(4)), curve.sizes["side"]
     (-3.3595, 2)
     """
-    require_delaminated(structure)
+    require_delaminated(structure, "manifold")
     arguments = excitation_arguments(eta, frequency, amplitude)
     if start is not None:
         require_orbit_dataset(start, several=False)

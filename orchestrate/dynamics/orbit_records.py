@@ -24,7 +24,7 @@ from ..running.job import Table
 from .closed_form import Floats
 from .families import Family, Setting
 from .orbit_search import check_orbit_in_fmu
-from .periodic_orbit import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
+from .periodic_orbit import CLOSING, ENDS, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .turning_points import (
     Amplitudes,
     nearest_miss,
@@ -34,7 +34,8 @@ from .turning_points import (
 )
 
 STABILITY = {0: "unstable", 1: "stable", UNDECIDED: "undecided"}
-KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
+INSIDE = {0: "impact", 1: "impact_into_contact", 2: "release"}
+KINDS = {-1: "none", **INSIDE, **{ENDS + kind: f"{name}_outside" for kind, name in INSIDE.items()}}
 NO_YES = {0: "no", 1: "yes"}
 PARTS = np.array(["real", "imaginary"])
 TURNS_AWAY = "smallest gap at which the masses turn away from each other without an impact"
@@ -165,7 +166,7 @@ def orbit_variables(setting: Setting, table: Table, row: str) -> dict[str, Varia
     points = [setting.point(values) for values in table["values"]]
     frequency = np.array([point.excitation.frequency for point in points])
     omega = np.array([point.structure.omega for point in points])
-    closed = np.array([setting.form(values).rests_in_contact for values in table["values"]])
+    closed = np.array([setting.form(values).rest_mode > 0 for values in table["values"]])
     nodes, kinds = table["nodes"], table["kinds"]
     columns = {
         **state_columns(table["zero"], points),
@@ -235,12 +236,13 @@ def impact_columns(
 ) -> dict[str, NDArray[Any]]:
     """Return the orbits' impacts: times, speeds, rate; NaN for releases."""
     nodes, kinds, speed = table["nodes"], table["kinds"], np.array([[p.speed] for p in points])
-    there = (kinds >= 0) & (kinds != RELEASE)
+    released = (kinds >= 0) & (kinds % ENDS == RELEASE)
+    there = (kinds >= 0) & ~released
     return {
         "impact_time": np.where(there, nodes[:, :, PHASE] / frequency[:, None], np.nan),
         "impact_velocity": np.where(there, nodes[:, :, CLOSING] * speed, np.nan),
         "impacts_per_period": there.sum(axis=1) / table["zero"].shape[1],
-        "permanent_contact": (kinds == RELEASE).any(axis=1) | (closed & (kinds < 0).all(axis=1)),
+        "permanent_contact": released.any(axis=1) | (closed & (kinds < 0).all(axis=1)),
     }
 
 

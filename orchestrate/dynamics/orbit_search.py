@@ -10,10 +10,19 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..fmu import EventInstance, Impacts, begin
 from ..response.questions import Point
-from .closed_form import ClosedForm, Floats
+from .closed_form import INNER, OUTER, ClosedForm, Floats
 from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, Setting
-from .periodic_orbit import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
+from .periodic_orbit import (
+    CLOSING,
+    ENDS,
+    IMPACT,
+    PHASE,
+    RELEASE,
+    STICK,
+    ImpactSequence,
+    PeriodicOrbit,
+)
 from .turning_points import (
     nearest_miss,
     rotate_to_phase_zero,
@@ -37,33 +46,38 @@ def guess_from_state(
 
 def guess_from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
     """Return an orbit guess (sequence, nodes) from recorded impacts; add the releases between."""
-    state, mu = point.faces(impacts.state), form.mu
+    state = point.faces(impacts.state)
     phase = point.excitation.frequency * impacts.time
-    velocity = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
+    velocity = state[:, 2:] @ form.shares
+    ends = ENDS * (2.0 * (state[:, 1] - state[:, 0]) > form.limit)
     nodes = np.stack([phase, state[:, 0], velocity, impacts.closing / point.speed], axis=1)
     following = np.append(phase[1:], phase[:1] + TURN * periods)
     kinds: list[int] = []
     rows: list[Floats] = []
-    for node, sticks, until in zip(nodes, impacts.sticks, following, strict=True):
-        released = release_node(form, node, float(until)) if sticks else None
-        kinds.append(IMPACT if released is None else STICK)
+    for node, end, sticks, until in zip(nodes, ends, impacts.sticks, following, strict=True):
+        released = release_node(form, node, float(until), end > 0) if sticks else None
+        kinds.append(int(end) + (IMPACT if released is None else STICK))
         rows.append(node)
         if released is not None:
-            kinds.append(RELEASE)
+            kinds.append(int(end) + RELEASE)
             rows.append(released)
     ordered, first = rotate_to_phase_zero(np.array(rows).reshape(-1, 4), periods)
     return ImpactSequence(periods, tuple(kinds[first:] + kinds[:first])), ordered
 
 
-def release_node(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
+def release_node(form: ClosedForm, stick: Floats, until: float, outer: bool) -> Floats | None:
     """Return the node of the release (19) after a sticking impact; None if not before ``until``."""
     phase, position, velocity = stick[PHASE:CLOSING, None]
     span = (until - phase) / form.eta
-    duration = contact_durations(form, phase, position, velocity, span)
+    end = np.array([outer])
+    start = np.column_stack([position, position + form.apart(end), velocity, velocity])
+    duration = contact_durations(form, phase, start, span)
     if not np.isfinite(duration).all():
         return None
-    motion = form.common_motion(duration, phase, position, velocity)
-    return np.concatenate([phase + form.eta * duration, *motion, np.zeros(1)])
+    mode, released = np.where(end, OUTER, INNER), phase + form.eta * duration
+    free = start - form.steady(phase, mode)
+    state = form.flow(duration, mode)[0] @ free[0] + form.steady(released, mode)[0]
+    return np.array([float(released[0]), state[0], state[2], 0.0])
 
 
 def guess_from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats) -> Guess:
@@ -158,7 +172,7 @@ def check_orbit_in_fmu(
     away = float(np.abs(after - state).max())
     nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
     kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
-    wanted, kinds = nodes[kinds != RELEASE], kinds[kinds != RELEASE]
+    wanted, kinds = nodes[kinds % ENDS != RELEASE], kinds[kinds % ENDS != RELEASE]
     phases, sticks = point.excitation.frequency * observed.time, observed.sticks
     if len(phases) != len(wanted):
         here, there = not_grazing(observed.closing), not_grazing(wanted[:, CLOSING])
@@ -167,7 +181,7 @@ def check_orbit_in_fmu(
     if len(phases) != len(wanted):
         return False, away
     near = np.abs(phases - wanted[:, PHASE]).max(initial=0.0) < 1e-6  # rad
-    return bool(near and (sticks == (kinds == STICK)).all()), away
+    return bool(near and (sticks == (kinds % ENDS == STICK)).all()), away
 
 
 def not_grazing(closing: Floats) -> NDArray[np.bool_]:
@@ -201,7 +215,8 @@ def first_possible_orbit(
 
 
 def single_impact_guesses(form: ClosedForm, periods: int) -> Iterator[Guess]:
-    """Yield orbit guesses with a single impact, at phases spaced around the circle."""
-    sequence = ImpactSequence(periods, (IMPACT,))
-    for phase in np.arange(24) * TURN / 24:
-        yield guess_from_phases(form, sequence, np.array([phase]))
+    """Yield orbit guesses with a single impact at an end, at phases spaced around the circle."""
+    for kind in (IMPACT, IMPACT + ENDS)[: 1 + (form.limit < np.inf)]:
+        sequence = ImpactSequence(periods, (kind,))
+        for phase in np.arange(24) * TURN / 24:
+            yield guess_from_phases(form, sequence, np.array([phase]))

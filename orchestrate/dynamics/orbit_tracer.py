@@ -16,6 +16,7 @@ from .families import Family
 from .orbit_search import least_periods, solve_orbit
 from .periodic_orbit import (
     CLOSING,
+    ENDS,
     IMPACT,
     POSITION,
     RELEASE,
@@ -74,7 +75,7 @@ class OrbitPoint:
         """Return each impact's margin in the sticking condition (17): negative where it sticks."""
         orbit, form = self.orbit, self.orbit.form
         nodes = orbit.nodes
-        force = form.force(*nodes[:, :CLOSING].T)
+        force = form.force(*nodes[:, :CLOSING].T, orbit.sequence.outer)
         margins = 2.0 * form.parting(nodes[:, CLOSING]) + form.sticking_time * force
         return np.where(force < 0.0, margins, np.inf)
 
@@ -236,14 +237,15 @@ def change_one_impact(point: OrbitPoint) -> OrbitPoint:
     if point.contact_margin(Kind.CONTACT_BEGUN) < point.contact_margin(Kind.CONTACT_LOST):
         impacts = ~(orbit.contact | orbit.sequence.releases)
         sticking = int(np.where(impacts, margins, np.inf).argmin())
-        releases = [i for i in range(sticking + 1, len(kinds)) if kinds[i] == RELEASE]
+        releases = [i for i in range(sticking + 1, len(kinds)) if kinds[i] % ENDS == RELEASE]
         if not releases:
             raise NoConvergenceError("an impact sticks that is not of a chattering")
         kept = [*range(sticking + 1), *range(releases[0], len(kinds))]
-        kinds, nodes = [STICK if i == sticking else kinds[i] for i in kept], nodes[kept]
+        kinds[sticking] += STICK - IMPACT
+        kinds, nodes = [kinds[i] for i in kept], nodes[kept]
     else:
         last = int(np.where(orbit.contact, margins, -np.inf).argmax())
-        kinds = [*kinds[:last], IMPACT, STICK, *kinds[last + 1 :]]
+        kinds = [*kinds[:last], kinds[last] + IMPACT - STICK, *kinds[last:]]
         nodes = np.insert(nodes, last + 1, estimated_next_impact(orbit, last), axis=0)
     sequence = ImpactSequence(orbit.sequence.periods, tuple(kinds))
     guess, setting = (sequence, nodes), point.family.setting
@@ -260,7 +262,8 @@ def estimated_next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
     """Return the node of the impact after a short flight, estimated as a parabola."""
     phase, position, velocity, closing = orbit.nodes[node]
     parting = orbit.form.parting(closing)
-    time = 2.0 * parting / -float(orbit.form.force(phase, position, velocity))
+    outer = bool(orbit.sequence.outer[node])
+    time = 2.0 * parting / -float(orbit.form.force(phase, position, velocity, outer))
     if not 0.0 < time < orbit.durations[node]:
         raise NoConvergenceError("no time is left for another impact")
     return np.array([phase + orbit.form.eta * time, position + velocity * time, velocity, parting])

@@ -2,7 +2,8 @@
 
 An orbit is a closed sequence of nodes: impacts, impacts that end in permanent contact, and
 releases. Each node has four unknowns: the excitation's phase, and displacement, velocity and
-closing speed of both masses there, the velocity being that of their centre of mass. From node to
+closing speed of both masses there, the displacement being that of mass 1 and the velocity that of
+their centre of mass; it is at one end of the gap, or at the outer one of a stroke. From node to
 node the motion is the closed form (10), so the orbit is a root of 4k equations in 4k unknowns which
 are analytic, also where a closing speed goes through zero: a map whose unknowns are states has a
 square root there (compare Ghosh and Simpson, arXiv 2510.16218). Negative closing speeds are roots,
@@ -19,9 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
-from .closed_form import ClosedForm, Floats
+from .closed_form import FREE, INNER, OUTER, ClosedForm, Floats, inwards
 
-IMPACT, STICK, RELEASE = 0, 1, 2  # kinds of nodes; after STICK follows permanent contact
+IMPACT, STICK, RELEASE = range(3)  # kinds of nodes; after STICK follows permanent contact
+ENDS = 3  # kinds: what is added to those of nodes at the outer end
 PHASE, POSITION, VELOCITY, CLOSING = range(4)  # unknowns of a node
 ON_CIRCLE = 1e-7  # of a multiplier's size: nearer to the unit circle no orbit is called stable
 
@@ -36,17 +38,22 @@ class ImpactSequence:
     @cached_property
     def sticks(self) -> NDArray[np.bool_]:
         """Return, for each node, whether permanent contact follows it."""
-        return np.array(self.kinds, dtype=int) == STICK
+        return np.array(self.kinds, dtype=int) % ENDS == STICK
 
     @cached_property
     def releases(self) -> NDArray[np.bool_]:
         """Return, for each node, whether it is a release from permanent contact."""
-        return np.array(self.kinds, dtype=int) == RELEASE
+        return np.array(self.kinds, dtype=int) % ENDS == RELEASE
+
+    @cached_property
+    def outer(self) -> NDArray[np.bool_]:
+        """Return, for each node, whether it is at the outer end of a stroke."""
+        return np.array(self.kinds, dtype=int) >= ENDS
 
     @property
     def impacts(self) -> int:
         """Return the number of impacts, releases not counted."""
-        return len(self.kinds) - self.kinds.count(RELEASE)
+        return len(self.kinds) - int(self.releases.sum())
 
     def doubled(self) -> ImpactSequence:
         """Return the sequence repeated twice, over twice the periods."""
@@ -56,9 +63,10 @@ class ImpactSequence:
         """Return the sequence without the node of this index."""
         return ImpactSequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
 
-    def with_impact(self, before: int) -> ImpactSequence:
+    def with_impact(self, before: int, outer: bool = False) -> ImpactSequence:
         """Return the sequence with an impact inserted before the node of this index."""
-        return ImpactSequence(self.periods, (*self.kinds[:before], IMPACT, *self.kinds[before:]))
+        kind = IMPACT + ENDS * outer
+        return ImpactSequence(self.periods, (*self.kinds[:before], kind, *self.kinds[before:]))
 
 
 def of_next(rows: NDArray[Any]) -> NDArray[Any]:
@@ -72,7 +80,7 @@ class PeriodicOrbit:
 
     sequence: ImpactSequence
     form: ClosedForm
-    nodes: Floats  # phase in rad, displacement, velocity of the centre of mass, closing speed
+    nodes: Floats  # phase in rad, displacement of mass 1, velocity of the centre, closing speed
 
     @property
     def count(self) -> int:
@@ -97,95 +105,107 @@ class PeriodicOrbit:
         return (self.ends - self.begins) / self.form.eta
 
     @cached_property
+    def modes(self) -> NDArray[np.int_]:
+        """Return the mode of each segment: in flight, or in permanent contact at either end."""
+        if not self.count:
+            return np.array([self.form.rest_mode])
+        held = np.where(self.sequence.outer, OUTER, INNER)
+        return np.where(self.sequence.sticks, held, FREE)
+
+    @cached_property
     def contact(self) -> NDArray[np.bool_]:
         """Return, for each segment, whether it is permanent contact."""
-        return self.sequence.sticks if self.count else np.array([self.form.rests_in_contact])
+        return self.modes != FREE
 
     @cached_property
     def starts(self) -> Floats:
         """Return the states at the begin of segments, just after impacts (15), shape (k, 4)."""
         if not self.count:
-            return self.form.steady(np.zeros(1), self.contact)
-        _, position, velocity, closing = self.nodes.T
+            return self.form.steady(np.zeros(1), self.modes)
+        (_, position, velocity, closing), outer = self.nodes.T, self.sequence.outer
         parting = np.where(self.contact | self.sequence.releases, 0.0, self.form.parting(closing))
-        part = parting / (1.0 + self.form.mu)
-        return np.stack(
-            [position, position, velocity - self.form.mu * part, velocity + part], axis=1
-        )
+        one, two = self.blow * parting
+        far = position + self.form.apart(outer)
+        return np.stack([position, far, velocity + one, velocity + two], axis=1)
+
+    @cached_property
+    def blow(self) -> Floats:
+        """Return what both velocities gain by a separation speed, at each node, shape (2, k)."""
+        one, two = self.form.shares
+        return inwards(self.sequence.outer) * np.array([[-two], [one]])
 
     @cached_property
     def flows(self) -> Floats:
         """Return the flow matrix of each segment from begin to end, shape (k, 4, 4)."""
-        matrices = self.form.flight(self.durations)
-        if self.contact.any():
-            matrices[self.contact] = self.form.contact(self.durations[self.contact])
-        return matrices
+        return self.form.flow(self.durations, self.modes)
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
         """Return the states at phases inside given segments, by the closed form, shape (n, 4)."""
-        contact = self.contact[segment]
-        time = (phase - self.begins[segment]) / self.form.eta
-        free = (self.starts - self.form.steady(self.begins, self.contact))[segment]
-        flow = self.form.flight(time)
-        if contact.any():
-            flow[contact] = self.form.contact(time[contact])
-        moved: Floats = (flow @ free[:, :, None])[:, :, 0] + self.form.steady(phase, contact)
-        return moved
+        modes, begins = self.modes[segment], self.begins[segment]
+        flow = self.form.flow((phase - begins) / self.form.eta, modes)
+        return self.moved(flow, segment, phase)
 
     @cached_property
     def arrivals(self) -> Floats:
         """Return the states at the end of segments, just before the next node, shape (k, 4)."""
-        free = self.starts - self.form.steady(self.begins, self.contact)
-        moved: Floats = (self.flows @ free[:, :, None])[:, :, 0]
-        return moved + self.form.steady(self.ends, self.contact)
+        return self.moved(self.flows, np.arange(len(self.modes)), self.ends)
+
+    def moved(self, flow: Floats, segment: NDArray[np.int_], phase: Floats) -> Floats:
+        """Return the states at phases inside given segments, by the flow until there."""
+        free = (self.starts - self.form.steady(self.begins, self.modes))[segment]
+        moved: Floats = (flow @ free[:, :, None])[:, :, 0]
+        return moved + self.form.steady(phase, self.modes[segment])
 
     @cached_property
-    def reduction(self) -> Floats:
-        """Return the matrix from a state to gap, centre of mass (x, v) and closing speed."""
-        share = self.form.mu / (1.0 + self.form.mu)
-        return np.array(
-            [
-                [-1.0, 1.0, 0.0, 0.0],
-                [1.0 - share, share, 0.0, 0.0],
-                [0.0, 0.0, 1.0 - share, share],
-                [0.0, 0.0, 1.0, -1.0],
-            ]
-        )
+    def reductions(self) -> Floats:
+        """Return matrices from states before nodes to gap, centre (x, v) and closing speed."""
+        sign = inwards(of_next(self.sequence.outer))[:, None]
+        matrices = np.zeros((self.count, 4, 4))
+        matrices[:, 0, :2] = [-1.0, 1.0]
+        matrices[:, [1, 2], [0, 2]] = self.form.shares[0]
+        matrices[:, [1, 2], [1, 3]] = self.form.shares[1]
+        matrices[:, 3, 2:] = sign * [1.0, -1.0]
+        return matrices
 
     def residual(self) -> Floats:
         """Return the residual of the orbit's equations at its nodes, shape (4 k,)."""
         if not self.count:
             return np.zeros(0)
-        after = of_next(self.nodes)
-        residual = self.arrivals @ self.reduction.T
+        after, outer = of_next(self.nodes), of_next(self.sequence.outer)
+        residual = (self.reductions @ self.arrivals[:, :, None])[:, :, 0]
+        apart = self.form.apart(outer)
+        residual[:, 0] -= apart
+        residual[:, 1] -= self.form.shares[1] * apart
         residual[:, 1:] -= after[:, 1:]
         released = of_next(self.sequence.releases)
         if released.any():
-            residual[released, 0] = self.form.force(*after[released, :CLOSING].T)
+            state = after[released, :CLOSING].T
+            residual[released, 0] = self.form.force(*state, outer[released])
             residual[released, 3] = after[released, CLOSING]
         return residual.ravel()
 
     def segment_jacobians(self) -> tuple[Floats, Floats]:
         """Return each segment's residual derivatives by the nodes before and after it."""
         form, sequence = self.form, self.sequence
-        share = form.mu / (1.0 + form.mu)
-        begun = form.field(self.starts, self.begins, self.contact)
+        begun = form.field(self.starts, self.begins, self.modes)
         shift = np.zeros((self.count, 4, 4))  # of the start, by the node's unknowns
         shift[:, :, PHASE] = -begun / form.eta
         shift[:, :2, POSITION] = 1.0
         shift[:, 2:, VELOCITY] = 1.0
         parting = ~(self.contact | sequence.releases)
         rates = form.parting_rate(self.nodes[parting, CLOSING])
-        shift[parting, 2:, CLOSING] = rates[:, None] * np.array([-share, 1.0 - share])
-        before = self.reduction @ self.flows @ shift
+        shift[parting, 2:, CLOSING] = (rates * self.blow[:, parting]).T
+        before = self.reductions @ self.flows @ shift
         after = np.zeros((self.count, 4, 4))
-        rates = form.field(self.arrivals, self.ends, self.contact)
-        after[:, :, PHASE] = rates @ self.reduction.T / form.eta
+        rates = form.field(self.arrivals, self.ends, self.modes)
+        after[:, :, PHASE] = (self.reductions @ rates[:, :, None])[:, :, 0] / form.eta
         after[:, [1, 2, 3], [1, 2, 3]] = -1.0
         released = of_next(sequence.releases)
+        outer = of_next(sequence.outer)[released]
         before[released] *= np.array([0.0, 1.0, 1.0, 0.0])[:, None]
-        after[released, 0] = [0.0, form.force_x, form.force_v, 0.0]
-        after[released, 0, PHASE] = form.gap_drive(self.ends[released] + 0.5 * np.pi)
+        after[released, 0] = np.outer(inwards(outer), [0.0, form.force_x, form.force_v, 0.0])
+        quarter = self.ends[released] + 0.5 * np.pi
+        after[released, 0, PHASE] = form.gap_drive(quarter, outer)
         after[released, 3] = [0.0, 0.0, 0.0, 1.0]
         return before, after
 
@@ -228,7 +248,7 @@ class PeriodicOrbit:
         """Return the multipliers' product by Liouville's formula, as an independent check."""
         lost = float(self.form.damping[0] + self.form.damping[1])
         time = TURN * self.sequence.periods / self.form.eta
-        if self.contact.any():
+        if self.contact.any() or self.form.wall:
             return 0.0
         slower = np.prod((1.0 + self.form.e_slope * self.nodes[:, CLOSING]) ** -3)
         return float(self.form.e ** (2 * self.count) * slower * np.exp(-2.0 * lost * time))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
-from .closed_form import Floats
+from .closed_form import OUTER, Floats
 from .periodic_orbit import PHASE, PeriodicOrbit
 
 XI_1, XI_2, GAP = range(3)  # quantities that turn, as weights of the two masses
@@ -80,7 +80,7 @@ def quantity_derivatives(
 ) -> tuple[Floats, Floats, Floats]:
     """Return first and second tau derivatives, and values, of displacements or the gap."""
     state = orbit.states(segment, phase)
-    field = orbit.form.field(state, phase, orbit.contact[segment])
+    field = orbit.form.field(state, phase, orbit.modes[segment])
     weights = WEIGHTS[quantity]
     rate, curvature = (weights * field[:, :2]).sum(axis=1), (weights * field[:, 2:]).sum(axis=1)
     return rate, curvature, (weights * state[:, :2]).sum(axis=1)
@@ -104,16 +104,23 @@ class Amplitudes:
             np.abs(turns.value[turns.quantity == which] - places[which]) for which in range(3)
         ]
         largest = [max(values, default=0.0) for values in inside]
-        return cls(max(ends[0], largest[0]), max(ends[1], largest[1]), float(largest[GAP]))
+        reaches = orbit.sequence.outer.any() or (orbit.modes == OUTER).any()
+        gap = orbit.form.limit if reaches else float(largest[GAP])
+        return cls(max(ends[0], largest[0]), max(ends[1], largest[1]), gap)
 
 
 def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
-    """Return the smallest gap minimum of all flights (infinite: none), its segment and phase."""
-    which = np.flatnonzero((turns.quantity == GAP) & (turns.curvature > 0.0))
-    if not len(which):
+    """Return how near the masses come to an end of the gap in all flights without striking it.
+
+    Infinite: they turn nowhere. The second number is the segment, the third the phase.
+    """
+    inner = np.where(turns.curvature > 0.0, turns.value, np.inf)
+    room = np.where(turns.curvature < 0.0, orbit.form.limit - turns.value, inner)
+    room[turns.quantity != GAP] = np.inf
+    nearest = int(room.argmin()) if len(room) else -1
+    if nearest < 0 or room[nearest] == np.inf:
         return np.inf, -1, 0.0
-    lowest = which[turns.value[which].argmin()]
-    return float(turns.value[lowest]), int(turns.segment[lowest]), float(turns.phase[lowest])
+    return float(room[nearest]), int(turns.segment[nearest]), float(turns.phase[nearest])
 
 
 def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
@@ -142,15 +149,16 @@ def pressing_force(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return the contact pressure -f (18) and its first two tau derivatives, at phases."""
-    form, state = orbit.form, orbit.states(segment, phase)
+    form, state, modes = orbit.form, orbit.states(segment, phase), orbit.modes[segment]
+    outer = modes == OUTER
     position, velocity = state[:, 0], state[:, 2]
-    acceleration = form.field(state, phase, True)[:, 2]
+    acceleration = form.field(state, phase, modes)[:, 2]
     jerk = form.drive[2] * form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
     jerk -= form.stiffness[2] * velocity
-    first, second = form.force_rate(velocity, acceleration), form.force_rate(acceleration, jerk)
-    first = first + form.eta * form.gap_drive(phase + 0.5 * np.pi)
-    second = second - form.eta**2 * form.gap_drive(phase)
-    return -form.force(phase, position, velocity), -first, -second
+    first = form.force_rate(velocity, acceleration, outer)
+    first = first + form.eta * form.gap_drive(phase + 0.5 * np.pi, outer)
+    second = form.force_rate(acceleration, jerk, outer) - form.eta**2 * form.gap_drive(phase, outer)
+    return -form.force(phase, position, velocity, outer), -first, -second
 
 
 def stroboscopic_states(orbit: PeriodicOrbit, phase: float = 0.0) -> Floats:

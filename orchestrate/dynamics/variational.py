@@ -13,12 +13,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import InputError
 from ..fmu import Impacts
 from ..fmu.c_library import loaded_loop
 from ..fmu.oscillator import DEVIATING
 from ..response.questions import Point
-from .closed_form import ClosedForm, Floats, has_closed_form
+from .closed_form import ClosedForm, Floats
 
 
 @functools.cache
@@ -49,8 +48,6 @@ class Call(NamedTuple):
 def call_of(impacts: Impacts, end: float, point: Point) -> Call:
     """Return a call about non-dimensional impacts up to an end in tau."""
     structure, excitation = point
-    if not has_closed_form(point):
-        raise InputError("wall, stroke: exponents and releases do not know them; expected none")
     values = [float(getattr(structure, name)) for name in DEVIATING]
     box = excitation.amplitude, excitation.frequency
     numbers = np.array([*values, *box, *excitation.pushes])
@@ -78,17 +75,18 @@ def deviations(impacts: Impacts, end: float, point: Point) -> tuple[Floats, Floa
     return call.memory[first:last].reshape(count, 4, 4), call.memory[last : last + count]
 
 
-def contact_durations(
-    form: ClosedForm, phase: Floats, position: Floats, velocity: Floats, spans: Floats
-) -> Floats:
+def contact_durations(form: ClosedForm, phase: Floats, states: Floats, spans: Floats) -> Floats:
     """Return how long permanent contacts last, in tau; infinite if not released in the span."""
-    mu, eta = form.mu, form.eta
-    dampers = 2.0 * form.damping[0], 2.0 * form.damping[1] * mu
+    mu = 1.0 if form.wall else float(form.shares[1] / form.shares[0])
+    dampers, eta = (2.0 * form.damping[0], 2.0 * form.damping[1] * mu), form.eta
     half = 1.0, mu, 1.0, mu * form.stiffness[1], *dampers, form.e, 1.0, 0.0
-    forces = (form.drive[:2] - 1.0) * [1.0, mu]  # beside a shaken box
-    numbers = np.array([*half, form.gap_offset, 0.0, eta**-2.0, eta, -form.push, *forces])
+    stroke = form.limit if form.limit < np.inf else 0.0
+    gaps = float(form.wall), form.gap_offset, stroke
+    forces = (form.drive[:2] - 1.0) * [1.0, 0.0 if form.wall else mu]  # beside a shaken box
+    numbers = np.array([*half, *gaps, 0.0, eta**-2.0, eta, -form.push[0], *forces])
     durations, memory = np.empty(len(spans)), np.empty(library().exponent_size(1))
-    columns = phase / eta, position, position, velocity, velocity, 0.0 * phase, 1.0 + 0.0 * phase
+    from_unloaded = states - [0.0, form.gap_offset, 0.0, 0.0]
+    columns = phase / eta, from_unloaded, 0.0 * phase, 1.0 + 0.0 * phase
     for i, row in enumerate(np.column_stack(columns)):
         given = numbers.ctypes.data, row.ctypes.data, 1, row[0] + 1.5 * spans[i]
         durations[i] = memory[library().find_deviations(*given, memory.ctypes.data) + 16]

@@ -29,21 +29,16 @@ READ = (
     *("impact_count", "contact_count", "in_contact"),
 )
 PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max")
-TRAITS = (
-    "m1",
-    "m2",
-    "k1",
-    "k2",
-    "d1",
-    "d2",
-    "clearance",
-    "bonded",
-    "wall",
-    "stroke",
-)  # of a structure
+TRAITS = (  # of a structure
+    *("m1", "m2", "k1", "k2", "d1", "d2"),
+    *("clearance", "bonded", "wall", "stroke"),
+)
 FOUND = ("gap_offset", "rest_1", "rest_2", "threshold", "must_impact")  # what follows from them
 TRAIT_NAMES = (*TRAITS, "omega", "frequency", "amplitude", "pushed", *FOUND)
-DEVIATING = (*TRAITS[:6], "e", "gamma", "bonded", "clearance", "e_slope")  # of deviations' growth
+DEVIATING = (  # of deviations' growth
+    *(*TRAITS[:6], "e", "gamma", "bonded"),
+    *("wall", "clearance", "stroke", "e_slope"),
+)
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
 COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
 SET = {  # before each start, with first values

@@ -85,7 +85,9 @@ class Point(NamedTuple):
     def from_faces(self, faces: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return SI states from states in the paper's units with faces, as :meth:`faces` gives."""
         states: NDArray[np.float64] = faces * self.scale
-        if self.structure.gap_offset != 0.0:
+        if self.structure.wall:
+            states[..., 1::2] = 0.0  # but for rounding
+        elif self.structure.gap_offset != 0.0:
             states[..., 1] -= self.structure.gap_offset
         return states
 

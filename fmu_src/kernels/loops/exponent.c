@@ -4,8 +4,8 @@
 
 #define LN2 0.6931471805599453
 
-enum { NUMBERS = 16, MOST_ROWS = 6 };
-static const int places[NUMBERS] = {M1, M2, K1, K2, D1, D2, E, GAMMA, BONDED, CLEARANCE, E_SLOPE, BOX_AMPLITUDE, BOX_AMPLITUDE + 1, BOX_ACCELERATION,
+enum { NUMBERS = 18, MOST_ROWS = 6 };
+static const int places[NUMBERS] = {M1, M2, K1, K2, D1, D2, E, GAMMA, BONDED, WALL, CLEARANCE, STROKE, E_SLOPE, BOX_AMPLITUDE, BOX_AMPLITUDE + 1, BOX_ACCELERATION,
                                      FORCE1_AMPLITUDE, FORCE1_AMPLITUDE + 1};
 
 /* Numbers of the memory for so many impacts. */

@@ -5,7 +5,7 @@ import pytest
 
 import orchestrate
 from orchestrate import Structure
-from orchestrate.dynamics.closed_form import ClosedForm
+from orchestrate.dynamics.closed_form import FREE, INNER, OUTER, ClosedForm
 from orchestrate.model import Excitation
 from orchestrate.response.questions import Point
 
@@ -45,23 +45,26 @@ def test_multipliers_are_those_of_the_fmu_s_own_map(clearance):
 
 
 @pytest.mark.parametrize("clearance", [0.4, -0.4])
-def test_the_closed_form_solves_its_own_equation(clearance):
-    """Steady motions in flight and in contact have the derivative that the field says; the contact
-    force is the gap's acceleration of free masses.
+@pytest.mark.parametrize("wall", [False, True])
+def test_the_closed_form_solves_its_own_equation(clearance, wall):
+    """Steady motions in flight and in contact at both ends have the derivative that the field says;
+    the contact force is the gap's acceleration of free masses, towards the end.
     """
-    structure = DAMPED.replace(clearance=clearance, m2=1.7)
-    box = Excitation(**BOX, force1=0.3, force2=0.5)
+    structure = DAMPED.replace(clearance=clearance, m2=1.7, stroke=0.7).replace(wall=wall)
+    force2 = 0.0 if wall else 0.5
+    box = Excitation(**BOX, force1=0.3, force2=force2, box_acceleration=0.2)
     form = ClosedForm.from_structure(structure, box)
     phase, step = np.linspace(0.1, 6.0, 7), 1e-5
-    for contact in (False, True):
-        ends = [form.steady(phase + sign * step * form.eta, contact) for sign in (1, -1)]
+    for mode in (FREE, INNER, OUTER):
+        ends = [form.steady(phase + sign * step * form.eta, mode) for sign in (1, -1)]
         rate = (ends[0] - ends[1]) / (2.0 * step)
-        assert rate == pytest.approx(form.field(form.steady(phase, contact), phase, contact))
-    together = form.steady(phase, True)
-    assert (together[:, 0] == together[:, 1]).all()
-    free = form.field(together, phase, False)
-    force = form.force(phase, together[:, 0], together[:, 2])
-    assert force == pytest.approx(free[:, 3] - free[:, 2])
+        assert rate == pytest.approx(form.field(form.steady(phase, mode), phase, mode), abs=1e-8)
+    for mode, gap, sign in ((INNER, 0.0, 1.0), (OUTER, form.limit, -1.0)):
+        together = form.steady(phase, mode)
+        assert together[:, 1] - together[:, 0] == pytest.approx(gap, abs=1e-15)
+        free = form.field(together, phase)
+        force = form.force(phase, together[:, 0], together[:, 2], mode == OUTER)
+        assert force == pytest.approx(sign * (free[:, 3] - free[:, 2]))
 
 
 @pytest.mark.parametrize("clearance", [0.0, 0.4, -0.4])

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+import orchestrate
 from orchestrate.dynamics.following import follow_impacts
 from orchestrate.dynamics.lyapunov import (
     CHAOTIC,
@@ -144,9 +145,43 @@ def test_a_sweep_s_responses_are_followed_on():
 
 
 @pytest.mark.usefixtures("exported")
-def test_pressed_by_gravity_a_gap_has_no_exponent_of_free_masses():
-    pressed = {"eta": 2.0, "box_acceleration": -30.0, "progress": False}
-    with pytest.raises(InputError, match="0 impacts"):
-        lyapunov(make(clearance=0.2, D1=0.05, D2=0.02), **pressed, periods=50, transient=20)
-    alike = lyapunov(make(kappa=1.0, D=0.03), **pressed, periods=50, transient=20)
-    assert float(alike.exponent[0]) == pytest.approx(-0.03)
+@pytest.mark.parametrize(
+    ("more", "pushes", "damping"),
+    [
+        ({"clearance": 0.2}, {"box_acceleration": -30.0}, 0.035),  # together, by gravity
+        ({"clearance": 0.2}, {"box_acceleration": 0.1, "force1": 0.1}, 0.02),
+        ({"clearance": 0.2, "stroke": 0.5}, {"force2": 0.1}, 0.02),
+        ({"clearance": 0.2, "stroke": 0.25}, {"force1": -5.0}, None),
+        ({"clearance": -0.3}, {"force1": 0.1}, 0.035),
+        ({"clearance": 1.0, "wall": True}, {"force1": 0.1}, 0.05),
+        ({"clearance": -1.0, "wall": True}, {"force1": 0.1}, np.inf),
+        ({"clearance": 1.0, "wall": True, "stroke": 1.001}, {"force1": 0.1}, None),
+    ],
+)
+def test_a_pushed_response_without_impacts_has_its_exact_exponent(more, pushes, damping):
+    """That of free masses, or of both together; a wall leaves nothing that deviates."""
+    structure = make(D1=0.05, D2=0.02, kappa=1.5).replace(**more)
+    asked = {"frequency": 0.4, "amplitude": 0.0, **pushes, "progress": False}
+    found = lyapunov(structure, **asked, transient=200, periods=150)
+    assert (found.impacts_per_period > 0.0) == (damping is None)
+    if damping is None:
+        orbit = orchestrate.orbit(structure, **asked)
+        assert float(found.exponent[0]) == pytest.approx(float(orbit.exponent), rel=0.05)
+    else:
+        assert float(found.exponent[0]) == pytest.approx(-damping, abs=1e-12)
+        assert float(found.verdict[0]) == -1
+
+
+@pytest.mark.usefixtures("exported")
+def test_exponents_at_a_wall_and_in_a_play_are_those_of_their_orbits():
+    wall = Structure.one_mass(m=1.0, k=1.0, d=0.05, e=0.7, clearance=0.2)
+    play = make(e=0.6, D=0.05).replace(clearance=0.3, stroke=1.0)
+    for structure, eta in ((wall, 1.7), (play, 0.9)):
+        found = lyapunov(structure, eta=eta, transient=300, periods=600, spectrum=True)
+        orbit = orchestrate.orbit(structure, eta=eta)
+        assert float(found.exponent[0]) == pytest.approx(float(orbit.exponent), abs=5e-4)
+        expected = np.log(np.hypot(*orbit.multipliers.values.T)[:2]) * eta / (2.0 * np.pi)
+        assert found.exponents[0, :2].values == pytest.approx(expected, abs=5e-4)
+        assert np.isinf(found.exponents[0, 2:]).all() == structure.wall
+        over = orchestrate.map(structure, eta=[eta], e=[structure.e], exponent=True)
+        assert float(over.exponent[0, 0]) == pytest.approx(float(orbit.exponent), abs=2e-3)
