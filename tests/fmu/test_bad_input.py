@@ -35,6 +35,7 @@ OVERLAP = "x2_start = 0.0 m; x2_start >= x1_start = 1.0 m"
 STEP_SIZE = "expected every finite number >= 0"
 ONCE = "python: expected one call"
 STATE = "python: FMU state; expected a state saved by this FMU"
+SLOW = {"m1": 1e24, "m2": 1e24, "k1": 1e-24, "k2": 1e-24, "box_frequency": 0.0}
 SET = [  # phase, values, and parts of the message; those of pythonfmu's form alone are marked
     ("new", {"m1": nan}, "m1 = nan kg; 1e-24 <= m1 <= 1e+24"),
     ("new", {"m2": -1.0}, "m2 = -1.0 kg; 1e-24 <= m2 <= 1e+24"),
@@ -97,9 +98,13 @@ OTHER = {  # what has more steps: a function, and parts of the message
         lambda f: f.start(bonded=True, v2_start=0.5),
         "bonded = true; v2_start = 0.5 m/s; v2_start = v1_start = 0.0 m/s",
     ),
+    "oscillations beyond counting": (
+        lambda f: f.start(bonded=True).step(2.0).step(1e80),
+        "the number of oscillations; time = 1e+80 s; expected",
+    ),
     "motion beyond floating point": (
-        lambda f: f.start(bonded=True).step(2.0).set(box_crackle=1e100).step(1e80),
-        "range of floating-point numbers; time = 1e+80 s; expected",
+        lambda f: f.start(bonded=True, box_crackle=1e100, **SLOW).step(1e38),
+        "the motion leaves the range of floating-point numbers; time = 1e+38 s; expected",
     ),
     "state of something else": (lambda f: f.restore(b"no state of this FMU" * 90, 2.0), STATE),
     "empty state": (lambda f: f.restore(b"", 2.0), STATE),

@@ -74,6 +74,7 @@ def test_state_is_saved_and_restored_in_one_process(fmu, name):
         assert f.restore(*data).step(end).motion() == lone
         g = open_fmu(fmu).restore(*data)  # not even initialised
         assert g.outputs() == here
+        assert g.save() == data  # every hidden number
         assert g.at(moment + 7.0, end - 0.25, end).motion() == lone
         g = open_fmu(fmu).start(m1=7.0, bonded=True).step(3.0)
         assert g.restore(*data).step(end).motion() == lone

@@ -6,6 +6,7 @@ import pytest
 
 from .driver import FMUS, run
 from .programs.driver import open_fmu
+from .test_bad_input import SLOW
 
 PROGRAMS = [  # of pythonfmu's library, out of the slave's reach
     "extracted_below_a_folder_with_special_letters",  # of a file URI it decodes the space alone
@@ -29,5 +30,6 @@ def test_wrong_point_of_time_where_time_is_the_date(fmu):
 
 @pytest.mark.xfail(strict=True, reason="the variable that makes an answer infinite is not named")
 def test_message_names_what_leaves_the_range(fmu):
-    f = open_fmu(fmu).start(bonded=True, box_crackle=1e100)
-    assert "box_crackle = 1e+100" in f.refused("doStep", 0.0, 1e80)
+    f = open_fmu(fmu).start(bonded=True, box_crackle=1e100, **SLOW)
+    message = f.refused("doStep", 0.0, 1e38)
+    assert "the motion leaves the range" not in message or "box_crackle = 1e+100" in message

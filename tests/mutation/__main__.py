@@ -32,7 +32,7 @@ PATIENCE = 3.0  # times the unbroken tests' time on a processor
 OPTIONS = ["-x", "-q", "-n", "0", "-p", "no:cacheprovider"]
 OWN = ("tests", "fmu_src", "orchestrate", "tools")
 NOTICED, SURVIVED = "noticed", "survived"
-COLUMNS = ("line", "broken", "outcome", "tests")
+COLUMNS = ("line", "broken", "outcome", "tests", "by")
 
 
 def copy_of_the_tree(folder):
@@ -43,7 +43,18 @@ def copy_of_the_tree(folder):
         shutil.copy(ROOT / name, folder)
 
 
-def run_tests(folder, tests, seconds):
+class FirstFailure:
+    """A plugin that writes which test fails first to a file that is open."""
+
+    def __init__(self, heard):
+        self.heard = heard
+
+    def pytest_runtest_logreport(self, report):
+        if report.failed:
+            os.write(self.heard, report.nodeid.encode())
+
+
+def run_tests(folder, tests, seconds, heard):
     """Run tests in a folder for so long on a processor; never returns."""
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     os.chdir(folder)
@@ -54,16 +65,21 @@ def run_tests(folder, tests, seconds):
     for name in [name for name in sys.modules if name.split(".")[0] in OWN]:
         del sys.modules[name]
     sys.path[:] = [str(folder), *(part for part in sys.path if part not in ("", str(ROOT)))]
-    os._exit(int(pytest.main([*OPTIONS, *(name for name in tests if Path(name).exists())])))
+    present = [name for name in tests if Path(name).exists()]
+    os._exit(int(pytest.main([*OPTIONS, *present], plugins=[FirstFailure(heard)])))
 
 
 def outcome(folder, tests, seconds=1800):
-    """Return whether tests fail in a folder or take too long, and their time on a processor."""
-    child = os.fork()
-    if child == 0:
-        run_tests(folder, tests, seconds)
-    _, status, used = os.wait4(child, 0)
-    return status != 0, used.ru_utime + used.ru_stime
+    """Return whether tests fail in a folder or take too long, their time on a processor, and which
+    test fails first: empty where it is the import, or time runs out.
+    """
+    with tempfile.TemporaryFile() as heard:
+        child = os.fork()
+        if child == 0:
+            run_tests(folder, tests, seconds, heard.fileno())
+        _, status, used = os.wait4(child, 0)
+        heard.seek(0)
+        return status != 0, used.ru_utime + used.ru_stime, heard.read().decode()
 
 
 def digest(tests):
@@ -80,10 +96,12 @@ def rows_of(table):
         return {(row["line"], row["broken"]): row for row in csv.DictReader(file)}
 
 
-def break_module(module, table, budget, seed, again):
+def break_module(module, table, budget, seed, again, thresholds):
     """Break a module in as many ways as the budget has, and write the table after each."""
     tests, chosen = SUBJECTS[module], breakages((ROOT / module).read_text())
     known = {(one.text, one.broken) for one in chosen}
+    if thresholds:
+        chosen = [one for one in chosen if one.threshold]
     before = {key: row for key, row in rows_of(table).items() if key in known}
     if budget and budget < len(chosen):
         chosen = sorted(random.Random(seed).sample(chosen, budget))
@@ -93,7 +111,7 @@ def break_module(module, table, budget, seed, again):
         copy_of_the_tree(folder)
         target = folder / module
         source = target.read_text()
-        failed, usual = outcome(folder, tests)
+        failed, usual, _ = outcome(folder, tests)
         assert not failed, f"{module}: its tests fail before it is broken"
         target.write_text(f"raise RuntimeError\n{source}")
         assert outcome(folder, tests)[0], f"{module}: its tests do not import it"
@@ -103,9 +121,9 @@ def break_module(module, table, budget, seed, again):
             if old and (old["outcome"] == NOTICED or (old["tests"] == token and not again)):
                 continue
             target.write_text(one.source)
-            failed, _ = outcome(folder, tests, int(10.0 + PATIENCE * usual))
+            failed, _, by = outcome(folder, tests, int(10.0 + PATIENCE * usual))
             result = NOTICED if failed else SURVIVED
-            before[key] = dict(zip(COLUMNS, (*key, result, token), strict=True))
+            before[key] = dict(zip(COLUMNS, (*key, result, token, by), strict=True))
             write(table, before.values())
     return [before[one.text, one.broken]["outcome"] for one in chosen]
 
@@ -128,9 +146,10 @@ def main():
     parser.add_argument("--budget", type=int, default=0, help="breakages; 0: all")
     parser.add_argument("--seed", type=int, default=1, help="of the choice")
     parser.add_argument("--again", action="store_true", help="ask all survivors again")
-    asked = parser.parse_args()
-    results = break_module(asked.module, asked.table, asked.budget, asked.seed, asked.again)
-    print(f"{asked.module},{len(results)},{results.count(NOTICED)}")
+    parser.add_argument("--thresholds", action="store_true", help="fields of Settings alone")
+    asked = vars(parser.parse_args())
+    results = break_module(**asked)
+    print(f"{asked['module']},{len(results)},{results.count(NOTICED)}")
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ class Breakage(NamedTuple):
     text: str  # before
     broken: str
     source: str  # of the whole module
+    threshold: bool  # a field's default of a class of settings
 
 
 def breakages(source):
@@ -25,8 +26,17 @@ def breakages(source):
     indices = {id(part) for node in ast.walk(tree) for part in subscripts(node)}
     nodes = [node for node in ast.walk(tree) if id(node) not in indices]
     edits = sorted({edit for node in nodes for edit in edits_of(node, source)})
-    made = {(one.text, one.broken): one for one in (broken_by(edit, source) for edit in edits)}
+    fields = threshold_lines(tree)
+    found = (broken_by(edit, source, edit[0] in fields) for edit in edits)
+    made = {(one.text, one.broken): one for one in found}
     return sorted(one for one in made.values() if is_whole(one.source))
+
+
+def threshold_lines(tree):
+    """Lines of the fields' defaults in classes of settings."""
+    classes = (one for one in ast.walk(tree) if isinstance(one, ast.ClassDef))
+    fields = (one for it in classes if it.name.endswith("Settings") for one in it.body)
+    return {one.lineno for one in fields if isinstance(one, ast.AnnAssign) and one.value}
 
 
 def subscripts(node):
@@ -85,7 +95,7 @@ def between(left, right):
     return left.end_lineno, left.end_col_offset, right.lineno, right.col_offset
 
 
-def broken_by(edit, source):
+def broken_by(edit, source, threshold):
     """Return the breakage by one edit; brackets between the operands stay."""
     first, column, last, end, text = edit
     lines = source.splitlines(keepends=True)
@@ -103,4 +113,4 @@ def broken_by(edit, source):
     before = lines[first - 1].strip()
     if changed == before:  # an operator that begins the next line
         before, changed = lines[first].strip(), broken.splitlines()[first].strip()
-    return Breakage(first, before, changed, broken)
+    return Breakage(first, before, changed, broken, threshold)

@@ -24,6 +24,11 @@ SUBJECTS = {
     "orchestrate/weak_drive/hysteresis.py": (f"{DRIVE}/test_hysteresis.py",),
     "orchestrate/weak_drive/settled.py": (f"{DRIVE}/test_settled.py",),
     "orchestrate/dynamics/decision.py": ("tests/orchestrate/dynamics/test_decision.py",),
+    "orchestrate/dynamics/clusters.py": (
+        "tests/orchestrate/dynamics/test_clusters.py",
+        "tests/orchestrate/dynamics/test_decision.py",
+    ),
+    "orchestrate/dynamics/curve_growth.py": ("tests/orchestrate/dynamics/test_manifolds.py",),
     "orchestrate/diagnosis/decision_rule.py": (
         f"{DIAGNOSIS}/test_thresholds.py",
         f"{DIAGNOSIS}/test_verdicts.py",

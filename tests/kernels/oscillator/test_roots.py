@@ -1,15 +1,18 @@
 """The walk finds the first root, which a scan in high precision finds too."""
 
 import mpmath as mp
+import numpy as np
 import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.roots import walk
+from fmu_src.kernels.oscillator import nodes
+from fmu_src.kernels.oscillator.event_function import evaluate, event_rounding, set_node_values
+from fmu_src.kernels.oscillator.roots import cross_clear_intervals, value_on_decided_side, walk
 from tests import exact_motion as truth
 
-from .kernel import DEFAULTS, examples, rest_together, started, structures, unloaded
+from .kernel import DEFAULTS, examples, flight, rest_together, started, structures, unloaded
 
 STATES = st.tuples(
     st.floats(-1.0, 0.0), st.floats(-1.0, 1.0), st.floats(0.01, 1.0), st.floats(-1.0, 1.0)
@@ -18,10 +21,16 @@ STATES = st.tuples(
 
 def first_end(m, horizon):
     """Age at which the present state ends by an event; None if it does not before the horizon."""
-    m[at.WORK], m[at.WORK_LIMIT] = 0.0, 1e5
-    walk(m, horizon)
-    assert m[at.WORK] < 1e5
+    walk_to(m, horizon)
     return m[at.END] if m[at.END_KIND] == at.END_EVENT and m[at.END] <= horizon else None
+
+
+def walk_to(m, age, limit=1e5):
+    """The memory, walked to an age by a number of evaluations at most."""
+    m[at.WORK], m[at.WORK_LIMIT] = 0.0, limit
+    walk(m, age)
+    assert limit < 1e5 or m[at.WORK] < limit
+    return m
 
 
 def agree(found, expected, signal, horizon):
@@ -124,3 +133,102 @@ def test_a_near_miss_and_a_graze(values, depth, sign):
     expected = truth.first_root(gap, 20.0)
     assert (expected < bottom) == (sign < 0)
     assert agree(first_end(m, 20.0), expected, gap, 20.0)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_flight_between_two_stops_ends_at_the_one_that_it_reaches_first(seed):
+    """Some intervals after its start: the excitation is faster than the springs."""
+    rng = np.random.default_rng(seed)
+    names = ("m2", "k2", "d1", "d2", "box_frequency", "box_amplitude", "phase_start")
+    low, high = (0.3, 0.3, 0.0, 0.0, 2.0, 0.0, 0.0), (3.0, 3.0, 0.2, 0.2, 4.0, 0.3, 6.0)
+    values = dict(zip(names, rng.uniform(low, high).tolist(), strict=True))
+    values["force1"] = float(rng.choice([0.0, 0.1]))
+    state = rng.uniform((-1.0, -1.0, 0.0, -1.0), (0.0, 1.0, 1.0, 1.0)).tolist()
+    first, second = truth.free_motion({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
+    gap, start = second - first, state[2] - state[0]
+    most = float(gap.sample(np.linspace(0.0, 12.0, 500)).max())
+    stroke = max(1.001 * start, start + rng.uniform(0.2, 0.99) * (most - start))
+    m = walk_to(flight(*state[:2], *state[2:], stroke=stroke, **values), 12.0)
+    rest = truth.Signal([], [mp.mpf(stroke), 0, 0, 0]) - gap
+    signals = {at.END_EVENT: gap, at.END_OTHER: rest}
+    ends = {kind: truth.first_root(one, 12.0) for kind, one in signals.items()}
+    expected = min((kind for kind in ends if ends[kind]), key=ends.get)
+    assert m[at.END_KIND] == expected
+    assert agree(m[at.END], ends[expected], signals[expected], 12.0)
+
+
+FREE = [  # flights that nothing ends, of all kinds of loops from node to node
+    {"clearance": 50.0},
+    {"clearance": 50.0, "box_jerk": 1e-4},
+    {"clearance": 50.0, "stroke": 100.0},
+    {"clearance": 50.0, "stroke": 100.0, "force1": 0.1, "d2": 0.3},
+    {"clearance": 50.0, "d1": 0.0, "d2": 0.0, "box_frequency": 1.0, "box_amplitude": 1e-3},
+]
+
+
+@pytest.mark.parametrize("values", FREE)
+def test_the_walk_leaves_what_a_look_up_leaves(values):
+    """To the bit, over the renewals of all blocks: an interval hangs on its number alone."""
+    m = flight(-0.5, 0.2, 0.5, -0.1, **values)
+    reached = 0.0
+    for node in (1.5, 3.5, 29.5, 30.5, 31.5, 32.5, 62.5, 63.5, 64.5, 200.5):
+        if node > nodes.max_nodes(m) - 1.0:
+            break
+        age = node * m[at.SPACING]
+        walk_to(m, age)
+        assert m[at.LEFT_AGE] <= age < m[at.RIGHT_AGE] == m[at.CLEAR]
+        assert m[at.WORK] == m[at.NODE] - reached
+        reached, other = m[at.NODE], list(m)
+        nodes.start_nodes(other)
+        nodes.seek_interval(other, age)
+        for values_at, phasors, end in (
+            (at.LEFT_VALUES, at.LEFT, at.LEFT_AGE),
+            (at.RIGHT_VALUES, at.RIGHT, at.RIGHT_AGE),
+        ):
+            set_node_values(other, values_at, phasors, other[end])
+        assert m[at.NODE : at.RIGHT_VALUES + 3] == other[at.NODE : at.RIGHT_VALUES + 3]
+
+
+def test_a_state_is_written_anew_after_its_nodes_and_a_step_ends_with_its_work():
+    m = walk_to(flight(-0.5, 0.2, 0.5, -0.1, **FREE[0]), 1e6, 5.0)
+    assert m[at.NODE] == 5.0 and m[at.END_KIND] == at.END_OPEN
+    walk_to(m, 1e6)
+    assert m[at.END_KIND] == at.END_RENEWAL
+    assert m[at.END] == nodes.LONGEST * m[at.SPACING]
+
+
+@pytest.mark.parametrize("values", FREE[:4])
+def test_no_interval_that_rises_above_the_ceiling_is_crossed_unseen(values):
+    """The last one of a call may: it is looked at by who set the ceiling."""
+    m = flight(-0.5, 0.9, 0.5, -0.1, **values)
+    first, second = truth.free_motion({**DEFAULTS, **values}, (-0.5, 0.9, 0.5, -0.1), mp.mpf(0))
+    gap = truth.gap_signal({**DEFAULTS, **values}, first, second)
+    m[at.WORK], m[at.WORK_LIMIT] = 0.0, 1e5
+    calls, ceiling = 0, 50.5
+    while m[at.RIGHT_AGE] < 40.0:
+        before = m[at.RIGHT_AGE]
+        cross_clear_intervals(m, 40.0, ceiling)
+        assert m[at.RIGHT_AGE] > before
+        seen = (
+            gap.sample(np.linspace(before, m[at.LEFT_AGE], 400)) if m[at.LEFT_AGE] > before else []
+        )
+        assert max(seen, default=0.0) <= ceiling + 1e-12
+        here = gap.sample(np.linspace(m[at.LEFT_AGE], m[at.RIGHT_AGE], 100)).max()
+        assert m[at.RIGHT_AGE] >= 40.0 or here > ceiling - 0.02
+        ceiling, calls = max(ceiling, here), calls + 1
+    assert calls > 2
+
+
+def test_the_side_at_the_boundary_is_kept_up_to_rounding_and_until_it_crosses():
+    m = flight(-0.5, 0.2, 0.5, -0.1)
+    floor = event_rounding(m, 0.3)
+    assert 1e-15 < floor < 1e-13 and evaluate(m, 0.3)[0] > floor
+    kept, slope = 2.0 * floor, -1e6 * floor
+    for h0, h1, value in (
+        (-0.9 * floor, 0.0, kept),
+        (-1.1 * floor, 0.0, -1.1 * floor),
+        (0.0, 1.0, kept),
+        (0.0, 0.9 * slope, kept),
+        (0.0, 1.1 * slope, 0.0),
+    ):
+        assert value_on_decided_side(m, 0.3, h0, h1) == value
