@@ -152,7 +152,7 @@ def beam_job(
     """Return the job that decides on the records of a beam, and fits the one that hears most."""
     structure = None if guess is None else delaminated_guess(guess)
     every = checked_records(record, structure, participation, settings)
-    made = structure or halves_around(cached_orders(every[0]).resonance)
+    made = structure or halves_around(cached_orders(every[0]).resonance, settings)
     shown = [record_findings(one, made, structure is not None) for one in every]
     verdict = Beam(tuple(shown)).verdict()
     fitted = int(np.argmax([one.strikes.heard * one.is_usable for one in shown]))
@@ -251,10 +251,13 @@ class DetectJob(SearchJob):
         )
 
 
-def halves_around(resonance: float) -> Structure:
-    """Return halves of equal mass, 5 % at both sides of a resonance in Hz, as a first guess."""
-    f1, f2 = 0.95 * resonance, 1.05 * resonance
-    return Structure.from_halves(m1=1.0, m2=1.0, f1=f1, f2=f2, zeta1=0.01, zeta2=0.01, e=0.6)
+def halves_around(resonance: float, settings: Settings) -> Structure:
+    """Return halves of equal mass at both sides of a resonance in Hz, as a first guess."""
+    f1, f2 = ((1.0 + sign * settings.assumed_apart) * resonance for sign in (-1.0, 1.0))
+    alike = {"zeta1": settings.assumed_damping, "zeta2": settings.assumed_damping}
+    return Structure.from_halves(
+        m1=1.0, m2=1.0, f1=f1, f2=f2, **alike, e=settings.assumed_restitution
+    )
 
 
 def record_variables(orders: RecordOrders) -> dict[str, Variable]:

@@ -90,6 +90,10 @@ class Settings:
     guess_deviation: float = 0.06
     guess_weight: float = 0.02
     guess_squares: float = 20.0  # of these deviations: more of them count no more
+    # without a guess: distance of both halves from the resonance, over it, damping ratio and e
+    assumed_apart: float = 0.05
+    assumed_damping: float = 0.01
+    assumed_restitution: float = 0.6
 
 
 SETTINGS = Settings()

@@ -72,8 +72,9 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
       face's; one is a velocity (n = 1) or displacement (2) where the formula describes that one
       times ``(i w)^n`` within `misfit`, `derived` times better; a sensor is dead that is above the
       `floor` in half of the windows at most, or below `dead` times the base and without a `peak`.
-    - Samples are lost where the base `moves` and its phase (up to `band` of its frequency), continued from both sides, jumps by
-      `jump`, whole turns aside, and, times the level, `usual` times as far as it usually does.
+    - Samples are lost where the base `moves` and its phase (in its `band`), continued from both
+      sides, jumps by `jump`, whole turns aside, and, times the level, `usual` times as far as it
+      usually does.
     - A line of the `mains` is hum if it is `hum` times those `beside` it and keeps its phase
       (`coherence`), while the orders are `away`.
     - A channel is clipped by a `clipped_share` above `clipped` (of `plateau`); few are less than

@@ -77,7 +77,10 @@ def timed(kind, seed, sensors=1):
     return strikes(checked_channels(case.record), shut)
 
 
-@pytest.mark.parametrize("kind", ["delaminated", "stop", *ordinary(["sound", "crack", "play"])])
+OTHERS = ["sound", "crack", "play", "fixture", "bearing", "washer"]
+
+
+@pytest.mark.parametrize("kind", ["delaminated", "stop", *ordinary(OTHERS)])
 def test_faces_are_told_from_stops_and_kinks(kind):
     """Order 2, bursts and misfits of both overlap; where and when they strike does not."""
     word = timed(kind, 203).word()
