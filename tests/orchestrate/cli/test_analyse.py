@@ -192,4 +192,5 @@ def test_knocks_on_each_half_make_a_structure(ask, tmp_path):
     assert "half2.csv: taken for knocks on half 2, as the second record" in out
     assert "e = 0.7 and clearance = 0 m are assumed" in out
     fitted = orchestrate.Structure.from_file(tmp_path / "beam.toml")
-    assert (fitted.f1, fitted.f2, fitted.m1) == pytest.approx((beam.f1, beam.f2, beam.m1), rel=1e-3)
+    assert (fitted.f1, fitted.f2) == pytest.approx((beam.f1, beam.f2), rel=1e-3)
+    assert (fitted.m1, fitted.m2) == pytest.approx((beam.m1, beam.m2), rel=0.04)
