@@ -21,7 +21,7 @@ from cyclopts.exceptions import CycloptsError
 from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable
 from ..model.ranges import closest
 from ..version import __version__
-from . import cosimulation, diagnosis, dynamics, laboratory, pages, responses, weak_drive
+from . import cosimulation, diagnosis, dynamics, laboratory, pages, records, responses, weak_drive
 from .face import Command, explain
 from .grammar import with_option_names
 from .options import QUANTITIES, list_shipped_sets
@@ -31,7 +31,7 @@ COMMANDS: dict[str, type[Command]] = {
     kind.name(): kind
     for kind in (
         *(pages.Build, responses.Simulate, laboratory.Shake, laboratory.Analyse),
-        laboratory.Channels,
+        *(records.Channels, records.Halves),
         *(diagnosis.Diagnose, diagnosis.Plan, responses.Resonance, responses.Spectra),
         *(responses.Sweep, responses.Map, dynamics.Lyapunov, dynamics.Poincare),
         *(dynamics.Attractors, dynamics.Basin, dynamics.Orbit, dynamics.Manifold),
@@ -170,7 +170,7 @@ def run_command(arguments: Sequence[str]) -> int:
         return SUCCESS
     chosen.command_line = f"{program_name()} {shlex.join(arguments)}"
     try:
-        with print_warnings_in_one_line():
+        with print_warnings_in_one_line(chosen):
             chosen()
         return SUCCESS
     except KeyboardInterrupt as ended:
@@ -207,13 +207,13 @@ def describe_progress_kept() -> str:
 
 
 @contextmanager
-def print_warnings_in_one_line() -> Iterator[None]:
-    """Print a ``UserWarning`` in the ``with`` block as one line, without its place in the code."""
+def print_warnings_in_one_line(chosen: Command) -> Iterator[None]:
+    """Print a ``UserWarning`` in the ``with`` block as one line, in words of a command."""
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
         if category is UserWarning:
-            print_error(f"warning: {message}")
+            print_error(f"warning: {with_option_names(str(message), chosen)}")
         else:
             usual(message, category, *place, **more)
 

@@ -286,9 +286,8 @@ def documentation_of(function: str) -> dict[str, tuple[str, str]]:
         for name in one.arg_name.split(", "):
             meaning = " ".join((one.description or "").split())
             linked = LINK.match(meaning)
-            found[name] = (
-                documentation_of(linked[1])[name] if linked else (one.type_name or "", meaning)
-            )
+            there = documentation_of(linked[1]) if linked else {}
+            found[name] = there.get(name, (one.type_name or "", meaning))
     return found
 
 

@@ -278,37 +278,6 @@ def analyse(name: str, record: xr.Dataset, path: Path, settings: Mapping[str, An
     return result
 
 
-class Channels(InColumns, Command):
-    """List the columns of a record, and as which channels they are read; write that as a file."""
-
-    record: Path = option("as for analyse", position=True, needed=True)
-    sample_rate: float | None = option("Hz, where the file has no times")
-    output: Path | None = option(
-        "where to write how the columns are read, as TOML: to complete with units, sensitivities, "
-        "delays and sensors, and to give as --channels",
-        value="FILE.toml",
-    )
-    examples = """
-  {program} channels run.csv
-  {program} channels run.csv --channels base=Table,face1=3 --output setup.toml
-  {program} channels run.csv --channels setup.toml"""
-
-    def __call__(self) -> None:
-        from .. import channels
-
-        found = channels(
-            self.record, self.channels, sample_rate=self.sample_rate, output=self.output
-        )
-        names = ("role", "known", "quantity", "unit")
-        rows = {name: found[name].values.tolist() for name in names}
-        rms = ["" if value != value else f"{value:.4g}" for value in found.rms.values]
-        print(*table({"column": found.column.values.tolist(), **rows, "rms": rms}), sep="\n")
-        if rate := found.attrs["sample_rate"]:
-            print(f"{rate:.6g} samples a second")
-        if self.output is not None:
-            print(self.output)
-
-
 class Settings(Options):
     """Settings of analyses."""
 

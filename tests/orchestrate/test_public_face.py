@@ -149,7 +149,8 @@ def test_dimensions_are_those_that_were_asked_for(answers):
 
 
 def test_a_table_has_a_row_a_response(answers):
-    sweep = answers["sweep"].assign_coords(frequency=2.0 * np.pi * np.array([46.5, 46.75, 47.0]))
+    sweep, turns = answers["sweep"], 2.0 * np.pi * np.array([46.5, 46.75, 47.0])
+    sweep = sweep.assign_coords(frequency=sweep.frequency.copy(data=turns))
     table = orchestrate.to_dataframe(sweep, units="Hz,mm")
     assert table["frequency [Hz]"].tolist() == [46.5, 46.75, 47.0]  # none is 46.75000000000001
     assert set(table.multiplicity_decided) <= {"repeated", "irregular", "undecided"}

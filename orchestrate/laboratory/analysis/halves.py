@@ -79,7 +79,7 @@ def halves(
     """
     if (other is None) == (thicknesses is None):
         given = "neither" if other is None else "both"
-        raise InputError(f"{given} of other and thicknesses given; expected one of them")
+        raise InputError(f"{given} of a second record and thicknesses= given; expected one of them")
     checked_word("estimator", estimator, ESTIMATORS)
     records = [record] if other is None else [record, other]
     fits = sorted((fit_half(one, resolution, estimator) for one in records), key=lambda f: f.half)

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.image import imread
 from scipy.io import wavfile
 
+import orchestrate
 from orchestrate import write_record
 
 RATE = 1000.0
@@ -174,3 +175,22 @@ def test_numbers_in_another_unit_are_noticed_in_one_line(ask, tmp_path):
     assert done.code == 0
     assert f"warning: face 1 (acceleration1): {words}" in done.complaints
     assert len(done.complaints) == 2 and "box" in done.out
+
+
+def test_knocks_on_each_half_make_a_structure(ask, tmp_path):
+    """From records of a hammer to the file that a plan or a diagnosis begins with."""
+    beam = orchestrate.Structure.from_file("beam").replace(clearance=0.001)
+    paths = [tmp_path / f"half{half}.csv" for half in (1, 2)]
+    for half, path in enumerate(paths, 1):
+        knock = orchestrate.Hammer(peak=5.0, width=0.01, half=half, duration=8.0)
+        history = orchestrate.shake(beam, knock, sample_rate=500.0)
+        channels = {"force1": f"force{half}", "acceleration1": f"a{half}_abs"}
+        values = {name: history[one].values for name, one in channels.items()}
+        record = orchestrate.record(time=history.time.values, **values)
+        orchestrate.write_record(record, path)
+    out = ask("halves", *paths, output=tmp_path / "beam.toml").success().out
+    assert "half2.csv: taken for knocks on half 2, as the second record" in out
+    assert "e = 0.7 and clearance = 0 m are assumed" in out
+    fitted = orchestrate.Structure.from_file(tmp_path / "beam.toml")
+    assert (fitted.f1, fitted.f2) == pytest.approx((beam.f1, beam.f2), rel=1e-3)
+    assert (fitted.m1, fitted.m2) == pytest.approx((beam.m1, beam.m2), rel=0.04)

@@ -92,6 +92,12 @@ MISTAKES = {  # options of each command, then what its line says
         README.md --plot gif : --plot gif | png
         lost.csv : lost.csv: no such file; expected a record
     """,
+    "halves": """
+        : RECORDS is missing
+        lost.csv : lost.csv: no such file
+        a.csv a.csv : a.csv: expected one record of each half
+        a.csv --thicknesses 3 : --thicknesses 3: expected H1,H2
+    """,
     "map": """
         --over e --values 0.3,0.7 : frequency: nothing given
         --eta 1 --over e --values 0.3,0.7 : map | two parameters

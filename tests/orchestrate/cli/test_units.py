@@ -96,7 +96,16 @@ ASKED = {  # command, a unit, what is printed in it, and what is printed anyhow
     ),
 }
 REFUSED = {"build": "FMUs are in SI", "paper": "ratios"}
-ELSEWHERE = {"analyse", "channels", "diagnose", "border", "capture", "passage", "drive-branch"}
+ELSEWHERE = {
+    "analyse",
+    "channels",
+    "diagnose",
+    "border",
+    "capture",
+    "passage",
+    "drive-branch",
+    "halves",
+}
 ELSEWHERE |= {"jump-voltages", "explore", "report", "plan"}  # below, or where a page is written
 
 

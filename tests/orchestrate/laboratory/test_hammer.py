@@ -213,7 +213,7 @@ def test_a_sound_beam_is_split_by_its_layers_and_touching_halves_are_refused():
     with pytest.raises(InputError, match=r"one oscillator leaves \d+ % .* softer knocks"):
         halves(*touching)
     for wrong, words in (
-        (lambda: halves(sound), "neither of other and thicknesses"),
+        (lambda: halves(sound), "neither of a second record and thicknesses="),
         (lambda: halves(sound, sound), "both knock on half 1"),
         (lambda: halves(sound.rename(force1="box_acceleration"), thicknesses=(1, 1)), "no force"),
         (

@@ -1,0 +1,87 @@
+"""Commands on measured records: channels, how they are read, and halves, a structure of knocks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from ..errors import InputError
+from .face import Command, option
+from .grammar import floats
+from .output import InColumns, Reading
+from .text import table
+
+Pair = Annotated[Any, floats("H1,H2, two numbers such as 3,2", ",", (2,))]
+
+
+class Halves(InColumns, Reading, Command):
+    """Fit a structure to knocks of a hammer on each half, and write it as TOML file."""
+
+    calls, takes = "halves", "resolution estimator"
+    records: list[Path] = option(
+        "knocks on half 1 and on half 2, a file each; or on a sound beam, with --thicknesses",
+        position=True,
+        needed=True,
+    )
+    thicknesses: Pair = option("of layers 1 and 2 of a sound beam, in any unit", value="H1,H2")
+    output: Path | None = option("where to write the structure", value="FILE.toml")
+    examples = """
+  {program} halves half1.csv half2.csv --output beam.toml
+  {program} halves sound.uff --thicknesses 3,2 --output beam.toml
+  {program} halves half1.csv half2.csv --channels knocks.toml
+A record has a column of force, in N, and the acceleration of the half that is struck. Knock so
+softly that the halves do not strike each other. The file is a guess: --structure of diagnose, plan
+and others; complete it by e and clearance."""
+
+    def __call__(self) -> None:
+        from .. import halves, read_record
+
+        if len(self.records) > 2 or len({*self.records}) < len(self.records):
+            raise InputError(f"{self.records[-1]}: expected one record of each half")
+        records = [read_record(path, **self.given(InColumns, Reading)) for path in self.records]
+        if len(records) == 2 and all("force1" in one and "force2" not in one for one in records):
+            print(f"{self.records[1]}: taken for knocks on half 2, as the second record")
+            names = {name: name.replace("1", "2") for name in records[1] if "1" in str(name)}
+            records[1] = records[1].rename(names)
+        fits = halves(*records, **self.keywords())
+        columns = {"half": [str(half) for half in fits.knocked.values]}
+        for name in ("mass", "frequency", "damping"):
+            cells = zip(fits[name].values, fits[f"{name}_error"].values, strict=True)
+            unit = str(fits[name].units).removeprefix("1")
+            columns[f"{name} {unit}".rstrip()] = [f"{x:.5g} +- {s:.2g}" for x, s in cells]
+        columns["misfit"] = [f"{misfit:.1%}" for misfit in fits.misfit.values]
+        print(*table(columns), sep="\n")
+        print("e = {e:g} and clearance = {clearance:g} m are assumed".format(**fits.attrs))
+        if self.output is not None:
+            print(self.output)
+
+
+class Channels(InColumns, Command):
+    """List the columns of a record, and as which channels they are read; write that as a file."""
+
+    record: Path = option("as for analyse", position=True, needed=True)
+    sample_rate: float | None = option("Hz, where the file has no times")
+    output: Path | None = option(
+        "where to write how the columns are read, as TOML: to complete with units, sensitivities, "
+        "delays and sensors, and to give as --channels",
+        value="FILE.toml",
+    )
+    examples = """
+  {program} channels run.csv
+  {program} channels run.csv --channels base=Table,face1=3 --output setup.toml
+  {program} channels run.csv --channels setup.toml"""
+
+    def __call__(self) -> None:
+        from .. import channels
+
+        found = channels(
+            self.record, self.channels, sample_rate=self.sample_rate, output=self.output
+        )
+        names = ("role", "known", "quantity", "unit")
+        rows = {name: found[name].values.tolist() for name in names}
+        rms = ["" if value != value else f"{value:.4g}" for value in found.rms.values]
+        print(*table({"column": found.column.values.tolist(), **rows, "rms": rms}), sep="\n")
+        if rate := found.attrs["sample_rate"]:
+            print(f"{rate:.6g} samples a second")
+        if self.output is not None:
+            print(self.output)
