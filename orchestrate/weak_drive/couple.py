@@ -1,13 +1,9 @@
-"""Run structure and motor FMUs under a varying voltage and report where the speed jumps.
-
-The steps of a run follow each other. It is cut into chunks; each hands over the states of both FMUs
-and of the master, so an interrupted run goes on with the same bits.
-"""
+"""Run structure and motor FMUs under a varying voltage; report where the speed jumps."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -30,7 +26,7 @@ from .hysteresis import LOST, UNDECIDED, HysteresisLoop, HysteresisSettings, Jum
 from .master import Scheme
 from .ramp_record import DONE, RampRecord, jump_labels, time_beyond, variables_shown
 from .revolutions import COLUMNS
-from .run import CoupledRun, Run, begin_run
+from .run import MotorJob, MotorRun
 from .schedule import Constant, Ramp, Schedule, check
 
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
@@ -42,23 +38,13 @@ MIRRORED = {  # where the motor turns backward
 
 
 @dataclass(frozen=True)
-class CoupleJob(CoupledRun):
+class CoupleJob(MotorJob):
     """Run the coupled FMUs in chunks of steps; then decide about jumps by a hysteresis loop."""
 
     asked: ClassVar[str] = "couple"
     hysteresis: HysteresisSettings = field(default_factory=HysteresisSettings)
 
     chunk_size: ClassVar[int] = 4_000
-    sequential: ClassVar[bool] = True
-    gathers: ClassVar[bool] = True  # the hysteresis loop is a chunk of its own
-    item_columns: ClassVar[tuple[str, ...]] = ()  # revolutions, and a state
-    item: ClassVar[str] = "step"
-
-    def count(self) -> int:
-        return self.steps() + 1
-
-    def items(self) -> Sequence[int]:
-        return range(self.count())
 
     def run_here(self, fmus: Fmus) -> Table:
         """Run all chunks one after the other in this process and join their tables."""
@@ -68,49 +54,28 @@ class CoupleJob(CoupledRun):
             previous = tables[-1] if tables else None
             tables.append(self.work(fmus, range(chunk.start, chunk.stop), previous))
         table = {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
-        return {**table, **self.decide_jumps(fmus, table, self.chunk_size)}
-
-    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        """Compute one chunk of communication steps, or the hysteresis loop at the end."""
-        return self.work_on(fmus, items, previous, self.chunk_size, lambda run: run.revolve(items))
-
-    def work_on(
-        self,
-        fmus: Fmus,
-        items: Sequence[int],
-        previous: Table | None,
-        every: int,
-        revolve: Callable[[Run], Table],
-    ) -> Table:
-        """Compute one chunk with a given stepping function and return its final state too."""
-        if items[0] == self.steps():
-            assert previous is not None
-            return self.decide_jumps(fmus, previous, every)
-        with begin_run(self, fmus) as run:
-            if previous is not None:
-                run.set_state(previous)
-            return {**revolve(run), **run.get_state()}
+        return {**table, **self.conclude(fmus, table)}
 
     def progress_note(self, first: int) -> str:
         """Return the progress bar's note for the chunk of the hysteresis loop."""
         return "voltages held at jumps" if first == self.steps() else ""
 
-    def decide_jumps(self, fmus: Fmus, table: Table, every: int) -> Table:
+    def conclude(self, fmus: Fmus, table: Table) -> Table:
         """Hold voltages over each ramp; return its jumps, a row each: 1 for up, and its fields."""
         if self.control is not None:
             return {"jump_rows": np.empty((0, 1 + len(Jump._fields)))}
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
 
-            def start_run(schedule: Schedule) -> Run:
+            def start_run(schedule: Schedule) -> MotorRun:
                 """Reset both FMU instances and start a run with another voltage schedule."""
                 for instance in (oscillator, shaker):
                     instance.reset()
-                return Run(replace(self, schedule=schedule), oscillator, shaker)
+                return MotorRun(replace(self, schedule=schedule), oscillator, shaker)
 
             volts = RampRecord(self, table, True).sense * self.drive.volts(self.structure)
             units = self.scheme.h, self.structure.omega, volts, self.hold
             loop = HysteresisLoop(start_run, self.schedule, *units, self.hysteresis, growth_rate)
-            loop.add_checkpoints(table, every, self.steps())
+            loop.add_checkpoints(table, self.chunk_size, self.steps())
             rows = [
                 (float(up), *jump)
                 for up in (True, False)
