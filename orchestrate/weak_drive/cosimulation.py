@@ -36,7 +36,6 @@ from .connection import (
     checked_links,
 )
 from .controllers import InputControl
-from .energy_balance import given_work
 from .inputs import Input, Inputs
 from .master import DriveSide, Master, Scheme
 from .polynomials import end_value
@@ -100,7 +99,7 @@ class Coupling(Run):
         nodes = record["time"].copy()
         nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 :][: len(record.ends)]
         table = {"nodes": nodes[1:], "cubics": np.transpose(record.after.acceleration())}
-        table |= {"work": given_work(record), "ended": np.array([self.master.ended])}
+        table |= {"work": record.after["given"], "ended": np.array([self.master.ended])}
         if self.master.connection.recorded:
             rows = record.recorded[self.parts - 1 :: self.parts]
             table["recorded"] = np.concatenate([*recorded, rows])

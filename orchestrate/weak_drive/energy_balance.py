@@ -14,8 +14,6 @@ from ..model.structure import Structure
 from .polynomials import (
     end_value,
     integrate_product,
-    integrate_work,
-    matched_cubic,
     matched_quartic,
     normalized_coefficients,
 )
@@ -98,15 +96,7 @@ class EnergyBalance:
         self.sums, self.start = np.array(numbers[:3]), np.array(numbers[3:])
 
 
-def given_work(record: Record) -> Floats:
-    """Return the work that the masses do on the box in each step."""
-    before, after, h = record.before, record.after, record.after["h"]
-    mean, moment = after["box_impulse"] / h, after["box_impulse_moment"] / (h * h)
-    force = matched_cubic(before["box_force"], after["box_force"], mean, moment, h)
-    return np.asarray(integrate_work(force, before["box_velocity"], after.acceleration(), h))
-
-
 def defects(record: Record) -> Floats:
     """Return the work that the box takes, by the drive's account, less what the masses give."""
     taken: Floats = np.diff(record["box_force_work"])
-    return taken - given_work(record)
+    return taken - record.after["given"]

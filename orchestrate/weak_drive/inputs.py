@@ -18,7 +18,7 @@ from ..fmu.description import Description
 from .connection import Link
 from .controllers import Controller, ControllerState, InputControl, Measurement
 from .master import Master
-from .polynomials import end_derivatives, matched_cubic, mean_value
+from .polynomials import end_derivatives, matched_cubics, mean_value
 from .record import Floats, Record
 from .schedule import Course, Schedule
 
@@ -87,9 +87,9 @@ class Inputs(StepInputs):
         for i, (_, course) in enumerate(self.cubics):
             first, last, mean, lever = course.over_steps(edges)
             place = self.cubic + 4 * i
-            cubic = matched_cubic(first, last, mean, 0.5 * mean + lever / h**2, h)
-            rows[:, place : place + 4] = np.transpose(cubic)
-            ends[:, place : place + 4] = np.transpose(end_derivatives(cubic, h))
+            cubics = matched_cubics(first, last, mean, 0.5 * mean + lever / h**2, h)
+            rows[:, place : place + 4] = cubics
+            ends[:, place : place + 4] = np.transpose(end_derivatives(tuple(cubics.T), h))
         return rows[earlier:]
 
     def run(self, master: Master, steps: range, h: float, first: int = 0) -> Record:

@@ -174,9 +174,7 @@ class MotorRun(Run):
 
     def speeds(self, steps: range) -> np.ndarray:
         """Run some steps; return the mean speeds of completed revolutions alone, rad/s."""
-        return np.array(
-            [speed for _, _, speed, _ in self.revolutions.completed(self.record(steps))]
-        )
+        return self.revolutions.completed(self.record(steps))[:, 2]
 
 
 @contextmanager

@@ -12,7 +12,7 @@ import orchestrate
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu.description import describe
 from orchestrate.weak_drive import cosimulate, cosimulation
-from orchestrate.weak_drive.connection import proposals
+from orchestrate.weak_drive.connection import OURS, proposals
 from orchestrate.weak_drive.master import Master
 
 from ...sparing import ordinary
@@ -404,3 +404,14 @@ def test_controlled_steps_of_fmi_2_have_the_bits_of_python(monkeypatch, exported
     path = exported / "fmi2" / "ElectrodynamicShaker.fmu"
     compiled, python = tables(monkeypatch, exported, path, **run)
     assert compiled == python and np.frombuffer(compiled["recorded 1"]).any()
+
+
+@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
+def test_halves_of_discarded_steps_have_the_bits_of_python(monkeypatch, exported, form):
+    """The command is a cubic, which goes on in the halves."""
+    shaker, times = orchestrate.Shaker.from_file("shaker_1kN"), np.linspace(0.0, 0.6, 61)
+    run = {"inputs": {"command": (times, 3.0 * np.sin(30.0 * times))}, "record": ["current"]}
+    run |= {"parameters": {**shaker.parameters(), "evaluation_limit": 30}, "connect": OURS}
+    path = exported / form / "ElectrodynamicShaker.fmu"
+    compiled, python = tables(monkeypatch, exported, path, **run)
+    assert compiled == python and len(compiled["nodes 1"]) > 1.5 * 60 * 8
