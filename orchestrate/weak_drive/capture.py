@@ -132,8 +132,7 @@ class CaptureJob(Job):
             coordinates[of.name] = variable(of.name, np.array(self.values), of.unit, of.description)
         elif self.over:
             coordinates[self.over] = parameter_variable(self.over, self.over, self.values)
-        state = "bonded" if self.structure.bonded else "delaminated"
-        title = f"Capture at the resonance from rest, {state} structure"
+        title = f"Capture at the resonance from rest, {self.structure.kind} structure"
         return xr.Dataset(variables, coordinates, {"title": title})
 
     def highest_fold(self, system: System) -> float:

@@ -31,6 +31,7 @@ from .schedule import Constant, Ramp, Schedule, check
 
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 DIRECTIONS = ("up", "down")
+KINDS = ("bonded", "delaminated")  # of structures that runs compare
 MIRRORED = {  # where the motor turns backward
     *("jumps", "jump_low", "jump_high", "ramp_voltage", "jump_lag", "averaged_jumps"),
     *("jump_speed", "jump_speed_before", "jump_speed_after", "jump_rate"),
@@ -170,10 +171,9 @@ class CoupleJob(MotorJob):
 
     def attributes(self, table: Table) -> dict[str, str | float]:
         """Return the dataset's title and the relative energy errors of the coupling."""
-        state = "bonded" if self.structure.bonded else "delaminated"
         motor = float(table["motor"][-1])
         return {
-            "title": f"Weak drive, {state} structure: each revolution of the motor",
+            "title": f"Weak drive, {self.structure.kind} structure: each revolution of the motor",
             "missing_over_motor_work": float(table["missing"][-1]) / motor,
             "defects_over_motor_work": float(table["defect_sizes"][-1]) / motor,
         }
@@ -276,13 +276,11 @@ def couple_job(
         at_rest = control is not None
         speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
     check("speed_start", speed_start, "rad/s")
-    name = "bonded" if structure.bonded else "delaminated"
-    start = float(speed_start)
     if hold is None:
         hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
     check("hold", hold, "s", low=0.0)
-    run = (structure, drive, schedule, scheme, start, float(hold), control)
-    job = CoupleJob(f"couple_{name}", *run, hysteresis or HysteresisSettings())
+    run = (structure, drive, schedule, scheme, float(speed_start), float(hold), control)
+    job = CoupleJob(f"couple_{structure.kind}", *run, hysteresis or HysteresisSettings())
     steps = schedule.duration / scheme.h
     if steps <= MAX_STEPS and job.steps() < 1:
         raise InputError(

@@ -28,11 +28,9 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
-from .couple import couple_job, scheme_from_arguments
+from .couple import KINDS, couple_job, scheme_from_arguments
 from .run import MotorRun, begin_run
 from .schedule import Ramp, check
-
-KINDS = ("bonded", "delaminated")
 
 
 @dataclass(frozen=True)

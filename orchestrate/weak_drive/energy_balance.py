@@ -19,8 +19,6 @@ from .polynomials import (
 )
 from .record import Floats, OscillatorOutputs, Record
 
-ENDS = 5  # accounts that count from the start: the first of `Energies`
-
 
 class Energies(NamedTuple):
     """Store the energies since the start, J: the motor's work and where it has gone."""
@@ -38,13 +36,16 @@ class Energies(NamedTuple):
     defect_sizes: Any
 
 
+ACCOUNTS = Energies._fields[:5]  # what counts from the start
+
+
 class EnergyBalance:
     """Sum up the energies of a coupled run, record after record."""
 
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
         self.sums = np.zeros(3)  # lost by the structure, defects, and their sizes
-        self.start = np.full(ENDS, np.nan)
+        self.start = np.full(len(ACCOUNTS), np.nan)
 
     def add(self, record: Record) -> Energies:
         """Return the energies since the start at all rows of a record, and add them up."""

@@ -25,6 +25,8 @@ from ..running.options import Running
 from ..running.runner import answer
 from . import couple
 from .controllers import Controller
+from .energy_balance import ACCOUNTS
+from .revolutions import COLUMNS
 from .run import MotorRun
 from .schedule import Schedule, check
 
@@ -40,11 +42,7 @@ SAMPLES = {
     "box_position": ("m", "position of the box"),
     "box_velocity": ("m/s", "velocity of the box"),
     "box_acceleration": ("m/s2", "acceleration of the box"),
-    "motor": ("J", "work of the motor since the start"),
-    "box_damper": ("J", "energy lost in the damper of the box since the start"),
-    "impact_loss": ("J", "energy lost in impacts since the start"),
-    "stored": ("J", "energy stored since the start"),
-    "dampers": ("J", "energy lost in the dampers of the masses since the start"),
+    **{name: COLUMNS[name] for name in ACCOUNTS},
 }
 KEPT = "sampled "  # before the names of samples in a table that has revolutions too
 
@@ -79,9 +77,10 @@ class PassageJob(couple.CoupleJob):
         }
         time = {"time": variables.pop("time")}
         of_jumps = revolutions.drop_dims("revolution")
-        state = "bonded" if self.structure.bonded else "delaminated"
-        title = {"title": f"Passage through the resonance, {state} structure", "kept": what}
-        return xr.Dataset(variables, time, {**revolutions.attrs, **title}).merge(of_jumps)
+        title = f"Passage through the resonance, {self.structure.kind} structure"
+        return xr.Dataset(
+            variables, time, {**revolutions.attrs, "title": title, "kept": what}
+        ).merge(of_jumps)
 
     def sample_centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
         """Return the times around which samples are kept, s, and a text on them."""

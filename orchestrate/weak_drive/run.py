@@ -12,7 +12,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -43,23 +43,14 @@ def state_rows(table: Table, rows: slice) -> Table:
     return {name: table[name][rows] for name in table if name.endswith((STATE, MEMORY))}
 
 
-class Memory(Protocol):
-    """What a run goes on from, as numbers."""
-
-    def get_state(self) -> Sequence[float]:
-        """Return the state as a list of floats, to be restored later."""
-
-    def set_state(self, numbers: list[float]) -> None:
-        """Restore the state that :meth:`get_state` returned."""
-
-
 class Run:
     """Step both FMU instances of a master; save and restore all that goes on."""
 
-    def __init__(self, master: Master, inputs: StepInputs, **counted: Memory) -> None:
+    def __init__(self, master: Master, inputs: StepInputs, **counted: Any) -> None:
+        # what is counted is read and set by `get_state` and `set_state`, as numbers
         self.master, self.inputs = master, inputs
         self.oscillator, self.drive = master.oscillator.instance, master.drive.instance
-        self._memories: dict[str, Memory] = {"master": master, "control": inputs, **counted}
+        self._memories: dict[str, Any] = {"master": master, "control": inputs, **counted}
         self._saved = {"oscillator": self.oscillator, "drive": self.drive}
         if not self.drive.description.saves_states:
             self._saved = {}
