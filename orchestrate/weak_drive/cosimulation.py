@@ -63,6 +63,8 @@ Values = tuple[tuple[str, float | bool], ...]
 class Coupling(Run):
     """Both FMUs of a job, stepped together at its step or a part of it."""
 
+    inputs: Inputs
+
     def __init__(
         self,
         job: CosimulateJob,
@@ -74,21 +76,21 @@ class Coupling(Run):
         self.job, self.parts = job, parts
         still = Excitation(frequency=job.structure.omega, amplitude=0.0)
         begin(oscillator, job.structure, still, job.start)
-        self.own = Inputs(job.inputs, drive.description)
-        connection = replace(job.begin_drive(drive, self.own), recorded=job.record)
+        inputs = Inputs(job.inputs, drive.description)
+        connection = replace(job.begin_drive(drive, inputs), recorded=job.record)
         fixed = drive.description.has_fixed_step or drive.description.internal_step
         goes_back = drive.description.has_states and not fixed
         scheme = Scheme(job.step / parts, halves_discarded=goes_back)
         master = Master(oscillator, drive, scheme, connection, inverse_mass=inverse_mass)
         self.divides_first = "box_acceleration" not in connection.links and not fixed
-        super().__init__(master, self.own)
+        super().__init__(master, inputs)
 
     def rows(self, items: range) -> Table:
         """Do the steps of some items; return nodes, cubics, work, and what is recorded."""
         steps = range(items.start * self.parts, items.stop * self.parts)
         recorded = []
         if self.master.connection.recorded and not steps.start:
-            start = [*self.own.start_values().values()]
+            start = [*self.inputs.start_values().values()]
             recorded = [np.array([self.master.recorded(start)])]
         try:
             record = self.record(steps)
@@ -120,15 +122,15 @@ class Coupling(Run):
         """Run both FMUs over some steps, the first one in parts where no acceleration is known."""
         h, divides = self.master.scheme.h, self.divides_first
         if steps.start or not divides:
-            return self.own.run(self.master, steps, h, int(divides))
+            return self.inputs.run(self.master, steps, h, int(divides))
         parts = np.array(BEGINNING) / sum(BEGINNING) * h
-        rows = self.own.rows(np.append(0.0, np.cumsum(parts)), self.master.width)
+        rows = self.inputs.rows(np.append(0.0, np.cumsum(parts)), self.master.width)
         runs = (self.master.run(rows[i : i + 1], h) for i, h in enumerate(parts.tolist()))
         pieces = joined([*runs])
         if self.master.ended:
             raise FmuError(self.master.ended)
         begun = replace(pieces, ends=pieces.ends[-1:], recorded=pieces.recorded[-1:])
-        return joined([begun, self.own.run(self.master, steps[1:], h, 1)])
+        return joined([begun, self.inputs.run(self.master, steps[1:], h, 1)])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -35,14 +35,6 @@ class StepInputs(ABC):
     def run(self, master: Master, steps: range, h: float, first: int = 0) -> Record:
         """Run both FMUs over some steps of one length, which all have from the first one on."""
 
-    def get_state(self) -> Sequence[float]:
-        """Return the control's state, to be restored later."""
-        return self.state
-
-    def set_state(self, numbers: Sequence[float]) -> None:
-        """Restore the state that :meth:`get_state` returned."""
-        self.state = tuple(numbers)
-
 
 class Inputs(StepInputs):
     """The inputs of one drive by name; those with derivatives are last, a controlled one of all."""

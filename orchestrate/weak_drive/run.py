@@ -50,7 +50,7 @@ class Run:
         # what is counted is read and set by `get_state` and `set_state`, as numbers
         self.master, self.inputs = master, inputs
         self.oscillator, self.drive = master.oscillator.instance, master.drive.instance
-        self._memories: dict[str, Any] = {"master": master, "control": inputs, **counted}
+        self._memories: dict[str, Any] = {"master": master, **counted}
         self._saved = {"oscillator": self.oscillator, "drive": self.drive}
         if not self.drive.description.saves_states:
             self._saved = {}
@@ -63,6 +63,7 @@ class Run:
         """Return the complete state of the run as a table of one row."""
         states = {name + STATE: one.save_state().hex() for name, one in self._saved.items()}
         numbers = {name + MEMORY: one.get_state() for name, one in self._memories.items()}
+        numbers["control" + MEMORY] = self.inputs.state
         return {name: np.array([value]) for name, value in {**states, **numbers}.items()}
 
     def set_state(self, table: Table) -> None:
@@ -71,6 +72,7 @@ class Run:
             instance.restore_state(bytes.fromhex(table[name + STATE][-1]))
         for name, one in self._memories.items():
             one.set_state(table[name + MEMORY][-1].tolist())
+        self.inputs.state = tuple(table["control" + MEMORY][-1].tolist())
 
 
 class CoupledJob(Job, ABC):
