@@ -65,10 +65,19 @@ def draw_with_folds(rng: np.random.Generator) -> System:
             return system
 
 
+def smallest_slope(system: System, count: int = 10_001) -> float:
+    """Return the smallest slope d eta0 / d Omega at the resonance; negative with folds."""
+    numerator, denominator = averaged.slope_polynomials(*system)
+    low, peak = averaged.calm_speed(*system), averaged.resonance(*system)
+    near = peak + averaged.resonance_half_width(*system) * np.linspace(-20.0, 20.0, count)
+    speeds = np.concatenate([np.linspace(low, 2.0 * peak, count), near[near > low]])
+    return float((numerator(speeds) / denominator(speeds)).min())
+
+
 def scale_to_slope(system: System, slope: float) -> System:
     """Scale the unbalance so that the branch has a given smallest slope."""
     structure, drive = system
-    share = (1.0 - slope) / (1.0 - averaged.smallest_slope(*system))
+    share = (1.0 - slope) / (1.0 - smallest_slope(system))
     numbers = {
         name: getattr(drive, name)(structure) for name in ("beta", "b", "Omega_b", "D_b")
     } | {"epsilon": drive.epsilon * share}

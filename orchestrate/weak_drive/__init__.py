@@ -13,12 +13,13 @@ module                  idea
 :mod:`.schedule`        the voltage over time
 :mod:`.controllers`     the voltage from the measured speed
 :mod:`.revolutions`     a run as one row per revolution of the motor
-:mod:`.run`             both FMU instances of a run, stepped together
+:mod:`.run`             two FMU instances stepped together, in chunks that go on
 :mod:`.ramp_record`     where the record of a ramp shows a jump, and how
 :mod:`.settled`         whether the speed at a held voltage has settled
 :mod:`.growth`          how fast disturbances of a held motion grow
 :mod:`.hysteresis`      the rule that decides about jumps: voltages held over a ramp, and back
-:mod:`.cosimulate`      the oscillator and any drive that is an FMU
+:mod:`.cosimulation`    the job of the oscillator and any drive that is an FMU
+:mod:`.cosimulate`      the function, its checks and warnings
 :mod:`.couple`          a run of both FMUs under a varying voltage, and its jumps
 :mod:`.couple_all`      many coupled runs at once
 :mod:`.jump_voltages`   jump voltages at rate 0, and on ramps of several rates

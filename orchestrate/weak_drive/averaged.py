@@ -139,15 +139,6 @@ def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, P
     return size**2 - factor * (torque.deriv() * size - torque * size.deriv()), size**2
 
 
-def smallest_slope(structure: Structure, drive: Drive, count: int = 10_001) -> float:
-    """Return the smallest slope d eta0 / d Omega at the resonance; negative with folds."""
-    numerator, denominator = slope_polynomials(structure, drive)
-    low, peak = calm_speed(structure, drive), resonance(structure, drive)
-    near = peak + resonance_half_width(structure, drive) * np.linspace(-20.0, 20.0, count)
-    speeds = np.concatenate([np.linspace(low, 2.0 * peak, count), near[near > low]])
-    return float((numerator(speeds) / denominator(speeds)).min())
-
-
 def growth_rates(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
     """Return a motion's complex growth rates of slow disturbances, the fastest growing first."""
     pull, masses, box = mechanical_polynomials(structure, drive)

@@ -33,7 +33,7 @@ from . import averaged, settling
 from .controllers import Controller
 from .couple import couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
-from .run import Run, begin_run
+from .run import MotorRun, begin_run
 from .schedule import Constant, check
 
 DRIVE_NAMES = tuple(field.name for field in fields(Drive))
@@ -132,8 +132,7 @@ class CaptureJob(Job):
             coordinates[of.name] = variable(of.name, np.array(self.values), of.unit, of.description)
         elif self.over:
             coordinates[self.over] = parameter_variable(self.over, self.over, self.values)
-        state = "bonded" if self.structure.bonded else "delaminated"
-        title = f"Capture at the resonance from rest, {state} structure"
+        title = f"Capture at the resonance from rest, {self.structure.kind} structure"
         return xr.Dataset(variables, coordinates, {"title": title})
 
     def highest_fold(self, system: System) -> float:
@@ -146,7 +145,9 @@ class CaptureJob(Job):
 
 
 def run_until_settled(
-    run: Run, steps: range, outcome: Callable[[np.ndarray, np.ndarray], settling.CaptureOutcome]
+    run: MotorRun,
+    steps: range,
+    outcome: Callable[[np.ndarray, np.ndarray], settling.CaptureOutcome],
 ) -> settling.CaptureOutcome:
     """Simulate a run until its recorded speed decides the outcome, or to its end."""
     times, speeds = np.zeros(0), np.zeros(0)

@@ -8,7 +8,6 @@ one does.
 from __future__ import annotations
 
 import math
-import warnings
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -41,12 +40,6 @@ class Controller(ABC):
         self, measured: Measurement, state: ControllerState
     ) -> tuple[float, ControllerState]:
         """Compute the voltage over one step, V, and the controller's next state."""
-
-    def act(self, measured: Measurement, state: ControllerState) -> tuple[float, ControllerState]:
-        """Call `update` under its old, deprecated name."""
-        text = "Controller.act is called update now; the old name goes with the next release"
-        warnings.warn(text, DeprecationWarning, stacklevel=2)
-        return self.update(measured, state)
 
 
 class InputControl(ABC):

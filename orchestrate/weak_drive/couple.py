@@ -1,13 +1,9 @@
-"""Run structure and motor FMUs under a varying voltage and report where the speed jumps.
-
-The steps of a run follow each other. It is cut into chunks; each hands over the states of both FMUs
-and of the master, so an interrupted run goes on with the same bits.
-"""
+"""Run structure and motor FMUs under a varying voltage; report where the speed jumps."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -30,11 +26,12 @@ from .hysteresis import LOST, UNDECIDED, HysteresisLoop, HysteresisSettings, Jum
 from .master import Scheme
 from .ramp_record import DONE, RampRecord, jump_labels, time_beyond, variables_shown
 from .revolutions import COLUMNS
-from .run import CoupledRun, Run, begin_run
+from .run import MotorJob, MotorRun
 from .schedule import Constant, Ramp, Schedule, check
 
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 DIRECTIONS = ("up", "down")
+KINDS = ("bonded", "delaminated")  # of structures that runs compare
 MIRRORED = {  # where the motor turns backward
     *("jumps", "jump_low", "jump_high", "ramp_voltage", "jump_lag", "averaged_jumps"),
     *("jump_speed", "jump_speed_before", "jump_speed_after", "jump_rate"),
@@ -42,23 +39,13 @@ MIRRORED = {  # where the motor turns backward
 
 
 @dataclass(frozen=True)
-class CoupleJob(CoupledRun):
+class CoupleJob(MotorJob):
     """Run the coupled FMUs in chunks of steps; then decide about jumps by a hysteresis loop."""
 
     asked: ClassVar[str] = "couple"
     hysteresis: HysteresisSettings = field(default_factory=HysteresisSettings)
 
     chunk_size: ClassVar[int] = 4_000
-    sequential: ClassVar[bool] = True
-    gathers: ClassVar[bool] = True  # the hysteresis loop is a chunk of its own
-    item_columns: ClassVar[tuple[str, ...]] = ()  # revolutions, and a state
-    item: ClassVar[str] = "step"
-
-    def count(self) -> int:
-        return self.steps() + 1
-
-    def items(self) -> Sequence[int]:
-        return range(self.count())
 
     def run_here(self, fmus: Fmus) -> Table:
         """Run all chunks one after the other in this process and join their tables."""
@@ -68,49 +55,28 @@ class CoupleJob(CoupledRun):
             previous = tables[-1] if tables else None
             tables.append(self.work(fmus, range(chunk.start, chunk.stop), previous))
         table = {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
-        return {**table, **self.decide_jumps(fmus, table, self.chunk_size)}
-
-    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        """Compute one chunk of communication steps, or the hysteresis loop at the end."""
-        return self.work_on(fmus, items, previous, self.chunk_size, lambda run: run.revolve(items))
-
-    def work_on(
-        self,
-        fmus: Fmus,
-        items: Sequence[int],
-        previous: Table | None,
-        every: int,
-        revolve: Callable[[Run], Table],
-    ) -> Table:
-        """Compute one chunk with a given stepping function and return its final state too."""
-        if items[0] == self.steps():
-            assert previous is not None
-            return self.decide_jumps(fmus, previous, every)
-        with begin_run(self, fmus) as run:
-            if previous is not None:
-                run.set_state(previous)
-            return {**revolve(run), **run.get_state()}
+        return {**table, **self.conclude(fmus, table)}
 
     def progress_note(self, first: int) -> str:
         """Return the progress bar's note for the chunk of the hysteresis loop."""
         return "voltages held at jumps" if first == self.steps() else ""
 
-    def decide_jumps(self, fmus: Fmus, table: Table, every: int) -> Table:
+    def conclude(self, fmus: Fmus, table: Table) -> Table:
         """Hold voltages over each ramp; return its jumps, a row each: 1 for up, and its fields."""
         if self.control is not None:
             return {"jump_rows": np.empty((0, 1 + len(Jump._fields)))}
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
 
-            def start_run(schedule: Schedule) -> Run:
+            def start_run(schedule: Schedule) -> MotorRun:
                 """Reset both FMU instances and start a run with another voltage schedule."""
                 for instance in (oscillator, shaker):
                     instance.reset()
-                return Run(replace(self, schedule=schedule), oscillator, shaker)
+                return MotorRun(replace(self, schedule=schedule), oscillator, shaker)
 
             volts = RampRecord(self, table, True).sense * self.drive.volts(self.structure)
             units = self.scheme.h, self.structure.omega, volts, self.hold
             loop = HysteresisLoop(start_run, self.schedule, *units, self.hysteresis, growth_rate)
-            loop.add_checkpoints(table, every, self.steps())
+            loop.add_checkpoints(table, self.chunk_size, self.steps())
             rows = [
                 (float(up), *jump)
                 for up in (True, False)
@@ -205,10 +171,9 @@ class CoupleJob(CoupledRun):
 
     def attributes(self, table: Table) -> dict[str, str | float]:
         """Return the dataset's title and the relative energy errors of the coupling."""
-        state = "bonded" if self.structure.bonded else "delaminated"
         motor = float(table["motor"][-1])
         return {
-            "title": f"Weak drive, {state} structure: each revolution of the motor",
+            "title": f"Weak drive, {self.structure.kind} structure: each revolution of the motor",
             "missing_over_motor_work": float(table["missing"][-1]) / motor,
             "defects_over_motor_work": float(table["defect_sizes"][-1]) / motor,
         }
@@ -311,13 +276,11 @@ def couple_job(
         at_rest = control is not None
         speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
     check("speed_start", speed_start, "rad/s")
-    name = "bonded" if structure.bonded else "delaminated"
-    start = float(speed_start)
     if hold is None:
         hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
     check("hold", hold, "s", low=0.0)
-    run = (structure, drive, schedule, scheme, start, float(hold), control)
-    job = CoupleJob(f"couple_{name}", *run, hysteresis or HysteresisSettings())
+    run = (structure, drive, schedule, scheme, float(speed_start), float(hold), control)
+    job = CoupleJob(f"couple_{structure.kind}", *run, hysteresis or HysteresisSettings())
     steps = schedule.duration / scheme.h
     if steps <= MAX_STEPS and job.steps() < 1:
         raise InputError(

@@ -23,8 +23,8 @@ from ..response.labels import variable
 from ..running.options import Running
 from ..running.runner import gather
 from . import averaged, couple, own_resonance
+from .couple import KINDS
 
-KINDS = ("bonded", "delaminated")
 System = tuple[Structure, Drive]
 
 

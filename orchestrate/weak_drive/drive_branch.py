@@ -31,6 +31,7 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
+from .couple import KINDS as STRUCTURES
 from .couple import require_motor
 from .drive_tracer import (
     ENDS,
@@ -45,7 +46,6 @@ from .drive_tracer import (
 from .schedule import check
 from .shooting import Shooter
 
-STRUCTURES = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
 BIFURCATIONS = (Kind.FOLD, Kind.FLIP, Kind.TORUS, Kind.TOUCHING, Kind.GRAZING)  # located
 MULTIPLIERS = 4  # the largest ones, that are kept

@@ -28,11 +28,9 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
-from .couple import couple_job, scheme_from_arguments
-from .run import Run, begin_run
+from .couple import KINDS, couple_job, scheme_from_arguments
+from .run import MotorRun, begin_run
 from .schedule import Ramp, check
-
-KINDS = ("bonded", "delaminated")
 
 
 @dataclass(frozen=True)
@@ -85,7 +83,7 @@ class DriveSpectraJob(Job):
             speed = TURN * (len(ends) - 1) / (ends[-1] - ends[0])
             return self.sample_displacements(run, TURN / speed / self.points), float(speed)
 
-    def sample_displacements(self, run: Run, interval: float) -> np.ndarray:
+    def sample_displacements(self, run: MotorRun, interval: float) -> np.ndarray:
         """Run on at equal steps; return both masses' absolute displacements, m, (2, samples)."""
         count = self.revolutions * self.points
         found = run.master.run([self.approach.last] * count, h=interval).at_ends()

@@ -14,14 +14,10 @@ from ..model.structure import Structure
 from .polynomials import (
     end_value,
     integrate_product,
-    integrate_work,
-    matched_cubic,
     matched_quartic,
     normalized_coefficients,
 )
 from .record import Floats, OscillatorOutputs, Record
-
-ENDS = 5  # accounts that count from the start: the first of `Energies`
 
 
 class Energies(NamedTuple):
@@ -40,13 +36,16 @@ class Energies(NamedTuple):
     defect_sizes: Any
 
 
+ACCOUNTS = Energies._fields[:5]  # what counts from the start
+
+
 class EnergyBalance:
     """Sum up the energies of a coupled run, record after record."""
 
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
         self.sums = np.zeros(3)  # lost by the structure, defects, and their sizes
-        self.start = np.full(ENDS, np.nan)
+        self.start = np.full(len(ACCOUNTS), np.nan)
 
     def add(self, record: Record) -> Energies:
         """Return the energies since the start at all rows of a record, and add them up."""
@@ -98,15 +97,7 @@ class EnergyBalance:
         self.sums, self.start = np.array(numbers[:3]), np.array(numbers[3:])
 
 
-def given_work(record: Record) -> Floats:
-    """Return the work that the masses do on the box in each step."""
-    before, after, h = record.before, record.after, record.after["h"]
-    mean, moment = after["box_impulse"] / h, after["box_impulse_moment"] / (h * h)
-    force = matched_cubic(before["box_force"], after["box_force"], mean, moment, h)
-    return np.asarray(integrate_work(force, before["box_velocity"], after.acceleration(), h))
-
-
 def defects(record: Record) -> Floats:
     """Return the work that the box takes, by the drive's account, less what the masses give."""
     taken: Floats = np.diff(record["box_force_work"])
-    return taken - given_work(record)
+    return taken - record.after["given"]

@@ -15,7 +15,7 @@ from ..constants import TURN
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import SOLVER_ERRORS, NoConvergenceError, newton_step, unit_vector
 from . import averaged
-from .run import Run
+from .run import MotorRun
 from .shooting import Shooter
 
 TURNS = (1, 2, 3, 4)  # revolutions after which a motion may repeat
@@ -26,7 +26,7 @@ ITERATIONS = 4  # of Newton's method
 CLEAR = 0.3  # of the widest gap: a period begins where it is wider, far from impacts
 
 
-def growth_rate(run: Run, voltage: float, speed: float) -> float:
+def growth_rate(run: MotorRun, voltage: float, speed: float) -> float:
     """Return the rate, 1/s, at which disturbances of a run's motion grow; NaN if unknown.
 
     Voltage (V) and mean speed (rad/s) are those of the motion. The run is over then.
@@ -36,7 +36,7 @@ def growth_rate(run: Run, voltage: float, speed: float) -> float:
     structure, drive = run.job.structure, run.job.drive
     omega = structure.omega
     length = float(averaged.amplitude(structure, drive, speed / omega)) * drive.length
-    shooter = Shooter((run.oscillator, run.shaker), structure, drive, 1, STEPS, length)
+    shooter = Shooter((run.oscillator, run.drive), structure, drive, 1, STEPS, length)
     shooter.used, shooter.angle = True, run.master["angle"] % TURN
     shooter.begin_together(structure.bonded or run.master.motion.x_rel == 0.0)
     ends = [voltage / shooter.volts, speed / omega]

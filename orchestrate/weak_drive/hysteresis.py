@@ -38,15 +38,11 @@ import numpy as np
 
 from ..running.job import Table
 from .ramp_record import RampRecord
-from .run import Run
+from .run import MotorRun, state_rows
 from .schedule import Course, Schedule
 from .settled import SettledSettings, settled_speed
 
 NONE, LOST, UNDECIDED = range(3)
-SAVED = (
-    *("oscillator_state", "shaker_state", "master_memory"),
-    *("balance_memory", "revolution_memory", "control_memory"),
-)
 
 
 @dataclass(frozen=True)
@@ -98,14 +94,14 @@ class VoltageHolder:
 
     def __init__(
         self,
-        begin: Callable[[Schedule], Run],
+        begin: Callable[[Schedule], MotorRun],
         schedule: Schedule,
         step: float,
         omega: float,
         volts: float,
         longest: float,
         settings: HysteresisSettings | None = None,
-        growth: Callable[[Run, float, float], float] | None = None,
+        growth: Callable[[MotorRun, float, float], float] | None = None,
     ) -> None:
         # `volts` is negative where the motor turns backward; `longest` is the longest hold, s;
         # `growth` returns the rate, 1/s, at which disturbances of a run's motion grow
@@ -117,7 +113,7 @@ class VoltageHolder:
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
         """Store the ramp's saved states by their communication step."""
         for i in range(len(table["master_memory"])):
-            state = {name: table[name][[i]] for name in SAVED}
+            state = state_rows(table, slice(i, i + 1))
             self.checkpoints[min((i + 1) * every, steps)] = state
 
     def state_before(self, step: int) -> Table | None:

@@ -8,26 +8,35 @@ as of the force in :mod:`.master`. A controller gives a cubic.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
 from ..errors import InputError
 from ..fmu.description import Description
 from .connection import Link
-from .controllers import InputControl
+from .controllers import Controller, ControllerState, InputControl, Measurement
 from .master import Master
-from .polynomials import end_derivatives, matched_cubic, mean_value
+from .polynomials import end_derivatives, matched_cubics, mean_value
 from .record import Floats, Record
-from .schedule import Course
+from .schedule import Course, Schedule
 
 Input = Course | InputControl
-
-
 MADE_UP = (-1.5, 2.0, -0.5)  # of a first moment over the step's square, in this step and the next
 
 
-class Inputs:
+class StepInputs(ABC):
+    """What gives a drive's inputs, step by step, and the state of what controls them."""
+
+    state: ControllerState = ()
+
+    @abstractmethod
+    def run(self, master: Master, steps: range, h: float, first: int = 0) -> Record:
+        """Run both FMUs over some steps of one length, which all have from the first one on."""
+
+
+class Inputs(StepInputs):
     """The inputs of one drive by name; those with derivatives are last, a controlled one of all."""
 
     def __init__(self, inputs: Sequence[tuple[str, Input]], drive: Description) -> None:
@@ -70,13 +79,13 @@ class Inputs:
         for i, (_, course) in enumerate(self.cubics):
             first, last, mean, lever = course.over_steps(edges)
             place = self.cubic + 4 * i
-            cubic = matched_cubic(first, last, mean, 0.5 * mean + lever / h**2, h)
-            rows[:, place : place + 4] = np.transpose(cubic)
-            ends[:, place : place + 4] = np.transpose(end_derivatives(cubic, h))
+            cubics = matched_cubics(first, last, mean, 0.5 * mean + lever / h**2, h)
+            rows[:, place : place + 4] = cubics
+            ends[:, place : place + 4] = np.transpose(end_derivatives(tuple(cubics.T), h))
         return rows[earlier:]
 
     def run(self, master: Master, steps: range, h: float, first: int = 0) -> Record:
-        """Run both FMUs over some steps of one length, which all have from the first one on."""
+        """Run both FMUs, each step under what its courses have over it."""
         earlier = min(2, steps.start - first)  # steps whose first moments are made up for in these
         edges = np.arange(steps.start - earlier, steps.stop + 1, dtype=np.float64) * h
         rows = self.rows(edges, master.width, earlier)
@@ -99,6 +108,32 @@ class Inputs:
                 ends = [*end_derivatives(cubic, h)] if self.controls_cubic else values
                 row[count + first : count + first + len(values)] = ends
             yield row
+
+
+class MotorVoltage(StepInputs):
+    """The voltage of our own motor: of a schedule, or what a controller takes of it.
+
+    It is held over each step: that in its middle, or by the speed at its beginning.
+    """
+
+    def __init__(self, schedule: Schedule, controller: Controller | None, speed: float) -> None:
+        self.schedule, self.controller = schedule, controller
+        self.state = controller.begin(speed) if controller else ()
+
+    def run(self, master: Master, steps: range, h: float, first: int = 0) -> Record:
+        """Run both FMUs, each step under its voltage."""
+        volts = (self.schedule.voltage((i + 0.5) * h) for i in steps)
+        if self.controller is None:
+            return master.run([*volts])
+        return master.run_controlled(self._taken(volts, h, master), len(steps))
+
+    def _taken(self, volts: Iterable[float], h: float, master: Master) -> Iterator[list[float]]:
+        """Yield what the controller takes of the voltages, by the speed as each step begins."""
+        assert self.controller is not None
+        for available in volts:
+            seen = Measurement(master.time, master["speed"], available, h)
+            voltage, self.state = self.controller.update(seen, self.state)
+            yield [voltage]
 
 
 def cubic_names(name: str) -> list[str]:

@@ -25,6 +25,8 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from .couple import (
+    DIRECTIONS,
+    KINDS,
     CoupleJob,
     couple_job,
     require_motor,
@@ -37,8 +39,6 @@ from .ramp_record import RampRecord
 from .schedule import Ramp
 
 IGNORED = ("clearance", "e", "e_slope", "gamma")  # by the bonded structure
-KINDS = ("bonded", "delaminated")
-DIRECTIONS = ("up", "down")
 COLUMNS = ("jumps", "jump_low", "jump_high")
 SHOWN = ("voltage", "speed")
 

@@ -27,7 +27,7 @@ from .connection import FORCE, MOTOR, Connection, Link
 from .record import BOX, LEADING, PLACE, OscillatorOutputs, Record
 
 CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
-TIME, IMPACTS = PLACE["time"], PLACE["impacts"]
+TIME = PLACE["time"]
 MOTION, DRIVE = PLACE["x1"], PLACE[BOX[0]]
 END = DRIVE + len(BOX)
 FORCE_PLACE = OscillatorOutputs._fields.index("box_force")
@@ -131,8 +131,8 @@ class Pair(ctypes.Structure):
 def couple_loop() -> Any:
     """Return the C function of the loop, once per process."""
     library = loaded_loop("couple")
-    sizes = (c_uint * 3).in_dll(library, "sizes_of_couple")
-    assert [*sizes] == [ctypes.sizeof(Pair), MOTION, DRIVE]
+    sizes = (c_uint * 4).in_dll(library, "sizes_of_couple")
+    assert [*sizes] == [ctypes.sizeof(Pair), MOTION, DRIVE, END + MOTOR.outputs.index("angle")]
     library.couple.argtypes = [*[c_void_p] * 5, c_int, c_double]
     return library.couple
 
@@ -185,7 +185,7 @@ class Master:
         self.names = (*LEADING, *connection.outputs, *connection.inputs)
         self.inputs = slice(END + len(connection.outputs), len(self.names))
         unknown = [math.nan] * len(connection.inputs)
-        step, motion = [start_time, *[0.0] * (IMPACTS - TIME)], self.oscillator.get()
+        step, motion = [start_time, *[0.0] * (MOTION - TIME - 1)], self.oscillator.get()
         self.drive.put((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())  # its acceleration follows it
         self.row = [*step, *motion, *self.drive.get(), *unknown]
         self.pair = self._described()

@@ -7,7 +7,6 @@ motor's revolutions of it.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -16,19 +15,19 @@ import numpy as np
 from ..constants import TURN
 from ..errors import InputError
 from ..fmu.exported import finder
-from ..fmu.models import OSCILLATOR, SHAKER
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
-from ..running.job import Fmus, Job, Table
+from ..running.job import Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import couple
 from .controllers import Controller
+from .energy_balance import ACCOUNTS
 from .revolutions import COLUMNS
-from .run import Run
+from .run import MotorRun
 from .schedule import Schedule, check
 
 SAMPLES = {
@@ -43,49 +42,31 @@ SAMPLES = {
     "box_position": ("m", "position of the box"),
     "box_velocity": ("m/s", "velocity of the box"),
     "box_acceleration": ("m/s2", "acceleration of the box"),
-    "motor": ("J", "work of the motor since the start"),
-    "box_damper": ("J", "energy lost in the damper of the box since the start"),
-    "impact_loss": ("J", "energy lost in impacts since the start"),
-    "stored": ("J", "energy stored since the start"),
-    "dampers": ("J", "energy lost in the dampers of the masses since the start"),
+    **{name: COLUMNS[name] for name in ACCOUNTS},
 }
 KEPT = "sampled "  # before the names of samples in a table that has revolutions too
 
 
 @dataclass(frozen=True)
-class PassageJob(Job):
+class PassageJob(couple.CoupleJob):
     """Run the coupled FMUs and keep the state after every communication step."""
 
     asked: ClassVar[str] = "passage"
-    run: couple.CoupleJob
-    around: float | None  # time before and after each jump that is kept, s; all where there is none
+    around: float | None = None  # time before and after each jump that is kept, s; else all
 
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk_size: ClassVar[int] = 10_000
-    sequential: ClassVar[bool] = True
-    gathers: ClassVar[bool] = True
     item_columns: ClassVar[tuple[str, ...]] = tuple(KEPT + name for name in SAMPLES)
-    item: ClassVar[str] = "step"
 
-    def items(self) -> Sequence[int]:
-        return self.run.items()
-
-    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        """Compute one chunk of steps with all samples, or the hysteresis loop."""
-
-        def revolve_with_samples(run: Run) -> Table:
-            record = run.record(items)
-            revolutions, energies = run.revolutions.add(record)
-            own = energies._asdict()
-            every = ((own[name] if name in own else record[name])[record.ends] for name in SAMPLES)
-            names = (KEPT + name for name in SAMPLES)
-            return {**revolutions, **dict(zip(names, every, strict=True))}
-
-        return self.run.work_on(fmus, items, previous, self.chunk_size, revolve_with_samples)
+    def rows(self, run: MotorRun, steps: range) -> Table:
+        """Run some communication steps; return their revolutions and all samples."""
+        record = run.record(steps)
+        revolutions, energies = run.revolutions.add(record)
+        own = energies._asdict()
+        every = ((own[name] if name in own else record[name])[record.ends] for name in SAMPLES)
+        return {**revolutions, **{KEPT + n: one for n, one in zip(SAMPLES, every, strict=True)}}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        of_run = {name: table[name] for name in (*COLUMNS, "jump_rows")}
-        revolutions = self.run.dataset(of_run)
+        revolutions = super().dataset(table)
         samples = {name: table[KEPT + name] for name in SAMPLES}
         centres, what = self.sample_centres(revolutions)
         away = np.abs(samples["time"][:, np.newaxis] - centres).min(axis=1, initial=math.inf)
@@ -96,9 +77,10 @@ class PassageJob(Job):
         }
         time = {"time": variables.pop("time")}
         of_jumps = revolutions.drop_dims("revolution")
-        state = "bonded" if self.run.structure.bonded else "delaminated"
-        title = {"title": f"Passage through the resonance, {state} structure", "kept": what}
-        return xr.Dataset(variables, time, {**revolutions.attrs, **title}).merge(of_jumps)
+        title = f"Passage through the resonance, {self.structure.kind} structure"
+        return xr.Dataset(
+            variables, time, {**revolutions.attrs, "title": title, "kept": what}
+        ).merge(of_jumps)
 
     def sample_centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
         """Return the times around which samples are kept, s, and a text on them."""
@@ -110,7 +92,7 @@ class PassageJob(Job):
             return jumps[np.isfinite(jumps)], "around jumps"
         if math.isfinite(passed):
             return np.array([passed]), "around the passage, there is no jump"
-        return np.array([self.run.schedule.duration - self.around]), "the end, there is no jump"
+        return np.array([self.schedule.duration - self.around]), "the end, there is no jump"
 
 
 def passage(
@@ -177,8 +159,8 @@ def passage(
     schedule = couple.schedule_from_arguments(structure, drive, voltage, *settings)
     scheme = couple.scheme_from_arguments(structure, step, sampled=True)
     run = couple.couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
-    name = run.name.replace("couple", "passage")
-    return answer(PassageJob(name, run, around), running, finder(running))
+    fields = {**vars(run), "name": run.name.replace("couple", "passage"), "around": around}
+    return answer(PassageJob(**fields), running, finder(running))
 
 
 def waterfall(

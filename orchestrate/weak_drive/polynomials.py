@@ -7,18 +7,24 @@ of it may be arrays, of many steps.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from ctypes import c_void_p
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..fmu.c_library import loaded_loop
 
 Cubic = tuple[Any, ...]  # four: value and first to third time derivative at a step's beginning
 
 
-def matched_cubic(first: Any, last: Any, mean: Any, moment: Any, h: Any) -> Cubic:
-    """Return the cubic with given end values, mean and first moment over a step."""
-    a1, a2, a3 = last - first, mean - first, moment - 0.5 * first
-    b = 3.0 * a1 + 36.0 * a2 - 60.0 * a3
-    c = -12.0 * a1 - 96.0 * a2 + 180.0 * a3
-    d = 10.0 * a1 + 60.0 * a2 - 120.0 * a3
-    return first, b / h, 2.0 * c / (h * h), 6.0 * d / (h * h * h)
+def matched_cubics(*given: Any) -> NDArray[np.float64]:
+    """Return the cubics, a row each, of end values, means, first moments and lengths of steps."""
+    rows = np.ascontiguousarray(np.transpose(given))
+    found = np.empty((len(rows), 4))
+    addresses = (c_void_p(table.ctypes.data) for table in (rows, found))
+    loaded_loop("couple").matched_cubics(next(addresses), len(rows), next(addresses))
+    return found
 
 
 def end_value(cubic: Cubic, h: Any) -> Any:
@@ -43,13 +49,6 @@ def normalized_coefficients(cubic: Cubic, h: Any) -> Cubic:
     """Convert a cubic's time derivatives to coefficients in s = t/h."""
     f0, f1, f2, f3 = cubic
     return f0, f1 * h, f2 * h * h / 2.0, f3 * h * h * h / 6.0
-
-
-def integrate_work(force: Cubic, velocity: Any, acceleration: Cubic, h: Any) -> Any:
-    """Integrate a cubic force times a velocity over a step; return the work, J."""
-    a0, a1, a2, a3 = acceleration
-    speeds = (velocity, a0 * h, a1 * h * h / 2.0, a2 * h * h * h / 6.0, a3 * h * h * h * h / 24.0)
-    return h * integrate_product(normalized_coefficients(force, h), speeds)
 
 
 def integrate_product(f: Sequence[Any], g: Sequence[Any]) -> Any:

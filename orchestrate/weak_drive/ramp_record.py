@@ -18,7 +18,7 @@ import numpy as np
 from ..model.drive import sense_of
 from ..response.labels import Variable, variable
 from ..running.job import Table
-from .run import CoupledRun
+from .run import MotorJob
 
 COLUMNS_SHOWN = ("time", "voltage", "speed", "amplitude")
 DONE = (0.1, 0.5, 0.9)  # of the slip's fall: where a jump begins, is, and ends
@@ -29,7 +29,7 @@ SMOOTH = 0.5  # rotor times 1/b over which the slip is averaged
 class RampRecord:
     """Read the revolutions of a run in one direction of the voltage."""
 
-    job: CoupledRun  # what was run
+    job: MotorJob  # what was run
     table: Table  # its revolutions, a row each
     up: bool
 

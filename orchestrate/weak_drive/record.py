@@ -34,6 +34,7 @@ class OscillatorOutputs(NamedTuple):
 STEP = (  # of the step that ends here: its length, how often that was halved, its cubic
     *("time", "h", "level", "acceleration_then", "jerk_then", "snap_then", "crackle_then"),
     "impacts",  # since the start
+    "given",  # work that the masses do on the box in the step
 )
 LEADING = (*STEP, *OscillatorOutputs._fields, *BOX)  # then come the drive's outputs and inputs
 PLACE = {name: i for i, name in enumerate(LEADING)}

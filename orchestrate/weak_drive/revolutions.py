@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from ctypes import c_size_t, c_void_p
 
 import numpy as np
 
-from ..constants import TURN
+from ..fmu.c_library import loaded_loop
 from ..model.structure import Structure
 from ..running.job import Table
 from .energy_balance import Energies, EnergyBalance
@@ -45,8 +46,7 @@ class Revolutions:
 
     def __init__(self, structure: Structure) -> None:
         self.structure, self.balance = structure, EnergyBalance(structure)
-        # full turns, s, and impacts so far, at the beginning of the revolution
-        self.turn = self.time = self.impacts = 0.0
+        self.last = np.zeros(3)  # full turns, s, and impacts, at the beginning of the revolution
         # largest since: x1, -x1, position of the box, its negative, and its acceleration's size
         self.largest = np.full(5, NOTHING)
 
@@ -58,7 +58,8 @@ class Revolutions:
         largest = np.stack([of_mass.high, -of_mass.low, of_box.high, -of_box.low, shaken])
         voltage, x1, y = record["voltage"], record["x1"], record["box_position"]
         rows, begin = [], 0
-        for end, time, speed, impacts in self.completed(record):
+        for place, time, speed, impacts in self.completed(record).tolist():
+            end = int(place)
             self._widen(largest[:, begin:end])
             x_high, x_low, y_high, y_low, acceleration = self.largest.tolist()
             ranges = 0.5 * (x_high + x_low), 0.5 * (y_high + y_low)
@@ -69,21 +70,16 @@ class Revolutions:
         table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
         return dict(zip(COLUMNS, table.T.copy(), strict=True)), energies
 
-    def completed(self, record: Record) -> list[tuple[int, float, float, float]]:
+    def completed(self, record: Record) -> Floats:
         """Return where a record completes revolutions: place, time, mean speed, and impacts."""
-        found = []
-        for end, angle in zip(
-            record.ends.tolist(), record["angle"][record.ends].tolist(), strict=True
-        ):
-            turns = angle / TURN
-            if abs(turns - self.turn) < 1.0:
-                continue
-            turn = math.floor(turns) if turns > self.turn else math.ceil(turns)
-            time = float(record["time"][end] - (angle - turn * TURN) / record["speed"][end])
-            mean, impacts = (turn - self.turn) * TURN / (time - self.time), record["impacts"][end]
-            found.append((end, time, mean, float(impacts - self.impacts)))
-            self.turn, self.time, self.impacts = turn, time, float(impacts)
-        return found
+        table, ends = record.columns, record.ends.astype(np.intc)
+        found = np.empty((len(ends), 4))
+        across, along = (c_size_t(stride // table.itemsize) for stride in table.strides)
+        values, places, last, rows = (
+            c_void_p(one.ctypes.data) for one in (table, ends, self.last, found)
+        )
+        find = loaded_loop("couple").find_revolutions
+        return found[: find(values, along, across, places, len(ends), last, rows)]
 
     def _widen(self, largest: Floats) -> None:
         """Add the largest values of some steps to the present revolution."""
@@ -91,9 +87,8 @@ class Revolutions:
 
     def get_state(self) -> list[float]:
         """Return the unfinished revolution as a list of floats, to be restored later."""
-        return [self.turn, self.time, self.impacts, *self.largest.tolist()]
+        return [*self.last.tolist(), *self.largest.tolist()]
 
     def set_state(self, numbers: Sequence[float]) -> None:
         """Restore the state that :meth:`get_state` returned."""
-        self.turn, self.time, self.impacts = numbers[:3]
-        self.largest = np.array(numbers[3:])
+        self.last, self.largest = np.array(numbers[:3]), np.array(numbers[3:])

@@ -1,12 +1,18 @@
-"""Run both FMUs step by step from a schedule; save and restore their states."""
+"""Step two FMU instances together, in chunks of steps that go on with the same bits.
+
+A run is a master with what gives the drive's inputs, step by step. All that it goes on from is one
+row of a table: the states of both FMUs, the numbers of the master, of the inputs' control, and of
+what is counted on the way.
+"""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,11 +22,14 @@ from ..fmu.models import OSCILLATOR, SHAKER
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..running.job import Fmus, Job, Table
-from .controllers import Controller, Measurement
+from .controllers import Controller
+from .inputs import MotorVoltage, StepInputs
 from .master import Master, Scheme
 from .record import Record
 from .revolutions import Revolutions
 from .schedule import Schedule
+
+STATE, MEMORY = "_state", "_memory"  # ends of the columns of a run's state
 
 
 def oscillator_start(structure: Structure) -> dict[str, float | bool]:
@@ -29,9 +38,81 @@ def oscillator_start(structure: Structure) -> dict[str, float | bool]:
     return {**structure.parameters(), **off}
 
 
+def state_rows(table: Table, rows: slice) -> Table:
+    """Return the columns of a run's state alone, at some rows of a table."""
+    return {name: table[name][rows] for name in table if name.endswith((STATE, MEMORY))}
+
+
+class Run:
+    """Step both FMU instances of a master; save and restore all that goes on."""
+
+    def __init__(self, master: Master, inputs: StepInputs, **counted: Any) -> None:
+        # what is counted is read and set by `get_state` and `set_state`, as numbers
+        self.master, self.inputs = master, inputs
+        self.oscillator, self.drive = master.oscillator.instance, master.drive.instance
+        self._memories: dict[str, Any] = {"master": master, **counted}
+        self._saved = {"oscillator": self.oscillator, "drive": self.drive}
+        if not self.drive.description.saves_states:
+            self._saved = {}
+
+    def record(self, steps: range) -> Record:
+        """Run some communication steps; return their record."""
+        return self.inputs.run(self.master, steps, self.master.scheme.h)
+
+    def get_state(self) -> Table:
+        """Return the complete state of the run as a table of one row."""
+        states = {name + STATE: one.save_state().hex() for name, one in self._saved.items()}
+        numbers = {name + MEMORY: one.get_state() for name, one in self._memories.items()}
+        numbers["control" + MEMORY] = self.inputs.state
+        return {name: np.array([value]) for name, value in {**states, **numbers}.items()}
+
+    def set_state(self, table: Table) -> None:
+        """Restore the state in the last row of a table."""
+        for name, instance in self._saved.items():
+            instance.restore_state(bytes.fromhex(table[name + STATE][-1]))
+        for name, one in self._memories.items():
+            one.set_state(table[name + MEMORY][-1].tolist())
+        self.inputs.state = tuple(table["control" + MEMORY][-1].tolist())
+
+
+class CoupledJob(Job, ABC):
+    """Base of a run of two FMUs in chunks of steps; the last item is what concludes from all."""
+
+    chunk_size: ClassVar[int] = 10_000
+    sequential: ClassVar[bool] = True
+    gathers: ClassVar[bool] = True
+    item_columns: ClassVar[tuple[str, ...]] = ()  # nodes or revolutions, and a state
+    item: ClassVar[str] = "step"
+
+    @abstractmethod
+    def steps(self) -> int:
+        """Return the number of communication steps of the run."""
+
+    @abstractmethod
+    def advance(self, fmus: Fmus, steps: range, previous: Table | None) -> Table:
+        """Do some steps from the end of the chunk before; return what they leave, and a state."""
+
+    @abstractmethod
+    def conclude(self, fmus: Fmus, table: Table) -> Table:
+        """Compute what follows from all steps."""
+
+    def count(self) -> int:
+        return self.steps() + 1
+
+    def items(self) -> Sequence[int]:
+        return range(self.count())
+
+    def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
+        """Compute one chunk of communication steps, or what follows from all at the end."""
+        if items[0] < self.steps():
+            return self.advance(fmus, range(items[0], items[-1] + 1), previous)
+        assert previous is not None
+        return self.conclude(fmus, previous)
+
+
 @dataclass(frozen=True)
-class CoupledRun(Job):
-    """Define what determines a coupled run: system, schedule, scheme and control."""
+class MotorJob(CoupledJob):
+    """Define what determines a run of our own motor: system, schedule, scheme and control."""
 
     structure: Structure
     drive: Drive
@@ -46,83 +127,57 @@ class CoupledRun(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
 
     def steps(self) -> int:
-        """Return the number of communication steps of the run."""
+        """Return the number of communication steps of the schedule."""
         return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
+    def advance(self, fmus: Fmus, steps: range, previous: Table | None) -> Table:
+        """Do some steps of a run of its own; return their rows, and its state."""
+        with begin_run(self, fmus) as run:
+            if previous is not None:
+                run.set_state(previous)
+            return {**self.rows(run, steps), **run.get_state()}
 
-class Run:
-    """Step both FMU instances of a coupled run and collect its revolutions."""
+    def rows(self, run: MotorRun, steps: range) -> Table:
+        """Run some communication steps; return what is kept of them."""
+        return run.revolve(steps)
 
-    def __init__(self, job: CoupledRun, oscillator: Instance, shaker: Instance) -> None:
-        self.job, self.oscillator, self.shaker = job, oscillator, shaker
+
+class MotorRun(Run):
+    """A run of our own motor, with its revolutions."""
+
+    def __init__(self, job: MotorJob, oscillator: Instance, shaker: Instance) -> None:
+        self.job, self.revolutions = job, Revolutions(job.structure)
         oscillator.initialize(**oscillator_start(job.structure))
         voltage = job.schedule.voltage(0.0)
         shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
-        self.master = Master(oscillator, shaker, job.scheme)
-        self.revolutions = Revolutions(job.structure)
-        self.control_memory = job.control.begin(job.speed_start) if job.control else ()
+        inputs = MotorVoltage(job.schedule, job.control, job.speed_start)
+        master, balance = Master(oscillator, shaker, job.scheme), self.revolutions.balance
+        super().__init__(master, inputs, balance=balance, revolution=self.revolutions)
 
-    def step_voltage(self, i: int) -> float:
-        """Return the motor's voltage in a step, from the schedule or the controller, V."""
-        h, control = self.job.scheme.h, self.job.control
-        available = self.job.schedule.voltage((i + 0.5) * h)
-        if control is None:
-            return available
-        seen = Measurement(self.master.time, self.master["speed"], available, h)
-        voltage, self.control_memory = control.update(seen, self.control_memory)
-        return voltage
-
-    def record(self, steps: Sequence[int]) -> Record:
+    def record(self, steps: range) -> Record:
         """Run some communication steps; return their record."""
-        if self.job.control is None:
-            record = self.master.run([self.step_voltage(i) for i in steps])
-        else:
-            voltages = ([self.step_voltage(i)] for i in steps)
-            record = self.master.run_controlled(voltages, len(steps))
+        record = super().record(steps)
         if self.master.ended:  # our own drives do not
             raise FmuError(self.master.ended)
         return record
 
-    def revolve(self, steps: Sequence[int]) -> Table:
+    def revolve(self, steps: range) -> Table:
         """Run some communication steps; return the table of completed revolutions."""
         return self.revolutions.add(self.record(steps))[0]
 
-    def speeds(self, steps: Sequence[int]) -> np.ndarray:
+    def speeds(self, steps: range) -> np.ndarray:
         """Run some steps; return the mean speeds of completed revolutions alone, rad/s."""
-        return np.array(
-            [speed for _, _, speed, _ in self.revolutions.completed(self.record(steps))]
-        )
-
-    def get_state(self) -> Table:
-        """Return the complete state of the run as a table of one row."""
-        states = {
-            "oscillator_state": np.frombuffer(self.oscillator.save_state(), dtype=np.uint8),
-            "shaker_state": np.frombuffer(self.shaker.save_state(), dtype=np.uint8),
-            "master_memory": np.array(self.master.get_state()),
-            "balance_memory": np.array(self.revolutions.balance.get_state()),
-            "revolution_memory": np.array(self.revolutions.get_state()),
-            "control_memory": np.array(self.control_memory),
-        }
-        return {name: state[np.newaxis] for name, state in states.items()}
-
-    def set_state(self, table: Table) -> None:
-        """Restore the state in the last row of a table."""
-        self.oscillator.restore_state(table["oscillator_state"][-1].tobytes())
-        self.shaker.restore_state(table["shaker_state"][-1].tobytes())
-        self.master.set_state(table["master_memory"][-1].tolist())
-        self.revolutions.balance.set_state(table["balance_memory"][-1].tolist())
-        self.revolutions.set_state(table["revolution_memory"][-1].tolist())
-        self.control_memory = tuple(table["control_memory"][-1].tolist())
+        return self.revolutions.completed(self.record(steps))[:, 2]
 
 
 @contextmanager
-def begin_run(job: CoupledRun, fmus: Fmus) -> Iterator[Run]:
+def begin_run(job: MotorJob, fmus: Fmus) -> Iterator[MotorRun]:
     """Create both FMU instances, start a run on them and free them at the end."""
     with (
         Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
         Instance(fmus[SHAKER], "shaker") as shaker,
     ):
-        run = Run(job, oscillator, shaker)
+        run = MotorRun(job, oscillator, shaker)
         try:
             yield run
         finally:

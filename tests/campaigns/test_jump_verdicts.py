@@ -26,7 +26,14 @@ from orchestrate.errors import VibroimpactError
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import schedule_from_arguments
 from orchestrate.weak_drive.schedule import Course, Ramp
-from tests.draws import RATES, System, draw_with_folds, ramp_ends, scale_to_slope
+from tests.draws import (
+    RATES,
+    System,
+    draw_with_folds,
+    ramp_ends,
+    scale_to_slope,
+    smallest_slope,
+)
 
 from .findings import expect_none
 
@@ -164,7 +171,7 @@ def theory_problem(system: System, way: str, jumps: Sequence[Jump]) -> str:
     folds = sorted(fold.eta0 for fold in averaged.folds(*system))
     lost = [jump for jump in jumps if jump.decided]
     if limit is None or not folds:
-        is_flat = averaged.smallest_slope(*system) > FLAT
+        is_flat = smallest_slope(system) > FLAT
         return "lost, and in theory no motion is" if lost and is_flat and limit is None else ""
     if folds[-1] - folds[0] < THEORY or len(lost) < len(jumps):
         return ""

@@ -23,14 +23,16 @@
 typedef double Cubic[4];  /* value and three time derivatives at a step's beginning */
 
 enum {  /* places in a row; after the motion of the box the drive's other outputs, and its inputs */
-    TIME, H, LEVEL, THEN, IMPACTS = THEN + 4,
+    TIME, H, LEVEL, THEN, IMPACTS = THEN + 4, GIVEN,
     MOTION, FORCE = MOTION + 4, IMPULSE, MOMENT,
     POSITION = MOTION + 10, VELOCITY, ACCELERATION, WORK, ENERGY,
+    ANGLE = WORK + 4, SPEED,
     PAST = 4,  /* communication points that are remembered where acceleration and velocity are not both connected */
     DISCARD = 2, NOT_WHOLE = -2,  /* statuses, of FMI and our own */
     LAST_TIME = 2, TERMINATED = 3  /* kinds of fmi2GetRealStatus and fmi2GetBooleanStatus */
 };
 static const double WHOLE = 1e-6;  /* of a step: a rest that is rounding, its end was reached */
+static const double TURN = 6.283185307179586;  /* rad */
 
 typedef int (*RealStatus2)(void *, int kind, double *value);
 typedef int (*BooleanStatus2)(void *, int kind, int *value);
@@ -75,7 +77,7 @@ typedef struct {
     double held, owed[2];  /* force in the last step; impulse and first moment about now, N s and N s^2, that the drive lacks */
 } Pair;
 
-EXPORT const unsigned sizes_of_couple[] = {sizeof(Pair), MOTION, POSITION};  /* Python has to have the same */
+EXPORT const unsigned sizes_of_couple[] = {sizeof(Pair), MOTION, POSITION, ANGLE};  /* Python has to have the same */
 
 /* -- calls of the FMUs: true where the run goes on -- */
 
@@ -130,6 +132,11 @@ static void matched_cubic(Cubic f, double first, double last, double mean, doubl
     double c = -12.0 * a1 - 96.0 * a2 + 180.0 * a3;
     double d = 10.0 * a1 + 60.0 * a2 - 120.0 * a3;
     set_cubic(f, first, b / h, 2.0 * c / (h * h), 6.0 * d / (h * h * h));
+}
+
+/* Cubics of rows of end values, mean, first moment and step. */
+EXPORT void matched_cubics(const double (*given)[5], int count, Cubic *found) {
+    for (int i = 0; i < count; i++) matched_cubic(found[i], given[i][0], given[i][1], given[i][2], given[i][3], given[i][4]);
 }
 
 static double work(const Cubic force, double velocity, const Cubic a, double h) {
@@ -306,12 +313,10 @@ static bool discarded(Pair *p) {
     return restore_both(p);
 }
 
-static double relative_defect(Pair *p, const double *now, const double *next, const Cubic acceleration, double h) {
-    Cubic force;
-    force_over(p, force, now, next, h);
+static double relative_defect(const double *now, const double *next) {
     double taken = next[WORK] - now[WORK], given = next[ENERGY] - now[ENERGY];
     double exchanged = size_of(taken) + size_of(given);
-    return exchanged != 0.0 ? size_of(taken - work(force, now[VELOCITY], acceleration, h)) / exchanged : 0.0;
+    return exchanged != 0.0 ? size_of(taken - next[GIVEN]) / exchanged : 0.0;
 }
 
 /* A step from `now` to `next`; where it is refused for its defect, both sides have gone back. */
@@ -341,7 +346,9 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
         acceleration_over(p, acceleration, now, next, h);
     }
     if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h) || !look(p, next, inputs, h)) return false;
-    *defect = p->tolerance != 0.0 ? relative_defect(p, now, next, acceleration, h) : 0.0;
+    exact_force(force, now, next, h);
+    next[GIVEN] = work(force, now[VELOCITY], acceleration, h);
+    *defect = p->tolerance != 0.0 ? relative_defect(now, next) : 0.0;
     *refused = may_refuse && p->tolerance != 0.0 && *defect > p->tolerance;
     if (*refused) return restore_both(p);
     next[TIME] = now[TIME] + h, next[H] = h, next[LEVEL] = now[LEVEL];
@@ -411,4 +418,21 @@ EXPORT int couple(Pair *p, double *now, double *rows, int *ends, const double *i
         ends[i] = (int)((size_t)(at - rows) / width);
     }
     return count;
+}
+
+/* Revolutions of the motor that are complete at the ends of intervals: of each the row, time, mean speed, and impacts. Rows are `along` values apart, columns
+ * `across`. `last` has the full turns, time and impacts at the beginning of the present one. Returns how many there are. */
+EXPORT int find_revolutions(const double *values, size_t along, size_t across, const int *ends, int count, double *last, double (*found)[4]) {
+    int done = 0;
+    for (int i = 0; i < count; i++) {
+        const double *row = values + (size_t)ends[i] * along;
+        double angle = row[ANGLE * across], turns = angle / TURN, turn = (double)(int64_t)turns, impacts = row[IMPACTS * across];
+        if (size_of(turns - last[0]) < 1.0) continue;
+        if (turns > last[0] ? turn > turns : turn < turns) turn += turns > last[0] ? -1.0 : 1.0;
+        double time = row[TIME * across] - (angle - turn * TURN) / row[SPEED * across];
+        double *now = found[done++];
+        now[0] = ends[i], now[1] = time, now[2] = (turn - last[0]) * TURN / (time - last[1]), now[3] = impacts - last[2];
+        last[0] = turn, last[1] = time, last[2] = impacts;
+    }
+    return done;
 }

@@ -6,7 +6,7 @@ import { Rooms } from "./kernel.js";
  * @typedef {"oscillator" | "drive"} Side
  * @typedef {{oscillator: Record<string, number>, drive: Record<string, number>, pair: Record<string, number>, columns: string[],
  *   names: Record<Side, {inputs: string[], outputs: string[]}>, h: number, omega: number}} Start start values, the loop's structure, columns of a row
- * @typedef {{oscillator: Uint8Array, drive: Uint8Array, row: Float64Array, last: {turn: number, time: number, impacts: number}}} Run saved states, last row and revolution
+ * @typedef {{oscillator: Uint8Array, drive: Uint8Array, row: Float64Array, last: Float64Array}} Run saved states and last row, and what there was when the revolution began
  */
 
 const WARNING = 1; // status of FMI
@@ -30,6 +30,7 @@ export class Coupled {
       else this.begin(side, start[side]);
     }
     this.row = this.rooms.array("f64", run?.row ?? columns.map(() => NaN));
+    this.last = this.rooms.array("f64", run?.last ?? 3);
     if (!run) this.beginRow(columns.indexOf("x1"), names.oscillator.outputs);
   }
 
@@ -104,18 +105,31 @@ export class Coupled {
 
   /** All that a run goes on from. */
   memory() {
-    const row = new Float64Array(this.library.view("f64", this.row, this.start.columns.length));
-    return { oscillator: this.save("oscillator"), drive: this.save("drive"), row };
+    const [oscillator, drive] = SIDES.map((side) => this.save(side));
+    const [row, last] = [this.numbers(this.row, this.start.columns.length), this.numbers(this.last, 3)];
+    return { oscillator, drive, row, last };
   }
 
-  /** Steps under given voltages: the row before them, and one for each. @param {number[]} voltages */
+  /** A copy of numbers. @param {number} address @param {number} count */
+  numbers(address, count) {
+    return new Float64Array(/** @type {Float64Array} */ (this.library.view("f64", address, count)));
+  }
+
+  /** Steps under given voltages; the revolutions that they complete. @param {number[]} voltages */
   run(voltages) {
     const { library, rooms, start, row } = this;
     const [width, count] = [start.columns.length, voltages.length];
     const rows = rooms.array("f64", (1 + count) * width);
     /** @type {Float64Array} */ (library.view("f64", rows, width)).set(library.view("f64", row, width));
-    const done = library.calls.couple(this.pair, row, rows, rooms.array("i32", count), rooms.array("f64", voltages), count, start.h);
+    const ends = rooms.array("i32", count);
+    const done = library.calls.couple(this.pair, row, rows, ends, rooms.array("f64", voltages), count, start.h);
     if (done < count) throw new Error(SIDES.map((side) => library.message(MODELS[side])).join(" ").trim() || "the coupled run stopped");
-    return new Float64Array(library.view("f64", rows, (1 + count) * width));
+    const found = rooms.array("f64", 4 * count);
+    const turns = library.calls.find_revolutions(rows, width, 1, ends, count, this.last, found);
+    const [table, voltage] = [this.numbers(rows, (1 + count) * width), start.columns.indexOf("voltage")];
+    return Array.from({ length: turns }, (_, i) => {
+      const [place, time, speed, impacts] = this.numbers(found + 32 * i, 4);
+      return { time, voltage: table[place * width + voltage], speed, impacts };
+    });
   }
 }

@@ -11,7 +11,6 @@ import { waveform } from "./waveform.js";
 /** @typedef {import("./response.js").Response} Response */
 
 const REST = [0, 0, 0, 0];
-const TURN = 2 * Math.PI;
 const SPAN = { periods: 64, points: 1024, highest: 20 };
 
 /**
@@ -118,26 +117,11 @@ function* sound(instance, { point, start, periods, pitch, rate }) {
 function* drive({ library }, { run, start, voltages }) {
   const coupled = new Coupled(library, start, run);
   try {
-    const { found, last } = revolutions(coupled.run(voltages), start.columns, run?.last ?? { turn: 0, time: 0, impacts: 0 });
-    yield { rows: found, run: { ...coupled.memory(), last } };
+    const rows = coupled.run(voltages);
+    yield { rows, run: coupled.memory() };
   } finally {
     coupled.close();
   }
-}
-
-/** Revolutions that are complete in rows of a run: end, voltage, mean speed, impacts. @param {Float64Array} rows @param {string[]} columns @param {Run["last"]} last the one before */
-function revolutions(rows, columns, last) {
-  const found = [];
-  for (let i = columns.length; i < rows.length; i += columns.length) {
-    const [now, voltage, angle, spin, count] = ["time", "voltage", "angle", "speed", "impacts"].map((name) => rows[i + columns.indexOf(name)]);
-    const turns = angle / TURN;
-    if (Math.abs(turns - last.turn) < 1) continue;
-    const turn = turns > last.turn ? Math.floor(turns) : Math.ceil(turns);
-    const time = now - (angle - turn * TURN) / spin;
-    found.push({ time, voltage, speed: ((turn - last.turn) * TURN) / (time - last.time), impacts: count - last.impacts });
-    last = { turn, time, impacts: count };
-  }
-  return { found, last };
 }
 
 /**

@@ -15,7 +15,8 @@ from orchestrate.model import Excitation
 from orchestrate.response.equations import absolute_accelerations
 from orchestrate.response.questions import Point
 from orchestrate.response.spectra import acceleration_spectrum
-from orchestrate.weak_drive.master import IMPACTS, Master, Scheme
+from orchestrate.weak_drive.master import Master, Scheme
+from orchestrate.weak_drive.record import PLACE
 from orchestrate.weak_drive.run import oscillator_start
 
 from ...draws import draw_system
@@ -378,7 +379,7 @@ def test_random_drives_run_to_the_same_last_bit(shown, count):
         expected = coupled_by_python(system, voltages, h)
         mine = coupled_by_the_page(shown, system, voltages, h)
         assert mine.tobytes() == expected.tobytes(), system
-        impacts += int(mine[IMPACTS])
+        impacts += int(mine[PLACE["impacts"]])
     assert impacts > 10 * count
 
 

@@ -3,24 +3,44 @@
 import math
 from ctypes import byref, c_bool, c_double, c_int
 
+from orchestrate.errors import FmuError
 from orchestrate.fmu.channel import ANSWERS, Channel, SimulationEnded, StepAnswer
 from orchestrate.fmu.instance import DISCARD
 from orchestrate.weak_drive.master import (
     DRIVE,
     END,
     FORCE_PLACE,
-    IMPACTS,
     MOTION,
     PAST,
     TIME,
     Master,
 )
-from orchestrate.weak_drive.polynomials import end_derivatives, integrate_work, matched_cubic
+from orchestrate.weak_drive.polynomials import (
+    end_derivatives,
+    integrate_product,
+    normalized_coefficients,
+)
 from orchestrate.weak_drive.record import PLACE, Record
 
 H, LEVEL, THEN = (PLACE[name] for name in ("h", "level", "acceleration_then"))
 VELOCITY, ACCELERATION = DRIVE + 1, DRIVE + 2
 LAST_TIME, TERMINATED = 2, 3  # kinds of fmi2GetRealStatus and fmi2GetBooleanStatus
+
+
+def matched_cubic(first, last, mean, moment, h):
+    """Return the cubic with given end values, mean and first moment over a step."""
+    a1, a2, a3 = last - first, mean - first, moment - 0.5 * first
+    b = 3.0 * a1 + 36.0 * a2 - 60.0 * a3
+    c = -12.0 * a1 - 96.0 * a2 + 180.0 * a3
+    d = 10.0 * a1 + 60.0 * a2 - 120.0 * a3
+    return first, b / h, 2.0 * c / (h * h), 6.0 * d / (h * h * h)
+
+
+def integrate_work(force, velocity, acceleration, h):
+    """Return the work of a cubic force over a step, J."""
+    a0, a1, a2, a3 = acceleration
+    speeds = (velocity, a0 * h, a1 * h * h / 2.0, a2 * h * h * h / 6.0, a3 * h * h * h * h / 24.0)
+    return h * integrate_product(normalized_coefficients(force, h), speeds)
 
 
 def derivatives(times, values, order: int):
@@ -96,8 +116,8 @@ class SteppingChannel(Channel):
         if self.ended:
             raise SimulationEnded(self.ended)
         self.begin()
-        status = self._step(time, h)
-        self.check_step(status, self.answer.last >= time + (1.0 - 1e-6) * h)
+        self.status = self._step(time, h)
+        self.check_step(self.status, self.answer.last >= time + (1.0 - 1e-6) * h)
 
     def save(self):
         if self.kept and not self._reused:
@@ -165,20 +185,24 @@ class PythonMaster(Master):
         if self.row[H] == 0.0 and not self.points[0]:
             self.weights = [self._feel(self.row[MOTION + FORCE_PLACE], inputs)] * 2
             self._remember()
-        rows = self._steps(h, self.scheme.halvings if self.scheme.tolerance else 0)
+        halves = self.scheme.tolerance or self.pair.halves_discarded
+        rows = self._steps(h, self.scheme.halvings if halves else 0)
         rows[-1][TIME] = self.row[TIME] = end
         return rows
 
     def _steps(self, h, halvings: int):
         """Run an interval in steps of its length halved, so that each defect is small."""
         # doubled only on their own grid: the end is met without a rest, lengths are exact
-        level, rows, most, done = int(self.row[LEVEL]), [], 1 << halvings, 0
+        level = int(self.row[LEVEL]) if self.scheme.tolerance else 0
+        rows, most, done = [], 1 << halvings, 0
         while done < most:
             size = most >> level
             row, defect = self._attempt(h / (1 << level), level < halvings)
             if row:
                 rows.append(row)
                 done += size
+                if level:
+                    self.row[self.inputs] = self._later(self.row[self.inputs], h / (1 << level))
                 is_easy = defect < self.scheme.tolerance * self.scheme.easy
                 level -= is_easy and done % (2 * size) == 0 and level > 0
             else:
@@ -200,7 +224,15 @@ class PythonMaster(Master):
                 drive.channel.restore()
             motion = self._oscillate(acceleration, h)
             drive.put(self._force_over(motion, h), inputs)
-            drive.channel.step(now[TIME], h)
+            try:
+                drive.channel.step(now[TIME], h)
+            except FmuError:
+                halves = may_refuse and self.pair.halves_discarded
+                if not halves or drive.channel.status != DISCARD:
+                    raise
+                self.oscillator.restore()
+                drive.channel.restore()
+                return None, math.inf
             later = self._later(inputs, h)
             self.weights[1] = self._feel(motion[FORCE_PLACE], later)
             outputs = self._outputs_at(motion[FORCE_PLACE], later)
@@ -214,15 +246,15 @@ class PythonMaster(Master):
         self.oscillator.restore()
         motion = self._oscillate(acceleration, h)
         outputs = self._outputs_at(motion[FORCE_PLACE], self._later(inputs, h))
-        defect = 0.0
-        if self.scheme.tolerance:
-            defect = self._defect(self._force_over(motion, h), acceleration, outputs, h)
+        force = self._exact_force(motion, h)
+        given = integrate_work(force, now[VELOCITY], acceleration, h)
+        defect = self._defect(outputs, given) if self.scheme.tolerance else 0.0
         if may_refuse and defect > self.scheme.tolerance:
             self.oscillator.restore()
             drive.channel.restore()
             return None, defect
         count = float(self.oscillator.instance.get("impact_count")[0])
-        step = (now[TIME] + h, h, now[LEVEL], *acceleration, count)
+        step = (now[TIME] + h, h, now[LEVEL], *acceleration, count, given)
         if not self.is_whole:
             lacks = motion[5] - self.held * h
             self.owed[1] += h * (self.owed[0] + 0.5 * lacks) - lever(motion, h)
@@ -326,14 +358,12 @@ class PythonMaster(Master):
         h, value = self.row[H], self.row[ACCELERATION]
         slopes = (0.0, 0.0, 0.0, 0.0)
         if h != 0.0:
-            slopes = end_derivatives(tuple(self.row[THEN:IMPACTS]), h)
+            slopes = end_derivatives(tuple(self.row[THEN : THEN + 4]), h)
         return slopes if math.isnan(value) else (value, *slopes[1:])
 
-    def _defect(self, force, acceleration, outputs, h):
+    def _defect(self, outputs, given):
         """Return the energy that a step loses or makes, over the work exchanged in it."""
         work, energy = END, END + 1  # by the drive's own account
         taken = outputs[work - DRIVE] - self.row[work]
-        given = outputs[energy - DRIVE] - self.row[energy]
-        lost = taken - integrate_work(force, self.row[VELOCITY], acceleration, h)
-        exchanged = abs(taken) + abs(given)
-        return abs(lost) / exchanged if exchanged else 0.0
+        exchanged = abs(taken) + abs(outputs[energy - DRIVE] - self.row[energy])
+        return abs(taken - given) / exchanged if exchanged else 0.0

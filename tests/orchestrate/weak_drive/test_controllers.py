@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from orchestrate import InputError, SpeedControl, SpeedGradient, couple, passage
-from orchestrate.weak_drive.controllers import Measurement
 
 from . import bonded
 from .coupled import BEAM, QUICK
@@ -115,10 +114,3 @@ def test_mistakes(make, parts):
     with pytest.raises(InputError) as caught:
         make()
     assert all(part in str(caught.value) for part in parts), str(caught.value)
-
-
-def test_the_old_name_of_update_warns_and_answers_the_same():
-    control = SpeedControl(speed=10.0, gain=0.1, reset_time=1.0)
-    measured, state = Measurement(0.0, 9.0, 12.0, 0.5), control.begin(0.0)
-    with pytest.warns(DeprecationWarning, match="update"):
-        assert control.act(measured, state) == control.update(measured, state)

@@ -11,8 +11,8 @@ from scipy.linalg import expm
 import orchestrate
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu.description import describe
-from orchestrate.weak_drive import cosimulate
-from orchestrate.weak_drive.connection import proposals
+from orchestrate.weak_drive import cosimulate, cosimulation
+from orchestrate.weak_drive.connection import OURS, proposals
 from orchestrate.weak_drive.master import Master
 
 from ...sparing import ordinary
@@ -376,9 +376,9 @@ def tables(monkeypatch, exported, path, **run):
     job = orchestrate.cosimulate(STRUCTURE, path, step=0.01, **{**RUN, "duration": 0.6, **run})
     fmus = {"TwoMassImpactOscillator": exported / "fmi3" / "TwoMassImpactOscillator.fmu"}
     for kind in (Master, PythonMaster):
-        monkeypatch.setattr(cosimulate, "Master", kind)
+        monkeypatch.setattr(cosimulation, "Master", kind)
         table = job.work(fmus, range(60), None)
-        yield {name: part.tobytes() for name, part in table.items() if "states" not in name}
+        yield {name: part.tobytes() for name, part in table.items() if "_state" not in name}
 
 
 @pytest.mark.parametrize(
@@ -404,3 +404,14 @@ def test_controlled_steps_of_fmi_2_have_the_bits_of_python(monkeypatch, exported
     path = exported / "fmi2" / "ElectrodynamicShaker.fmu"
     compiled, python = tables(monkeypatch, exported, path, **run)
     assert compiled == python and np.frombuffer(compiled["recorded 1"]).any()
+
+
+@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
+def test_halves_of_discarded_steps_have_the_bits_of_python(monkeypatch, exported, form):
+    """The command is a cubic, which goes on in the halves."""
+    shaker, times = orchestrate.Shaker.from_file("shaker_1kN"), np.linspace(0.0, 0.6, 61)
+    run = {"inputs": {"command": (times, 3.0 * np.sin(30.0 * times))}, "record": ["current"]}
+    run |= {"parameters": {**shaker.parameters(), "evaluation_limit": 30}, "connect": OURS}
+    path = exported / form / "ElectrodynamicShaker.fmu"
+    compiled, python = tables(monkeypatch, exported, path, **run)
+    assert compiled == python and len(compiled["nodes 1"]) > 1.5 * 60 * 8

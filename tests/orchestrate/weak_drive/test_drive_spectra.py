@@ -10,7 +10,7 @@ from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import couple_job
 from orchestrate.weak_drive.drive_spectra import drive_spectra, voltage_at_resonance
 from orchestrate.weak_drive.master import Scheme
-from orchestrate.weak_drive.run import Run
+from orchestrate.weak_drive.run import MotorRun
 from orchestrate.weak_drive.schedule import Ramp
 
 from .coupled import BEAM, QUICK, state_of
@@ -58,7 +58,7 @@ def test_lines_are_those_of_the_whole_system(quick):
     ramp = Ramp(0.85 * voltage, voltage, SHORT["rate"], settle=300.0, back=False)
     job = couple_job(*QUICK, ramp, Scheme(0.1))
     with Instance(find(OSCILLATOR).path) as oscillator, Instance(find(SHAKER).path) as shaker:
-        run = Run(job, oscillator, shaker)
+        run = MotorRun(job, oscillator, shaker)
         run.revolve(range(round((ramp.duration + SHORT["hold"]) / 0.1)))
         state = state_of(run.master)
         run.master.close()
