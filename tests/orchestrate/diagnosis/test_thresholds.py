@@ -40,7 +40,10 @@ def test_each_threshold_of_the_verdict(findings, name, inside, outside, verdict)
         (2.0, 1.36, 46.0, DELAMINATED),
         (2.0, 1.34, 46.0, UNDECIDED),  # it grows less than 1.35 times
         (2.0, 1.36, 46.0 * math.exp(0.029), DELAMINATED),
+        (4.0, 1.83, 46.0, DELAMINATED),  # the square over two octaves
+        (4.0, 1.81, 46.0, UNDECIDED),
         (2.0, 1.36, 46.0 * math.exp(0.031), UNDECIDED),  # it moves by more than 3 %
+        (2.0, 1.36, 46.0 * math.exp(-0.031), UNDECIDED),
         (1.51, 1.36, 46.0, DELAMINATED),
         (1.49, 1.36, 46.0, UNDECIDED),  # one level, but for a half
     ],
