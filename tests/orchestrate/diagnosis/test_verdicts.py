@@ -110,8 +110,14 @@ def test_what_keeps_a_quiet_record_from_its_verdict_is_named(name):
 
 def test_the_level_from_which_faces_strike_is_stated():
     """Each record was judged by itself, while another level was what settles it."""
-    beam = Beam((QUIET, replace(OPENED, high=8.0, displacement=2e-3)))
+    higher = [replace(OPENED, high=high, displacement=high * 2.5e-4) for high in (16.0, 8.0)]
+    beam = Beam((QUIET, *higher))
     assert beam.opening_level == 8.0 and "Faces strike from 8 m/s" in beam.reason()
+    assert "The response grows with the level at the same resonance." in beam.reason()
+    stiff = Beam((QUIET, replace(higher[1], displacement=1e-3)))
+    assert "does not grow with the level" in stiff.reason()
+    assert "Faces strike from" not in f"{Beam((OPENED,)).reason()} {stiff.reason()}"
+    assert "with the level" not in Beam((OPENED,)).reason()
     assert math.isnan(Beam((QUIET,)).opening_level)
     against = Beam((OPENED, replace(QUIET, high=8.0, displacement=2e-3)))
     assert "contradicts: nothing heard" in against.reason()
