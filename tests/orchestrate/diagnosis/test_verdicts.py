@@ -2,17 +2,14 @@
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from orchestrate.diagnosis.decision_rule import Beam, Findings, factor_outside
-from orchestrate.diagnosis.detect import stated_hypotheses
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import reported_derivatives
 from orchestrate.diagnosis.hypotheses import Delaminated
-from orchestrate.diagnosis.settings import SETTINGS
 
 from .records import BEAM, record
 from .test_impact_timing import FACES
@@ -137,14 +134,6 @@ def test_the_numbers_of_a_record_are_stated():
     assert "two faces differ by 4 times" in Beam((replace(OPENED, sensors=2, apart=4.0),)).reason()
     seen = Beam((OPENED,)).seen_up_to()
     assert "up to 4 m/s\u00b2 from 20 to 90 Hz" in seen and "part by 1 \u00b5m" in seen
-
-
-def test_numbers_are_stated_of_what_describes_a_decided_record():
-    job = SimpleNamespace(sound=[1], data=SimpleNamespace(settings=SETTINGS))
-    for sound, expected in ((3.0, [False, True, False]), (1.0, [False] * 3)):
-        fits = SimpleNamespace(job=job, misfit=np.array([sound, 0.8, 3.1]))
-        assert stated_hypotheses(fits, "delaminated").tolist() == expected
-        assert stated_hypotheses(fits, "no opening seen").tolist() == [sound < 1.2, False, False]
 
 
 def test_a_number_beyond_its_limit_is_not_written_as_the_limit():
