@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.diagnosis.errors import contact_covariance, estimate, squares_beyond_noise
+from orchestrate.diagnosis.errors import contact_covariance, estimate
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fitting import Search, misfit
 from orchestrate.diagnosis.hypotheses import (
@@ -96,20 +96,13 @@ def test_the_part_near_the_resonance_says_the_same_of_a_structure(player):
     assert missed(part, BEAM.replace(f1=30.6), player) > 0.25
 
 
-def test_what_noise_alone_makes_leaves_nothing_hidden_and_a_real_misfit_does():
-    rng = np.random.default_rng(1)
-    changes = [rng.standard_normal((2, 4, 60)) for _ in range(16)]
-    assert squares_beyond_noise(rng.standard_normal((2, 4, 60)), changes) == 0.0
-    assert squares_beyond_noise(2.0 * rng.standard_normal((2, 4, 60)), changes) > 400.0
-
-
 def test_damping_split_and_restitution_are_in_doubt_where_the_contact_is_another():
     values = {"common": 34.0, "log_zeta1": np.log(0.03), "log_zeta2": np.log(0.01), "e": 0.5}
     values["split"] = 0.1
     assert not contact_covariance(values, 0.0).any()
     deviation = np.sqrt(np.diag(contact_covariance(values, 1.0)))
     np.testing.assert_allclose(deviation[1:3] * [0.03, 0.01], 0.02)  # of both, their mean
-    assert deviation[0] == 0.0 and 0.1 < deviation[3] < 0.2 and 0.01 < deviation[4] < 0.03
+    assert deviation[0] == 0.0
     assert not contact_covariance({"f": 34.0, "log_zeta": -4.0}, 1.0).any()
 
 

@@ -8,10 +8,18 @@ import numpy as np
 import pytest
 
 from orchestrate.diagnosis.decision_rule import DELAMINATED, NOT_SEEN, UNDECIDED, Beam
+from orchestrate.diagnosis.detect import stated_hypotheses
+from orchestrate.diagnosis.errors import contact_covariance, squares_beyond_noise
 from orchestrate.diagnosis.even_orders import even_orders, thresholds
+from orchestrate.diagnosis.evidence import Evidence
+from orchestrate.diagnosis.fit import Results
+from orchestrate.diagnosis.fitting import Solution
+from orchestrate.diagnosis.hypotheses import Delaminated
+from orchestrate.diagnosis.search_job import SearchJob
 from orchestrate.diagnosis.settings import SETTINGS
 from orchestrate.diagnosis.wiring import WIRING, LowResponse, is_heard, sensor_notes
 
+from .records import BEAM
 from .test_verdicts import OPENED, QUIET
 
 UNKNOWN = replace(OPENED, strikes=replace(OPENED.strikes, stiffness=math.nan))
@@ -40,7 +48,10 @@ def test_each_threshold_of_the_verdict(findings, name, inside, outside, verdict)
         (2.0, 1.36, 46.0, DELAMINATED),
         (2.0, 1.34, 46.0, UNDECIDED),  # it grows less than 1.35 times
         (2.0, 1.36, 46.0 * math.exp(0.029), DELAMINATED),
+        (4.0, 1.83, 46.0, DELAMINATED),  # the square over two octaves
+        (4.0, 1.81, 46.0, UNDECIDED),
         (2.0, 1.36, 46.0 * math.exp(0.031), UNDECIDED),  # it moves by more than 3 %
+        (2.0, 1.36, 46.0 * math.exp(-0.031), UNDECIDED),
         (1.51, 1.36, 46.0, DELAMINATED),
         (1.49, 1.36, 46.0, UNDECIDED),  # one level, but for a half
     ],
@@ -165,3 +176,89 @@ def test_little_moves_below_a_tenth_of_the_largest_order_1():
     size[30:] = 0.09
     seen = thresholds(windows((size, 0.0)))[0]
     assert np.isfinite(seen[22:28]).all() and np.isnan(seen[33:]).all()
+
+
+@pytest.mark.parametrize(
+    ("sound", "parted", "stated"),
+    [
+        *((1.19, 9.0, "sound"), (1.21, 9.0, "")),  # largest misfit of a sound one,
+        *((9.0, 2.99, "parted"), (9.0, 3.01, "")),  # of a delaminated one,
+        *((1.5, 0.99, "parted"), (1.5, 1.01, "")),  # which is so much smaller
+    ],
+)
+def test_each_threshold_of_stated_numbers(sound, parted, stated):
+    job = SimpleNamespace(sound=[1], data=SimpleNamespace(settings=SETTINGS))
+    fits = SimpleNamespace(job=job, misfit=np.array([sound, parted]))
+    found = [stated_hypotheses(fits, word).tolist() for word in (NOT_SEEN, DELAMINATED)]
+    assert found == [[stated == "sound", False], [False, stated == "parted"]]
+    described = Results.is_described.fget(fits)
+    assert described.tolist() == [sound <= 3.0, parted <= 3.0]
+
+
+def test_errors_of_orders_are_those_of_a_good_model_and_of_what_is_irregular():
+    size, floor, noise = np.full((1, 3), 2.0), np.array([[0.0, 1.0, 0.1]]), np.array([0.2])
+    made = SimpleNamespace(settings=SETTINGS, size=size, floor=floor, noise=noise)
+    expected = np.hypot(0.03 * 2.0, [0.2, 1.5, 0.2])
+    assert Evidence.error.func(made)[0] == pytest.approx(np.tile(expected, (3, 1)))
+
+
+def read_by(gain, delay, error, hertz=100.0):
+    """What is found of a sensor's gain and delay, each window with an error over its size."""
+    made = object.__new__(Evidence)
+    computed = np.full(30, 2.0 + 0.0j)
+    read = gain * computed * np.exp(-2j * np.pi * hertz * delay)
+    made.__dict__.update(
+        settings=SETTINGS,
+        participation=(1.0,),
+        base=np.zeros((3, 30), complex),
+        measured=read[None, None],
+        error=np.full((1, 3, 30), 2.0 * error),
+        frequency=np.full(30, hertz),
+    )
+    return made.sensor_error(0, computed)[1:]
+
+
+def test_a_gain_and_a_delay_are_held_by_their_deviations_where_records_say_little():
+    """An estimate between the record's and none, by the weights of both: a tenth of an error."""
+    gain, _ = read_by(1.05, 0.0, 1.0)
+    assert gain - 1.0 == pytest.approx(0.05 / (1.0 + (0.1 / 0.03) ** 2))
+    _, delay = read_by(1.0, 1e-6, 1.0)
+    assert delay == pytest.approx(
+        1e-6 / (1.0 + (0.1 / (2e-4 * 2.0 * math.pi * 100.0)) ** 2), rel=1e-4
+    )
+    assert read_by(1.119, 0.0, 1e-6)[0] == pytest.approx(1.119)
+    assert read_by(1.13, 0.0, 1e-6)[0] == pytest.approx(1.12)  # the largest
+    assert read_by(1.0, 0.99e-3, 1e-6, 1.0)[1] == pytest.approx(0.99e-3, rel=1e-4)
+    assert read_by(1.0, -1.1e-3, 1e-6, 1.0)[1] == pytest.approx(-1e-3)
+
+
+def test_doubt_about_real_contacts_grows_with_what_the_contact_misses():
+    values = {"e": 0.5, "split": 0.1}
+    for beyond, part in ((0.0225, 0.5), (0.09, 1.0), (1.0, 1.0)):  # of 0.3, squared
+        found = np.sqrt(np.diag(contact_covariance(values, beyond)))
+        assert found == pytest.approx([part * 0.12, part * 0.02])
+    noise = 1e-3 * np.random.default_rng(1).standard_normal((2, 4, 60))
+    for squares, seen in ((1.29, False), (1.31, True)):  # over those of noise
+        assert (squares_beyond_noise(math.sqrt(squares) * noise, [noise]) > 0.0) == seen
+
+
+@pytest.mark.parametrize(
+    ("off", "better", "first"),
+    [
+        *((0.06, 0.981, "guessed"), (0.06, 0.979, "far")),  # one deviation counts 2 %
+        *((0.12, 0.927, "guessed"), (0.12, 0.925, "far")),  # two of them four times as much
+        *((0.6, 0.715, "guessed"), (0.6, 0.713, "far")),  # but no more than 40 %
+    ],
+)
+def test_a_minimum_is_the_better_the_nearer_to_the_guess(monkeypatch, off, better, first):
+    """Its frequencies ``off``, as logarithm, its misfit ``better`` times the other's."""
+
+    def frequencies(self, values, evidence=None):
+        return {"f1": BEAM.f1 * math.exp(values["off"]), "f2": BEAM.f2}
+
+    monkeypatch.setattr(Delaminated, "structure_from_values", frequencies)
+    job = SimpleNamespace(data=SimpleNamespace(settings=SETTINGS), evidence=None)
+    job.guess = frequencies(None, {"off": 0.0})
+    near, far = Solution("guessed", {"off": 0.0}, 1.0), Solution("far", {"off": off}, better)
+    search = SimpleNamespace(hypothesis=Delaminated(BEAM))
+    assert SearchJob.sort_by_misfit_and_guess(job, search, [far, near])[0].name == first

@@ -52,6 +52,20 @@ def test_irregular_responses_are_grouped_by_their_means():
 
 
 @pytest.mark.parametrize(
+    ("other", "alike"),
+    [
+        *(([0, 1.0, np.exp(0.249), 0.0, 0.0], True), ([0, 1.0, np.exp(0.251), 0.0, 0.0], False)),
+        *(([0, 1.0, 1.0, 0.249, 0.0], True), ([0, 1.0, 1.0, 0.0, 0.251], False)),
+        *(([0, 2.24, 1.0, 0.0, 0.0], True), ([0, 2.26, 1.0, 0.0, 0.0], False)),  # a fifth counts
+        *(([0, 1.5, 1.0, 0.2, 0.1], True), ([0, 1.5, 1.0, 0.2, 0.12], False)),  # of both
+    ],
+)
+def test_each_threshold_of_irregular_responses(other, alike):
+    rows = [[0, 1.0, 1.0, 0.0, 0.0], other]
+    assert irregular_clusters(rows, AttractorSettings()).tolist() == [0, 0 if alike else 1]
+
+
+@pytest.mark.parametrize(
     ("eta", "multiplicity", "least", "most"),
     [
         (1.047, 1, 0, 5_000),

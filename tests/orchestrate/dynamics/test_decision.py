@@ -1,10 +1,13 @@
 """What responses settle to: known orbits, copies, long transients, impacts at the sampled phase."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 from orchestrate import orbit
+from orchestrate.dynamics import decision
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.decision import (
     MotionDecider,
@@ -175,3 +178,107 @@ def test_distances_compare_gaps_with_the_gap():
 )
 def test_the_middle_of_the_longest_run_on_a_ring(flags, expected):
     assert middle_of_longest_run(np.array([letter == "1" for letter in flags])) == expected
+
+
+class Scripted(MotionDecider):
+    """Known motions at some distance, that a response comes to or does not, and runs of no FMU."""
+
+    def __init__(self, comes=False, path=(), **settings):
+        self.settings, self.known, self.comes = settling_run(**settings), [], comes
+        self.path = iter(path)  # distances from a motion, now and later
+        self.steps = []
+        self.plain = SimpleNamespace(
+            step=lambda begin, end: self.steps.append(end - begin), get=lambda *names: None
+        )
+        self.eventful, self.point = None, point_of(PAPER, 1.2)
+        self.values, self.system = np.array([1.2]), None
+
+    def motion(self, distance=0.0, decided=ORBIT, multiplicity=1, multiplier=0.5):
+        return SimpleNamespace(
+            nearest=lambda state: (0, distance), nearest_free=lambda state: (0, next(self.path)),
+            decided=decided, multiplicity=multiplicity, multiplier=multiplier, free_phase=0.0,
+            free_states=[None],
+        )  # fmt: skip
+
+    def converges_to(self, state, motion):
+        return self.comes
+
+
+@pytest.mark.parametrize(
+    ("decided", "distance", "comes", "known"),
+    [
+        *((ORBIT, 0.99e-5, False, True), (ORBIT, 1.01e-5, False, False)),  # `same`
+        *((REPEATED, 0.0199, False, True), (REPEATED, 0.0201, True, False)),  # `alike`
+        *((ORBIT, 0.099, True, True), (ORBIT, 0.101, True, False), (ORBIT, 0.05, False, False)),
+    ],
+)
+def test_each_threshold_of_a_known_motion(decided, distance, comes, known):
+    decider = Scripted(comes)
+    motion = decider.motion(distance, decided)
+    decider.known = [motion]
+    assert comes or decider.known_motion_at(REST, 2) is None
+    assert (decider.known_motion_at(REST, 1) is motion) == known
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "comes"),
+    [
+        *((0.99e-5, 1.0, True), (1.01e-5, 1.0, False)),  # it is there: `same`
+        *((0.099, 0.0, True), (0.101, 0.0, False)),  # `near`
+        # after four periods 1/16 is left: at least half as fast is less than 17/32
+        *((0.05, 0.05 * 16.9 / 32.0, True), (0.05, 0.05 * 17.1 / 32.0, False)),
+    ],
+)
+def test_each_threshold_of_a_response_that_comes_to_an_orbit(monkeypatch, before, after, comes):
+    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    decider = Scripted(path=(before, after))
+    assert MotionDecider.converges_to(decider, REST, decider.motion()) == comes
+    periods = sum(decider.steps) / decider.point.excitation.period
+    assert not decider.steps or periods == pytest.approx(4.0)  # a tenth is left by then
+
+
+@pytest.mark.parametrize(("left", "comes"), [(0.99e-9, True), (1.01e-9, False)])
+def test_what_rounding_leaves_of_a_deviation_does_not_count(monkeypatch, left, comes):
+    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    decider = Scripted(path=(1e-9, left), same=1e-12)
+    assert MotionDecider.converges_to(decider, REST, decider.motion(multiplier=1e-9)) == comes
+    turns = Scripted(path=(0.05, 0.0), longest=7)
+    MotionDecider.converges_to(turns, REST, turns.motion(multiplier=0.999, multiplicity=2))
+    assert turns.steps == [pytest.approx(3 * 2 * turns.point.excitation.period)]
+
+
+@pytest.mark.parametrize(("away", "stays"), [(0.99e-5, True), (1.01e-5, False)])
+def test_each_threshold_of_a_run_that_stays_on_an_orbit(monkeypatch, away, stays):
+    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    decider = Scripted(path=(away,))
+    assert decider.stays_on(decider.motion()) == stays
+
+
+@pytest.mark.parametrize(
+    ("away", "impacts", "period", "repeats"),
+    [(0.99e-6, 1, 0, True), (1.01e-6, 1, 0, False), (0.0, 2, 0, False), (0.0, 1, 1, False)],
+)
+def test_an_orbit_is_one_to_which_the_fmu_returns(monkeypatch, away, impacts, period, repeats):
+    """`returns`, with the same impacts and in the same period."""
+    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    decider = Scripted()
+    found = SimpleNamespace(time=[0.0] * impacts)
+    decider.eventful = SimpleNamespace(impacts=lambda begin, end: found, read=lambda *names: None)
+    motion, ends = decider.motion(), iter([(0, 1.0), (period, away)])
+    motion.orbit = SimpleNamespace(sequence=SimpleNamespace(impacts=1))
+    motion.states, motion.nearest_free = [REST], lambda state: next(ends)
+    assert decider.repeats_in_fmu(motion) == repeats
+
+
+@pytest.mark.parametrize(
+    ("nodes", "residual", "found"),
+    [(400, 0.99e-9, True), (401, 0.99e-9, False), (400, 1.01e-9, False)],
+)
+def test_each_threshold_of_newtons_method(monkeypatch, nodes, residual, found):
+    family = SimpleNamespace(orbit=lambda unknowns: "orbit")
+    root = SimpleNamespace(unknowns=None, residual=residual)
+    monkeypatch.setattr(decision, "solve_orbit", lambda *asked: (family, root))
+    monkeypatch.setattr(decision, "why_no_motion", lambda orbit: "")
+    monkeypatch.setattr(decision, "without_copies", lambda orbit: orbit)
+    guess = SimpleNamespace(kinds=range(nodes)), None
+    assert (Scripted().solve(guess) is not None) == found
