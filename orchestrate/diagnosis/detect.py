@@ -256,10 +256,8 @@ class DetectJob(SearchJob):
 def halves_around(resonance: float, settings: Settings) -> Structure:
     """Return halves of equal mass at both sides of a resonance in Hz, as a first guess."""
     f1, f2 = ((1.0 + sign * settings.assumed_apart) * resonance for sign in (-1.0, 1.0))
-    alike = {"zeta1": settings.assumed_damping, "zeta2": settings.assumed_damping}
-    return Structure.from_halves(
-        m1=1.0, m2=1.0, f1=f1, f2=f2, **alike, e=settings.assumed_restitution
-    )
+    zeta, e = settings.assumed_damping, settings.assumed_restitution
+    return Structure.from_halves(m1=1.0, m2=1.0, f1=f1, f2=f2, zeta1=zeta, zeta2=zeta, e=e)
 
 
 def record_variables(orders: RecordOrders) -> dict[str, Variable]:
