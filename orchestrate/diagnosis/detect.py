@@ -45,6 +45,7 @@ UNSIZED = (
     "What decides is that faces strike: two masses describe this structure only so well, and their "
     "numbers are not stated."
 )
+UNFITTED = "Two masses were not fitted: the misfit is the guess's."
 WITHOUT_GUESS = "both halves have the same mass: no guess was given"
 ASSUMED = (
     "the masses of both halves have the ratio of the guess",
@@ -237,7 +238,8 @@ class DetectJob(SearchJob):
         unclear = dict.fromkeys(results.undetermined(best).values()) if stated[best] else ()
         del numbers["asked"]
         unsized = beam.verdict() == DELAMINATED and not stated.any()
-        notes = [beam.reason(), *([UNSIZED] if unsized else []), *(f"{one}." for one in unclear)]
+        said = [UNSIZED] * unsized + [UNFITTED] * (not self.is_worth_a_search)
+        notes = [beam.reason(), *said, *(f"{one}." for one in unclear)]
         return xr.Dataset({**scalars, **every, **numbers}, coordinates).assign_attrs(
             analysis="detect",
             title=f"Verdict: {beam.verdict()}",

@@ -58,7 +58,7 @@ class Strikes:
     """Hold what a sensor's loud windows say of what strikes in them."""
 
     heard: float  # loudest bin over the mean of the quietest third, over the limit of noise
-    base: float  # the same of the base
+    base: float  # the same of the base, the median: of many windows noise makes 4 in one
     locked: float  # circular concentration of the peaks' phases
     one_sided: float  # first circular moment of the power beyond the floor
     blow: float  # median of orders 6 to 12 over order 2
@@ -127,7 +127,7 @@ def strikes_at(
     position, turned = size * np.cos(peak) / size.max(), np.exp(1j * peak[loud])
     return Strikes(
         heard=float(heard[loud].max()),
-        base=float(base[loud].max()),
+        base=float(np.median(base[loud])),
         locked=float(abs(np.average(turned, weights=np.maximum(power[loud], 1e-300)))),
         one_sided=float(np.median(moment[loud])),
         blow=float(np.median(blow[loud])),

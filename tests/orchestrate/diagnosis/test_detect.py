@@ -151,6 +151,7 @@ def test_a_record_without_a_guess_gets_its_verdict_by_halves_around_its_resonanc
     answer = orchestrate.detect(record(BEAM.as_bonded(), noise=0.02, both=False), **LIMIT)
     assert str(answer.verdict.values) == "no opening seen"
     assert "same mass: no guess" in answer.attrs["assumed"]
+    assert "Two masses were not fitted" in answer.attrs["reason"]
     assert answer.attrs["strikes"].startswith("nothing heard (heard ")
     common = float(answer.value.sel(hypothesis="bonded", parameter="f"))
     assert common == pytest.approx(33.79, rel=0.005)

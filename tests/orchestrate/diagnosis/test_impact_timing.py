@@ -51,6 +51,15 @@ def test_windows_as_loud_as_a_part_of_the_loudest_count(monkeypatch, power, lock
     assert strikes_at(None, [0], 40.0, TIMING).locked == pytest.approx(locked, abs=0.01)
 
 
+def test_a_window_in_which_noise_peaks_is_no_base_that_strikes(monkeypatch):
+    """A rubbing sound beam, 14 samples in a period: the base's noise made 3.9 in one of many."""
+    rest = 1.0, 0.0, 0.9, 0.5, 1.0, 0.1, 1.0, 40.0, math.nan
+    for base, expected in (((1.2, 3.9, 1.1), 1.2), ((3.9, 3.8, 1.1), 3.8)):
+        rows = [(3.7, one, *rest) for one in base]
+        monkeypatch.setattr(impact_timing, "timed_windows", lambda *given, rows=rows: iter(rows))
+        assert strikes_at(None, [0], 40.0, TIMING).base == expected
+
+
 @pytest.mark.parametrize(("tail", "expected"), [(TIMING.tail, 0.84), (0.05, 1.13)])
 def test_noise_alone_is_far_below_a_strike(tail, expected):
     """White noise in 10 periods: the loudest of 32 bins over the limit of noise."""
