@@ -41,7 +41,7 @@ and others; complete it by e and clearance."""
         records = [read_record(path, **self.given(InColumns, Reading)) for path in self.records]
         if len(records) == 2 and all("force1" in one and "force2" not in one for one in records):
             print(f"{self.records[1]}: taken for knocks on half 2, as the second record")
-            names = {name: name.replace("1", "2") for name in records[1] if "1" in str(name)}
+            names = {name: str(name).replace("1", "2") for name in records[1] if "1" in str(name)}
             records[1] = records[1].rename(names)
         fits = halves(*records, **self.keywords())
         columns = {"half": [str(half) for half in fits.knocked.values]}
