@@ -14,12 +14,7 @@ from ..units import Units, with_readable_lengths, with_units
 from .face import Command, Options, Question, option
 from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
-from .output import (
-    Files,
-    digest,
-    importing_matplotlib,
-    result_name,
-)
+from .output import Files, digest, importing_matplotlib, result_name
 
 if TYPE_CHECKING:
     from ..model import Structure

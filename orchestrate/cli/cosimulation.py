@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..errors import InputError
 from ..lazy import xr
@@ -106,6 +106,7 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
     """Both FMUs together: the oscillator and a drive of anybody's."""
 
     calls = "cosimulate"
+    renamed: ClassVar = {"units": "unit", "parameters": "parameter", "inputs": "input"}
     examples = """
   {program} cosimulate --drive shaker.fmu --list
   {program} cosimulate --structure beam --drive shaker.fmu --duration 2 --step 1e-3

@@ -17,15 +17,7 @@ from ..units import Units, range_text, text_of, with_readable_lengths, with_unit
 from .face import Command, Options, Question, option
 from .grammar import Listed, with_option_names
 from .options import OfStructure
-from .output import (
-    Files,
-    InColumns,
-    Reading,
-    Results,
-    digest,
-    result_name,
-    unit_note,
-)
+from .output import Files, InColumns, Reading, Results, digest, result_name, unit_note
 from .text import columns_of, parameter_column, table
 
 if TYPE_CHECKING:
@@ -44,7 +36,7 @@ LINES = {  # attributes of a verdict that are printed below it, and what stands 
 
 
 class Sweep(NamedTuple):
-    """Follow responses along the frequency or another parameter: an orbit diagram."""
+    """One sweep of a record's file."""
 
     path: Path
     number: int = 0
@@ -139,11 +131,7 @@ what it gives:
             count = len({one.path for one in records}) + len(refused)
             raise InputError(f"{len(refused)} of {count} records refused: {'; '.join(refused)}")
 
-    def file_stem(
-        self,
-        sweep: Sweep,
-        guess: Structure | None,
-    ) -> str:
+    def file_stem(self, sweep: Sweep, guess: Structure | None) -> str:
         """Return the name of a record's results, unique for content, guess and reading."""
         read_as = [self.channels, self.participation, *self.given(Reading).items()]
         number = f"_sweep{sweep.number}" if sweep.number else ""
@@ -258,11 +246,7 @@ what it gives:
         page = folder / f"{stem}.html"
         print(report(*answers.values(), output=page, notes=self.notes or "", units=units))
 
-    def verdict_lines(
-        self,
-        sweep: Sweep,
-        verdict: xr.Dataset,
-    ) -> Iterator[str]:
+    def verdict_lines(self, sweep: Sweep, verdict: xr.Dataset) -> Iterator[str]:
         """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
         from ..show.verdict import make_verdict
 

@@ -14,7 +14,16 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    ClassVar,
+    Literal,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import cyclopts
 from cyclopts import Parameter
@@ -184,6 +193,7 @@ class Command(Debugging, ABC):
     """A command; calling it runs it, and its docstring stands in the list of commands."""
 
     calls = ""  # the public function, whose keywords are the options of the class itself
+    renamed: ClassVar[dict[str, str]] = {}  # options of other names, by the function's keywords
     examples = ""
 
     def __init__(self, **values: Any) -> None:

@@ -24,6 +24,11 @@ AxisSpec = tuple[str, float, float, int]
 MAX_VALUES = 10_000_000
 RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
 
+KEYWORD = re.compile(  # in messages of public functions, with a value or without
+    r"(?<![\w-])(?P<name>[a-z_]\w*)=(?P<value>\"[^\"]*\"|'[^']*'|\{[^}]*\}|[^\s'\",;)]*)"
+)
+MAPPING_ITEM = re.compile(r"'([^']*)': '([^']*)'")
+
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 
 # -- numbers --------------------------------------------------------------------------------------
@@ -216,25 +221,26 @@ def read_pairs(option: str, texts: Iterable[str], expected: str) -> dict[str, st
     return pairs
 
 
-def with_option_names(message: str, chosen: object) -> str:
-    """Return a message in which keywords are options: ``--unit g`` for ``unit = g``."""
-    options = vars(chosen)
+def with_option_names(message: str, chosen: Any) -> str:
+    """Return a message in which keywords are options: ``--unit g`` for ``unit = 'g'``."""
+    options, renamed = vars(chosen), getattr(chosen, "renamed", {})
+
+    def option_of(name: str) -> str:
+        name = renamed.get(name, name)
+        return f"--{name.replace('_', '-')}" if name in options else ""
 
     def given(keyword: re.Match[str]) -> str:  # at the beginning: what is wrong
         name, joint = keyword["name"], keyword["joint"]
-        if name not in options or (options[name] is None) != (joint == " = None"):
+        if not (flag := option_of(name)) or (options.get(name) is None) != (joint == " = None"):
             return keyword[0]
-        joint = {" = None": " is missing", " = ": " "}.get(joint, joint)
-        return f"--{name.replace('_', '-')}{joint}"
+        return flag + {" = None": " is missing", " = ": " "}.get(joint, joint)
 
     def named(keyword: re.Match[str]) -> str:  # what to do
-        name, value = keyword["name"], keyword["value"].strip("'")
-        spelling = f"--{name.replace('_', '-')}{' ' if value else ''}{value}"
-        return spelling if name in options else keyword[0]
+        value = MAPPING_ITEM.sub(r"\1=\2", keyword["value"]).strip("'{}")
+        return f"{flag} {value}".rstrip() if (flag := option_of(keyword["name"])) else keyword[0]
 
     message = re.sub(r"^(?P<name>[a-z_]\w*)(?P<joint> = None| = |: )", given, message)
-    pattern = r"(?<![\w-])(?P<name>[a-z_]\w*)=(?P<value>\"[^\"]*\"|'[^']*'|[^\s'\",;)]*)"
-    return re.sub(pattern, named, message)
+    return KEYWORD.sub(named, message)
 
 
 # -- ranges and lists -----------------------------------------------------------------------------

@@ -23,10 +23,7 @@ from .grammar import (
     read_earlier_result,
     read_pairs,
 )
-from .options import (
-    Beside,
-    OfStructure,
-)
+from .options import Beside, OfStructure
 from .output import (
     Files,
     Formats,

@@ -250,10 +250,7 @@ class Over(Options):
         excitation = self.read_excitation(structure, si)
         return excitation, ":" in str(getattr(self, self.frequency_option() or "eta"))
 
-    def check_over(
-        self,
-        over: str,
-    ) -> None:
+    def check_over(self, over: str) -> None:
         """Raise unless a parameter of a structure may vary with these options."""
         if over in FREQUENCIES:
             raise InputError(f"--over {over}: expected --{over} VALUES instead")

@@ -11,14 +11,7 @@ from ..lazy import xr
 from .face import Command, option, option_names
 from .grammar import parse_changes, read_earlier_result
 from .options import OfStored
-from .output import (
-    HowRun,
-    InColumns,
-    InFolder,
-    InUnits,
-    Reading,
-    check_output,
-)
+from .output import HowRun, InColumns, InFolder, InUnits, Reading, check_output
 from .stored import print_difference, structure_of
 
 if TYPE_CHECKING:

@@ -16,12 +16,7 @@ from .answer import Asked, Overlay, is_curve
 from .drive import OfMotor, OfVoltage
 from .face import Question, option
 from .grammar import is_single_number, parse_changes, parse_listed
-from .options import (
-    Beside,
-    OfBox,
-    OfStructure,
-    Over,
-)
+from .options import Beside, OfBox, OfStructure, Over
 from .output import Files, OfBoth, Results, Stored, digest
 from .text import (
     MOST_ROWS,

@@ -68,8 +68,6 @@ def safe_outputs() -> Iterator[SafeStream]:
     nowhere = io.StringIO()  # in place of one that was closed
     streams = [SafeStream(stream or nowhere) for stream in before]
     sys.stdout, sys.stderr = streams  # type: ignore[assignment]
-    with suppress(AttributeError, ValueError):  # letters that its encoding lacks are spelled out
-        before[0].reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
     try:
         yield streams[0]
     finally:

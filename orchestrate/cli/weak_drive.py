@@ -206,13 +206,8 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         own = user_fmus(self.fmu)
         fmus = [find(name, "fmi2", self.build_folder, own.get(name)).path for name in job.models]
         voltage, speed = job.schedule.voltage(0.0), job.speed_start
-        return write_ssp(
-            *(path, job.structure, drive),
-            voltage=voltage,
-            speed_start=speed,
-            fmus=fmus,
-            version=self.ssp_version,
-        )
+        start: Any = {"voltage": voltage, "speed_start": speed}
+        return write_ssp(path, job.structure, drive, **start, fmus=fmus, version=self.ssp_version)
 
 
 UNDECIDED, NEITHER = "undecided", "settled at the resonance"

@@ -167,7 +167,7 @@ def test_a_branch_over_the_frequency_takes_g_at_its_start(ask):
     )
     out = ask(*asked, "--g", "0.02").success().out
     assert out.startswith(
-        "--g 0.02: is --amplitude 1.82481e-05 at 16.5 Hz, constant along the branch"
+        "--g 0.02: is --amplitude 1.82483e-05 at 16.5 Hz, constant along the branch"
     )
-    same = ask(*asked, "--amplitude", "1.82481e-05").success().out
+    same = ask(*asked, "--amplitude", "1.82483e-05").success().out
     assert same.splitlines()[:2] == out.splitlines()[1:3]

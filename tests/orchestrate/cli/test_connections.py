@@ -88,7 +88,7 @@ BAD = {  # options, and what the line says
     "derivative alone": ("plain", [A, "box_force_1=force"], "and box_force"),
     "unit": ("units", [A, F], "acc of the FMU Linear is in mm"),
     "unit by its name": ("named", ["box_velocity=acc", F], "in mm/s2; box_velocity expects m/s ("),
-    "unit that is not known": ("strange", [A, F], "state it, as units={'acc': 'm/s2'}"),
+    "unit that is not known": ("strange", [A, F], "state it, as --unit acc=m/s2"),
     "unit of nothing": ("plain", [A, F, "--unit", "acc=fathom"], "units: acc = 'fathom'; expected"),
     "unit of another kind": ("plain", [A, F, "--unit", "acc=N"], "acc of the FMU Linear is in N"),
     "unit in brackets of nothing": ("plain", ["box_acceleration=acc[fathom]", F], "acc = 'fathom'"),
