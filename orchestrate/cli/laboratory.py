@@ -187,8 +187,9 @@ class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
         }
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        driven = [name for name in ("box_acceleration", "force1", "force2") if name in data]
-        yield from extents(data, f"{driven[0]} a1_abs a2_abs x_rel")
+        channels = "box_acceleration", "force1", "force2"
+        driven = [name for name in channels if name in data and data[name].any()]
+        yield from extents(data, f"{' '.join(driven)} a1_abs a2_abs x_rel")
         if "transient_time" in data:
             yield f"a linear transient decays within {float(data.transient_time):.3g} s"
         elif data.control_aborted.notnull():

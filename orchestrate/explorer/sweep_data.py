@@ -18,7 +18,7 @@ from ..fmu.webassembly import kernel_digest
 from ..lazy import xr
 from ..model import Excitation, Structure
 from ..model.ranges import PUSHES
-from ..running.job import refuse_family
+from ..running.job import refuse_family, refuse_unknown
 from ..running.store import load
 from ..units import Units
 
@@ -73,8 +73,8 @@ def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     """Return a sweep dataset of a direction as ``SweepData``, after :func:`check_sweep`."""
     structure = Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
     refuse_family("the explorer", structure)
-    if any(name in data.coords or data.attrs.get(name, 0.0) != 0.0 for name in PUSHES):
-        raise InputError(f"{', '.join(PUSHES)}: the explorer does not know them yet; expected none")
+    varied = {name: "varied" for name in PUSHES if name in data.coords}
+    refuse_unknown("the explorer", {name: data.attrs.get(name) for name in PUSHES} | varied)
     directions = ("up", "down") if direction == "both" else (direction,)
     (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
     data = data.sortby(parameter)

@@ -26,9 +26,15 @@ PLAYED = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force")
 class Player(EventInstance):
     """Oscillator FMU instance that simulates motions under inputs given as cubics."""
 
-    def start(self, structure: Structure, start: ArrayLike = REST) -> None:
-        """Initialise a structure's motion at time 0 from a start state, its box at rest."""
-        begin(self, structure, Excitation(frequency=structure.omega, amplitude=0.0), start)
+    def start(
+        self, structure: Structure, start: ArrayLike = REST, beside: Excitation | None = None
+    ) -> None:
+        """Initialise a structure's motion at time 0 from a start state.
+
+        ``beside``: what acts beside the cubics; by default the box is at rest.
+        """
+        at_rest = Excitation(frequency=structure.omega, amplitude=0.0)
+        begin(self, structure, beside or at_rest, start)
 
     def play(
         self,

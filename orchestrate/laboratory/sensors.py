@@ -13,7 +13,8 @@ from ..errors import InputError
 from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer, checked_word
-from ..model.ranges import ADDED, STRUCTURE, Quantity, plain
+from ..model.ranges import ADDED, PUSHES, STRUCTURE, Quantity, plain
+from ..running.job import refuse_family, refuse_unknown
 from .analog_filter import AnalogFilter, Cells, Floats, anti_aliasing, in_series, low_pass
 from .pieces import Pieces
 from .reconstruction import Motion, SmoothParts, smooth_parts
@@ -185,6 +186,8 @@ def measure(
     (5121, True)
     """
     structure = structure_of(history)
+    refuse_family("measure", structure)
+    refuse_unknown("measure", {name: history.attrs.get(name) for name in PUSHES})
     drives = driven_channel(history)
     sensors = sensor_by_channel(sensor, (drives, *list(ACCELERATIONS)[1:]))
     rate = next(iter(sensors.values())).rate
@@ -251,7 +254,7 @@ def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Piec
 
 def driven_channel(history: xr.Dataset) -> str:
     """Return which channel of a history drives it; raise if there is none."""
-    for name in ("box_acceleration", *FORCES):
+    for name in (*FORCES, "box_acceleration"):
         if name in history and history[name].dims == ("time",):
             return name
     raise InputError("history: expected an answer of shake or simulate, with what drives it")

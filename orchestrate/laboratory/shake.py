@@ -14,20 +14,22 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 from ..fmu import OSCILLATOR, PLAYED, Player
 from ..lazy import Unpack, xr
-from ..model import Shaker, Structure
-from ..model.arguments import checked_positive
-from ..response.equations import absolute_accelerations, accelerations_with
+from ..model import Excitation, Shaker, Structure
+from ..model.arguments import Number, checked_positive
+from ..model.ranges import PUSHES
+from ..response.equations import accelerations_with
 from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import Question, checked_state, checked_structure
 from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
-from ..running.job import Table
+from ..running.job import Table, refuse_unknown
 from ..running.options import Running
 from .level_control import LevelControl, shake_on
 from .pieces import Pieces
-from .record import CHANNELS, unit_of_channel
+from .record import CHANNELS, FORCES, unit_of_channel
 from .signals import ExcitationSignal
 
+BOX = "box_acceleration"
 MOST_SAMPLES = 100_000_000
 DECAYED = 1e-3  # what is left of the free vibration from the start where it counts as over
 
@@ -53,6 +55,7 @@ class ShakeJob(Question):
     sequential: ClassVar[bool] = True
     item_columns: ClassVar[tuple[str, ...]] = ()  # samples, impacts, and a state
     item: ClassVar[str] = "piece"
+    takes_family: ClassVar[bool] = True
 
     @property
     def pieces(self) -> Pieces:
@@ -81,33 +84,52 @@ class ShakeJob(Question):
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Compute the motion over some pieces, and the FMU's state to go on from."""
         pieces, first, last = self.pieces, items[0], items[-1] + 1
+        cubics, drives = pieces.derivatives[first:last], self.excitation.drives
+        if drives == BOX:
+            cubics = cubics + [self.box_acceleration, 0.0, 0.0, 0.0]
         nodes = pieces.nodes[first : last + 1]
         samples = self.times(nodes[0], math.inf if last == self.count() else nodes[-1])
         with Player(fmus[OSCILLATOR]) as player:
-            player.start(self.structure, self.start)
+            player.start(self.structure, self.start, self.beside)
             if previous is not None:
                 player.restore_state(previous["fmu_state"][-1].tobytes())
-            drives = self.excitation.drives
-            played = player.play(nodes, pieces.derivatives[first:last], samples, drives=drives)
+            played = player.play(nodes, cubics, samples, drives=drives)
             kept = np.frombuffer(player.save_state(), dtype=np.uint8)[np.newaxis]
-        driven = pieces(samples)
+        driven = self.driven(samples)
+        forces = np.stack([driven[name] for name in FORCES], axis=1) if self.forced else None
         motion = played.rows[:, :4], self.structure, played.touching
-        if drives == "box_acceleration":
-            one, two = absolute_accelerations(*motion).T
-        else:
-            forces = np.outer(driven, [drives == "force1", drives == "force2"])
-            one, two = accelerations_with(forces, *motion).T
+        one, two = accelerations_with(forces, *motion, driven[BOX]).T
         return {
             **dict(zip(PLAYED, played.rows.T, strict=True)),
             **{"in_contact": played.touching, "a1_abs": one, "a2_abs": two},
-            drives: driven,
+            **driven,
             **impact_columns(played.impacts, self.structure),
             "fmu_state": kept,
         }
 
+    @property
+    def beside(self) -> Excitation:
+        """What acts beside the excitation."""
+        pushes = {name: getattr(self, name) for name in PUSHES}
+        return Excitation(frequency=self.frequency, amplitude=0.0, **pushes)
+
+    @property
+    def forced(self) -> bool:
+        """Whether a force acts on a mass."""
+        return self.excitation.drives in FORCES or any(getattr(self, name) for name in FORCES)
+
+    def driven(self, times: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """Return the box's acceleration and both forces, excitation and what acts beside it."""
+        given = {BOX: np.full(len(times), self.box_acceleration)}
+        harmonic = np.sin(self.frequency * times)
+        given |= {name: getattr(self, name) * harmonic for name in FORCES}
+        given[self.excitation.drives] = given[self.excitation.drives] + self.pieces(times)
+        return given
+
     def dataset(self, table: Table) -> xr.Dataset:
         """Return histories, impacts, and what is known of the excitation."""
         drives = self.excitation.drives
+        acting = [name for name in CHANNELS if name in (BOX, drives) or getattr(self, name, 0.0)]
         columns = [*PLAYED, "a1_abs", "a2_abs"]
         contact = "whether the masses are in permanent contact"
         unit, word = unit_of_channel(drives), CHANNELS[drives]
@@ -116,7 +138,10 @@ class ShakeJob(Question):
         return make_dataset(
             {
                 **{name: variable("time", table[name], *IN_TIME[name]) for name in columns},
-                drives: variable("time", table[drives], unit, word),
+                **{
+                    name: variable("time", table[name], unit_of_channel(name), CHANNELS[name])
+                    for name in acting
+                },
                 "in_contact": yes_or_no("time", table["in_contact"], contact),
                 **impact_variables(table),
                 "excitation_error": variable((), self.pieces.error, unit, error),
@@ -133,7 +158,8 @@ def transient_time(structure: Structure) -> float:
     """Return how long the slowest free vibration takes to decay to a thousandth, s."""
     both = (structure.m1 + structure.m2, structure.k1 + structure.k2, structure.d1 + structure.d2)
     alone = ((structure.m1, structure.k1, structure.d1), (structure.m2, structure.k2, structure.d2))
-    oscillators = (both,) if structure.bonded else (*alone, both)
+    free = alone[:1] if structure.wall else (*alone, both)
+    oscillators = (both,) if structure.bonded else free
     rates = [float(-np.roots((m, d, k)).real.max()) for m, k, d in oscillators]
     slowest = min(rates)
     return -math.log(DECAYED) / slowest if slowest > 0.0 else math.inf
@@ -145,6 +171,10 @@ def shake(
     excitation: ExcitationSignal | LevelControl,
     *,
     sample_rate: float | None = None,
+    box_acceleration: Number = 0.0,
+    force1: Number = 0.0,
+    force2: Number = 0.0,
+    frequency: Number = 0.0,
     shaker: Shaker | None = None,
     start: ArrayLike | None = None,
     accuracy: Annotated[float, checked_accuracy] = 1e-6,
@@ -155,12 +185,18 @@ def shake(
     Parameters
     ----------
     structure : Structure
-        Delaminated or bonded.
+        Delaminated or bonded; against a wall or in a play.
     excitation : SweptSine, SteppedSine, Random, Shock, Sampled or Hammer
         The box's acceleration, or knocks on a half with the box at rest; ``one + other`` is both
         together.
     sample_rate : float, optional
         Of the record, Hz; by default what the excitation needs. The motion does not depend on it.
+    box_acceleration : float
+        Constant acceleration of the box beside the excitation, m/s2: gravity.
+    force1, force2 : float
+        Amplitudes of harmonic forces on the masses beside it, N: F sin(frequency t).
+    frequency : float
+        Of these forces, rad/s.
     shaker : Shaker, optional
         What moves the box. Its table has the level of a swept or stepped sine by a
         :class:`orchestrate.LevelControl`, which may be given as ``excitation``, and the shaker's
@@ -176,9 +212,9 @@ def shake(
     Returns
     -------
     xarray.Dataset
-        Over ``time`` in s: ``box_acceleration``, of a hammer ``force1`` or ``force2`` in N in place
-        of it; ``a1_abs``, ``a2_abs``, accelerations of the
-        masses in space between impacts; ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``, ``v_rel``
+        Over ``time`` in s: ``box_acceleration``, and of a hammer or a harmonic force ``force1`` or
+        ``force2`` in N; ``a1_abs``, ``a2_abs``, accelerations of the masses in space between
+        impacts; ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``, ``v_rel``
         relative to the box; ``contact_force`` in N and ``in_contact``. Over ``impact``:
         ``impact_time``, ``impact_velocity``, ``impulse`` in N s and ``sticks``. Scalars:
         ``excitation_error`` in m/s2 or N and ``transient_time`` in s, after which the start is
@@ -205,7 +241,9 @@ def shake(
     >>> history.sizes["time"], history.sizes["impact"]
     (2001, 94)
     """
+    pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
     if shaker is not None:
+        refuse_unknown("a shaker", pushes)
         return shake_on(structure, excitation, shaker, sample_rate, start, running)
     if not isinstance(excitation, ExcitationSignal):
         kinds = "expected a SweptSine, SteppedSine, Random, Shock, Sampled or Hammer, or a sum"
@@ -219,5 +257,20 @@ def shake(
             f"sample_rate = {rate!r} Hz: expected at most {most:.3g} for that duration"
         )
     start = checked_state("start", start, checked_structure(structure))
+    beside = {"frequency": frequency or structure.omega, "amplitude": 0.0, **pushes}
+    check_forces(structure, Excitation(**beside), bool(frequency), excitation.drives)
     name = f"shake_{type(excitation).__name__}_{structure.label()}"
-    return as_given(name=name, sample_rate=rate, start=start)
+    return as_given(name=name, sample_rate=rate, start=start, frequency=beside["frequency"])
+
+
+def check_forces(
+    structure: Structure, beside: Excitation, has_frequency: bool, drives: str
+) -> None:
+    """Raise ``InputError`` unless forces have a mass to act on, and harmonic ones a frequency."""
+    for name in FORCES:
+        value = getattr(beside, name)
+        if value and not has_frequency:
+            raise InputError(f"{name} = {value!r}: without its frequency; expected frequency= too")
+    if beside.force2 or drives == "force2":
+        structure.needs_mass_2("force2")
+    beside.check(structure)

@@ -36,27 +36,27 @@ def accelerations_under(
     """Return both masses' absolute accelerations, as accelerometers read between impacts."""
     structure, excitation = point
     forces = (excitation.force1, excitation.force2)
-    if not (structure.wall or structure.stroke or any(forces)):
-        return absolute_accelerations(states, structure, touching)
-    loads = np.outer(np.sin(phase), forces)
+    loads = np.outer(np.sin(phase), forces) if any(forces) else None
     return accelerations_with(
         loads, states, structure, touching, acceleration_of_box(excitation, phase)
     )
 
 
 def accelerations_with(
-    forces: Floats,
+    forces: Floats | None,
     states: Floats,
     s: Structure,
     touching: Flags | None = None,
     box: ArrayLike = 0.0,
 ) -> Floats:
     """Return the same under forces on both masses in N, with a wall that moves as the box."""
+    if forces is None and not (s.wall or s.stroke):
+        return absolute_accelerations(states, s, touching)
     if touching is None:
         gap = gap_between(states, s.gap_offset)
         touching = (gap == 0.0) | ((s.stroke > 0.0) & np.isclose(gap, s.stroke, 1e-14, 0.0))
         touching &= states[:, 2] == states[:, 3]
-    loads = forces - states[:, :2] * (s.k1, s.k2)
+    loads = (0.0 if forces is None else forces) - states[:, :2] * (s.k1, s.k2)
     loads -= states[:, 2:] * (s.d1, s.d2)
     apart, both = loads / (s.m1, s.m2), loads.sum(axis=1) / (s.m1 + s.m2)
     if s.wall:

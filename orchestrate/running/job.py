@@ -138,12 +138,17 @@ class Job(ABC):
 
 def refuse_family(asked: str, structure: Any) -> None:
     """Raise ``InputError`` if a structure has a wall or a stroke; ``asked``: by which function."""
-    for name in ("wall", "stroke"):
-        value = getattr(structure, name, None)
-        if isinstance(value, (bool, float)) and value and not structure.bonded:
-            raise InputError(
-                f"{name} = {value!r}: {asked} does not know it yet; expected a question without it"
-            )
+    given = {name: getattr(structure, name, None) for name in ("wall", "stroke")}
+    known = all(isinstance(value, (bool, float)) for value in given.values())
+    refuse_unknown(asked, given if known and not structure.bonded else {})
+
+
+def refuse_unknown(asked: str, given: Mapping[str, Any]) -> None:
+    """Raise ``InputError`` if anything given is not zero that a function does not know."""
+    for name, value in given.items():
+        if value:
+            text = f"{asked} does not know it yet; expected a question without it"
+            raise InputError(f"{name} = {value!r}: {text}")
 
 
 def last_entries(table: Table) -> Table:

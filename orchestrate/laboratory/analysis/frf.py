@@ -124,11 +124,12 @@ def frf(
 
 def what_drives(record: xr.Dataset, channels: Channels) -> tuple[str, Floats]:
     """Return name and values of the channel that excites: the box's, or a force."""
-    if BOX in channels.names:
+    if BOX in channels.names and np.ptp(channels.box) > 0.0:
         return BOX, channels.box
     given = [name for name in FORCES if name in record]
     if len(given) != 1:
-        lacking = " and ".join(given) if given else f"no {BOX}"
+        steady = f"{BOX} does not change" if BOX in channels.names else f"no {BOX}"
+        lacking = " and ".join(given) or steady
         text = f"expected {BOX} over time, in m/s2, or one of force1 and force2, in N"
         raise InputError(f"record: {lacking}; {text}")
     return given[0], finite(given[0], record[given[0]], channels.time)

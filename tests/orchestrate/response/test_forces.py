@@ -184,13 +184,15 @@ def test_starts_lie_where_the_masses_can_be():
         orchestrate.sweep(KINDS["play"], **sweep, start=[0.0, 0.3, 0.0, 0.0])
 
 
-@pytest.mark.parametrize("kind", ["two masses", "wall and play"])
+@pytest.mark.parametrize("kind", KINDS)
 def test_attractors_basins_and_sections_agree(kind):
-    """By orbits with forces and gravity; with a wall or a stroke by states that repeat."""
+    """By orbits with forces and gravity, at a wall and at both ends of a stroke."""
     structure = KINDS[kind]
     asked = {**BOX, **pushes_of(structure), **QUICK}
     found = orchestrate.attractors(structure, **asked, starts=6).isel(frequency=0)
-    assert np.isnan(found.multiplier).all() == bool(structure.wall)
+    orbit = orchestrate.orbit(structure, **asked, guess=found.state.values[0])
+    assert found.multiplier[0] == pytest.approx(np.hypot(*orbit.multipliers.values.T).max())
+    assert orbit.fmu_same_impacts and orbit.stable
     plane = {"x": ("x_rel", 0.0, 0.2, 4), "y": ("v_rel", -0.5, 0.5, 3)}
     basin = orchestrate.basin(structure, **asked, **plane)
     outside = basin.attractor_of.values == -1
@@ -199,6 +201,57 @@ def test_attractors_basins_and_sections_agree(kind):
     section = orchestrate.poincare(structure, **asked, periods=8, at="impacts")
     assert section.x_rel.isin([0.0, structure.stroke]).all() and section.sizes["point"] >= 8
     assert (section.x_rel == 0.15).any() == bool(structure.stroke)
+
+
+def test_releases_from_both_ends_of_a_play_are_those_of_the_fmu():
+    play = OWN.replace(stroke=0.15, e=0.1)
+    asked = {"frequency": 0.5, "amplitude": 1.0, **pushes_of(play), **QUICK}
+    section = orchestrate.poincare(play, **asked, periods=4, at="releases")
+    assert (section.x_rel == 0.0).any() and (section.x_rel > 0.149).any()
+    assert section.v_rel.values == pytest.approx(0.0, abs=1e-12)
+    period = 2.0 * np.pi / 0.5
+    motion = orchestrate.simulate(play, **asked, transient=500, periods=4, points=4000)
+    ends = motion.time[1:][np.diff(motion.in_contact.astype(int)) < 0].values
+    times = section.time.values - 500.0 * period + float(motion.time[0])
+    assert np.abs(times - ends).max() < 1.01 * period / 4000.0
+
+
+@pytest.mark.parametrize("kind", ["pressed", "wall", "play"])
+def test_shaken_motions_are_those_of_an_independent_solver(kind):
+    """Under a sine whose frequency rises, beside it gravity and harmonic forces; and a knock."""
+    structure = KINDS[kind]
+    forces = {name: value for name, value in pushes_of(structure).items() if "force" in name}
+    sine = orchestrate.SweptSine(first=0.3, last=0.5, duration=7.0, acceleration=0.6)
+    knock = orchestrate.Hammer(peak=-4.0, width=0.4, at=1.0, duration=7.0)
+    for signal in (sine, knock):
+        given = {"accuracy": 1e-10, "sample_rate": 8.0, "progress": False}
+        data = orchestrate.shake(structure, signal, **given, **pushes_of(structure), frequency=2.3)
+        pieces, frequency = signal.pieces(1e-10), {"box_frequency": 2.3, "box_amplitude": 0.0}
+        values = structure.parameters() | frequency | {"x1_start": 0.0, "x2_start": 0.0}
+        values |= {f"{name}_amplitude": value for name, value in forces.items()}
+        exact = Motion(values | {"box_acceleration": PUSHES["box_acceleration"]})
+        if signal is sine:
+            exact.acceleration = lambda t, pieces=pieces: float(pieces(np.array([t]))[0])
+        else:
+            harmonic = exact.force
+            exact.force = lambda n, t, harmonic=harmonic, pieces=pieces: (
+                harmonic(n, t) + (float(pieces(np.array([t]))[0]) if n == 1 else 0.0)
+            )
+            exact.longest *= 0.3
+        box, rows, felt = data.box_acceleration.values, [], []
+        for time in data.time.values:
+            y = exact.run(time).state
+            rows.append(y[[0, 2, 1, 3]])
+            felt.append(exact.box(time))
+        states = data[["x1", "x2", "v1", "v2"]].to_array().values.T
+        assert len(exact.impacts) == data.sizes["impact"] > 3
+        assert np.abs(states - rows).max() < 1e-7
+        assert box == pytest.approx(np.array(felt), abs=1e-7)
+        force = data.force1.values - forces["force1"] * np.sin(2.3 * data.time.values)
+        assert np.abs(force).max() == pytest.approx(0.0 if signal is sine else 4.0, abs=0.4)
+        free = data.in_contact.values == 0
+        loads = data.force1 - structure.k1 * data.x1 - structure.d1 * data.v1
+        assert data.a1_abs.values[free] == pytest.approx(loads.values[free] / structure.m1)
 
 
 def test_impacts_have_to_come_only_where_that_is_known():
@@ -211,17 +264,16 @@ def test_impacts_have_to_come_only_where_that_is_known():
 
 
 SINE = orchestrate.SweptSine(first=0.05, last=0.5, duration=20.0, acceleration=1.0)
+SENSOR = orchestrate.Sensor(bandwidth=1.0)
 DRIVE = orchestrate.Drive.from_file("quick")
 REFUSING = {
-    "lyapunov": lambda s: orchestrate.lyapunov(s, eta=1.0),
-    "impact_statistics": lambda s: orchestrate.impact_statistics(s, eta=1.0),
-    "orbit": lambda s: orchestrate.orbit(s, eta=1.3),
-    "orbit ": lambda s: orchestrate.branch(s, eta=1.3, over="eta", limits=(1.2, 1.4)),
+    "manifold": lambda s: orchestrate.manifold(s, start=None, eta=1.3),
+    "measure": lambda s: orchestrate.measure(orchestrate.simulate(s, eta=1.3), SENSOR),
+    "shaker": lambda s: orchestrate.shake(
+        s, SINE, shaker=orchestrate.Shaker.from_file("shaker_1kN")
+    ),
     "contact_threshold": lambda s: orchestrate.contact_threshold(s, eta=1.0),
-    "shake": lambda s: orchestrate.shake(s, SINE, sample_rate=4.0),
     "cosimulate": lambda s: orchestrate.cosimulate(s, DRIVE, duration=1.0, step=0.1),
-    "exponents": lambda s: orchestrate.map(s, eta=[1.0, 2.0], e=[0.5, 0.6], exponent=True),
-    "releases": lambda s: orchestrate.poincare(s, eta=1.0, at="releases"),
     "couple": lambda s: orchestrate.couple(s, DRIVE, voltage=(1.0, 2.0), rate=0.1),
     "passage": lambda s: orchestrate.passage(s, DRIVE, voltage=(1.0, 2.0)),
     "capture": lambda s: orchestrate.capture(s, DRIVE, voltage=(1.0, 2.0)),
@@ -251,11 +303,21 @@ def test_diagnosis_refuses_them_by_name():
 
 
 def test_what_has_no_formula_is_refused_by_name():
-    with pytest.raises(InputError, match="over = 'stroke': lyapunov"):
-        orchestrate.lyapunov(Structure(), over="stroke", values=[0.1], eta=1.0)
-    for name in ("wall", "stroke"):
-        with pytest.raises(InputError, match=name):
-            orchestrate.branch(Structure(), eta=1.3, over=name, limits=(0.1, 1.0))
+    with pytest.raises(InputError, match="over = 'wall'"):
+        orchestrate.branch(Structure(), eta=1.3, over="wall", limits=(0.1, 1.0))
+    for pushed in ({"force1": 0.1}, {"box_acceleration": 0.1}):
+        (name,) = pushed
+        with pytest.raises(InputError, match=f"{name} = 0.1: measure does not know it yet"):
+            orchestrate.measure(orchestrate.simulate(OWN, eta=1.0, **pushed), SENSOR)
+        with pytest.raises(InputError, match=f"{name} = 0.1: a shaker does not know it yet"):
+            shaker = orchestrate.Shaker.from_file("shaker_1kN")
+            orchestrate.shake(OWN, SINE, shaker=shaker, frequency=1.0, **pushed)
+    with pytest.raises(InputError, match="force1 = 1.0: without its frequency"):
+        orchestrate.shake(OWN, SINE, force1=1.0)
+    for more in ({"force2": 1.0, "frequency": 1.0}, {}):
+        knock = orchestrate.Hammer(peak=1.0, width=0.1, half=1 if more else 2)
+        with pytest.raises(InputError, match="force2: mass 2 is a wall"):
+            orchestrate.shake(WALL, knock, **more)
     with pytest.raises(InputError, match="force2: mass 2 is a wall"):
         orchestrate.simulate(WALL, **BOX, force2=1.0)
     for function in (orchestrate.resonance, orchestrate.spectra):

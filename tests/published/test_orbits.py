@@ -1,0 +1,109 @@
+"""Published numbers on a mass between stops: orbits, their bifurcations, whole motions."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import orchestrate
+from orchestrate import Structure, simulate
+
+pytestmark = pytest.mark.usefixtures("exported")
+QUICK = {"progress": False, "jobs": 1}
+
+
+def test_grazing_is_degenerate_at_even_fractions_of_the_natural_frequency():
+    """At ``2 w_d/n`` curves of folds and period doublings leave that of grazing.
+
+    Thota, Zhao and Dankowicz, Co-dimension-two grazing bifurcations in single-degree-of-freedom
+    impact oscillators, J. Comput. Nonlinear Dynam. 1 (2006) 328.
+    """
+    mass = Structure.one_mass(m=1.0, k=1.0, d=0.1, e=0.8, clearance=1.0)
+    given = {"frequency": 0.9, "amplitude": 0.0, "force1": 0.65, **QUICK}
+    start = orchestrate.orbit(mass, **given)
+    along = orchestrate.branch(
+        mass, start=start, over="force1", limits=(0.2, 0.7), longest=0.3, **QUICK
+    )
+    (grazing,) = np.flatnonzero(along.bifurcation_kind.values == 3)
+    names, limits = ("force1", "frequency"), ((0.05, 1.0), (0.63, 1.03))
+    given = {"over": names, "limits": limits, "longest": 0.2, **QUICK}
+    curve = orchestrate.border(mass, start=along, bifurcation=int(grazing), **given)
+    linear = np.hypot(1.0 - curve.frequency**2, 0.1 * curve.frequency)
+    assert np.abs(curve.force1 - linear).max() < 1e-13
+    found = np.sort(curve.codimension_two_frequency.values) / math.sqrt(1.0 - 0.05**2)
+    assert found == pytest.approx([2 / 3, 2 / 3, 1.0, 1.0], rel=1e-12)
+
+
+def test_symmetric_orbit_between_two_rigid_stops():
+    """``x'' + 0.05 x' + x = sin(1.6 t)`` between stops at -0.5 and 0.5 with e = 0.8: the phase of
+    an impact is 4.830390589, the speed after it 0.673311763; the closed form is Shaw's (J. Appl.
+    Mech. 52 (1985) 453).
+    """
+    mass = Structure.one_mass(m=1.0, k=1.0, d=0.05, e=0.8, clearance=0.5, stroke=1.0)
+    given = {"frequency": 1.6, "amplitude": 0.0, "force1": 1.0, **QUICK}
+    found = orchestrate.orbit(mass, **given)
+    assert found.node_kind.values.tolist() == [0, 3] and found.fmu_same_impacts and found.stable
+    assert found.node_phase.values == pytest.approx([4.830390589 - math.pi, 4.830390589], abs=1e-9)
+    assert 0.8 * found.impact_velocity.values == pytest.approx(0.673311763, abs=1e-9)
+
+
+def test_falling_ball_bounces_in_a_geometric_series():
+    """e = 0.5: bounce n comes ``2 (1 - e^n)/(1 - e) - 1`` falling times after the start, after
+    three falling times it is at rest.
+    """
+    ball = Structure.one_mass(m=2.0, k=1e-9, d=0.0, e=0.5, clearance=0.0, gamma=1e-9)
+    start, fall = (-1.0, 0.0, 0.0, 0.0), math.sqrt(2.0 / 9.81)
+    motion = simulate(
+        ball,
+        **{"frequency": 1.0, "amplitude": 0.0, "box_acceleration": -9.81, "start": start},
+        **{"periods": 1, "points": 400, "progress": False},
+    )
+    times, n = motion.impact_time.values / fall, np.arange(1, 11)
+    assert times[:10] == pytest.approx(4.0 * (1.0 - 0.5**n) - 1.0, rel=1e-9)
+    assert times[-1] == pytest.approx(3.0, rel=1e-4) and bool(motion.sticks[-1])
+    speeds = motion.impact_velocity.values[:10] / (9.81 * fall)
+    assert speeds == pytest.approx(0.5 ** (n - 1), rel=1e-9)
+    later = motion.time.values > 3.001 * fall
+    assert motion.in_contact.values[later].all() and not motion.x1.values[later].any()
+
+
+def bouncing(force, frequency, mass, stop):
+    """Impacts of a driven mass at a wall, flight by flight by an ODE solver with events."""
+
+    def rates(t, y):
+        spring = mass.k1 * y[0] + mass.d1 * y[1]
+        return y[1], (force * math.sin(frequency * t) - spring) / mass.m1
+
+    def meets(t, y):
+        return mass.clearance - y[0]
+
+    meets.terminal, meets.direction = True, -1
+    time, state, impacts = 0.0, (0.0, 0.0), []
+    while time < stop:
+        settings = {"rtol": 1e-13, "atol": 1e-15, "max_step": 0.2}
+        run = solve_ivp(rates, (time, stop), state, "DOP853", events=meets, **settings)
+        time, v = float(run.t[-1]), float(run.y[1, -1])
+        if run.status == 1:
+            impacts.append((time, v))
+            state = (mass.clearance, -mass.e * v)
+            hop = 1e-4  # clear of the wall, without event location
+            run = solve_ivp(rates, (time, time + hop), state, "DOP853", rtol=1e-13, atol=1e-15)
+            time, state = time + hop, run.y[:, -1]
+    return np.array(impacts)
+
+
+def test_driven_mass_at_a_wall_over_many_impacts():
+    """The impact oscillator of Siconos' examples, its kind: hundreds of impacts of a driven mass,
+    from rest to its orbit.
+    """
+    mass = Structure.one_mass(m=2.0, k=50.0, d=0.6, e=0.7, clearance=0.1)
+    motion = simulate(
+        mass,
+        **{"frequency": 7.0, "amplitude": 0.0, "force1": 30.0, "progress": False},
+        **{"periods": 190, "points": 4},
+    )
+    exact = bouncing(30.0, 7.0, mass, 190 * 2.0 * math.pi / 7.0)
+    assert len(exact) == motion.sizes["impact"] > 180
+    assert np.abs(motion.impact_time.values - exact[:, 0]).max() < 1e-10
+    assert np.abs(motion.impact_velocity.values - exact[:, 1]).max() < 1e-10 * exact[:, 1].max()
