@@ -134,6 +134,26 @@ def test_two_motions_in_turn_are_two_jumps():
         assert jump.low - 1e-9 <= place <= jump.high + 1e-9
 
 
+@pytest.mark.parametrize(
+    ("length", "bracket"), [(1.02e-4 * 128, 0.51e-4), (0.98e-4 * 128, 0.98e-4)]
+)
+def test_a_jump_is_bracketed_within_the_width(length, bracket):
+    def higher(motion, before, voltage):
+        return 0.1 if voltage > 1.506 or (motion and voltage > 1.5) else 0.0
+
+    loop = Scripted(higher)
+    (jump,) = loop.jumps(loop.at(1.5), 1.5 + length)
+    assert jump.outcome == LOST and jump.low < 1.506 <= jump.high
+    assert jump.high - jump.low == pytest.approx(bracket)
+
+
+@pytest.mark.parametrize(("last", "count"), [(1.56, 3), (1.5601, 4), (1.44, 3)])
+def test_first_steps_are_those_of_the_grid(last, count):
+    loop = Scripted(lambda *now: 0.0)
+    held = [point.voltage for point in loop.hold_grid(loop.at(1.5), last)]
+    assert held == pytest.approx(np.linspace(1.5, last, count + 1))
+
+
 def test_what_comes_after_a_speed_against_the_voltage_is_undecided():
     """The motion ends at 1.52 for one 0.02 below; the jump of that at 1.54 is by chance."""
 
