@@ -321,6 +321,37 @@ def test_a_hold_ends_with_a_tenth_of_the_way_to_go_and_comes_at_the_rate():
     assert courses[-1].times == pytest.approx((0.0, 200.0, 20200.0))
 
 
+@pytest.mark.parametrize(("later", "pieces"), [(1.3, 31), (1.3049, 31), (1.3051, 9)])
+def test_a_motion_is_held_for_a_time_unless_it_is_left(later, pieces):
+    """Its first block is at 1.3; left is what settles `clear` away."""
+    told = []
+
+    def speeds(rows):
+        told.append(rows)
+        return np.full(12 * bool(rows), 1.3 if len(told) < 4 else later)
+
+    run = SimpleNamespace(speeds=speeds, get_state=dict, master=SimpleNamespace(close=list))
+    loop = HysteresisLoop(lambda course: run, Ramp(1.4, 1.6, 1e-4), 1.0, 1.0, 1.0, 2e4)
+    point = loop.hold(None, 1.5, 1.5, least=1500.0)  # of pieces of 50/omega
+    assert point.speed == pytest.approx(later) and len([rows for rows in told if rows]) == pieces
+
+
+def test_where_a_speed_between_is_sought(monkeypatch):
+    """In the middle, then nearer to the lower voltage."""
+    loop, sought = Scripted(lambda *now: 0.0), []
+
+    def nowhere(low, voltage, other, limit=None):
+        sought.append((voltage, limit))
+        return loop.at(voltage)._replace(speed=np.nan)
+
+    monkeypatch.setattr(loop, "hold_beside", nowhere)
+    points = line((1.5, 1.3, 0.0), (1.501, 1.31, 0.0))
+    assert not loop.insert_between(points, 0) and len(points) == 2
+    assert sought == [(pytest.approx(1.5 + part * 1e-3), 1.31) for part in (0.5, 0.25, 0.75)]
+    loop.insert_between(line((1.5, 1.3, 0.0), (1.5021, 1.31, 0.0)), 0)
+    assert sought[-1][1] is None  # half of `smallest` and more
+
+
 def test_a_jump_in_the_tail_of_a_larger_one():
     """The second one is smaller than what the speed gains over a step of the grid."""
 
