@@ -10,13 +10,16 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
+from fmu_src.kernels.numerics.elementary import sincos_turns
 from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator.contact import gap_acceleration
 from fmu_src.kernels.oscillator.event_function import evaluate
 from fmu_src.kernels.oscillator.motion import state_at
 from tests import exact_motion as truth
 
 from .kernel import DEFAULTS, FORCES, advanced, examples, pieces, rounded, started, structures
 from .reference import opening
+from .test_event_function import STATES, contact_and_pull, size
 
 HALF_TURN = math.pi  # its sine is 1.2e-16 as a float, and nothing as an angle
 
@@ -52,6 +55,17 @@ def test_on_the_boundary_the_force_decides(values, x, v):
     assume(abs(force) > 1e-12)  # not where it vanishes
     m = started(x1_start=x, x2_start=x, v1_start=v, v2_start=v, **values)
     assert m[at.IN_CONTACT] == float(force < 0)
+
+
+@examples(60)
+@given(structures(clearance=True), STATES, st.floats(0.0, 3.0))
+def test_the_gaps_acceleration_is_newtons(values, state, age):
+    """Of faces together, pressed by a preload or held over a clearance, at any age."""
+    m, pull = contact_and_pull(values, state)
+    sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
+    x1, v1, *_ = state_at(m, age)
+    found = gap_acceleration(m, x1, v1, cosine, sine, age)
+    assert abs(found + pull(age)) <= 1e-12 * (1.0 + size(pull)) * (1.0 + age) ** 3
 
 
 @examples(100)
