@@ -21,6 +21,8 @@ from .kernel import DEFAULTS, FORCES, advanced, examples, pieces, rounded, start
 from .reference import opening
 from .test_event_function import STATES, contact_and_pull, size
 
+# of the force at rest the fifth derivative is the first that does not vanish
+FIFTH = {"m2": 1.0, "k2": 1.2, "d1": 0.01, "d2": 0.01, "box_amplitude": 0.0, "box_crackle": 0.1}
 HALF_TURN = math.pi  # its sine is 1.2e-16 as a float, and nothing as an angle
 
 
@@ -35,6 +37,8 @@ def separate_gap(values, x, v, phase, t):
 @examples(150)
 @given(structures(), st.sampled_from([0.0, HALF_TURN]) | rounded(0.0, 6.28))
 @example({"k2": 1.0, "m2": 1.0, "d1": 0.01, "d2": 0.02, "box_frequency": 0.4}, HALF_TURN)
+@example(FIFTH, 0.0)
+@example({**FIFTH, "box_crackle": -0.1}, 0.0)
 def test_from_rest_newton_decides(values, phase):
     values = {**values, "phase_start": phase}
     unlike = abs(values["k2"] / values["m2"] - 1.0), abs(values["d2"] / values["m2"] - values["d1"])
