@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.numerics.elementary import sincos_turns
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.contact import gap_acceleration
+from fmu_src.kernels.oscillator.contact import first_nonzero_derivative, gap_acceleration
 from fmu_src.kernels.oscillator.event_function import evaluate
 from fmu_src.kernels.oscillator.motion import state_at
 from tests import exact_motion as truth
@@ -85,6 +85,19 @@ def test_where_the_force_vanishes_its_slope_decides(values, v, sign):
     m = started(x1_start=x, x2_start=x, v1_start=v, v2_start=v, **values)
     assert m[at.IN_CONTACT] == float(gap < 0)
     assert m[at.IMPACT_COUNT] == 0.0
+
+
+@pytest.mark.parametrize("force", [0.0, 0.3])
+def test_a_force_of_rounding_alone_decides_nothing(force):
+    """Damper and spring balance, with what drives the masses, but for a last digit."""
+    m = started(d1=0.3, d2=0.05, k2=1.3, force1_amplitude=force, phase_start=1.0)
+    pull = gap_acceleration(m, 0.0, 0.0, m[at.COSINE], m[at.SINE], 0.0)
+    rng, left = np.random.default_rng(1), 0
+    for v in rng.uniform(-1.0, 1.0, 300).tolist():
+        x = -(m[at.FORCE_V] * v + pull) / m[at.FORCE_X]
+        left += gap_acceleration(m, x, v, m[at.COSINE], m[at.SINE], 0.0) != 0.0
+        assert first_nonzero_derivative(m, x, v, 0)[0] == 1
+    assert left > 10
 
 
 CONTACTS = pytest.mark.parametrize(
