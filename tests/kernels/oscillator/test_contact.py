@@ -100,6 +100,27 @@ def test_a_force_of_rounding_alone_decides_nothing(force):
     assert left > 10
 
 
+def test_drives_that_cancel_but_for_rounding_decide_nothing():
+    """A harmonic at its zero, or against a constant near its largest value, on a mass or the box;
+    a slope of the force in which damper and spring cancel.
+    """
+    unlike, still = {"d1": 0.3, "d2": 0.05, "k2": 1.3}, {"box_amplitude": 0.0}
+    m = started(**unlike, **still, force1_amplitude=0.3, phase_start=HALF_TURN)
+    assert first_nonzero_derivative(m, 0.0, 0.0, 0)[0] == 1
+    for phase in np.linspace(1.4, 1.7, 100).tolist():
+        sine = math.sin(phase)
+        on_mass = {**still, "force1_amplitude": 0.3, "force1": -0.3 * sine}
+        for drive, order in ((on_mass, 1), ({"box_acceleration": 0.16 * sine}, 2)):
+            m = started(phase_start=phase, **unlike, **drive)
+            assert first_nonzero_derivative(m, 0.0, 0.0, 0)[0] == order
+    m = started(d1=2e-6, d2=0.0, **still)
+    damping = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING]
+    part = (m[at.FORCE_X] - m[at.FORCE_V] * damping) / m[at.FORCE_V]
+    for v in np.linspace(0.1, 1.0, 100).tolist():
+        x = part * v / m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
+        assert first_nonzero_derivative(m, x, v, 1)[0] == 2
+
+
 CONTACTS = pytest.mark.parametrize(
     "values",
     [
