@@ -345,11 +345,33 @@ def test_where_a_speed_between_is_sought(monkeypatch):
         return loop.at(voltage)._replace(speed=np.nan)
 
     monkeypatch.setattr(loop, "hold_beside", nowhere)
-    points = line((1.5, 1.3, 0.0), (1.501, 1.31, 0.0))
+    points = line((1.5, 1.3, 0.0), (1.5019, 1.31, 0.0))
     assert not loop.insert_between(points, 0) and len(points) == 2
-    assert sought == [(pytest.approx(1.5 + part * 1e-3), 1.31) for part in (0.5, 0.25, 0.75)]
+    assert sought == [(pytest.approx(1.5 + part * 1.9e-3), 1.31) for part in (0.5, 0.25, 0.75)]
     loop.insert_between(line((1.5, 1.3, 0.0), (1.5021, 1.31, 0.0)), 0)
     assert sought[-1][1] is None  # half of `smallest` and more
+
+
+@pytest.mark.parametrize(
+    ("unsettled", "away", "comes"),
+    [
+        *(((1.52,), 0.0, True), ((1.52, 1.54), 0.0, True), ((1.52, 1.53), 0.0, False)),
+        *(((1.5,), 0.0, False), ((), 4.9e-3, True), ((), 5.1e-3, False)),
+    ],
+)
+def test_the_way_back_settles_but_for_single_voltages(unsettled, away, comes):
+    loop = Scripted(lambda *now: np.nan if round(now[2], 3) in unsettled else away)
+    points = [loop.at(voltage) for voltage in (1.5, 1.51, 1.52, 1.53, 1.54, 1.55)]
+    assert loop.comes_back(points) == comes
+
+
+@pytest.mark.parametrize(("speed", "again"), [(1.304, True), (1.306, False)])
+def test_a_motion_nearer_to_the_one_before_is_held_on(monkeypatch, speed, again):
+    loop = Scripted(None)
+    low, here = line((1.5, 1.3, 0.0), (1.501, speed, 0.0))
+    monkeypatch.setattr(loop, "hold_from", lambda *asked: here)
+    monkeypatch.setattr(loop, "lasting", lambda point: "held on")
+    assert loop.hold_beside(low, 1.501, 1.31) == ("held on" if again else here)
 
 
 def test_a_jump_in_the_tail_of_a_larger_one():
