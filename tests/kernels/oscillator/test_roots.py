@@ -189,6 +189,14 @@ def test_the_walk_leaves_what_a_look_up_leaves(values):
         assert m[at.NODE : at.RIGHT_VALUES + 3] == other[at.NODE : at.RIGHT_VALUES + 3]
 
 
+@pytest.mark.parametrize("slope", [0.1, 1.0, 10.0])
+@pytest.mark.parametrize("stroke", [0.0, 0.02, 100.0])
+def test_no_more_than_the_first_interval_is_clear_at_a_start_from_the_boundary(slope, stroke):
+    m = flight(0.1, 0.0, 0.1, slope, box_frequency=0.4, stroke=stroke)
+    assert m[at.SERIES] == 0.0 and 0.0 < m[at.CLEAR] <= m[at.RIGHT_AGE] == m[at.SPACING]
+    assert (m[at.CLEAR] == m[at.RIGHT_AGE]) == (stroke != 0.02)
+
+
 def test_a_state_is_written_anew_after_its_nodes_and_a_step_ends_with_its_work():
     m = walk_to(flight(-0.5, 0.2, 0.5, -0.1, **FREE[0]), 1e6, 5.0)
     assert m[at.NODE] == 5.0 and m[at.END_KIND] == at.END_OPEN

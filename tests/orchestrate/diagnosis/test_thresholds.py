@@ -202,34 +202,51 @@ def test_errors_of_orders_are_those_of_a_good_model_and_of_what_is_irregular():
     assert Evidence.error.func(made)[0] == pytest.approx(np.tile(expected, (3, 1)))
 
 
-def read_by(gain, delay, error, hertz=100.0):
-    """What is found of a sensor's gain and delay, each window with an error over its size."""
+def read_by(gain, delay, error, hertz=100.0, participation=1.0):
+    """What is found of a sensor's participation, gain and delay, by an error over the size."""
     made = object.__new__(Evidence)
     computed = np.full(30, 2.0 + 0.0j)
     read = gain * computed * np.exp(-2j * np.pi * hertz * delay)
     made.__dict__.update(
         settings=SETTINGS,
-        participation=(1.0,),
+        participation=(participation,),
+        windows=SimpleNamespace(is_tone=False),
         base=np.zeros((3, 30), complex),
         measured=read[None, None],
         error=np.full((1, 3, 30), 2.0 * error),
         frequency=np.full(30, hertz),
     )
-    return made.sensor_error(0, computed)[1:]
+    return made.sensor_error(0, computed)
 
 
 def test_a_gain_and_a_delay_are_held_by_their_deviations_where_records_say_little():
     """An estimate between the record's and none, by the weights of both: a tenth of an error."""
-    gain, _ = read_by(1.05, 0.0, 1.0)
+    _, gain, _ = read_by(1.05, 0.0, 1.0)
     assert gain - 1.0 == pytest.approx(0.05 / (1.0 + (0.1 / 0.03) ** 2))
-    _, delay = read_by(1.0, 1e-6, 1.0)
+    *_, delay = read_by(1.0, 1e-6, 1.0)
     assert delay == pytest.approx(
         1e-6 / (1.0 + (0.1 / (2e-4 * 2.0 * math.pi * 100.0)) ** 2), rel=1e-4
     )
-    assert read_by(1.119, 0.0, 1e-6)[0] == pytest.approx(1.119)
-    assert read_by(1.13, 0.0, 1e-6)[0] == pytest.approx(1.12)  # the largest
-    assert read_by(1.0, 0.99e-3, 1e-6, 1.0)[1] == pytest.approx(0.99e-3, rel=1e-4)
-    assert read_by(1.0, -1.1e-3, 1e-6, 1.0)[1] == pytest.approx(-1e-3)
+    assert read_by(1.119, 0.0, 1e-6)[1] == pytest.approx(1.119)
+    assert read_by(1.13, 0.0, 1e-6)[1] == pytest.approx(1.12)  # the largest
+    assert read_by(1.0, 0.99e-3, 1e-6, 1.0)[2] == pytest.approx(0.99e-3, rel=1e-4)
+    assert read_by(1.0, -1.1e-3, 1e-6, 1.0)[2] == pytest.approx(-1e-3)
+
+
+def test_a_participation_takes_its_part_of_what_a_gain_could_explain_too():
+    """By the squares of both deviations, where the base is at rest."""
+    share = 0.5**2 / (0.5**2 + 0.03**2)
+    expected = 1.0 + 0.2 * share / (1.0 + 0.2 * (1.0 - share))
+    found, *_ = read_by(1.2, 0.0, 1e-6, participation=None)
+    assert found == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize(("error", "found"), [(0.0049, set()), (0.0051, {"zeta"})])
+def test_a_damping_ratio_of_which_half_is_error_is_not_determined(error, found):
+    job = SimpleNamespace(data=SimpleNamespace(settings=SETTINGS))
+    reported = {"f": 42.0, "zeta": 0.01}, np.diag([1e-4, error**2])
+    fits = SimpleNamespace(job=job, is_described=[True], reported_values=lambda position: reported)
+    assert set(Results.undetermined(fits, 0)) == found
 
 
 def test_doubt_about_real_contacts_grows_with_what_the_contact_misses():

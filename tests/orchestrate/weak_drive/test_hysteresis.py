@@ -134,6 +134,26 @@ def test_two_motions_in_turn_are_two_jumps():
         assert jump.low - 1e-9 <= place <= jump.high + 1e-9
 
 
+@pytest.mark.parametrize(
+    ("length", "bracket"), [(1.02e-4 * 128, 0.51e-4), (0.98e-4 * 128, 0.98e-4)]
+)
+def test_a_jump_is_bracketed_within_the_width(length, bracket):
+    def higher(motion, before, voltage):
+        return 0.1 if voltage > 1.506 or (motion and voltage > 1.5) else 0.0
+
+    loop = Scripted(higher)
+    (jump,) = loop.jumps(loop.at(1.5), 1.5 + length)
+    assert jump.outcome == LOST and jump.low < 1.506 <= jump.high
+    assert jump.high - jump.low == pytest.approx(bracket)
+
+
+@pytest.mark.parametrize(("last", "count"), [(1.56, 3), (1.5601, 4), (1.44, 3), (1.5, 1)])
+def test_first_steps_are_those_of_the_grid(last, count):
+    loop = Scripted(lambda *now: 0.0)
+    held = [point.voltage for point in loop.hold_grid(loop.at(1.5), last)]
+    assert held == pytest.approx(np.linspace(1.5, last, count + 1))
+
+
 def test_what_comes_after_a_speed_against_the_voltage_is_undecided():
     """The motion ends at 1.52 for one 0.02 below; the jump of that at 1.54 is by chance."""
 
@@ -299,6 +319,59 @@ def test_a_hold_ends_with_a_tenth_of_the_way_to_go_and_comes_at_the_rate():
     assert 0.009 < left < 0.01
     loop.hold_from(start, 1.5098)
     assert courses[-1].times == pytest.approx((0.0, 200.0, 20200.0))
+
+
+@pytest.mark.parametrize(("later", "pieces"), [(1.3, 31), (1.3049, 31), (1.3051, 7)])
+def test_a_motion_is_held_for_a_time_unless_it_is_left(later, pieces):
+    """Its first block is at 1.3; left is what settles `clear` away."""
+    told = []
+
+    def speeds(rows):
+        told.append(rows)
+        return np.full(12 * bool(rows), 1.3 if len(told) < 4 else later)
+
+    run = SimpleNamespace(speeds=speeds, get_state=dict, master=SimpleNamespace(close=list))
+    loop = HysteresisLoop(lambda course: run, Ramp(1.4, 1.6, 1e-4), 1.0, 1.0, 1.0, 2e4)
+    point = loop.hold(None, 1.5, 1.5, least=1500.0)  # of pieces of 50/omega
+    assert point.speed == pytest.approx(later) and len([rows for rows in told if rows]) == pieces
+
+
+def test_where_a_speed_between_is_sought(monkeypatch):
+    """In the middle, then nearer to the lower voltage."""
+    loop, sought = Scripted(lambda *now: 0.0), []
+
+    def nowhere(low, voltage, other, limit=None):
+        sought.append((voltage, limit))
+        return loop.at(voltage)._replace(speed=np.nan)
+
+    monkeypatch.setattr(loop, "hold_beside", nowhere)
+    points = line((1.5, 1.3, 0.0), (1.5019, 1.31, 0.0))
+    assert not loop.insert_between(points, 0) and len(points) == 2
+    assert sought == [(pytest.approx(1.5 + part * 1.9e-3), 1.31) for part in (0.5, 0.25, 0.75)]
+    loop.insert_between(line((1.5, 1.3, 0.0), (1.5021, 1.31, 0.0)), 0)
+    assert sought[-1][1] is None  # half of `smallest` and more
+
+
+@pytest.mark.parametrize(
+    ("unsettled", "away", "comes"),
+    [
+        *(((1.52,), 0.0, True), ((1.52, 1.54), 0.0, True), ((1.52, 1.53), 0.0, False)),
+        *(((1.5,), 0.0, False), ((), 4.9e-3, True), ((), 5.1e-3, False)),
+    ],
+)
+def test_the_way_back_settles_but_for_single_voltages(unsettled, away, comes):
+    loop = Scripted(lambda *now: np.nan if round(now[2], 3) in unsettled else away)
+    points = [loop.at(voltage) for voltage in (1.5, 1.51, 1.52, 1.53, 1.54, 1.55)]
+    assert loop.comes_back(points) == comes
+
+
+@pytest.mark.parametrize(("speed", "again"), [(1.304, True), (1.306, False)])
+def test_a_motion_nearer_to_the_one_before_is_held_on(monkeypatch, speed, again):
+    loop = Scripted(None)
+    low, here = line((1.5, 1.3, 0.0), (1.501, speed, 0.0))
+    monkeypatch.setattr(loop, "hold_from", lambda *asked: here)
+    monkeypatch.setattr(loop, "lasting", lambda point: "held on")
+    assert loop.hold_beside(low, 1.501, 1.31) == ("held on" if again else here)
 
 
 def test_a_jump_in_the_tail_of_a_larger_one():
