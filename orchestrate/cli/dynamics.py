@@ -23,6 +23,7 @@ from .text import (
     MOST_ROWS,
     attractor_table,
     columns_of,
+    end_lines,
     extents,
     flag_word,
     format_largest_gap,
@@ -358,7 +359,9 @@ The excitation says where a first orbit is looked for; without it that is the lo
             yield from table(rows, len(rows["number"]))
         else:
             yield "no bifurcation in this range"
-        yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
+        ends = data.attrs["first_end"], data.attrs["last_end"]
+        yield "first end: {}; last end: {}".format(*ends)
+        yield from end_lines(ends)
 
     def hold_amplitude(self, structure: Structure, first: float) -> None:
         """Replace ``--g`` by the amplitude that it is at the start of a branch over frequency."""
@@ -490,4 +493,6 @@ structure and excitation are those of that branch."""
             for name in names:
                 rows |= parameter_column(data, name, data[f"codimension_two_{name}"].values)
             yield from table(rows, data.sizes["codimension_two"])
-        yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
+        ends = data.attrs["first_end"], data.attrs["last_end"]
+        yield "first end: {}; last end: {}".format(*ends)
+        yield from end_lines(ends)
