@@ -486,8 +486,8 @@ structure and excitation are those of that branch."""
         yield f"{data.attrs['kind']}: {data.sizes['point']} points"
         for name in names:
             reach = format_range(data, name, float(data[name].min()), float(data[name].max()))
-            ends = (format_parameter(data, name, data[name][i]) for i in (0, -1))
-            yield f"from {' to '.join(ends)}, within {reach}"
+            both = (format_parameter(data, name, data[name][i]) for i in (0, -1))
+            yield f"from {' to '.join(both)}, within {reach}"
         if data.sizes["codimension_two"]:
             rows = columns_of(data, "kind", "codimension_two_")
             for name in names:
