@@ -23,6 +23,7 @@ from .text import (
     MOST_ROWS,
     attractor_table,
     columns_of,
+    end_lines,
     extents,
     flag_word,
     format_largest_gap,
@@ -358,7 +359,9 @@ The excitation says where a first orbit is looked for; without it that is the lo
             yield from table(rows, len(rows["number"]))
         else:
             yield "no bifurcation in this range"
-        yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
+        ends = data.attrs["first_end"], data.attrs["last_end"]
+        yield "first end: {}; last end: {}".format(*ends)
+        yield from end_lines(ends)
 
     def hold_amplitude(self, structure: Structure, first: float) -> None:
         """Replace ``--g`` by the amplitude that it is at the start of a branch over frequency."""
@@ -483,11 +486,13 @@ structure and excitation are those of that branch."""
         yield f"{data.attrs['kind']}: {data.sizes['point']} points"
         for name in names:
             reach = format_range(data, name, float(data[name].min()), float(data[name].max()))
-            ends = (format_parameter(data, name, data[name][i]) for i in (0, -1))
-            yield f"from {' to '.join(ends)}, within {reach}"
+            both = (format_parameter(data, name, data[name][i]) for i in (0, -1))
+            yield f"from {' to '.join(both)}, within {reach}"
         if data.sizes["codimension_two"]:
             rows = columns_of(data, "kind", "codimension_two_")
             for name in names:
                 rows |= parameter_column(data, name, data[f"codimension_two_{name}"].values)
             yield from table(rows, data.sizes["codimension_two"])
-        yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
+        ends = data.attrs["first_end"], data.attrs["last_end"]
+        yield "first end: {}; last end: {}".format(*ends)
+        yield from end_lines(ends)

@@ -9,6 +9,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Collection, Iterable
+from contextlib import suppress
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -151,7 +152,15 @@ def positive_number(option: str, text: str) -> float:
     return reader(option, text)[0]
 
 
+def positive_length(option: str, text: str) -> float:
+    """Parse an option's text as one length > 0, in m or with a unit."""
+    expected = f"a length > 0 in m, or with its unit such as {option} 20um"
+    number = parse(option, text, expected, lambda given: float_with_unit("amplitude", given))
+    return positive_number(option, repr(number))
+
+
 Positive = Annotated[float | None, positive_number]
+Length = Annotated[float | None, positive_length]
 
 
 def parse_rate(option: str, text: str) -> float:
@@ -278,6 +287,9 @@ Listed = Annotated[tuple[float, ...] | None, parse_list]
 def parse_listed(name: str, text: str) -> tuple[tuple[float, ...], bool]:
     """Parse a parameter's values, units in a list; return them, and whether it was a range."""
     if ":" in text:
+        with suppress(ValueError):  # what is no number is said below
+            pairs = [(one, number_with_unit(name, one.strip())) for one in text.split(":")]
+            text = ":".join(one if number is None else repr(number) for one, number in pairs)
         return parse_values("--values", text, zero=True)
     option = f"--over {name} --values "
     return tuple(parse_with_unit(option, name, one.strip()) for one in text.split(",")), False

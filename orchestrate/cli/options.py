@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
 from .face import Options, option, option_names
 from .grammar import (
-    Positive,
+    Length,
     is_single_number,
     parse_changes,
     parse_ends,
@@ -136,7 +136,7 @@ class OfBox(Options):
     rpm: str | None = option("the same in turns per minute", value="VALUES")
     frequency: str | None = option("the same as Omega in rad/s", value="VALUES")
     eta: Any = option("the same as frequency ratio Omega/omega", value="VALUES")
-    amplitude: Positive = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
+    amplitude: Length = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
     g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
 
     def read_excitation(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from ..flags import flag_words, runs_of
@@ -132,6 +132,18 @@ def attractor_table(data: xr.Dataset) -> Iterator[str]:
     (state,) = columns_of(data, "state").values()
     unit = "" if is_in_ratios(data) else " (SI)"
     yield from table(columns | {f"state at phase 0{unit}": state})
+
+
+ENDS = {  # of a branch, beyond which there may be more of it: what was tried, and what to do
+    "no convergence": "Newton's method found no motion beyond, however short the step, as where an "
+    "impact or a flight grazes; a shorter --longest, with a larger --most, looks closer",
+    "most points": "a larger --most goes on",
+}
+
+
+def end_lines(ends: Collection[str]) -> Iterator[str]:
+    """Yield what to do about those ends of branches that need not be one."""
+    yield from (f"{end}: {text}" for end, text in ENDS.items() if end in ends)
 
 
 # -- parameters and ranges ------------------------------------------------------------------------

@@ -30,7 +30,7 @@ from .face import Command, Question, option
 from .grammar import parse_rates
 from .options import Over
 from .output import Files, OfBoth, Stored, digest, user_fmus
-from .text import Columns, columns_of, parameter_column, table
+from .text import Columns, columns_of, end_lines, parameter_column, table
 
 if TYPE_CHECKING:
     from ..model import Drive, Structure
@@ -432,16 +432,6 @@ def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
     return ", ".join(speeds)
 
 
-ENDS = {  # of a branch, that are no ends of its motions: what was tried, what to do
-    "no convergence": (
-        "Newton's method found no motion beyond, with steps down to 1e-5 of --longest, as where an "
-        "impact or a flight grazes; --longest 0.02 --most 800 looks closer, jump-voltages and "
-        "couple need no branch"
-    ),
-    "most points": "--most takes more than the 200 of one direction",
-}
-
-
 def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     """Yield tables of the bifurcations and of the branches."""
     if count := data.sizes["bifurcation"]:
@@ -465,7 +455,7 @@ def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     if any(unlocated):
         columns["stability changes near, not located (--period)"] = unlocated
     yield from table(columns, len(legs))
-    yield from (f"{end}: {text}" for end, text in ENDS.items() if end in columns["ends by"])
+    yield from end_lines(columns["ends by"])
 
 
 def last_motion(leg: xr.Dataset) -> str:

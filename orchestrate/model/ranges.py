@@ -20,7 +20,7 @@ from ..errors import InputError
 
 Described = TypeVar("Described")
 WRITTEN_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # in texts, over a parameter's own
-    ("clearance", "preload", "stroke", "x1", "x2", "x_rel"): {
+    ("clearance", "preload", "stroke", "amplitude", "x1", "x2", "x_rel"): {
         "mm": "1e-3",
         "um": "1e-6",
         "µm": "1e-6",

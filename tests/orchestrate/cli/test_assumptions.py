@@ -171,3 +171,16 @@ def test_a_branch_over_the_frequency_takes_g_at_its_start(ask):
     )
     same = ask(*asked, "--amplitude", "1.82483e-05").success().out
     assert same.splitlines()[:2] == out.splitlines()[1:3]
+
+
+def test_an_amplitude_and_a_range_may_have_units(ask):
+    """The same result, by its name, as in m."""
+    names = set()
+    for amplitude, values in (("2e-5", "0:2e-5:1e-5"), ("20um", "0:20um:0.01mm")):
+        asked = ("--structure", "beam", "--over", "clearance", "--values", values, "--hz", "16")
+        done = ask("sweep", *asked, "--amplitude", amplitude, "--transient", "5", "--plot", "none")
+        names.add(done.success().out.splitlines()[-1].partition(": ")[0])
+    assert len(names) == 1
+    ask("sweep", "--hz", "16", "--amplitude", "20in").complaint(
+        "--amplitude 20in: expected a length"
+    )

@@ -16,7 +16,7 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
 from orchestrate.cli.output import result_name
-from orchestrate.cli.text import format_ranges
+from orchestrate.cli.text import end_lines, format_ranges
 from orchestrate.errors import InputError
 from orchestrate.model.structure import Structure
 from orchestrate.units import with_units
@@ -218,3 +218,9 @@ def test_build(capsys, tmp_path, monkeypatch):
     assert capsys.readouterr().out.count(" kB\n") == 1 and "fmi3-sources" in forms
     code = cli.main(["build", "--sources-only", "--platforms", "all"])
     assert code == 2 and "--platforms" in capsys.readouterr().err
+
+
+def test_the_end_of_a_branch_that_is_none_says_what_to_do():
+    (line,) = end_lines(["limit", "no convergence"])
+    assert "Newton's method" in line and "--longest" in line and "--most" in line
+    assert list(end_lines(["limit"])) == []

@@ -105,3 +105,14 @@ def test_a_setup_file_reads_as_it_says_and_again_the_same(tmp_path):
 def test_a_wrong_setup_is_refused_by_name(tmp_path, wrong, names):
     with pytest.raises(InputError, match=names):
         read_record(written(tmp_path, "t;a;b;c"), wrong)
+
+
+def test_a_setup_without_a_unit_says_where_to_write_it(tmp_path):
+    path, setup = tmp_path / "a.csv", tmp_path / "setup.toml"
+    path.write_text("Zeit;Tisch;oben\n0;0,1;0\n1;0,3;2\n2;-0,2;0\n3;0;-1\n")
+    channels(path, output=setup)
+    assert 'unit = ""  # write it: g, m/s2' in setup.read_text()
+    with pytest.raises(InputError, match=r'or in .*setup.toml write unit = "..." below \[base\]'):
+        read_record(path, channels=setup)
+    setup.write_text(setup.read_text().replace('unit = ""', 'unit = "g"').replace('"g"', '"s"', 1))
+    assert float(read_record(path, channels=setup).box_acceleration[0]) == pytest.approx(0.980665)
