@@ -30,6 +30,7 @@ from .revolutions import Revolutions
 from .schedule import Schedule
 
 STATE, MEMORY = "_state", "_memory"  # ends of the columns of a run's state
+END = b"."  # of an FMU's state in an array, which loses zeros at its end
 
 
 def oscillator_start(structure: Structure) -> dict[str, float | bool]:
@@ -61,7 +62,7 @@ class Run:
 
     def get_state(self) -> Table:
         """Return the complete state of the run as a table of one row."""
-        states = {name + STATE: one.save_state().hex() for name, one in self._saved.items()}
+        states = {name + STATE: one.save_state() + END for name, one in self._saved.items()}
         numbers = {name + MEMORY: one.get_state() for name, one in self._memories.items()}
         numbers["control" + MEMORY] = self.inputs.state
         return {name: np.array([value]) for name, value in {**states, **numbers}.items()}
@@ -69,7 +70,7 @@ class Run:
     def set_state(self, table: Table) -> None:
         """Restore the state in the last row of a table."""
         for name, instance in self._saved.items():
-            instance.restore_state(bytes.fromhex(table[name + STATE][-1]))
+            instance.restore_state(bytes(table[name + STATE][-1]).removesuffix(END))
         for name, one in self._memories.items():
             one.set_state(table[name + MEMORY][-1].tolist())
         self.inputs.state = tuple(table["control" + MEMORY][-1].tolist())
