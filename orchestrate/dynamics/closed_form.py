@@ -123,7 +123,8 @@ class ClosedForm:
             room, swing = min(gap, self.limit - gap), np.hypot(*np.diff(swings)[:, 0])
             return FREE if swing <= room + SAME * np.abs(swings).sum() else -1
         phase = np.array([0.0, 0.5, 1.0]) * np.pi
-        force = self.force(phase, *self.steady(phase, mode)[:, ::2].T, mode == OUTER)
+        position, _, velocity, _ = self.steady(phase, mode).T
+        force = self.force(phase, position, velocity, mode == OUTER)
         middle = 0.5 * (force[0] + force[2])
         return mode if np.hypot(*(force[:2] - middle)) <= -middle else -1
 
@@ -189,7 +190,7 @@ class ClosedForm:
         states[:, 1] += self.apart(np.asarray(mode) == OUTER)
         return states
 
-    def apart(self, outer: NDArray[np.bool_]) -> Floats:
+    def apart(self, outer: Ends) -> Floats:
         """Return the gap at an end: the limit at the outer one."""
         return np.where(outer, self.limit, 0.0)
 

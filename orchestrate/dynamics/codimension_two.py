@@ -85,9 +85,13 @@ class CodimensionTwoPoint:
 
 
 class CharacteristicPolynomial:
-    """Characteristic polynomial of an orbit's monodromy matrix: roots are multipliers."""
+    """Characteristic polynomial of an orbit's monodromy matrix: roots are multipliers.
 
-    def __init__(self, orbit: PeriodicOrbit, scale: Floats) -> None:
+    Its largest coefficient is 1, or smaller where that of others, ``log_size``, was larger: beside
+    a wall all of it may vanish.
+    """
+
+    def __init__(self, orbit: PeriodicOrbit, scale: Floats, log_size: float = -np.inf) -> None:
         circle = np.exp(2j * np.pi * np.arange(DEGREE + 1) / (DEGREE + 1))
         signs, logs = zip(
             *(np.linalg.slogdet(orbit.jacobian(complex(z)) * scale) for z in circle), strict=True
@@ -97,9 +101,9 @@ class CharacteristicPolynomial:
             raise NoConvergenceError("the orbit's matrix is singular for all multipliers")
         values = np.array(signs) * np.exp(np.array(logs) - largest)
         coefficients = np.fft.fft(values).real / (DEGREE + 1)
-        size = float(np.abs(coefficients).max())
-        self.coefficients: Floats = coefficients / size
-        self.log_size = largest + np.log(size)
+        with np.errstate(divide="ignore"):
+            self.log_size = max(largest + np.log(np.abs(coefficients).max()), log_size)
+        self.coefficients: Floats = coefficients * np.exp(largest - self.log_size)
 
     def __call__(self, multiplier: complex) -> complex:
         """Return the characteristic polynomial's value at a (complex) multiplier."""
@@ -151,13 +155,13 @@ def points_between(
         known = [characteristic_polynomial(curve, root.unknowns) for root in (before, after)]
     except SOLVER_ERRORS:
         return
+    log_size = max(polynomial.log_size for polynomial in known)
     for kind in ON_CURVE.get(curve.kind, ()):
 
         def value(position: float, kind: PointKind = kind) -> float:
             """Return the kind's test function at an arclength after ``before``."""
-            return test_function_value(
-                curve, stepper.root_after(position) if position else before, kind
-            )
+            root = stepper.root_after(position) if position else before
+            return test_function_value(curve, root, kind, log_size=log_size)
 
         try:
             ends = [
@@ -170,10 +174,7 @@ def points_between(
                 continue
             position = solve_between(value, 0.0, length, **TOLERANCE)
             root = stepper.root_after(position)
-            polynomial = characteristic_polynomial(curve, root.unknowns)
-            # beside a wall all of D may vanish: its size counts as at the ends
-            shrunk = min(0.0, polynomial.log_size - max(end.log_size for end in known))
-            residual = abs(test_function_value(curve, root, kind, polynomial)) * np.exp(shrunk)
+            residual = abs(test_function_value(curve, root, kind, log_size=log_size))
             is_point = residual < LOCATED and is_point_of_kind(curve, root, kind)
         except SOLVER_ERRORS:
             continue
@@ -183,10 +184,11 @@ def points_between(
 
 
 def characteristic_polynomial(
-    curve: BifurcationCurve, unknowns: Floats
+    curve: BifurcationCurve, unknowns: Floats, log_size: float = -np.inf
 ) -> CharacteristicPolynomial:
     """Return the characteristic polynomial of the orbit in a curve's unknowns."""
-    return CharacteristicPolynomial(curve.orbit(unknowns), curve.scale[: curve.family.size])
+    scale = curve.scale[: curve.family.size]
+    return CharacteristicPolynomial(curve.orbit(unknowns), scale, log_size)
 
 
 def test_function_value(
@@ -194,13 +196,14 @@ def test_function_value(
     root: Root,
     kind: PointKind,
     known: CharacteristicPolynomial | None = None,
+    log_size: float = -np.inf,
 ) -> float:
     """Return a kind's test function at a root of the curve: it changes sign at such a point."""
     if kind in ANGLES:
         return float(root.unknowns[-1] - ANGLES[kind])
     if kind == PointKind.CUSP:
         return cusp_test(curve, root)
-    polynomial = known or characteristic_polynomial(curve, root.unknowns)
+    polynomial = known or characteristic_polynomial(curve, root.unknowns, log_size)
     if kind == PointKind.RESONANCE_1:
         return polynomial.slope(1.0)
     if kind == PointKind.RESONANCE_2:

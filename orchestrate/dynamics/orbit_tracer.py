@@ -67,16 +67,16 @@ class OrbitPoint:
 
     @cached_property
     def nearest_miss(self) -> float:
-        """Return the smallest gap minimum in flight without an impact: 0 at touching."""
+        """Return how near the masses come to an end in flight without an impact: 0 at touching."""
         return nearest_miss(self.orbit, turning_points(self.orbit))[0]
 
     @cached_property
     def sticking_margins(self) -> Floats:
         """Return each impact's margin in the sticking condition (17): negative where it sticks."""
         orbit, form = self.orbit, self.orbit.form
-        nodes = orbit.nodes
-        force = form.force(*nodes[:, :CLOSING].T, orbit.sequence.outer)
-        margins = 2.0 * form.parting(nodes[:, CLOSING]) + form.sticking_time * force
+        phase, position, velocity, closing = orbit.nodes.T
+        force = form.force(phase, position, velocity, orbit.sequence.outer)
+        margins = 2.0 * form.parting(closing) + form.sticking_time * force
         return np.where(force < 0.0, margins, np.inf)
 
     @property

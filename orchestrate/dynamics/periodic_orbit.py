@@ -179,8 +179,9 @@ class PeriodicOrbit:
         residual[:, 1:] -= after[:, 1:]
         released = of_next(self.sequence.releases)
         if released.any():
-            state = after[released, :CLOSING].T
-            residual[released, 0] = self.form.force(*state, outer[released])
+            phase, position, velocity = after[released, :CLOSING].T
+            force = self.form.force(phase, position, velocity, outer[released])
+            residual[released, 0] = force
             residual[released, 3] = after[released, CLOSING]
         return residual.ravel()
 

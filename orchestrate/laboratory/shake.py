@@ -129,7 +129,7 @@ class ShakeJob(Question):
     def dataset(self, table: Table) -> xr.Dataset:
         """Return histories, impacts, and what is known of the excitation."""
         drives = self.excitation.drives
-        acting = [name for name in CHANNELS if name in (BOX, drives) or getattr(self, name, 0.0)]
+        acting = [name for name in CHANNELS if name in (BOX, drives) or getattr(self, name, False)]
         columns = [*PLAYED, "a1_abs", "a2_abs"]
         contact = "whether the masses are in permanent contact"
         unit, word = unit_of_channel(drives), CHANNELS[drives]

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 from ..fmu import traits
 from ..lazy import xr
-from ..model import Excitation, Structure
+from ..model import Structure
 from ..running.job import brief
 from .labels import Variable, make_dataset, parameter_variable, variable
 from .questions import excitation_numbers, require_delaminated
@@ -35,12 +35,6 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
     """
     levels = [traits(structure, each)[THRESHOLD] for each in np.ravel(frequency).tolist()]
     return np.reshape(levels, np.shape(frequency))
-
-
-def exceeds_threshold(structure: Structure, excitation: Excitation) -> bool:
-    """Return whether the linear response opens or touches, so that no response can stay linear."""
-    pushed = any(excitation.pushes)
-    return bool(traits(structure, excitation.frequency, excitation.amplitude, pushed)[-1])
 
 
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:

@@ -305,7 +305,7 @@ export class Oscillator {
     const rooms = new Rooms(this.library);
     /** @type {Record<string, number>} */
     const known = { ...point.structure };
-    const numbers = rooms.array("f64", [...loops.deviating.map((name) => known[name]), point.amplitude, point.frequency, 0, 0, 0]);
+    const numbers = rooms.array("f64", [...loops.deviating.map((name) => known[name] ?? 0), point.amplitude, point.frequency, 0, 0, 0]);
     const rows = rooms.array("f64", impacts.flat());
     const [memory, found] = [calls.exponent_size(impacts.length), 2].map((size) => rooms.array("f64", size));
     calls.largest_exponent(numbers, rows, impacts.length, end, blocks, batches, memory, found);

@@ -133,6 +133,8 @@ class Normal:
 class Known(CharacteristicPolynomial):
     """The polynomial of multipliers that are known."""
 
+    log_size = 0.0
+
     def __init__(self, *multipliers):
         self.coefficients = np.poly(multipliers)[::-1].real
 
@@ -168,7 +170,7 @@ def test_what_the_multipliers_beside_1_say_on_a_fold(monkeypatch):
     }
     for kind, others in cases.items():
 
-        def known(curve, unknowns, others=others):
+        def known(curve, unknowns, _=0.0, others=others):
             return Known(1.0, *others(unknowns[0]))
 
         monkeypatch.setattr(codimension_two, "characteristic_polynomial", known)

@@ -8,8 +8,7 @@ from fmu_src.kernels import repetition
 from orchestrate.fmu import begin, gap_between
 from orchestrate.fmu.oscillator import PEAKS, SAMPLE_SERIES
 from orchestrate.model.outcomes import REPEATED
-from orchestrate.response.response_loop import COUNTED, COUNTS, Responses
-from orchestrate.response.threshold import exceeds_threshold
+from orchestrate.response.response_loop import COUNTED, COUNTS, Responses, traits_of
 
 
 def respond(instance, points, starts, settings):
@@ -23,7 +22,7 @@ def respond(instance, points, starts, settings):
         deviations=np.zeros(count),
         peaks=np.zeros((count, len(PEAKS))),
         counts={name: np.zeros(count, np.int32) for name in COUNTS},
-        must_impact=np.array([exceeds_threshold(*point) for point in points]),
+        must_impact=np.array([bool(traits_of(point)[-1]) for point in points]),
     )
     transients = np.broadcast_to(settings.transient, count).tolist()
     given, gap = np.atleast_2d(np.asarray(starts, dtype=float)), settings.chain_gap
