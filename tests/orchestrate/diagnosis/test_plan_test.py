@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import orchestrate
+import orchestrate.diagnosis.plan_test as rehearsed
 from orchestrate.diagnosis.opening import opening_force, sweep_rate
-from orchestrate.diagnosis.plan_test import bonded_mode, recommended_levels
+from orchestrate.diagnosis.plan_test import PlanJob, bonded_mode, recommended_levels
 from orchestrate.errors import InputError
 
 HALVES = orchestrate.Structure.from_halves(
@@ -54,6 +55,26 @@ def test_a_level_is_recommended_at_which_both_verdicts_are_right_with_a_reserve(
     assert float(plan.recommended_first) < 0.7 * f < 1.3 * f < float(plan.recommended_last)
     span = float(plan.recommended_last - plan.recommended_first)
     assert float(plan.recommended_duration) >= 0.999 * span / sweep_rate(f, zeta)
+
+
+@pytest.mark.parametrize(("clearance", "shaken"), [(0.0, [1.0, 1.0]), (1e-4, [2.0, 4.0])])
+def test_what_is_proportional_to_the_level_is_shaken_once(monkeypatch, clearance, shaken):
+    """Of nine levels nine were computed, in minutes; the readings of noise have no verdict."""
+    levels, noise = [], np.random.default_rng(1).standard_normal((2, 4000))
+    felt = orchestrate.record(sample_rate=2e3, box_acceleration=noise[0], acceleration1=noise[1])
+
+    def readings(job, structure, level, fmus):
+        levels.append(level)
+        return felt, 1e-3 * level
+
+    monkeypatch.setattr(rehearsed, "readings", readings)
+    sensors = tuple(dict.fromkeys(("box_acceleration", "acceleration1"), SENSOR).items())
+    own = HALVES.replace(clearance=clearance)
+    ends = {"first": 20.0, "last": 80.0, "duration": 2.0, "reserve": 2.0}
+    job = PlanJob(name="x", structure=own, sensors=sensors, levels=(2.0, 4.0), **ends)
+    rows = [job.rehearsal(own, level, {}) for level in job.levels]
+    assert levels == shaken and [row[2] for row in rows] == [2e-3, 4e-3]
+    assert job.rehearsal(own.as_bonded(), 4.0, {})[2] == 4e-3 and levels[-1] == 1.0
 
 
 @pytest.mark.parametrize(
