@@ -165,6 +165,7 @@ class StructureNumbers:
 
         Examples
         --------
+        >>> from orchestrate import Structure
         >>> Structure(e=0.8, e_slope=0.5).restitution(2.0)
         0.4
         """

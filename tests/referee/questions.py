@@ -19,6 +19,7 @@ NOT_COMPARED = (
     "channels",
     "plot",
     "report",
+    "to_dataframe",
     "write_ssp",
 )  # they draw and write: nothing is computed
 SHORT: dict[str, Any] = {"transient": 50, "samples": 60}  # of fewer no repetition is decided

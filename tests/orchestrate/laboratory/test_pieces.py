@@ -232,7 +232,7 @@ SWEEP = {"first": 20.0, "last": 90.0, "duration": 2.0, "acceleration": 4.9}
         (SweptSine, {"last": 20.0}, "last = 20.0 Hz: expected another frequency than first"),
         (SweptSine, {"spacing": "lin"}, "spacing = 'lin': expected one of linear, log"),
         (SweptSine, {"rate": 1.0}, "duration = 2.0 and rate = 1.0 given: expected one of"),
-        (SweptSine, {"duration": 0.0}, "nothing given: expected one of duration and rate"),
+        (SweptSine, {"duration": 0.0}, "nothing given: expected one of duration= and rate="),
         (SweptSine, {"acceleration": -1.0}, "acceleration = -1.0 m/s2: expected 0 <="),
         (SweptSine, {"acceleration": [(30, 1), (90, 1)]}, "is of 30 to 90 Hz; expected 20 to 90"),
         (SweptSine, {"acceleration": [(30, 1), (10, 1)]}, "with ascending frequencies"),

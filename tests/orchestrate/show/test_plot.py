@@ -97,7 +97,7 @@ def test_all_public_questions_are_drawn_or_known_to_have_no_picture():
         *("couple_all", "impact_statistics", "orbit", "passage", "plot", "waterfall", "write_ssp"),
         *("__version__", "channels", "measure", "record", "read_record", "write_record"),
         *("read_curve", "resonance_curve"),
-        *("detect_all", "report", "basin_entropy", "record_of_run", "halves"),
+        *("detect_all", "report", "basin_entropy", "record_of_run", "halves", "to_dataframe"),
     }
 
 
