@@ -119,9 +119,14 @@ def clear_from_node(m):
     """
     part = part_without_root(m, False)
     if m[at.LIMIT] < INFINITE and m[at.MODE] == at.FLIGHT:  # rarely
-        part = min(part, part_without_root(m, True))
+        part = min(part, part_below_limit(m))
     m[at.CLEAR] = m[at.RIGHT_AGE] if part == 1.0 else m[at.LEFT_AGE] + part * m[at.SPACING]
     return m[at.CLEAR] > m[at.LEFT_AGE]
+
+
+def part_below_limit(m):
+    """Return the part of the present interval in which the gap certainly stays below its limit."""
+    return part_without_root(m, True)
 
 
 def part_without_root(m, other):  # inline
@@ -129,10 +134,12 @@ def part_without_root(m, other):  # inline
     the gap's limit leaves of it, certainly has no root.
     """
     b0, b1, b2, b3, b4, b5 = end_coefficients(m, other)
-    if not has_no_root(b0, b1, b2, b3, b4, b5) and b5 > 0.0:  # rarely
+    clear = has_no_root(b0, b1, b2, b3, b4, b5)
+    if not clear and b5 > 0.0:  # rarely
         set_remainder(m)
         b0, b1, b2, b3, b4, b5 = end_coefficients(m, other)
-    if has_no_root(b0, b1, b2, b3, b4, b5):
+        clear = has_no_root(b0, b1, b2, b3, b4, b5)
+    if clear:
         return 1.0
     return clear_part(b0, b1, b2, b3, b4, b5)
 
@@ -165,7 +172,7 @@ def step_inside_interval(m):
     take_step(m, tau, reach, step, found, (h0, h1, h2, h3, h4, bound))
 
 
-def take_step(m, tau, reach, step, found, values):
+def take_step(m, tau, reach, step, found, values):  # inline
     """Take a step that the event function allows, or a shorter one, if the gap's limit is near.
 
     ``values`` are the event function's value, four derivatives and bound at ``tau``.
@@ -173,8 +180,7 @@ def take_step(m, tau, reach, step, found, values):
     kind = at.END_EVENT
     if m[at.LIMIT] < INFINITE and m[at.MODE] == at.FLIGHT:  # rarely
         h0, h1, h2, h3, h4, bound = values
-        accuracy = root_accuracy(m, tau)
-        other, ends = next_step(m[at.LIMIT] - h0, -h1, -h2, -h3, -h4, bound, tau, reach, accuracy)
+        other, ends = step_to_limit(m, tau, reach, h0, h1, h2, h3, h4, bound)
         if other < step:
             step, found, kind = other, ends, at.END_OTHER
     if found:
@@ -183,6 +189,12 @@ def take_step(m, tau, reach, step, found, values):
         if m[at.SERIES] == 0.0:
             set_phasors_at_end(m, m[at.END] - tau)
     m[at.CLEAR] = m[at.RIGHT_AGE] if step >= reach else tau + step
+
+
+def step_to_limit(m, tau, reach, h0, h1, h2, h3, h4, bound):
+    """Return the step that the gap's limit allows, and whether it ends there."""
+    left, accuracy = m[at.LIMIT] - h0, root_accuracy(m, tau)
+    return next_step(left, -h1, -h2, -h3, -h4, bound, tau, reach, accuracy)
 
 
 def root_accuracy(m, tau):
