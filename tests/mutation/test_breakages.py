@@ -35,7 +35,7 @@ def test_the_tests_notice_what_is_broken(module, request):
     command = [sys.executable, "-m", "tests.mutation", module, table, *options]
     subprocess.run([str(part) for part in command], cwd=ROOT, check=True)
     with table.open(newline="") as file:
-        rows = [row for row in csv.DictReader(file)]
+        rows = list(csv.DictReader(file))
     known = harmless(module)
     judged = [row for row in rows if (row["line"], row["broken"]) not in known]
     left = [row for row in judged if row["outcome"] == "survived"]

@@ -87,6 +87,13 @@ def test_bounds_hold_for_all_later_times(make, values, state, age):
 
 @examples(30)
 @given(structures(), STATES, sizes(1e-16, 2e-5), sizes(1e-12, 0.1), AGES)
+@example(
+    {"m2": 1.0, "d1": 5.0, "box_frequency": 0.4, "phase_start": 0.0},
+    (-0.3, 0.2, 0.5, -9.0),
+    1e-9,
+    0.1,
+    0.0,
+)
 def test_bounds_of_nearly_equal_oscillators_hold_as_long_as_they_are_used(
     values, state, near, gap, age
 ):
