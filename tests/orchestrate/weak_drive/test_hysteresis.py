@@ -379,7 +379,8 @@ def test_a_ramp_is_taken_up_in_the_middle_of_a_step_from_the_checkpoint_before(m
     run = SimpleNamespace(set_state=asked.append, speeds=asked.append, get_state=lambda: "there")
     run.master = SimpleNamespace(close=list)
     loop = HysteresisLoop(lambda course: run, Ramp(1.4, 1.6, 1e-3), 2.0, 1.0, 1.0, 1.0)
-    table = dict.fromkeys(hysteresis.SAVED, np.arange(3))
+    memories = (f"{name}_memory" for name in ("master", "balance", "revolution", "control"))
+    table = dict.fromkeys(("oscillator_state", "shaker_state", *memories), np.arange(3))
     loop.add_checkpoints(table, 10, 25)  # before steps 10, 20 and 25, the end
     assert loop.state_before(0) is None and list(loop.checkpoints) == [10, 20, 25]
     assert loop.checkpoints[20]["master_memory"].tolist() == [1]
