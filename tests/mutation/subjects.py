@@ -24,14 +24,19 @@ SUBJECTS = {
     "orchestrate/weak_drive/hysteresis.py": (f"{DRIVE}/test_hysteresis.py",),
     "orchestrate/weak_drive/settled.py": (f"{DRIVE}/test_settled.py",),
     "orchestrate/dynamics/decision.py": ("tests/orchestrate/dynamics/test_decision.py",),
-    "orchestrate/dynamics/clusters.py": (
-        "tests/orchestrate/dynamics/test_clusters.py",
-        "tests/orchestrate/dynamics/test_decision.py",
+    "orchestrate/dynamics/clusters.py": tuple(
+        f"tests/orchestrate/dynamics/test_{name}.py"
+        for name in ("clusters", "decision", "global_continuation")
     ),
     "orchestrate/dynamics/curve_growth.py": ("tests/orchestrate/dynamics/test_manifolds.py",),
     "orchestrate/diagnosis/decision_rule.py": (
         f"{DIAGNOSIS}/test_thresholds.py",
         f"{DIAGNOSIS}/test_verdicts.py",
+    ),
+    "orchestrate/diagnosis/settings.py": (
+        f"{DIAGNOSIS}/test_thresholds.py",
+        f"{DIAGNOSIS}/test_verdicts.py",
+        f"{DIAGNOSIS}/test_even_orders.py",
     ),
     "orchestrate/diagnosis/impact_timing.py": (f"{DIAGNOSIS}/test_impact_timing.py",),
     "orchestrate/diagnosis/wiring.py": (

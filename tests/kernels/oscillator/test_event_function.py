@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
+from fmu_src.kernels.numerics.first_root import INFINITE
 from fmu_src.kernels.oscillator import event_function
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.contact import first_nonzero_derivative
@@ -86,6 +87,13 @@ def test_bounds_hold_for_all_later_times(make, values, state, age):
 
 @examples(30)
 @given(structures(), STATES, sizes(1e-16, 2e-5), sizes(1e-12, 0.1), AGES)
+@example(
+    {"m2": 1.0, "d1": 5.0, "box_frequency": 0.4, "phase_start": 0.0},
+    (-0.3, 0.2, 0.5, -9.0),
+    1e-9,
+    0.1,
+    0.0,
+)
 def test_bounds_of_nearly_equal_oscillators_hold_as_long_as_they_are_used(
     values, state, near, gap, age
 ):
@@ -126,3 +134,19 @@ def test_the_derivative_that_decides_on_the_boundary_is_newtons(values, state, l
     for _ in range(order):
         signal = signal.derivative()
     assert abs(value + float(signal(0))) <= 1e-12 * scale
+
+
+APART = {"clearance": 0.5, "box_amplitude": 0.0}
+
+
+@pytest.mark.parametrize("moves", ["x1_start", "x2_start", "v1_start", "v2_start", "force1", ""])
+def test_nothing_ends_a_state_in_which_nothing_moves(moves):
+    still = started(**APART)
+    assert still[at.MODE] == at.FLIGHT and still[at.CLEAR] == INFINITE
+    assert started(clearance=-0.5, box_amplitude=0.0)[at.CLEAR] == INFINITE
+    if moves:
+        m = started(**APART, **{moves: 0.1 if "1" not in moves or moves == "v1_start" else -0.1})
+    else:  # at a resonance, next to a wall: from rest on
+        m = started(clearance=0.5, wall=1.0, d1=0.0, box_frequency=1.0)
+        assert m[at.SECULAR] != 0.0
+    assert m[at.MODE] == at.FLIGHT and m[at.CLEAR] < INFINITE

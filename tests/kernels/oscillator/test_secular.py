@@ -25,7 +25,7 @@ from .kernel import (
     sizes,
     started,
 )
-from .test_event_function import MAKERS, STATES
+from .test_event_function import MAKERS, STATES, flight_and_gap
 
 AGES = st.floats(0.0, 40.0)
 
@@ -152,3 +152,28 @@ def test_a_drive_that_comes_to_a_resonance_while_running(values):
     advanced(m, 40.0 + 1e-9)
     assert m[at.SECULAR] == 0.0
     assert outputs(m)[:4] == pytest.approx(before[:4], abs=1e-6)
+
+
+ALIKE = {"m2": 1.0, "k2": 1.0, "d1": 0.0, "d2": 0.0, "box_frequency": 1.0, "phase_start": 1.0}
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        *({**ALIKE, "m2": eta**-2, "d1": 0.01, "box_frequency": eta} for eta in (0.4, 0.5, 2.0)),
+        {**ALIKE, "force1_amplitude": 0.3},
+        {**ALIKE, "force2_amplitude": 0.3, "k2": 1.0 + 1e-9},
+    ],
+)
+def test_what_a_quintic_may_miss_of_a_growing_amplitude(values):
+    """Mass 2 is driven on its natural frequency, below that of mass 1 and above it; or both are
+    alike, and a force drives one of them.
+    """
+    m, signal = flight_and_gap(values, (-1e-3, 0.0, 1e-3, 0.0))
+    assert m[at.SECULAR] != 0.0
+    for _ in range(6):
+        signal = signal.derivative()
+    found = m[at.REMAINDER] / m[at.HERMITE + 2]
+    ages = np.linspace(0.0, secular.LONGEST_DRIVEN * m[at.SPACING], 200)
+    largest = np.abs(signal.sample(ages)).max()
+    assert 0.3 * found < largest <= found

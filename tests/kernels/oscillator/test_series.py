@@ -3,6 +3,7 @@ closed form is relative to the displacements.
 """
 
 import mpmath as mp
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -133,3 +134,14 @@ def test_a_gap_that_is_not_concave_is_walked():
     m[at.OSCILLATOR_1 + at.DRIVE + 1] = 0.0
     m[at.SERIES_GAP + 6] = 1e3
     assert series.short_flight_duration(m, 8) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("angle", "order"), [(0.0199, 8), (0.0201, 12), (0.199, 12), (0.201, 4), (-0.01, 4)]
+)
+def test_the_order_of_a_series_goes_by_the_flights_angle(angle, order):
+    """Of the fastest change over twice the way to its summit; none if it is not pulled back."""
+    m = flight(0.1, 0.0, 0.1, 1.0, box_frequency=1.7)
+    assert m[at.RATE] == 1.7
+    assert series.required_order(m, 0.5, -1.7 / angle) == order
+    assert series.required_order(m, 0.5, 0.0) == 4

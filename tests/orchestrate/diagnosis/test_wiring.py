@@ -42,8 +42,8 @@ def lost(channels):
     return {name: values[kept] for name, values in channels.items()}
 
 
-def with_hum(channels, name):
-    line = 0.4 * np.sin(2.0 * np.pi * 50.02 * np.arange(COUNT) / RATE)
+def with_hum(channels, name, hertz=50.02):
+    line = 0.4 * np.sin(2.0 * np.pi * hertz * np.arange(COUNT) / RATE)
     return {**channels, name: channels[name] + line}
 
 
@@ -101,6 +101,9 @@ def test_a_velocity_or_displacement_that_is_read_as_an_acceleration_is_named(nam
 def test_a_clean_record_has_no_note(participation):
     assert notes(sweep(participation)) == []
     assert notes(with_hum(sweep(noise=0.05), BASE)) != []
+    (note,) = notes(with_hum(sweep(participation), FACE, 60.02))
+    assert note.kind == "hum" and "at 60 Hz" in note.text
+    assert notes(with_hum(sweep(participation), FACE, 55.0)) == []
     tone = 4.0 * np.sin(np.arange(COUNT) * np.pi / 8.0) + 1e-3 * sweep(noise=0.0)[BASE]
     assert notes({BASE: tone, FACE: 3.0 * tone}) == []
 

@@ -1,11 +1,14 @@
 """Responses told apart: clusters against SciPy's single linkage, and cases with a known answer."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.cluster.hierarchy import fcluster, linkage
 
+from orchestrate.dynamics import clusters
 from orchestrate.dynamics.clusters import (
     AttractorSettings,
     SettlingRun,
@@ -63,6 +66,39 @@ def test_irregular_responses_are_grouped_by_their_means():
 def test_each_threshold_of_irregular_responses(other, alike):
     rows = [[0, 1.0, 1.0, 0.0, 0.0], other]
     assert irregular_clusters(rows, AttractorSettings()).tolist() == [0, 0 if alike else 1]
+
+
+@pytest.mark.parametrize(
+    ("early", "before", "last", "tolerance", "periods"),
+    [
+        (0.99e-6, 0.0, 0.0, 1e-6, 448),  # `converged`
+        (1.01e-6, 1.01e-6, 1.01e-6, 1e-6, 20_448),  # after `longest`, and 400 are kept
+        (0.5, 0.99e-3, 0.4e-3, 1e-3, 20_048),  # `apart` times as much, if it dies
+        (0.5, 1.01e-3, 0.4e-3, 1e-6, 20_448),
+        (0.5, 0.7e-3, 0.34e-3, 1e-3, 20_048),  # by half
+        (0.5, 0.7e-3, 0.36e-3, 1e-6, 20_448),
+    ],
+)
+def test_each_threshold_of_a_response_that_is_run_on(
+    monkeypatch, early, before, last, tolerance, periods
+):
+    """By deviations after one period in the first stretches, the one before the last, and there."""
+    done = [0]
+
+    def respond(points, ends, rule):
+        done[0] += rule.transient + rule.samples
+        deviation = early if done[0] < 1e4 else before if done[0] < 2e4 else last
+        n = {"multiplicity": [deviation <= rule.tolerance], "nearly": [deviation <= rule.loose]}
+        counts = {name: np.array(one, dtype=int) for name, one in n.items()}
+        told = SimpleNamespace(counts=counts, deviations=np.array([deviation]), ends=ends)
+        told.rows = lambda chosen: told
+        return told
+
+    monkeypatch.setattr(clusters, "response_loop", lambda _: SimpleNamespace(respond=respond))
+    monkeypatch.setattr(clusters, "responses_from", lambda rows, points, by, *_: [by] * len(points))
+    point = Point(PAPER, Excitation.nondimensional(1.0, PAPER))
+    (found,) = run_until_settled(None, point, REST, settling_run())
+    assert found == (pytest.approx(tolerance), periods)
 
 
 @pytest.mark.parametrize(

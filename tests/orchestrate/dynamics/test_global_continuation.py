@@ -51,18 +51,18 @@ def test_motions_are_numbered_by_what_they_are():
     assert ordered[0].state.tolist() == [0.0, 0.0, 0.0, 1.0]
 
 
-def value(*motions):
-    return SimpleNamespace(motions=[motion(*one) for one in motions])
+def value(*motions, apart=0.0):
+    return SimpleNamespace(motions=[motion(*one, apart) for one in motions])
 
 
-def motion(n, impacts):
+def motion(n, impacts, apart):
     states = np.ones((max(n, 1), 4))
     return SimpleNamespace(
         multiplicity=n,
         impacts_per_period=impacts,
         point=POINT,
         states=states,
-        nearest=lambda state: (0, 0.0),
+        nearest=lambda state: (0, apart),
     )
 
 
@@ -85,3 +85,11 @@ def test_which_attractors_of_neighbours_are_one(before, after, forth, back, expe
             links[i, k, 1 - i] = to if isinstance(to, tuple) else (to, BY_SIMULATION)
     found = match_neighbours(value(*before), value(*after), 0, links)
     assert sorted(found) == expected
+
+
+@pytest.mark.parametrize(("apart", "expected"), [(0.19, [(0, 0), (1, 1)]), (0.21, [(1, 1)])])
+def test_neighbours_that_one_leads_to_are_one_if_they_are_near(apart, expected):
+    leads = {(0, 0, 1): 0, (0, 1, 1): 1, (1, 0, 0): 1, (1, 1, 0): 1}
+    links = {key: (to, BY_SIMULATION) for key, to in leads.items()}
+    near = value(T, T, apart=apart)
+    assert sorted(match_neighbours(near, near, 0, links)) == expected

@@ -119,14 +119,13 @@ def test_a_page_is_replaced_and_no_other_file(tmp_path):
 
 
 WRONG = {
-    "m1": ["heavy", 0.0, -1.0, np.nan, np.inf, np.array([1.0, 2.0])],
-    "tolerance": ["small", np.nan, 0.0, np.array([1e-2, 1e-3])],
-    "transient": ["long", 0.5, -1.0, 1e300, np.inf],
-    "samples": ["many", 0.0, np.nan],
-    "start": ["[a, b, c, d]", "[0.0]", "", "[nan, 0, 0, 0]", 5.0],
-    "bonded": ["no", 2.0],
-    "clearance": ["wide", np.nan],
-    "direction": ["sideways", "both"],
+    "m1": ["heavy", np.array([1.0, 2.0])],
+    "tolerance": [0.0],
+    "transient": [0.5],
+    "samples": [np.nan],
+    "start": ["[a, b, c, d]", "[0.0]"],
+    "bonded": [2.0],
+    "direction": ["both"],
 }
 
 
@@ -143,16 +142,10 @@ STATE = ("eta", "coordinate")
 SHAPES = {
     "a state of texts": {"end_state": (STATE, np.full((ETAS.size, 4), "x"))},
     "a state of three numbers": {"end_state": (("eta", "three"), np.zeros((ETAS.size, 3)))},
-    "a state that is not a number": {"end_state": (STATE, np.full((ETAS.size, 4), np.nan))},
     "a single state": {"end_state": ((), 1.0)},
-    "a single answer": {"impacts_per_period": ((), 1.0)},
     "answers over another dimension": {"impacts_per_period": ("other", np.zeros(5))},
-    "frequencies of texts": {"frequency": ("eta", np.full(ETAS.size, "x"))},
     "frequencies of zero": {"frequency": ("eta", np.zeros(ETAS.size))},
-    "amplitudes below zero": {"amplitude": ("eta", np.full(ETAS.size, -1.0))},
-    "an amplitude without end": {"amplitude": ("eta", np.full(ETAS.size, np.inf))},
     "frequency ratios below zero": {"eta": ("eta", -ETAS)},
-    "frequency ratios of texts": {"eta": ("eta", ETAS.astype(str))},
 }
 
 

@@ -73,22 +73,6 @@ def test_all_samples_are_in_an_orbit_diagram():
         assert len(marked) <= len(points)
 
 
-@pytest.mark.parametrize("count", [40, 700])
-def test_down_does_not_hide_up(count):
-    top, bottom = lines.draw_sweep(made.sweep(count, both=True)).axes
-    up, down = (
-        [line for line in top.lines if line.get_color() == c] for c in (colours.BLUE, colours.RED)
-    )
-    assert up and down and top.lines.index(up[0]) < top.lines.index(down[0])
-    if count < lines.MAX_DISTINCT:
-        assert up[0].get_markersize() > down[0].get_markersize()
-        assert up[0].get_markerfacecolor() == "none"
-    else:
-        assert up[0].get_markersize() > 1.0 and down[0].get_marker() == ","
-    wide, thin = (line for line in bottom.lines if line.get_drawstyle() == "steps-mid")
-    assert wide.get_linewidth() > 2.0 * thin.get_linewidth()
-
-
 def test_a_structure_in_si_is_told_in_hertz_and_metres():
     for si in (False, True):
         top, bottom = lines.draw_sweep(made.sweep(si=si)).axes
@@ -154,9 +138,6 @@ def test_an_attractor_is_drawn_as_far_as_it_exists():
     np.testing.assert_array_equal(shares[1], [nan, nan, 0.7, 1.0])
 
 
-# -- planes ---------------------------------------------------------------------------------------
-
-
 # -- time histories and spectra -------------------------------------------------------------------
 
 
@@ -174,6 +155,3 @@ def test_a_motion():
     quiet = histories.draw_motion(made.moving(True, impacts=0))
     legends = [axes.get_legend() for axes in quiet.axes if axes.get_legend()]
     assert "no impacts" in [text.get_text() for legend in legends for text in legend.get_texts()]
-
-
-# -- titles and numbers ---------------------------------------------------------------------------

@@ -3,8 +3,6 @@
 import base64
 import hashlib
 import re
-import shutil
-import subprocess
 from html.parser import HTMLParser
 
 import numpy as np
@@ -155,27 +153,6 @@ def verdict():
         },
         {"m1": 1.5, "m2": 0.75, "k1": 1.5 * (2 * np.pi * 42.0) ** 2, "k2": 0.75e5},
     )
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not shutil.which("chromium"), reason="no chromium here, which prints the page")
-def test_on_paper_one_page_is_signed_and_the_rest_is_short(verdict, signs, tmp_path):
-    """A page with the signature, one with the signs, one of an appendix."""
-    over, hertz = ("order", "channel", "frequency"), np.linspace(9.0, 16.0, 50)
-    wave = np.ones((3, 1, 50)) / (1.0 + (hertz - 12.0) ** 2)
-    shown = {"measured": (over, wave, {"units": "m/s2"}), "floor": (over, 1e-3 * wave)}
-    shown |= {"fitted": (("hypothesis", *over), np.stack([wave, 1.1 * wave]))}
-    shown |= {"misfit_at": (("hypothesis", "frequency"), np.ones((2, 50)))}
-    sides = {"order": [1.0, 2.0, 3.0], "channel": ["acceleration1"]}
-    sides["frequency"] = ("frequency", hertz, {"units": "Hz"})
-    told = {"analysis": "detect", "reason": "words " * 60, "settle": "words " * 30}
-    told |= {"record_file": "a.csv", "command": "diagnose " * 12, "assumed": "words; " * 8}
-    answer = verdict.assign(shown).assign_coords(sides).assign_attrs(told)
-    page = orchestrate.report(answer, signs, output=tmp_path / "r.html", notes="Beam 7.")
-    command = ["chromium", "--headless", "--no-sandbox", "--no-pdf-header-footer"]
-    printed = tmp_path / "r.pdf"
-    subprocess.run([*command, f"--print-to-pdf={printed}", page.as_uri()], capture_output=True)
-    assert len(re.findall(rb"/Type\s*/Page\b(?!s)", printed.read_bytes())) == 3
 
 
 def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is(verdict):

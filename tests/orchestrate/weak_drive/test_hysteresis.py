@@ -374,6 +374,22 @@ def test_a_motion_nearer_to_the_one_before_is_held_on(monkeypatch, speed, again)
     assert loop.hold_beside(low, 1.501, 1.31) == ("held on" if again else here)
 
 
+def test_a_ramp_is_taken_up_in_the_middle_of_a_step_from_the_checkpoint_before(monkeypatch):
+    asked = []
+    run = SimpleNamespace(set_state=asked.append, speeds=asked.append, get_state=lambda: "there")
+    run.master = SimpleNamespace(close=list)
+    loop = HysteresisLoop(lambda course: run, Ramp(1.4, 1.6, 1e-3), 2.0, 1.0, 1.0, 1.0)
+    memories = (f"{name}_memory" for name in ("master", "balance", "revolution", "control"))
+    table = dict.fromkeys(("oscillator_state", "shaker_state", *memories), np.arange(3))
+    loop.add_checkpoints(table, 10, 25)  # before steps 10, 20 and 25, the end
+    assert loop.state_before(0) is None and list(loop.checkpoints) == [10, 20, 25]
+    assert loop.checkpoints[20]["master_memory"].tolist() == [1]
+    assert loop.state_before(23) == loop.state_before(23) == "there"
+    assert asked == [loop.checkpoints[20], range(20, 23)]
+    monkeypatch.setattr(loop, "hold", lambda *held: held)
+    assert loop.hold_step(23) == ("there", *[pytest.approx(1.4 + 1e-3 * 23.5 * 2.0)] * 2)
+
+
 def test_a_jump_in_the_tail_of_a_larger_one():
     """The second one is smaller than what the speed gains over a step of the grid."""
 
