@@ -3,7 +3,7 @@
 import numpy as np
 
 from orchestrate import Structure, map, plot
-from orchestrate.show import files
+from orchestrate.show import figure_files
 
 paper = Structure.nondimensional(D=0.05)
 found = map(
@@ -13,4 +13,4 @@ one_period = found.multiplicity == 1
 print(f"{float(one_period.mean()):.0%} of the map repeats after one period")
 print(f"largest gap: xi_Rel = {float(found.xi_rel_max.max()):.2f}")
 found.to_netcdf("map.nc")
-files.save(plot(found), "map")  # map.png
+figure_files.save(plot(found), "map")  # map.png

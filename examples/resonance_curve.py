@@ -3,7 +3,7 @@
 import numpy as np
 
 from orchestrate import Structure, plot, resonance, to_dataframe
-from orchestrate.show import files
+from orchestrate.show import figure_files
 
 beam = Structure(m1=1.5, m2=1.4, k1=8400.0, k2=10100.0, d1=1.1, d2=1.1, e=0.6)  # SI
 frequency = 2.0 * np.pi * np.arange(8.0, 20.0, 0.1)  # rad/s, of 8 to 20 Hz
@@ -18,4 +18,4 @@ for number in range(peaks.sizes["peak"]):
 
 to_dataframe(found, units="Hz,mm,g").to_csv("beam.csv", index=False)
 found.to_netcdf("beam.nc")
-files.save(plot(found), "beam")  # beam.png
+figure_files.save(plot(found), "beam")  # beam.png

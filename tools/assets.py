@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from orchestrate.fmu import Instance, describe, find
-from orchestrate.show import files
+from orchestrate.show import figure_files
 
 from .pictures import electrodynamic_shaker, icon, oscillator, shaker
 from .references import COIL, MODELS, REFERENCES, SHAKER, Reference, reference_rows, write_reference
@@ -116,9 +116,9 @@ def draw_documentation(
     else:
         scheme, image = oscillator.draw_scheme(), icon.draw_masses()
         plot = oscillator.draw_example(*simulate_example(fmu))
-    files.save(scheme, folder / "documentation" / "scheme", **tight)
-    files.save(image, folder / "model", dpi=96)
-    files.save(plot, folder / "documentation" / "plot", ("svg",))
+    figure_files.save(scheme, folder / "documentation" / "scheme", **tight)
+    figure_files.save(image, folder / "model", dpi=96)
+    figure_files.save(plot, folder / "documentation" / "plot", ("svg",))
 
 
 def main() -> None:

@@ -154,7 +154,7 @@ class Asked(Command):
 
     def excitation_keys(self) -> Collection[str]:
         """Return the keys of the section ``[excitation]`` in the TOML file of ``--structure``."""
-        from ..model.files import parse, resolve
+        from ..model.toml_files import parse, resolve
 
         if self.structure is None:  # but that of a stored result
             return ()

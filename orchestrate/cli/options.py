@@ -103,7 +103,7 @@ class OfStructure(Options):
     def read_structure(self) -> Structure:
         """Return the ``Structure`` of ``--structure`` with the changes of ``--set``."""
         from ..model import Structure
-        from ..model.files import parse, resolve
+        from ..model.toml_files import parse, resolve
 
         changes = parse_changes(self.set)
         structure = Structure.from_file(self.structure).replace(**changes)
@@ -177,8 +177,8 @@ class OfBox(Options):
         """Return keywords of the excitation in the structure's file, or None; set ``--phase``."""
         import orchestrate
 
-        from ..model.files import read
         from ..model.ranges import PUSHES
+        from ..model.toml_files import read
 
         excitation: Any = read(self.structure).get("excitation")
         if excitation is None:

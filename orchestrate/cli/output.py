@@ -322,7 +322,7 @@ class Files:
         paths = self.picture_paths(*endings)
         missing = [path for path in paths if self.fresh or not path.exists()]
         if missing:
-            from ..show.files import for_slides, save
+            from ..show.figure_files import for_slides, save
 
             figure, dpi = draw(), {}
             if self.size:
@@ -339,7 +339,7 @@ def importing_matplotlib(needed: bool) -> Iterator[None]:
 
     def prepare() -> None:
         with suppress(Exception):  # it comes again where the picture is drawn
-            from ..show.files import warm_up_matplotlib
+            from ..show.figure_files import warm_up_matplotlib
 
             warm_up_matplotlib()
 

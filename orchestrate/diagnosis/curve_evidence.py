@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
-from ..laboratory.analysis.orders import dwells
+from ..laboratory.analysis.order_tracking import dwells
 from ..laboratory.pieces import Floats
 from ..laboratory.resonance_curve import CURVE_ORDERS, FACES, FEWEST_POINTS
 from ..laboratory.sampled import Sampled
@@ -20,7 +20,7 @@ from ..laboratory.stepped_sine import SteppedSine
 from ..lazy import xr
 from ..model import Structure
 from .evidence import COARSE_RANGE, FITTED_RANGE, Evidence, Participation, checked_participation
-from .orders import (
+from .order_windows import (
     ORDERS,
     SAMPLES_PER_PERIOD,
     Complexes,

@@ -28,7 +28,7 @@ from .evidence import Participation
 from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 from .impact_timing import strikes
-from .orders import RecordOrders
+from .order_windows import RecordOrders
 from .search_job import RecordData, SearchJob, bonded_even, cached_evidence, cached_orders
 from .settings import Changes, Settings, checked_settings
 from .wiring import WiringSettings, wiring_notes

@@ -9,7 +9,7 @@ import numpy as np
 from ..constants import TURN
 from ..laboratory.pieces import Floats
 from .evidence import Evidence
-from .orders import Complexes, moving_average
+from .order_windows import Complexes, moving_average
 
 # Order 2 of the distance between two faces over their largest distance: the least of 15 benches
 # that opened for a part of each period; they had 0.14 to 0.31

@@ -18,7 +18,7 @@ from ..laboratory.sampled import Sampled
 from ..laboratory.sensors import PARTICIPATION
 from ..lazy import xr
 from .linear import clipped
-from .orders import (
+from .order_windows import (
     MIN_WINDOWS,
     ORDERS,
     SAMPLES_PER_PERIOD,
@@ -82,7 +82,7 @@ class Evidence:
 
     @classmethod
     def from_record(cls, record: xr.Dataset) -> Evidence:
-        """Compute the evidence of a record; raises as :func:`.orders.record_orders`."""
+        """Compute the evidence of a record; raises as :func:`.order_windows.record_orders`."""
         return cls.from_orders(record_orders(record))
 
     @classmethod

@@ -27,7 +27,7 @@ from .decision_rule import factor_outside
 from .even_orders import EvenOrders, even_orders
 from .evidence import FITTED_ORDERS, Evidence, Participation, checked_participation
 from .hypotheses import FREE, REPORTED, Hypothesis
-from .orders import channel_orders, checked_channels
+from .order_windows import channel_orders, checked_channels
 from .search_job import RecordData, SearchJob
 from .settings import SETTINGS, Changes, Settings, checked_settings
 from .wiring import WiringSettings, wiring_notes
@@ -106,7 +106,7 @@ def fit(
     orders. A participation factor, a gain and a delay of each sensor against that of the base are
     found in closed form.
     The standard errors add what simulated noise does and what blocks of windows show; see
-    :mod:`orchestrate.diagnosis.errors`.
+    :mod:`orchestrate.diagnosis.standard_errors`.
 
     Of a resonance curve each frequency is a window. A stepped sine of its levels is played until
     the motion has settled, in the curve's direction; phases and orders are compared where the curve

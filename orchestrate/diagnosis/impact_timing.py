@@ -17,7 +17,7 @@ import numpy as np
 
 from ..constants import TURN
 from ..laboratory.analysis.channels import BOX, Channels
-from ..laboratory.analysis.orders import EDGE, NYQUIST, measured_phase
+from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, measured_phase
 from ..laboratory.pieces import Floats
 
 ORDERS = np.arange(1, 13)  # of what a window is projected on

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels, averaging
 from ..laboratory.analysis.frf import EXCITED
-from ..laboratory.analysis.orders import Window, fit_windows
+from ..laboratory.analysis.order_tracking import Window, fit_windows
 from ..laboratory.pieces import Floats
 
 OFF_ORDERS = (2.37, 3.37)  # where no motion with a period has a line: what is there is noise

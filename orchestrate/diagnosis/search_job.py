@@ -17,14 +17,14 @@ from ..laboratory.pieces import Floats
 from ..model import Structure
 from ..running.job import Job, Table
 from .curve_evidence import COARSE_SAMPLES, CurveData
-from .errors import Estimate, estimate
 from .even_orders import EvenOrders, even_orders
 from .evidence import Evidence
-from .fitting import Search, Solution, difference_step, distinct_minima, without_neighbours
 from .hypotheses import SOUND, Delaminated, DelaminatedWithClearance, Hypothesis, Onset
 from .misfit import misfit
-from .orders import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
+from .multistart import Search, Solution, difference_step, distinct_minima, without_neighbours
+from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
 from .settings import SETTINGS, Settings
+from .standard_errors import Estimate, estimate
 
 MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 7, 8  # rows and columns of tables
 

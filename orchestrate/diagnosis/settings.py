@@ -78,7 +78,7 @@ class Settings:
     hidden_share: float = 0.1
     noise_squares: float = 1.3
 
-    # -- the search: see `fitting.Search.minima` --
+    # -- the search: see `multistart.Search.minima` --
     starts: int = 2  # of each part, from which to go downhill
     steps: int = 8  # on each way
     tolerance: float = 1e-3  # relative: a way downhill that gains less in a step ends

@@ -20,7 +20,7 @@ from ..response.labels import flags, variable
 from ..running.job import refuse_family
 from .drive_signs import drive_signs, is_drive_run
 from .indicators import INDICATORS
-from .orders import sensor_channels
+from .order_windows import sensor_channels
 from .response_signs import (
     MAX_EDGE,
     ResponseSigns,

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..laboratory.pieces import Floats
 from ..lazy import xr
-from .orders import sensor_channels, sine_windows
+from .order_windows import sensor_channels, sine_windows
 
 
 def split_sweeps(record: xr.Dataset) -> list[xr.Dataset]:

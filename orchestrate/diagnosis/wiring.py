@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
-from ..laboratory.analysis.orders import measured_phase
+from ..laboratory.analysis.order_tracking import measured_phase
 from ..laboratory.pieces import Floats
 from ..laboratory.record import SHORT_NAMES
 from ..laboratory.record_checks import PLATEAU, clipped_share
-from .orders import Complexes, RecordOrders, assembled_orders, sine_windows
+from .order_windows import Complexes, RecordOrders, assembled_orders, sine_windows
 from .settings import SETTINGS
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels, Floats
-from ..laboratory.analysis.orders import track_orders
+from ..laboratory.analysis.order_tracking import track_orders
 from ..lazy import xr
 from ..response.spectra import amplitude_spectrum
 

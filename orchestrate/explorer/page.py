@@ -27,8 +27,8 @@ from ..units import Units, units_of
 from ..version import __version__
 from ..weak_drive.connection import FORCE, MOTOR
 from ..weak_drive.master import CUBIC, Links, Pair, Scheme
-from ..weak_drive.record import BOX, LEADING, OscillatorOutputs
 from ..weak_drive.run import oscillator_start
+from ..weak_drive.step_record import BOX, LEADING, OscillatorOutputs
 from .branches import branch_json
 from .bundle import bundle
 from .measured import record_json

@@ -2,10 +2,10 @@
 
 from .drive import Drive
 from .excitation import Excitation
-from .files import SETS, read, resolve, write
 from .shaker import Shaker
 from .structure import Structure
 from .structure_numbers import PARAMETERS
+from .toml_files import SETS, read, resolve, write
 
 __all__ = [
     "PARAMETERS",

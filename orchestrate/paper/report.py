@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from ..files import write_whole
 from ..running.store import now
-from ..show.files import png_size
+from ..show.figure_files import png_size
 from ..version import __version__
 from .claims import NO, PARTLY, WORDS
 from .pictures import PARTS

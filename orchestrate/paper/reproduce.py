@@ -11,7 +11,7 @@ from typing import Any
 from ..errors import InputError
 from ..files import open_folder, write_whole
 from ..fmu import OSCILLATOR, finder
-from ..show.files import save
+from ..show.figure_files import save
 from .claims import read_table
 from .datasets import Datasets
 from .measures import check_claims

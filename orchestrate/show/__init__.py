@@ -10,11 +10,11 @@ result; :mod:`.kinds` knows which function draws what:
 - special: ``diagnosis``
 
 A page is :mod:`.report`: answers in, one HTML file out; :mod:`.page` is what it is made of,
-:mod:`.verdict` has the sections of a verdict, :mod:`.answers` those of any other answer.
+:mod:`.verdict`  has the sections of a verdict, :mod:`.answers` those of any other answer.
 
-A picture's function takes datasets and returns a :class:`matplotlib.figure.Figure`;
-:func:`.files.save` writes it. Only this folder sees matplotlib, whose settings and backend are the
-same after a drawing as before.
+A picture's function takes datasets and returns a :class:`matplotlib.figure.Figure`, which
+:func:`.figure_files.save` writes. Only this folder sees matplotlib, whose settings and backend are
+the same after a drawing as before.
 """
 
 import os

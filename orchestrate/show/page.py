@@ -14,7 +14,7 @@ from markupsafe import Markup
 
 from ..running.store import now
 from ..version import __version__
-from .files import Figure, png_bytes, png_size
+from .figure_files import Figure, png_bytes, png_size
 
 MISSING = "–"  # in place of a number
 PLACES = ("front", "second", "appendix")  # on paper: first page, pages that follow, end

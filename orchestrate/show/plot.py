@@ -20,7 +20,7 @@ from . import (  # noqa: F401 -- what draws registers itself
     spectra,
     weak_drive,
 )
-from .files import for_slides
+from .figure_files import for_slides
 from .kinds import BONDED, BRANCHES, DRAW, MORE, OTHER, TOGETHER, required_kind
 
 OVER_OTHERS = ("border", "branch", "drive_branch")

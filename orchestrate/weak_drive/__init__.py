@@ -7,7 +7,7 @@ module                  idea
 :mod:`.connection`      any drive's variables by our names, checked
 :mod:`.inputs`          the drive's other inputs: courses over time, and a controlled one
 :mod:`.master`          calls the compiled loop that steps the two
-:mod:`.record`          what a run leaves of its steps, by columns
+:mod:`.step_record`     what a run leaves of its steps, by columns
 :mod:`.extremes`        largest displacements within a communication step
 :mod:`.energy_balance`  where energies are balanced, and the coupling's energy defect
 :mod:`.schedule`        the voltage over time
@@ -15,7 +15,7 @@ module                  idea
 :mod:`.revolutions`     a run as one row per revolution of the motor
 :mod:`.run`             two FMU instances stepped together, in chunks that go on
 :mod:`.ramp_record`     where the record of a ramp shows a jump, and how
-:mod:`.settled`         whether the speed at a held voltage has settled
+:mod:`.steady_speed`    whether the speed at a held voltage has settled
 :mod:`.growth`          how fast disturbances of a held motion grow
 :mod:`.hysteresis`      the rule that decides about jumps: voltages held over a ramp, and back
 :mod:`.cosimulation`    the job of the oscillator and any drive that is an FMU
@@ -23,7 +23,7 @@ module                  idea
 :mod:`.couple`          a run of both FMUs under a varying voltage, and its jumps
 :mod:`.couple_all`      many coupled runs at once
 :mod:`.jump_voltages`   jump voltages at rate 0, and on ramps of several rates
-:mod:`.settling`        whether a motor switched on has settled, below or beyond the resonance
+:mod:`.capture_rule`    whether a motor switched on has settled, below or beyond the resonance
 :mod:`.capture`         whether a motor switched on from rest passes the resonance
 :mod:`.passage`         a run at full resolution, and spectra over its revolutions
 :mod:`.averaged`        the averaged theory of the bonded structure

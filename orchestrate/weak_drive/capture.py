@@ -2,8 +2,8 @@
 
 The voltage is switched on at once. Where it is low the speed settles below the resonance: the motor
 is captured, though at the same voltage it would stay beyond, once there. The border between is
-found by bisection. Each start is simulated until the speed has settled (:mod:`.settling`); where it
-has not after a generous time, the start is undecided, and the border's interval is the wider.
+found by bisection. Each start is simulated until the speed has settled (:mod:`.capture_rule`);
+starts that do not settle in time are undecided and widen the interval.
 """
 
 from __future__ import annotations
@@ -29,7 +29,15 @@ from ..response.labels import parameter_variable, variable, yes_or_no
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
-from . import averaged, settling
+from . import averaged
+from .capture_rule import (
+    DECISIONS,
+    NO_LOAD,
+    UNDECIDED,
+    CaptureOutcome,
+    settling_test,
+    usual_limit,
+)
 from .controllers import Controller
 from .couple import couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
@@ -80,11 +88,11 @@ class CaptureJob(Job):
             borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
-    def run_from_rest(self, fmus: Fmus, system: System, voltage: float) -> settling.CaptureOutcome:
+    def run_from_rest(self, fmus: Fmus, system: System, voltage: float) -> CaptureOutcome:
         """Simulate one start from rest at a voltage until the speed has settled."""
-        test = settling.settling_test(*system, self.stay, self.distance(system))
+        test = settling_test(*system, self.stay, self.distance(system))
         if voltage <= system.drive.motor_constant * test.threshold:
-            return settling.CaptureOutcome(settling.NO_LOAD)
+            return CaptureOutcome(NO_LOAD)
         schedule = Constant(voltage, self.time_limit(system))
         job = couple_job(*system, schedule, self.scheme, 0.0, self.control)
         with begin_run(job, fmus) as run:
@@ -92,7 +100,7 @@ class CaptureJob(Job):
 
     def time_limit(self, system: System) -> float:
         """Return the longest simulated time of a start, s; after it it is undecided."""
-        return self.time or settling.usual_limit(*system, self.distance(system))
+        return self.time or usual_limit(*system, self.distance(system))
 
     def distance(self, system: System) -> float:
         """Return the tolerance of the border over K omega."""
@@ -114,7 +122,11 @@ class CaptureJob(Job):
         above = low - folds > 2e-4 * volts[kept]
         variables = {
             "passes": yes_or_no(over, passes > 0, "whether the motor passes the resonance"),
-            "decision": (over, np.vectorize(settling.DECISIONS.get)(decisions), {"long_name": how}),
+            "decision": (
+                over,
+                np.vectorize(DECISIONS.get)(decisions),
+                {"long_name": how},
+            ),
             "passage_time": variable(over, times, "s", text),
             "speed": variable(over, speeds, "rad/s", "mean speed at which the motor has settled"),
             "border": variable(along, 0.5 * (low + high), "V", edge, tolerance=self.tolerance),
@@ -147,8 +159,8 @@ class CaptureJob(Job):
 def run_until_settled(
     run: MotorRun,
     steps: range,
-    outcome: Callable[[np.ndarray, np.ndarray], settling.CaptureOutcome],
-) -> settling.CaptureOutcome:
+    outcome: Callable[[np.ndarray, np.ndarray], CaptureOutcome],
+) -> CaptureOutcome:
     """Simulate a run until its recorded speed decides the outcome, or to its end."""
     times, speeds = np.zeros(0), np.zeros(0)
     first = 0
@@ -157,10 +169,10 @@ def run_until_settled(
         rows = run.revolve(piece)
         times, speeds = np.append(times, rows["time"]), np.append(speeds, rows["speed"])
         decision = outcome(times, speeds)
-        if decision.decision != settling.UNDECIDED:
+        if decision.decision != UNDECIDED:
             return decision
         first += len(piece)
-    return settling.CaptureOutcome(settling.UNDECIDED)
+    return CaptureOutcome(UNDECIDED)
 
 
 class ThresholdEnd(NamedTuple):
@@ -172,8 +184,8 @@ class ThresholdEnd(NamedTuple):
 
 def threshold_voltage(
     voltages: Sequence[float],
-    outcomes: Sequence[settling.CaptureOutcome],
-    start: Callable[[float], settling.CaptureOutcome],
+    outcomes: Sequence[CaptureOutcome],
+    start: Callable[[float], CaptureOutcome],
     tolerance: float,
 ) -> tuple[ThresholdEnd, ThresholdEnd]:
     """Bracket by bisection the voltage from which a start passes the resonance."""
@@ -303,7 +315,7 @@ def capture(
     Beyond the resonance is half way between the speeds of the averaged theory's folds, moved with
     the resonance where that of the delaminated structure lies clearly apart. A speed
     that is there may swing back, and one that hardly changes may be creeping past a fold: what
-    counts as settled is told in :mod:`orchestrate.weak_drive.settling`.
+    counts as settled is told in :mod:`orchestrate.weak_drive.capture_rule`.
 
     Examples
     --------

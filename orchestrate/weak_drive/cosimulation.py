@@ -39,8 +39,8 @@ from .controllers import InputControl
 from .inputs import Input, Inputs
 from .master import DriveSide, Master, Scheme
 from .polynomials import end_value
-from .record import Floats, Record, joined
 from .run import CoupledJob, Run
+from .step_record import Floats, Record, joined
 
 OUTPUTS = (*PLAYED, "box_force", "impact_energy")
 IN_TIME_TOO = {

@@ -36,8 +36,8 @@ from ..dynamics.tracer import (
     ContinuationSettings,
 )
 from ..model.structure import Structure
-from .record import OscillatorOutputs
 from .shooting import Period, Shooter
+from .step_record import OscillatorOutputs
 
 IMPACT, FLIGHT = KINDS[Kind.GRAZING], KINDS[Kind.TOUCHING]
 BACK = 3  # motions over which the slope of a margin is taken

@@ -17,7 +17,7 @@ from .polynomials import (
     matched_quartic,
     normalized_coefficients,
 )
-from .record import Floats, OscillatorOutputs, Record
+from .step_record import Floats, OscillatorOutputs, Record
 
 
 class Energies(NamedTuple):

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..model.structure import Structure
 from .polynomials import Cubic, end_derivatives
-from .record import Floats, OscillatorOutputs, Record
+from .step_record import Floats, OscillatorOutputs, Record
 
 
 class Range(NamedTuple):

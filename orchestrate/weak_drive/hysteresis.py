@@ -4,7 +4,7 @@ A jump is a loss of stability of the slow motion: two motions exist at one volta
 loses the first. A steep but continuous branch is not a jump. The rule, for each ramp as a whole:
 
 - Voltages are held on a grid of steps `grid`, from the ramp's own state at its beginning to its
-  end, each taken to at `rate` and held until the speed has settled (:mod:`.settled`); those at
+  end, each taken to at `rate` and held until the speed has settled (:mod:`.steady_speed`); those at
   which it does not are left out.
 - Every step in which the speed gains `smallest` more or less than at the lower rate of the steps
   next to it (without these: than the voltage), or moves by `against` against the voltage, is
@@ -40,7 +40,7 @@ from ..running.job import Table
 from .ramp_record import RampRecord
 from .run import MotorRun, state_rows
 from .schedule import Course, Schedule
-from .settled import SettledSettings, settled_speed
+from .steady_speed import SettledSettings, settled_speed
 
 NONE, LOST, UNDECIDED = range(3)
 

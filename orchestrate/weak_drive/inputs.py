@@ -19,8 +19,8 @@ from .connection import Link
 from .controllers import Controller, ControllerState, InputControl, Measurement
 from .master import Master
 from .polynomials import end_derivatives, matched_cubics, mean_value
-from .record import Floats, Record
 from .schedule import Course, Schedule
+from .step_record import Floats, Record
 
 Input = Course | InputControl
 MADE_UP = (-1.5, 2.0, -0.5)  # of a first moment over the step's square, in this step and the next

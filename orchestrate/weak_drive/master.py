@@ -24,7 +24,7 @@ from ..fmu.channel import Channel, SimulationEnded, StepAnswer
 from ..fmu.fmi import NOT_FINITE, Fmi, references
 from ..fmu.instance import REAL_TYPES, WARNING, Instance, function_addresses
 from .connection import FORCE, MOTOR, Connection, Link
-from .record import BOX, LEADING, PLACE, OscillatorOutputs, Record
+from .step_record import BOX, LEADING, PLACE, OscillatorOutputs, Record
 
 CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
 TIME = PLACE["time"]

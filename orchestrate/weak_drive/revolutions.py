@@ -13,7 +13,7 @@ from ..model.structure import Structure
 from ..running.job import Table
 from .energy_balance import Energies, EnergyBalance
 from .extremes import range_of_box, range_of_mass
-from .record import Floats, Record
+from .step_record import Floats, Record
 
 COLUMNS = {
     "time": ("s", "time at the revolution's end"),

@@ -25,9 +25,9 @@ from ..running.job import Fmus, Job, Table
 from .controllers import Controller
 from .inputs import MotorVoltage, StepInputs
 from .master import Master, Scheme
-from .record import Record
 from .revolutions import Revolutions
 from .schedule import Schedule
+from .step_record import Record
 
 STATE, MEMORY = "_state", "_memory"  # ends of the columns of a run's state
 END = b"."  # of an FMU's state in an array, which loses zeros at its end

@@ -21,8 +21,8 @@ from ..model.drive import Drive
 from ..model.structure import Structure
 from .extremes import range_of_mass
 from .master import Master, Scheme
-from .record import Record
 from .run import oscillator_start
+from .step_record import Record
 
 STARTS = {  # start values of the shaker and of the structure by the outputs that they are
     **{"box_position": "position_start", "box_velocity": "velocity_start", "speed": "speed_start"},

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from orchestrate.files import write_whole
-from orchestrate.show.files import png_bytes
+from orchestrate.show.figure_files import png_bytes
 
 COLOURS = 128  # more are not seen in lines and letters
 

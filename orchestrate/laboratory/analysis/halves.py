@@ -13,7 +13,7 @@ from ...errors import InputError
 from ...lazy import xr
 from ...model import Structure
 from ...model.arguments import checked_word
-from ...model.files import write
+from ...model.toml_files import write
 from ...response.labels import variable
 from ..pieces import Floats
 from ..record import FORCES

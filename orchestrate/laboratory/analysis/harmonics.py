@@ -10,7 +10,7 @@ from ...response.labels import variable
 from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
 from .channels import attributes, checked_number
-from .orders import MOST_ORDERS, track_orders
+from .order_tracking import MOST_ORDERS, track_orders
 
 
 def harmonics(

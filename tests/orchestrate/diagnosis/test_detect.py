@@ -10,8 +10,8 @@ import pytest
 import orchestrate
 from orchestrate.diagnosis.detect import DetectJob, beam_job, sweep_direction
 from orchestrate.diagnosis.fit import Results, checked_data
-from orchestrate.diagnosis.fitting import Search, Solution, without_neighbours
 from orchestrate.diagnosis.hypotheses import FREE, STARTING_SPLITS
+from orchestrate.diagnosis.multistart import Search, Solution, without_neighbours
 from orchestrate.diagnosis.settings import SETTINGS
 from tests.benches.bench import Bench
 from tests.benches.excitation import Swept

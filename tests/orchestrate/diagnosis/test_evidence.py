@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.diagnosis.errors import contact_covariance, estimate
 from orchestrate.diagnosis.evidence import Evidence
-from orchestrate.diagnosis.fitting import Search, misfit
 from orchestrate.diagnosis.hypotheses import (
     FREE,
     Bonded,
@@ -15,6 +13,8 @@ from orchestrate.diagnosis.hypotheses import (
     NonlinearSpring,
     TwoModes,
 )
+from orchestrate.diagnosis.multistart import Search, misfit
+from orchestrate.diagnosis.standard_errors import contact_covariance, estimate
 from orchestrate.fmu import OSCILLATOR, Player, find
 from tests.benches.bench import Bench
 from tests.benches.excitation import Swept

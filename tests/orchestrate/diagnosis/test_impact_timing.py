@@ -8,7 +8,7 @@ import pytest
 
 from orchestrate.diagnosis import impact_timing
 from orchestrate.diagnosis.impact_timing import TIMING, Strikes, strikes, strikes_at, timed_power
-from orchestrate.diagnosis.orders import checked_channels
+from orchestrate.diagnosis.order_windows import checked_channels
 from tests.benches import recipe
 from tests.benches.strikers import STRIKERS
 

@@ -9,14 +9,14 @@ import pytest
 
 from orchestrate.diagnosis.decision_rule import DELAMINATED, NOT_SEEN, UNDECIDED, Beam
 from orchestrate.diagnosis.detect import stated_hypotheses
-from orchestrate.diagnosis.errors import contact_covariance, squares_beyond_noise
 from orchestrate.diagnosis.even_orders import even_orders, thresholds
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import Results
-from orchestrate.diagnosis.fitting import Solution
 from orchestrate.diagnosis.hypotheses import Delaminated
+from orchestrate.diagnosis.multistart import Solution
 from orchestrate.diagnosis.search_job import SearchJob
 from orchestrate.diagnosis.settings import SETTINGS
+from orchestrate.diagnosis.standard_errors import contact_covariance, squares_beyond_noise
 from orchestrate.diagnosis.wiring import WIRING, LowResponse, is_heard, sensor_notes
 
 from .records import BEAM

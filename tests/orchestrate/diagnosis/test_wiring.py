@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import detrend
 
 from orchestrate import InputError, detect, read_record, record, signs
-from orchestrate.diagnosis.orders import sensor_channels
+from orchestrate.diagnosis.order_windows import sensor_channels
 from orchestrate.diagnosis.sweeps import split_sweeps
 from orchestrate.diagnosis.undamaged import SoundStructure
 from orchestrate.diagnosis.wiring import WiringSettings, wiring_notes

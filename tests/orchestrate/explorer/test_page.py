@@ -16,8 +16,8 @@ from orchestrate.response.equations import absolute_accelerations
 from orchestrate.response.questions import Point
 from orchestrate.response.spectra import acceleration_spectrum
 from orchestrate.weak_drive.master import Master, Scheme
-from orchestrate.weak_drive.record import PLACE
 from orchestrate.weak_drive.run import oscillator_start
+from orchestrate.weak_drive.step_record import PLACE
 
 from ...draws import draw_system
 from ...sparing import ordinary

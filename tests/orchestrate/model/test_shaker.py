@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from orchestrate.errors import InputError
 from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, Instance, find
 from orchestrate.model import Shaker, read, write
-from orchestrate.model.files import SHAKERS
 from orchestrate.model.ranges import SHAKER
+from orchestrate.model.toml_files import SHAKERS
 
 from .strategies import values_of
 

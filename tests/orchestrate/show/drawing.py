@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from orchestrate.show import lines
-from orchestrate.show.files import save
+from orchestrate.show.figure_files import save
 from tools.pictures import oscillator, shaker
 
 

@@ -13,7 +13,7 @@ import xarray as xr
 
 from orchestrate.errors import StoreError
 from orchestrate.show import colours, histories, lines, resonance, scales
-from orchestrate.show.files import save
+from orchestrate.show.figure_files import save
 from orchestrate.show.style import XI_REL, make_panels
 
 from . import made

@@ -20,7 +20,7 @@ from orchestrate.weak_drive.polynomials import (
     integrate_product,
     normalized_coefficients,
 )
-from orchestrate.weak_drive.record import PLACE, Record
+from orchestrate.weak_drive.step_record import PLACE, Record
 
 H, LEVEL, THEN = (PLACE[name] for name in ("h", "level", "acceleration_then"))
 VELOCITY, ACCELERATION = DRIVE + 1, DRIVE + 2

@@ -6,7 +6,7 @@ import pytest
 from orchestrate import InputError, capture
 from orchestrate.weak_drive.averaged import dividing_speed
 from orchestrate.weak_drive.capture import threshold_voltage
-from orchestrate.weak_drive.settling import CONVERGED, UNDECIDED, CaptureOutcome
+from orchestrate.weak_drive.capture_rule import CONVERGED, UNDECIDED, CaptureOutcome
 
 from . import bonded
 from .coupled import QUICK, rest, system_of

@@ -8,8 +8,8 @@ from orchestrate.constants import TURN
 from orchestrate.fmu import c_library as libraries
 from orchestrate.weak_drive.connection import MOTOR
 from orchestrate.weak_drive.master import couple_loop
-from orchestrate.weak_drive.record import LEADING, Record
 from orchestrate.weak_drive.revolutions import Revolutions
+from orchestrate.weak_drive.step_record import LEADING, Record
 
 from .coupled import QUICK
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
-from ..laboratory.analysis.orders import EDGE, NYQUIST, Window, measured_phase, window
+from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, Window, measured_phase, window
 from ..laboratory.pieces import Floats
 from ..laboratory.record import FORCES, channel_label
 from ..lazy import xr

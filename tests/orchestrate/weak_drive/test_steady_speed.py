@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate.weak_drive.settled import SettledSettings, settled_speed
+from orchestrate.weak_drive.steady_speed import SettledSettings, settled_speed
 
 SETTLED = SettledSettings()
 

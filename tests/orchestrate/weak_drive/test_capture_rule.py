@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate.weak_drive.settled import SettledSettings
-from orchestrate.weak_drive.settling import (
+from orchestrate.weak_drive.capture_rule import (
     BOUNDED,
     CONVERGED,
     NEITHER,
@@ -14,6 +13,7 @@ from orchestrate.weak_drive.settling import (
     time_past_the_fold,
     usual_limit,
 )
+from orchestrate.weak_drive.steady_speed import SettledSettings
 
 from .coupled import QUICK
 

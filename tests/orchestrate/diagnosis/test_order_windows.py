@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.diagnosis.orders import ORDERS, record_orders
+from orchestrate.diagnosis.order_windows import ORDERS, record_orders
 
 RATE = 1000.0
 

@@ -37,11 +37,11 @@ from ..laboratory.analysis.channels import BOX
 from ..laboratory.pieces import Floats
 from ..laboratory.sampled import Sampled
 from .evidence import Evidence
-from .fitting import Search, difference_step
 from .hypotheses import Hypothesis
 from .linear import LinearModel
 from .misfit import misfit, soft_squares
-from .orders import ORDERS, RecordOrders
+from .multistart import Search, difference_step
+from .order_windows import ORDERS, RecordOrders
 from .settings import SETTINGS, Settings
 
 SEED = 20_241

@@ -1,8 +1,8 @@
 """Decide whether a motor switched on has settled below or beyond the resonance.
 
-- The speed has settled by the rule of :mod:`.settled`, to `FINENESS` of the voltage's tolerance:
-  *converged*, or with an error *bounded*. A motor whose no-load speed is below the resonance is
-  captured, without a run.
+- The speed has settled by the rule of :mod:`.steady_speed`, to `FINENESS` of the voltage's
+  tolerance: *converged*, or with an error *bounded*. A motor whose no-load speed is below the
+  resonance is captured, without a run.
 - It is *captured* where the settled speed is below the resonance, and *passed* where it is beyond,
   as its means have been for `stay` revolutions.
 - It has settled *at the resonance*, which is neither, where both are within the tolerance and
@@ -23,7 +23,7 @@ import numpy as np
 from ..model.drive import Drive
 from ..model.structure import Structure
 from . import averaged, own_resonance
-from .settled import SettledSettings, settled_speed
+from .steady_speed import SettledSettings, settled_speed
 
 FINENESS = 0.1  # of a settled speed's tolerance, over that of the voltage
 MIN_TOLERANCE, MAX_TOLERANCE = 1e-6, 1e-4  # over omega
