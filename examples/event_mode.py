@@ -1,4 +1,4 @@
-"""Every impact at its time: FMI 3.0 event mode with early return, by FMPy alone.
+"""Every impact at its time: FMI 3.0 event mode with early return, with only FMPy.
 
 python event_mode.py build/fmi3/TwoMassImpactOscillator.fmu
 """

@@ -1,4 +1,4 @@
-"""The FMU with FMPy alone: the largest gap over the frequency ratio.
+"""The FMU with only FMPy: the largest gap over the frequency ratio.
 
 python fmpy_sweep.py [build/fmi2/TwoMassImpactOscillator.fmu]
 """

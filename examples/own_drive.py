@@ -1,4 +1,4 @@
-"""Couple a drive of your own with FMPy alone: own_drive.py DRIVE.fmu ACCELERATION FORCE."""
+"""Couple a drive of your own with only FMPy: own_drive.py DRIVE.fmu ACCELERATION FORCE."""
 
 import sys
 

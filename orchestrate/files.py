@@ -122,7 +122,7 @@ def make_private(path: Path) -> None:
 
 
 def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -> Path:
-    """Write a file atomically: ``write`` fills one in a temporary folder beside, which is moved."""
+    """Write a file atomically: ``write`` fills one in a temporary folder, which is moved."""
     path = Path(path)
     try:
         remove_unheld(path.parent, f"{escape_glob(path.name)}.*{TEMPORARY}")
@@ -180,7 +180,7 @@ def check_path_encoding(path: str | os.PathLike[str]) -> None:
 
 
 def reason(error: BaseException) -> str:
-    """Return why a file cannot be read: that there is none, or the system's or a reader's word."""
+    """Return why a file cannot be read: it does not exist, or the system's or a reader's reason."""
     missing = isinstance(error, FileNotFoundError)
     return "no such file" if missing else str(getattr(error, "strerror", None) or error)
 

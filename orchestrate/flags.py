@@ -8,7 +8,7 @@ from typing import Any
 
 def flag_words(attributes: Mapping[Any, Any]) -> dict[int, str]:
     """Return a dict from number to word, read from ``flag_values`` and ``flag_meanings`` (CF)."""
-    import numpy as np  # a help needs none
+    import numpy as np  # keeps --help free of NumPy
 
     words = str(attributes["flag_meanings"]).split()
     numbers = np.atleast_1d(attributes["flag_values"]).tolist()

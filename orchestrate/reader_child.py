@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from .errors import InputError, first_line
 
 MOST_NOTES = 100  # lines of the log that are passed on
-PAGES = Path("/proc/self/statm")  # of the address space in use; Linux alone limits it
+PAGES = Path("/proc/self/statm")  # of the address space in use; only Linux limits it
 
 Arrays = list[NDArray[Any]]
 

@@ -1,6 +1,6 @@
 """Files that may come from anybody are read in a process of its own.
 
-- It is an isolated Python (``-I``), which finds packages neither in the current folder nor beside
+- It is an isolated Python (``-I``), which finds packages neither in the current folder nor next to
   the file, and imports what one format needs.
 - Processor time and memory are limited by the size of the file, a deadline ends what hangs.
 - What comes back are plain numbers and texts, not more than the memory that was allowed.
@@ -115,7 +115,7 @@ class Child:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            cwd=root / "orchestrate",  # no library finds files beside the user's
+            cwd=root / "orchestrate",  # no library finds files next to the user's
             env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
         )
         self.is_late = False
@@ -139,7 +139,7 @@ class Child:
         return answer
 
     def receive(self, most: int) -> dict[str, Any]:
-        """Read an answer of at most so many bytes."""
+        """Read an answer of at most a number of bytes."""
         length = int.from_bytes(self.exactly(8), "little")
         if length > most:
             raise ValueError
@@ -147,7 +147,7 @@ class Child:
         return {name: self.unpack(value, [most]) for name, value in answer.items()}
 
     def exactly(self, count: int) -> bytearray:
-        """Read so many bytes."""
+        """Read a number of bytes."""
         assert self.process.stdout is not None
         data = bytearray(count)
         if count and self.process.stdout.readinto(data) != count:  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""Measure the FMU's speed beside other solvers and versions: ``python -m tools.benchmark``.
+"""Compare the FMU's speed with other solvers and versions: ``python -m tools.benchmark``.
 
 Kernel, FMU calls and a sampled solver, measured one after the other in one run on one core; times
 are of this machine, the ratios travel. With ``--before CHECKOUT``, another version's clone with its
@@ -129,7 +129,7 @@ def time_impact(fmu: str | PathLike[str], etas: Sequence[float], count: int) -> 
 
 
 def time_resonance(fmu: str | PathLike[str], count: int = 500) -> tuple[float, float]:
-    """Return the seconds of resonance curves, and of the FMU alone for as many periods."""
+    """Return the seconds of resonance curves, and of the FMU by itself for as many periods."""
     etas = np.linspace(0.9, 1.5, count)
     begin = time.process_time()
     resonance(PAPER, eta=etas, transient=500, samples=60, progress=False, jobs=1, fmu=fmu)
@@ -211,7 +211,7 @@ def main() -> None:
     parser.add_argument("--before", type=Path, metavar="CHECKOUT", help="another version's clone")
     parser.add_argument("--scale", type=float, default=1.0, help="of the questions' sizes")
     parser.add_argument("--only", default="", help="rows whose name contains this")
-    parser.add_argument("--rounds", type=int, default=3, help="the shortest of so many counts")
+    parser.add_argument("--rounds", type=int, default=3, help="the shortest of this number counts")
     arguments = parser.parse_args()
     if arguments.before:
         how = arguments.scale, arguments.rounds, arguments.only

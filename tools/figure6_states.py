@@ -1,7 +1,7 @@
 """Write the shipped Figure 6 of the explorer: ``python -m tools.figure6_states``.
 
 Kept in the repository, so that a page is written at once and its clicks replay one branch, the same
-everywhere. To be made anew when the kernel changes: a test says so.
+everywhere. To be made again when the kernel changes: a test says so.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
     python -m tools.paper_page results/paper
 
-keeps ``claims.json`` beside the pages and writes their counts and tables anew.
+keeps ``claims.json`` next to the pages and rewrites their counts and tables.
 """
 
 from __future__ import annotations

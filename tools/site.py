@@ -4,7 +4,7 @@
 nor take a script, a style, a font or a picture from another host. Serve the folder by any web
 server, such as ``python -m http.server --directory site/html``, or open its ``index.html``; the
 explorer is ``explore.html``, one file that can be mailed by itself. Without a server the search
-shows titles alone: browsers do not let a page read its neighbours.
+shows only titles: browsers do not let a page read its neighbours.
 """
 
 from __future__ import annotations

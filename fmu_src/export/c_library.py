@@ -1,7 +1,7 @@
-"""Compile one C source to a shared library, for what orchestration uses beside the FMUs.
+"""Compile one C source to a shared library, for what orchestration uses besides the FMUs.
 
 A library has a token of its sources among its bytes: so one of other sources is known, for whatever
-platform it was made. A digest of the bytes stands beside it: one that was damaged, or replaced, is
+platform it was made. A digest of the bytes lies next to it: one that was damaged, or replaced, is
 known too.
 """
 
@@ -89,12 +89,12 @@ def file_name(source: Path, platform: str) -> str:
 
 
 def digest(library: bytes) -> str:
-    """Return what the file beside a library says of its bytes."""
+    """Return the digest stored next to a library."""
     return hashlib.sha256(library).hexdigest()
 
 
 def digest_file(path: Path) -> Path:
-    """Return the path of the file beside a library that has its digest."""
+    """Return the path of the file with a library's digest."""
     return path.with_name(f"{path.name}.sha256")
 
 

@@ -243,5 +243,5 @@ def link_all(
     if not made:
         raise reasons[0]
     for left_out in reasons:
-        warn_once(f"the FMUs will have binaries for {', '.join(made)} alone: {left_out}")
+        warn_once(f"the FMUs will have binaries only for {', '.join(made)}: {left_out}")
     return made

@@ -11,7 +11,7 @@ from .sources import ROOT, Files, load_model
 def documentation_files(
     folder: str, digest: str, form: str, variables: tuple[Variable, ...]
 ) -> Files:
-    """Return the files of ``documentation/``, the icon, and what other standards ask for beside.
+    """Return the files of ``documentation/``, the icon, and what other standards ask for.
 
     Parameters
     ----------
@@ -19,7 +19,7 @@ def documentation_files(
         The model's, below ``fmu_src/models``, with ``documentation/index.html.in`` and its
         pictures, ``model.png`` and ``reference/``.
     digest : str
-        Fingerprint of the sources, to be told on the page.
+        Fingerprint of the sources, printed on the page.
     form : str
         Of :mod:`.forms`: the page tells each form's own truth.
     variables : tuple of Variable

@@ -92,9 +92,9 @@ def guid(folder: str, form: str) -> str:
 def plain_model(model: Model) -> Model:
     """Return a model as its plain form describes it.
 
-    - Scalars alone, without the states kept inside a step: tools' lists of variables stay short,
+    - Only scalars, without the states kept inside a step: tools' lists of variables stay short,
       and what stumbles over arrays or clocks has none to stumble over.
-    - Real outputs alone, for importers that read every output as Real.
+    - Only Real outputs, for importers that read every output as Real.
     - An excitation of the model's own by tunable parameters: importers that write 0 to inputs left
       open would stop it.
 

@@ -1,4 +1,4 @@
-"""Export the pythonfmu form: the Python kernel inside, its compiled form beside it where there is a
+"""Export the pythonfmu form: the Python kernel inside, with its compiled form where there is a
 compiler.
 
 Two FMUs, or an FMU and its host, share modules of the same name in one process. So everything

@@ -16,7 +16,7 @@ NEVER = float("inf")
 def describe(m, time):
     """Write the gap between unloaded springs, the places of rest, the threshold, and whether the
     excitation exceeds it, so that no response without impacts exists: not known with a wall, a
-    stroke, or what pushes beside the box's harmonic motion.
+    stroke, or with loads other than the box's harmonic motion.
     """
     offset = m[CLEARANCE]
     if m[BONDED] != 0.0:
@@ -40,7 +40,7 @@ def describe(m, time):
 def threshold(m, offset):
     """Return the box amplitude at which the linear response opens or touches.
 
-    With a gap the masses move alone, (11) with i = 1, 2, and touch where the amplitude of x2 - x1
+    With a gap each mass moves freely, (11) with i = 1, 2, and touch where the amplitude of x2 - x1
     is the gap; with a preload they move as one, i = 3, and part where the force (18) is 0.
     """
     if m[BONDED] != 0.0:

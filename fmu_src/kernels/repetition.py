@@ -27,7 +27,7 @@ INFINITE = float("inf")
 
 
 def memory_size(count: int) -> int:
-    """Return how many numbers the memory has for so many samples."""
+    """Return the memory size for a number of samples."""
     return HEAD + (STATE + COLUMNS + 1) * count
 
 
@@ -84,7 +84,7 @@ def decide(m, time):
     for shorter in range(1, last + 1):
         if contraction_ratio(m, shorter) < ratio:
             return conclude(m, shorter, UNDECIDED)
-    if nearly == 0 and drifting == 0:  # of all samples: few states come back after so many periods
+    if nearly == 0 and drifting == 0:  # of all samples: few states come back after n periods
         nearly = next_repetition(m, limit, int(m[COUNT]) - limit, tolerance)
     if nearly > 0:
         return conclude(m, nearly, UNDECIDED)
@@ -146,7 +146,7 @@ def nearest(m, time):
 
 
 def lacks_impacts(impacts, n, must):
-    """Return whether so many impacts, namely none, are too few for n periods to last."""
+    """Return whether no impacts are too few for n periods to last."""
     return impacts == 0.0 and (must != 0.0 or n > 1)
 
 

@@ -1,4 +1,4 @@
-"""Load the compiled form of the kernel, where one lies beside the source and fits the machine.
+"""Load the compiled form of the kernel, where one lies next to the source and fits the machine.
 
 Else the source itself runs; both give the same bits. ``VIBROIMPACT_PURE_PYTHON=1`` in the
 environment asks for the source. Standard library only, Python 3.9: it travels inside the FMU.

@@ -48,7 +48,7 @@ class Variable:
         How many of the variables that follow in the table are its time derivatives: together they
         are a polynomial in time, which begins where one of them is set.
     series : str
-        Name of the array it is an element of, where FMI 3.0 has the array alone.
+        Name of the array it is an element of, where FMI 3.0 has only the array.
     slot : int
         Place in the table, in the kernel's memory, and the FMI value reference; see
         :func:`numbered`.
@@ -262,7 +262,7 @@ class Model:
         Another one: rates of change of the outputs at the point reached, the inputs as they are,
         into ``rates``.
     restore : callable
-        Another one, with the start time: computes anew what the parameters decide in a memory
+        Another one, with the start time: recomputes what the parameters decide in a memory
         that came from outside.
     ranges : tuple of SlotRange
         Of the memory behind the variables: numbers that index, count or bound a loop, and those

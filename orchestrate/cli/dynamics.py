@@ -92,7 +92,7 @@ decided with so few --periods."""
             yield (
                 f"largest exponent {float(top.exponent):.5f} +- {float(top.standard_error):.5f} "
                 f"per tau at {format_parameter(data, name, top[name])}; the largest of "
-                f"{data.sizes[name]} is biased by its error: repeat it alone, with more --periods "
+                f"{data.sizes[name]} is biased by its error: repeat only it, with more --periods "
                 "and another --transient"
             )
             for word in flag_words(data.verdict.attrs).values():
@@ -301,7 +301,7 @@ class Manifold(OfStored, OfBox, Asked, Stored, Results):
   {program} manifold --eta 3.0
   {program} manifold --start orbit.nc --length 20       of an orbit that orbit has written
   {program} manifold --structure beam --hz 14 --g 0.02
-What starts beside a saddle with one multiplier outside the unit circle leaves along it."""
+What starts next to a saddle with one multiplier outside the unit circle leaves along it."""
 
     def ask(self) -> tuple[Structure, Question]:
         structure, question = read_structure_and_question(self)

@@ -172,7 +172,7 @@ class Options:
     if TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
-            """Options that come from functions, or from groups beside this one."""
+            """Options that come from functions, or from other groups."""
 
     def one_of(self, *names: str) -> str | None:
         """Return which of some options is given, None if none is; raise if several are."""
@@ -275,7 +275,7 @@ class Command(Debugging, ABC):
             names = [one.name for one in parameters]
             return cls(**dict(zip(names, positions, strict=False)), **values)
 
-        make.__annotations__ = {}  # of the options' own names alone
+        make.__annotations__ = {}  # only of the options' own names
         make.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
         return cyclopts.App(name=cls.name(), help=cls.__doc__, default_command=make)
 

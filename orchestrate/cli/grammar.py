@@ -103,7 +103,7 @@ parse_rates = floats("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positi
 
 
 def read_earlier_result(option: str, path: Path) -> xr.Dataset:
-    """Read the NetCDF result of an earlier command; raise naming the option if it is none."""
+    """Read the NetCDF result of an earlier command; raise naming the option if it is not one."""
     from ..running.store import load_foreign
 
     if not path.is_file():

@@ -140,7 +140,7 @@ class OfExcitation(Options):
             own = owners.get(name) or [one for one in KINDS if name in takes[one]]
             if chosen[0] not in own:
                 words = option_names(own, " or ")
-                raise InputError(f"{option_names([name])}: expected with {words} alone")
+                raise InputError(f"{option_names([name])}: expected only with {words}")
         for name in ("duration", "length"):
             if takes[chosen[0]].get(name) and name not in given:
                 raise InputError(f"{option_names(chosen)}: expected --{name} with it, in s")
@@ -387,7 +387,7 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
         for one in chosen:
             owners = [name for name in takes if one in takes[name]]
             if not set(owners) & set(names):
-                raise InputError(f"--{one}: expected with --show {' or '.join(owners)} alone")
+                raise InputError(f"--{one}: expected only with --show {' or '.join(owners)}")
         return {name: {o: chosen[o] for o in chosen if o in takes[name]} for name in names}
 
     def paths_by_label(self) -> dict[str, Path]:

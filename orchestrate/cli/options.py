@@ -31,7 +31,7 @@ SETS = Path(__file__).resolve().parents[1] / "model" / "sets"
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
 FREQUENCIES = ("eta", *UNITS)
 SET_NAMES = tuple(path.stem for path in sorted(SETS.glob("*.toml")))
-ASSUMED = {  # what a beam needs beside what is set, with the names that set it as well
+ASSUMED = {  # what a beam needs besides what is set, with the names that set it as well
     "m1": ("mu",),
     "m2": ("mu",),
     "f1": ("k1", "omega"),
@@ -190,7 +190,7 @@ class OfBox(Options):
         called: str = getattr(self, "calls")  # noqa: B009 (of the command, which has this group)
         known = inspect.signature(getattr(orchestrate, called)).parameters
         if unknown := [name for name in pushes if name not in known]:
-            text = f"{called} does not know it yet; expected the box's motion alone"
+            text = f"{called} does not know it yet; expected only the box's motion"
             raise InputError(f"{self.structure}: excitation.{unknown[0]}: {text}")
         return {"frequency": excitation.frequency, "amplitude": excitation.amplitude, **pushes}
 
@@ -265,7 +265,7 @@ class Over(Options):
 class Beside(Options):
     """The option of both structures."""
 
-    beside: bool = option("the same of the bonded structure, beside it")
+    beside: bool = option("also compute the bonded structure and plot both")
 
 
 # -- structures -----------------------------------------------------------------------------------
@@ -283,7 +283,7 @@ def print_assumptions(structure: Structure, source: str, changes: Mapping[str, A
     left = [name for name, others in ASSUMED.items() if not changes.keys() & {name, *others}]
     texts = [f"{name} = {format_assumed(name, structure.get(name))}" for name in left]
     if texts:
-        masses = "; of the masses the ratio alone acts" if {"m1", "m2"} & set(left) else ""
+        masses = "; only the ratio of the masses acts" if {"m1", "m2"} & set(left) else ""
         print(f"assumed, as in the set {source}: {', '.join(texts)} (--set){masses}")
 
 

@@ -99,7 +99,7 @@ class InUnits(Options):
 
 
 class Formats(Options):
-    """Options of the files beside a result."""
+    """Options of the files written with a result."""
 
     heading, rank = "files", 4
     format: str = option(
@@ -132,7 +132,7 @@ class HowRun(Options):
     """Options of how results are computed."""
 
     heading, rank = "results and running", 5
-    force: bool = option("compute anew what is there already")
+    force: bool = option("recompute what is there already")
     keep_stale: bool = option("take results that older code or another FMU has made")
     jobs: int | None = option("processes at once (default: all cores)")
     cluster: str | None = option(
@@ -243,13 +243,13 @@ def digest(*arguments: Any) -> str:
 
 @dataclass(frozen=True)
 class Files:
-    """Paths of one result: its NetCDF file, and tables and pictures beside it."""
+    """Paths of one result: its NetCDF file, and its tables and pictures."""
 
     result: Path
     # endings
     formats: tuple[str, ...]
     plots: tuple[str, ...]
-    fresh: bool  # whether the result is to be computed: then what stands beside it is made anew too
+    fresh: bool  # whether the result is to be computed: then tables and pictures are made again
     units: str = ""  # of `--units`: tables and pictures in these have them in their names
     size: tuple[float, float] | None = None  # shape of the pictures
     over: str = ""  # suffix of the pictures' names, where other data lie over the result
@@ -287,7 +287,7 @@ class Files:
         return files
 
     def beside(self, *endings: str) -> Path:
-        """Return a path beside the result, with further endings of its name."""
+        """Return a path next to the result, with further endings of its name."""
         return self.result.with_stem("_".join(filter(None, [self.result.stem, *endings])))
 
     def table_paths(self) -> list[Path]:
@@ -306,7 +306,7 @@ class Files:
         return any(self.fresh or not path.exists() for path in self.picture_paths())
 
     def write(self, data: xr.Dataset, draw: Callable[[], Any] | None = None) -> None:
-        """Write missing tables and pictures beside the NetCDF file; print all paths."""
+        """Write missing tables and pictures next to the NetCDF file; print all paths."""
         from ..running.formats import write
 
         print(f"{self.result}{'' if self.fresh else ': complete already'}")

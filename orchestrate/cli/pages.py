@@ -1,4 +1,4 @@
-"""Commands beside the questions: build, explore, report, paper."""
+"""Commands other than the questions: build, explore, report, paper."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class Explore(OfStored, InColumns, Reading, InUnits, Command):
   {program} explore                              the paper's Figure 6
   {program} explore results/sweep_paper_7e3015.nc   an own sweep: a click replays its responses
   {program} explore --set e=0.3 --no-open --output page.html
-  {program} explore --structure beam --record run.csv --unit g    a measurement beside the model"""
+  {program} explore --structure beam --record run.csv --unit g    a measurement with the model"""
 
     def __call__(self) -> None:
         from ..explorer.page import explore

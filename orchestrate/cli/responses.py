@@ -46,7 +46,7 @@ class Simulate(OfStructure, OfBox, Beside, Asked, Stored, Results):
     calls = "simulate"
     examples = """
   {program} simulate --eta 0.4 --transient 500 --periods 2      the paper's Figure 5
-  {program} simulate --eta 1.047 --beside                       the undamaged structure beside it
+  {program} simulate --eta 1.047 --beside                       with the undamaged structure
   {program} simulate --structure beam --hz 12.5 --g 0.02
   {program} simulate --eta 1.2 --start 0,0.5,0,0                from a gap of 0.5 m"""
 
@@ -131,7 +131,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
             at_rest = model.Structure.from_attributes(data.attrs).as_delaminated().at_rest
             ends = " and ".join(text_of(data, abs(x), "m", ".4g") for x in at_rest)
             middle = "x1 and x2 count from the box's middle"
-            yield f"{middle}: the preload alone holds them {ends} from it"
+            yield f"{middle}: the preload by itself holds them {ends} from it"
 
 
 HANGING = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor hangs at the resonance
@@ -147,7 +147,7 @@ def line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> str:
 
 
 class Spectra(OfMotor, OfVoltage, OfBox, Asked, Stored, OfBoth):
-    """Acceleration spectra, bonded beside delaminated (Figure 3)."""
+    """Acceleration spectra, bonded and delaminated (Figure 3)."""
 
     calls = "spectra"
     examples = """

@@ -227,7 +227,7 @@ class Beam:
         advice = [one.advice for one in self.stops() if one.advice]
         one_sensor = all(one.sensors == 1 for one in self.records)
         other = "an accelerometer on the other face" if one_sensor else "a slower sweep"
-        second = "" if self.grows is not None else ", or a sweep at twice the level beside this one"
+        second = "" if self.grows is not None else ", or another sweep at twice the level"
         if self.may_be_a_stop and not one_sensor:
             return "Sensors nearer to where it may be open: faces between them strike both ways."
         if self.may_be_a_stop:

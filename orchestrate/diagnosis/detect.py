@@ -105,7 +105,7 @@ def detect(
         ``minima``, ``value`` and ``standard_error`` of its parameters, ``participation`` and
         ``participation_error`` over ``channel`` (NaN but of the hypotheses that the verdict is
         about and that describe the record), ``misfit_at`` and the ``fitted`` orders over
-        ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
+        ``window``, next to what is ``measured``. Attributes ``reason``, ``settle``,
         ``seen_up_to``, ``assumed``, ``direction`` of the sweep and ``wiring``, the doubts about the
         channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`); and ``strikes``, what strikes
         with the numbers that decide it (:class:`orchestrate.diagnosis.impact_timing.Strikes`).
@@ -113,7 +113,7 @@ def detect(
     Raises
     ------
     InputError
-        Where the record is none of a swept or stepped sine, or sampled too slowly for order 2.
+        If the record is not of a swept or stepped sine, or sampled too slowly for order 2.
 
     Warns
     -----
@@ -244,7 +244,7 @@ class DetectJob(SearchJob):
             analysis="detect",
             title=f"Verdict: {beam.verdict()}",
             reason=" ".join(notes),
-            settle="Mend the wiring, and ask again." if wiring else beam.next_measurement(),
+            settle="Correct the wiring and diagnose again." if wiring else beam.next_measurement(),
             seen_up_to=beam.seen_up_to(),
             assumed="; ".join(ASSUMED if self.is_guessed else (WITHOUT_GUESS, *ASSUMED[1:])),
             direction=sweep_direction(whole.windows.frequency),

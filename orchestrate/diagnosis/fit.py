@@ -57,7 +57,7 @@ def fit(
         :func:`orchestrate.record` or :func:`orchestrate.read_record` make it; or a resonance curve
         of :func:`orchestrate.resonance_curve` or :func:`orchestrate.read_curve`.
     guess : Structure
-        Its masses are kept (their ratio alone acts), and all that is not free. Its frequencies may
+        Its masses are kept (only their ratio acts), and all that is not free. Its frequencies may
         be 10 % off: the search begins at the record's resonance.
     free : sequence of str
         What is fitted: ``f1``, ``f2``, ``zeta1``, ``zeta2``, ``e``, ``clearance``. A gap that is
@@ -281,7 +281,7 @@ class Results:
         if not np.isfinite(self.job.evidence.measured[:, 1]).any():
             if self.is_opening_seen():
                 return "the two faces move differently; order 2 is not in the curve"
-            return "order 2 is not in the curve: f1 and f2 cannot be told from order 1 of one face"
+            return "order 2 is not in the curve: order 1 of one face does not determine f1 and f2"
         if self.is_opening_seen():
             return f"{size}, {even.excess:.2g} times the size from which it counts as seen"
         return f"no opening is seen ({size}): f1 and f2 cannot be identified from this record"

@@ -178,7 +178,7 @@ class PositiveStop(Sound):
     side: ClassVar[float] = 1.0
 
     def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
-        """Return starts with weak and stiff stops that the mass meets early or late."""
+        """Return starts with weak and stiff stops that the mass reaches early or late."""
         found = []
         for stop in (-0.3, 0.1, 0.5):
             for position in (0.0, 0.3):

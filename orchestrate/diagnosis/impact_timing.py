@@ -31,7 +31,7 @@ class TimingSettings:
     memory: float = 0.006  # s of samples that predict one
     periods: float = 10.0  # of a window
     bins: int = 32  # of a period; half as many of slow records
-    tail: float = 1e-4  # probability of a bin by noise alone, in a window
+    tail: float = 1e-4  # probability of a bin by noise, in a window
     loud: float = 0.3  # of the loudest window's power: windows that count
     # loudest bin over the quietest third's mean, over the limit of noise: what may be a strike,
     # and what is one
@@ -58,7 +58,7 @@ class Strikes:
     """Hold what a sensor's loud windows say of what strikes in them."""
 
     heard: float  # loudest bin over the mean of the quietest third, over the limit of noise
-    base: float  # the same of the base, the median: of many windows noise makes 4 in one
+    base: float  # of the base, the median: of many windows noise makes 4 in one
     locked: float  # circular concentration of the peaks' phases
     one_sided: float  # first circular moment of the power beyond the floor
     blow: float  # median of orders 6 to 12 over order 2

@@ -25,7 +25,7 @@ class LinearModel:
     slopes: Floats
     best: dict[str, float]  # numbers of the point of the cloud with the smallest misfit, and
     lowest: float  # that misfit
-    # what the points of the cloud are beside the regression: single impacts that come or stay away
+    # deviations of the cloud's points from the regression: single impacts that come or stay away
     scatter: Floats
 
     @classmethod

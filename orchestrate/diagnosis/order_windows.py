@@ -35,7 +35,7 @@ MIN_PERIODS = 8.0
 MAX_GLIDE = 0.006
 OVERLAP = 0.5
 MIN_LEVEL = 0.05  # of the usual amplitude of the base: windows below are not used
-MAX_DISTORTION = 0.5  # rms of what the base does beside its orders, over the rms of order 1
+MAX_DISTORTION = 0.5  # rms of the base's motion besides its orders, over the rms of order 1
 MIN_WINDOWS = 8  # windows
 # Samples in a period of the highest frequency: order 3 has more than three then
 SAMPLES_PER_PERIOD = 11.0
@@ -137,12 +137,12 @@ class RecordOrders:
 
     @property
     def sensors(self) -> tuple[str, ...]:
-        """Names of the channels beside the base's."""
+        """Names of the channels besides the base's."""
         return tuple(name for name in self.channels.names if name != BOX)
 
     @property
     def rows(self) -> list[int]:
-        """Rows of the channels beside the base's."""
+        """Rows of the channels besides the base's."""
         return [row for row, name in enumerate(self.channels.names) if name != BOX]
 
     @property
@@ -178,11 +178,11 @@ def checked_channels(record: xr.Dataset) -> Channels:
             "it is excited by a force" if {*FORCES} & {*record} else "what excites it is unknown"
         )
         text = f"no acceleration of the base, {excited}; a verdict needs it"
-        test = "measure a swept sine of the base, with an accelerometer beside the clamp"
+        test = "measure a swept sine of the base, with an accelerometer next to the clamp"
         raise InputError(f"record: {text}: {test}; orchestrate.signs does without")
     channels = sensor_channels(record)
     if len(channels.names) < 2:
-        text = "expected acceleration1, acceleration2 or both beside the base's"
+        text = "expected acceleration1, acceleration2 or both besides the base's"
         raise InputError(f"record: no acceleration of a face; {text}")
     for name, values in zip(channels.names, channels.values, strict=True):
         if not np.ptp(values) > 0.0:
@@ -350,7 +350,7 @@ def referred_to_base(box: Floats, one: Window, solution: Complexes) -> Complexes
 
 
 def rms_without_order_1(box: Floats, one: Window, amplitude: Complexes) -> float:
-    """Return the weighted root mean square of the base's motion beside its order 1, m/s2."""
+    """Return the weighted root mean square of the base's motion besides its order 1, m/s2."""
     values = box[one.part] - np.average(box[one.part], weights=one.weights)
     power = np.average(values**2, weights=one.weights)
     return float(np.sqrt(max(power - 0.5 * abs(amplitude[0]) ** 2, 0.0)))

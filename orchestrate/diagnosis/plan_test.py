@@ -324,7 +324,7 @@ def checked_sensors(sensor: Sensor | dict[str, Sensor]) -> tuple[tuple[str, Sens
     sensors = sensor_by_channel(sensor)
     responses = {name: one for name, one in sensors.items() if name != BOX}
     if not responses:
-        raise InputError("sensor: on the box alone; expected one on acceleration1 or acceleration2")
+        raise InputError("sensor: only on the box; expected one on acceleration1 or acceleration2")
     for name, one in responses.items():
         if not one.noise:
             text = "expected its density in (m/s2)/sqrt(Hz), > 0: without it every level counts"

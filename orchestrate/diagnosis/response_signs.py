@@ -63,7 +63,7 @@ def response_signs(
 
 
 def default_band_edge(channels: Channels, highest: float) -> float:
-    """Return where the high band begins, Hz; NaN where the sampling rate does not reach so far."""
+    """Return where the high band begins, Hz; NaN if the sampling rate does not reach it."""
     edge = min(6.0 * highest, 0.3 * channels.sample_rate)
     return edge if edge >= 3.3 * highest else math.nan
 
@@ -187,7 +187,7 @@ def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
 
 
 def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
-    """Return the mean of 1 less the coherence over the excited lines, and that of noise alone."""
+    """Return the mean of 1 less the coherence over the excited lines, and that of noise."""
     try:
         segments = averaging(channels, None, "hann", OVERLAP, fewest=2)
     except InputError:

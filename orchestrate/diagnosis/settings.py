@@ -109,7 +109,7 @@ def checked_settings(changes: Changes) -> Settings:
     """
     names = [one.name for one in fields(Settings)]
     if unknown := [name for name in changes or {} if name not in names]:
-        raise InputError(f"settings: {unknown[0]!r} is none; expected some of {', '.join(names)}")
+        raise InputError(f"settings: unknown name {unknown[0]!r}; known names: {', '.join(names)}")
     made = SETTINGS
     for name, value in (changes or {}).items():
         kind = type(getattr(SETTINGS, name))

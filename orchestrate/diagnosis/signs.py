@@ -71,14 +71,14 @@ def signs(
     high_band : float, optional
         Hz above which the signs at high frequencies are taken; by default six times the highest
         frequency of the excitation or, where that is lower, 0.3 of the sampling rate. Where that
-        is less than 3.3 times the highest frequency there are none.
+        is less than 3.3 times the highest frequency they are not computed.
     factor : float
         Times what noise and a sound structure show: a sign above it stands out, ``exceeds``.
 
     Returns
     -------
     xarray.Dataset
-        Over ``sign`` and ``channel``: ``value``; ``floor``, what noise alone makes of it; ``sound``
+        Over ``sign`` and ``channel``: ``value``; ``floor``, its value by noise; ``sound``
         and ``sound_highest``, the median and the largest value of sound structures under the same
         box with the same noise; ``exceeds``, whether the value is above ``factor`` times
         ``sound_highest`` and the floor, where that is known; unknown without the other two;
@@ -169,7 +169,7 @@ def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
     """Check that all records have the same responses, and return their names."""
     names = every[0].responses()[0]
     if not names:
-        raise InputError("record: no acceleration1; expected it beside the box's, in m/s2")
+        raise InputError("record: no acceleration1, m/s2; signs needs it and box_acceleration")
     for number, channels in enumerate(every[1:]):
         if channels.responses()[0] != names:
             have = " and ".join(channels.responses()[0]) or "none"
@@ -243,11 +243,9 @@ def signs_dataset(
     return xr.Dataset(
         {
             "value": variable(over, value, "1", "sign of the record"),
-            "floor": variable(over, floor, "1", "what noise alone makes of it"),
-            "sound": variable(
-                over, median_of_known(shown), "1", "the same of a sound structure, median"
-            ),
-            "sound_highest": variable(over, highest, "1", "the same of a sound structure, largest"),
+            "floor": variable(over, floor, "1", "its value by noise"),
+            "sound": variable(over, median_of_known(shown), "1", "of a sound structure, median"),
+            "sound_highest": variable(over, highest, "1", "of a sound structure, largest"),
             "exceeds": flags(over, exceeds, f"whether it is above {factor:g} times all", MEANINGS),
         },
         {

@@ -4,7 +4,7 @@ With x relative to the base and a its acceleration,
 
     x'' = -a - w^2 (x + q x^2 + c x^3 + stop) - 2 zeta w x' - friction x'/sqrt(x'^2 + slow^2),
 
-where ``stop = s b r max(0, b x - p)`` is a spring that the mass meets on one side (b = 1 or -1).
+where ``stop = s b r max(0, b x - p)`` is a spring that the mass touches on one side (b = 1 or -1).
 Classical Runge-Kutta steps, compiled: ``fmu_src/kernels/loops/single_mass.c``.
 """
 

@@ -9,7 +9,7 @@ weights W of the soft loss. Three covariances of d are taken:
   what the model misses hangs together over neighbours and is no noise;
 * discrepancy: what a model misses beyond noise, it may also have hidden in its numbers, where no
   residual shows it. Numbers at which the squares beyond noise are larger by ``hidden_share`` of
-  themselves are one standard deviation away; beside that the restitution is in doubt by
+  themselves are one standard deviation away; apart from that the restitution is in doubt by
   ``restitution_doubt``, ln(f2/f1) by ``split_doubt``, a damping ratio by the mean of both, each as
   far as the contact misses ``contact_misfit``.
 
@@ -20,7 +20,7 @@ hold the truth. Most errors are smaller than a normal distribution of that width
 much larger. The campaign ``intervals`` checks it on other records.
 
 The variance is the sum of them: each sees a part of what there is, and the blocks are few. ``J'J``
-alone would take each window for an experiment of its own and the model for true; on real contacts
+would take each window for an experiment of its own and the model for true; on real contacts
 it is 20 to 100 times too small.
 """
 
@@ -58,7 +58,7 @@ class Estimate:
 
     values: dict[str, float]
     covariance: Floats
-    # standard deviations by each alone
+    # standard deviations by each by itself
     noise: Floats
     blocks: Floats
     discrepancy: Floats

@@ -47,7 +47,7 @@ class WiringSettings:
     usual: float = 10.0  # times the usual change, by noise, that a jump is
     samples: float = 10.0  # in a period of the resonance
     clipped: float = SETTINGS.clipped  # share of a channel's samples at its extremes,
-    plateau: int = 1  # each in a row of so many, of a sweep: impacts are spikes
+    plateau: int = 1  # each in a row this long, of a sweep: impacts are spikes
 
 
 WIRING = WiringSettings()
@@ -88,7 +88,7 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
     row = PLATEAU if orders.windows.is_tone else settings.plateau  # a tone's samples repeat
     notes = [*dict.fromkeys(found), *clipped_notes(channels, settings.clipped, row)]
     if any(note.kind in ("swapped", "quantity") for note in notes):
-        return notes  # to be read anew first
+        return notes  # to be read again first
     notes += lost_sample_notes(orders, settings)
     notes += [
         note for row in range(len(channels.names)) for note in hum_notes(orders, row, settings)
@@ -249,7 +249,7 @@ class LowResponse:
 
 
 def clipped_notes(channels: Channels, clipped: float, row: int = PLATEAU) -> Iterator[Note]:
-    """Yield notes on channels that are saturated, in rows of so many samples at least."""
+    """Yield notes on channels that are saturated, in rows of at least a number of samples."""
     for name, values in zip(channels.names, channels.values, strict=True):
         if (share := clipped_share(values, row)) > clipped:
             text = f"{SHORT_NAMES[name]} is saturated in {100.0 * share:.2g} % of its samples"

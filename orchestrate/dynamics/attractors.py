@@ -298,7 +298,7 @@ def attractors(
     eta, frequency, amplitude, box_acceleration, force1, force2, over, values
         As in :func:`orchestrate.sweep`.
     starts : int, optional
-        Random starts at each value: by default 60, and 600 where there is one value alone.
+        Random starts at each value: by default 60, and 600 if there is only one value.
     seed : int
         Of their random numbers: the same seed, the same starts.
     scale : array_like, optional
@@ -314,7 +314,7 @@ def attractors(
         Periods dropped at least.
     settle : float
         Periods dropped at least, over eta: a slow decay takes time, not periods. By default a decay
-        e^{-D tau} with D = 0.005 goes on for a factor of ten thousand.
+        e^{-D tau} with D = 0.005 lasts for a factor of ten thousand.
     samples : int
         Periods kept: more where attractors repeat after more than half as many.
     settings : AttractorSettings, optional
@@ -329,7 +329,7 @@ def attractors(
         Over the parameter: ``number``; over ``attractor``, where one number is the same attractor
         at all values, given at the lowest one that has it: periodic before irregular ones, then by
         ``multiplicity``, ``impacts_per_period`` and ``xi_rel_max``, which are NaN where it does not
-        exist; ``share`` of the random starts, 0 where carrying alone has found it; ``multiplier``,
+        exist; ``share`` of the random starts, 0 if only carrying has found it; ``multiplier``,
         the largest absolute Floquet multiplier; ``decided_by``, as CF flags: ``orbit`` (a stable
         orbit of Newton's method), ``repeated`` (states repeat, Newton's method finds no orbit),
         ``irregular`` or ``undecided`` (states nearly repeat, near an unstable orbit, or before

@@ -108,7 +108,7 @@ class BifurcationCurve:
         return np.asarray(matrix * self.scale[: self.family.size], dtype=complex)
 
     def condition(self, unknowns: Floats) -> Floats:
-        """Return the residual of the bifurcation condition alone, without the orbit's equations."""
+        """Return the residual of the bifurcation condition, without the orbit's equations."""
         if self.kind == Kind.GRAZING:
             return self.orbit(unknowns).nodes[self.place, CLOSING : CLOSING + 1]
         if self.kind == Kind.TOUCHING:

@@ -106,7 +106,7 @@ class BorderJob(Question):
 
 def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
     """Solve for the bifurcation at which a border curve begins; return equations and root."""
-    # both at once: at a fold the orbit alone, at a fixed parameter, is no simple root
+    # both at once: at a fold the orbit at a fixed parameter is no simple root
     (sequence, nodes), values = job.start.as_guess(job.period), np.array(job.values)
     family = Family.from_nodes(job.setting, sequence, nodes)
     orbit = np.append(nodes.ravel(), values)
@@ -185,7 +185,7 @@ def border(
     -----
     Points of codimension two are cusps, fold-flips, resonances 1:1 to 1:4, folds and period
     doublings with a pair of multipliers on the unit circle, and those at which a bifurcation
-    meets a grazing (Thota and Dankowicz, 2006). See :mod:`orchestrate.dynamics.codimension_two`
+    reaches a grazing (Thota and Dankowicz, 2006). See :mod:`orchestrate.dynamics.codimension_two`
     for the conditions. Degenerate period doublings and Neimark-Sacker bifurcations, where only the
     sign of a normal form changes, are not looked for.
 
@@ -241,6 +241,6 @@ def second_start_value(
     if name in EXCITATION_PARAMETERS and name not in dict(arguments):
         box = (pair for pair in arguments if pair[0] in EXCITATION_PARAMETERS)
         forms = "; ".join(f"{given} = {value!r}" for given, value in box)
-        expected = "eta alone" if name == "eta" else "frequency and amplitude in place of eta"
+        expected = "only eta" if name == "eta" else "frequency and amplitude in place of eta"
         raise InputError(f"over = {name!r} with {forms}: expected {expected}")
     return dict(arguments)[name] if name in dict(arguments) else structure.get(name)

@@ -261,7 +261,7 @@ def require_same_parameter(start: xr.Dataset, over: str, switch: int | None) -> 
 
 
 def pushes_at_start(start: xr.Dataset | None, **arguments: float | None) -> dict[str, float]:
-    """Return what pushes beside the box's motion: the arguments, else of the start, or 0."""
+    """Return the loads other than the box's motion: the arguments, else of the start, or 0."""
     known = {} if start is None else {**start.attrs, **start.coords}
     pushes = {}
     for name, argument in arguments.items():

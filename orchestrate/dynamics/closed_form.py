@@ -43,7 +43,7 @@ class ClosedForm:
     # D_i (8) and omega_i^2 (7)
     damping: Floats
     stiffness: Floats
-    drive: Floats  # amplitude of the harmonic right-hand side of each; 1 by the box alone
+    drive: Floats  # amplitude of the harmonic right-hand side of each; 1 by the box
     # a_i and b_i of (11), times it
     cosine: Floats
     sine: Floats

@@ -145,7 +145,7 @@ def run_until_settled(
 def numbered(
     numbers: NDArray[np.intp], responses: Iterable[Response], periods: int
 ) -> dict[int, SettledResponse]:
-    """Return responses that so many periods have settled, by the numbers of their starts."""
+    """Return responses that have settled after the transient, by the numbers of their starts."""
     pairs = zip(numbers.tolist(), responses, strict=True)
     return {number: SettledResponse(response, periods) for number, response in pairs}
 

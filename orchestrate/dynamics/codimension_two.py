@@ -170,7 +170,7 @@ def points_between(
             ]
             if not (np.isfinite(ends).all() and ends[0] * ends[1] < 0.0):
                 continue
-            if not ends[0] * value(length) < 0.0:  # rounding alone: no sign is certain there
+            if not ends[0] * value(length) < 0.0:  # only rounding: no sign is certain there
                 continue
             position = solve_between(value, 0.0, length, **TOLERANCE)
             root = stepper.root_after(position)

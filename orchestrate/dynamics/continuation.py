@@ -83,7 +83,7 @@ def newton_correct(
     max_distance: float = 0.5,
 ) -> Root:
     """Solve by Newton's method for the root in the plane through ``guess`` with this normal."""
-    # with a wrong derivative steps are short anywhere: it is made anew there, two more steps are
+    # with a wrong derivative steps are short anywhere: it is recomputed there, two more steps are
     # taken, and the residual decides; so nothing depends on how another processor rounds
     offset, size = np.zeros_like(guess), np.inf
     for iteration in range(1, max_iterations + 1):
@@ -132,7 +132,7 @@ def polish_root(
 
 def solve_linear(matrix: Floats, right: Floats) -> Floats:
     """Solve linear equations, by dense LU; large systems by sparse LU."""
-    if len(right) <= 40:  # up to so many equations it is faster
+    if len(right) <= 40:  # faster up to this number of equations
         return np.asarray(np.linalg.solve(matrix, right), dtype=float)
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu

@@ -16,7 +16,7 @@ from ..response.questions import QUANTITIES, Point, make_point
 from .closed_form import ClosedForm, Floats
 from .periodic_orbit import POSITION, ImpactSequence, PeriodicOrbit
 
-SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
+SPREAD = (0.999, 1.001)  # of a parameter that does not vary: only its scale matters
 RESIDUAL = 1e-10  # of the motion's size: what a root may leave of the equations
 
 
@@ -25,7 +25,7 @@ class Setting:
     """A structure and excitation with the names and limits of the parameters that vary."""
 
     structure: Structure
-    # `eta`, or `frequency` and `amplitude`, and what pushes beside the box's harmonic motion
+    # `eta`, or `frequency` and `amplitude`, and the loads other than the box's harmonic motion
     excitation: tuple[tuple[str, float], ...]
     over: tuple[str, ...]  # names of the parameters that vary
     limits: tuple[tuple[float, float], ...]  # between which
@@ -64,7 +64,7 @@ def closed_form(setting: Setting, values: bytes) -> ClosedForm:
 
 
 def acting(pushes: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
-    """Return what pushes beside the box's harmonic motion, as (name, number), where not zero."""
+    """Return the loads other than the box's harmonic motion, as (name, number), where not zero."""
     return tuple((name, float(pushes[name])) for name in PUSHES if pushes[name] != 0.0)
 
 

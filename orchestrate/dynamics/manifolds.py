@@ -132,7 +132,7 @@ class ManifoldJob(SingleOrbitQuestion):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.saddle()  # what is none is said before any work
+        self.saddle()  # fail early if there is no saddle
 
     def call_text(self) -> str:
         names = ("length", "spacing", "angle", "distance", "most")
@@ -140,7 +140,7 @@ class ManifoldJob(SingleOrbitQuestion):
         return call_from_start(self, self.values, **keywords)
 
     def saddle(self) -> Saddle:
-        """Solve for the saddle by Newton's method from the start's nodes; raise if it is none."""
+        """Solve for the saddle from the start's nodes by Newton's method; raise without one."""
         guess = self.start.as_guess(self.period)
         try:
             family, root = solve_orbit(self.setting, guess, self.values)

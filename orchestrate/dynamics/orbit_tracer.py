@@ -82,7 +82,7 @@ class OrbitPoint:
     @property
     def wrong_contact(self) -> bool:
         """Return whether an impact sticks, or not, against the sticking condition (17)."""
-        # where (17) is all but met either will do: rounding must not say how an orbit goes on
+        # where (17) is all but met either will do: rounding must not decide how an orbit continues
         if not self.orbit.count:
             return False
         return min(self.contact_margin(kind) for kind in CONTACT_KINDS) <= -STICK_TOLERANCE

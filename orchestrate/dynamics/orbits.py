@@ -52,7 +52,7 @@ class FirstGuess:
 
     state: tuple[float, ...] = ()  # x1, x2 in m, v1, v2 in m/s at phase 0; empty where not given
     kinds: tuple[int, ...] = ()  # of the nodes
-    # phase, position, velocity, closing speed of each; or phases alone
+    # phase, position, velocity, closing speed of each; or only phases
     nodes: tuple[tuple[float, ...], ...] = ()
 
     def as_argument(self, frequency: float) -> str:

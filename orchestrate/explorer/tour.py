@@ -77,7 +77,7 @@ STEPS = (
         "Quiet",
         "A delaminated beam, split along its middle into two halves, is shaken. Well above its "
         "resonance the halves tap each other once in each shaking period, always in the same way. "
-        "In the diagram that is one dot: the gap is the same each time the shaking begins anew. An "
+        "In the diagram that is one dot: the gap is the same at each period's start. An "
         "undamaged beam would be silent.",
         (View("quiet", "", 1.7),),
     ),

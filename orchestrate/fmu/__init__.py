@@ -7,7 +7,7 @@ module               idea
 :mod:`.archive`      checks of an FMU archive before it is unpacked
 :mod:`.exported`     the FMUs of the present sources: found, or exported where missing
 :mod:`.models`       names of the models
-:mod:`.unit_names`   units by name alone
+:mod:`.unit_names`   units by name only
 :mod:`.unpacked`     unpacking of FMUs, once per process
 :mod:`.library`      binaries of FMUs, loaded once per process
 :mod:`.instance`     a co-simulation instance: set, step, read, save its state

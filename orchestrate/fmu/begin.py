@@ -33,7 +33,7 @@ def begin(
 
 
 def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDArray[np.float64]:
-    """Return the gap x2 - x1 + offset of states (..., 4); rounding beside an offset is 0."""
+    """Return the gap x2 - x1 + offset of states (..., 4); rounding at an offset is 0."""
     rows, offsets = (np.ascontiguousarray(part, dtype=float) for part in (states, gap_offset))
     gaps = np.empty(rows.shape[:-1])
     places = rows.ctypes.data, gaps.size, offsets.ctypes.data, offsets.size == 1

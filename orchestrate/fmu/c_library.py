@@ -1,7 +1,7 @@
 """The package's own C sources as shared libraries: compiled where missing or out of date.
 
 One is loaded from the cache only where nobody else could have put it there, and its bytes are those
-that were compiled, by the digest beside it.
+that were compiled, by the digest stored with it.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Preallocated arrays, one call for many variables. Only Real variables. Both FMI versions. A step's
 answer:
 
-- OK: the run goes on; after a warning, too, whose message :attr:`Instance.warnings` keeps.
+- OK: the run continues; after a warning, too, whose message :attr:`Instance.warnings` keeps.
 - The FMU ends the simulation (FMI 3.0: ``terminateSimulation``; 2.0: a discarded step, of which
   ``fmi2Terminated`` is true), and logs no error: no step follows; the last one counts if it reached
   its end.

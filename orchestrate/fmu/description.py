@@ -30,7 +30,7 @@ class Description:
     variables: Mapping[str, Any]  # by name
     needs_tool: bool = False  # whether it needs a tool of its own, such as a Python
     identifier: str = ""  # name of its binary for co-simulation; empty where it has none
-    # by name, those that are defined by base units, or are told by their names
+    # by name, those that are defined by base units, or follow from their names
     units: Mapping[str, Unit] = field(default_factory=dict)
     has_fixed_step: bool = False  # whether all communication steps have to be of one length
     internal_step: float = 0.0  # s, of which communication steps are multiples; 0: not stated

@@ -139,7 +139,7 @@ def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:
     path = Path(folder) / form / f"{name}.fmu"
     try:
         current = path.is_file() and describe(path, name).guid == guid(form, name)
-    except InputError:  # damaged: to be made anew
+    except InputError:  # damaged: to be made again
         return False
     if not current or Path(folder) != default_folder():
         return current  # another folder was named, and so trusted

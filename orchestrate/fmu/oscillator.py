@@ -176,7 +176,7 @@ def stroboscopic_samples(
 
 
 def empty(count: int) -> Floats:
-    """Return room for so many states."""
+    """Return room for a number of states."""
     return np.empty((count, len(STATE)))
 
 
@@ -187,7 +187,7 @@ def traits(
 
     They end with the gap between unloaded springs, the places of rest x1 and x2, the amplitude at
     which the linear response opens or touches, and whether it does: then every motion impacts. That
-    is not known with a wall, a stroke, or what pushes beside the box's harmonic motion.
+    is not known with a wall, a stroke, or with loads other than the box's harmonic motion.
     """
     numbers = (getattr(structure, name) for name in TRAITS)
     memory = (c_double * len(TRAIT_NAMES))(*numbers, structure.omega, frequency, amplitude, pushed)

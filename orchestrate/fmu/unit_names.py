@@ -1,4 +1,4 @@
-"""Units by name alone, for FMUs that define none by base units: ``mm/s2``, ``kN``, ``N.m``."""
+"""Units by name, for FMUs that define none by base units: ``mm/s2``, ``kN``, ``N.m``."""
 
 from __future__ import annotations
 

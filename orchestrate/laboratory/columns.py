@@ -52,7 +52,7 @@ TIMES = {  # in s
     **dict.fromkeys(("us", "usec", "\u00b5s", "\u03bcs"), 1e-6),
     **{"ns": 1e-9, "min": 60.0, "h": 3600.0},
 }
-# What files call a quantity, as patterns of names in small letters and digits alone
+# What files call a quantity, as patterns of names in small letters and digits
 SENSOR = (
     "(?:a|acc|accel|acceleration|accelerometer|beschleunigung|sensor|aufnehmer|capteur|"
     "accélération|acelerometro|acelerómetro|accelerometro|geber|ch|channel|kanal)?"
@@ -191,7 +191,7 @@ class Assignment:
         return ", ".join(said)
 
     def warn(self, table: Columns, option: str = "channels=") -> None:
-        """Warn of columns that were taken by their order beside known ones, or not at all."""
+        """Warn of columns that were assigned by their order, or ignored."""
         if not (BY_NAME in self.known.values() or LEFT in self.known.values()):
             return
         proposed = {n: i for n, i in self.places.items() if self.known[n] == BY_ORDER}
@@ -231,7 +231,7 @@ def converted_channels(
     time = None if clock is None else times_in_s(table, table.columns[clock], units.get("time", ""))
     if not places:
         text = f"no channel; expected one of {', '.join(CHANNELS)}"
-        text += "" if time is None else " beside the times, or sample_rate= where there are none"
+        text += "" if time is None else " besides the times, or sample_rate= if there are no times"
         raise InputError(f"{table.path}: {text}")
     stated = text_by_channel("sensitivity", sensitivity, list(places))
     used = {name: table.columns[place] for name, place in places.items()}
@@ -341,7 +341,7 @@ def assigned_columns(table: Columns, columns: Named) -> Assignment:
 
     - A caller's columns are taken as stated; the time, if not stated, by its name, else the first.
     - Columns with usual names are what these say; several with one name are refused.
-    - The one column left is the base, or the face, that alone is missing beside the other.
+    - The only column left is the base or the face, if only that is missing.
     - Where the base or a force is known and no face, one or two columns left are the faces in
       their order; more are not read.
     - Where no name is known, all are taken in their order; more columns than channels are refused.
@@ -380,7 +380,7 @@ def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
 
 
 def check_counters(table: Columns, places: Mapping[str, int]) -> None:
-    """Check that no column beside the channels is a counter that misses samples."""
+    """Check that no other column is a counter that misses samples."""
     for i, column in enumerate(table.columns):
         row = None if i in places.values() or column.text else first_hole(column.values)
         if row is not None:
@@ -406,7 +406,7 @@ def refuse_spectra(table: Columns, columns: Named) -> None:
 
 
 def warn_of_left_out(table: Columns) -> None:
-    """Warn of lines after the numbers that are none."""
+    """Warn of lines after the numbers that hold no numbers."""
     if text := table.attributes.get("left_out"):
         warnings.warn(f"{table.path}, {text}", UserWarning, stacklevel=4)
 
@@ -446,7 +446,7 @@ def places_asked_for(
 
 
 def channels_by_name(table: Columns) -> Assignment:
-    """Assign time and channels by their usual names, and what is left beside them."""
+    """Assign time and channels by their usual names, then the columns left."""
     places = places_by_name(table, NAMES)
     if "time" not in places and not table.sample_rate:
         units = [plain_unit(one.unit) for one in table.columns]

@@ -88,7 +88,7 @@ def by_channel(
 def text_by_channel(
     name: str, argument: ByChannel, channels: Sequence[str], also: Sequence[str] = ()
 ) -> dict[str, str]:
-    """Return texts by channel; raise where one is none."""
+    """Return texts by channel; raise if one is no text."""
     texts = by_channel(name, argument, channels, also)
     for channel, value in texts.items():
         if not isinstance(value, str):

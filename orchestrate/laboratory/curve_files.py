@@ -52,7 +52,7 @@ def read_curve(
         frequency.
     columns : mapping or sequence, optional
         Which column ``frequency``, ``level``, ``amplitude1``, ``phase1``, ``amplitude1_order2``,
-        ``amplitude1_order3``, ``floor1`` and the same of face 2 are in, by name or by number from
+        ``amplitude1_order3``, ``floor1`` and those of face 2 are in, by name or by number from
         0; a sequence has these names in this order. By default columns with these names or others
         that are usual.
     unit : str, optional

@@ -59,7 +59,7 @@ def read_record(
         name or by number from 0: a mapping, a text such as ``"base=Table,face1=3"``, or a sequence
         in that order without forces. In place of a column a mapping may have ``column``, ``unit``,
         ``sensitivity``, ``scale``, ``delay`` and, kept as attributes of the channel, ``sensor``,
-        ``serial_number``, ``calibrated``; beside the channels ``sample_rate`` and ``resample``. Or
+        ``serial_number``, ``calibrated``; besides the channels ``sample_rate`` and ``resample``. Or
         the path of a TOML file with the same, as :func:`orchestrate.channels` writes it. By default
         columns with these names or others that are usual; one or two that are left are proposed as
         faces, in their order, with a warning; where no name is known, the first ones in that order.

@@ -26,7 +26,7 @@ def read_lvm(path: Path) -> Columns:
     except ImportError:
         raise missing_reader("lvm_read", "LabVIEW's .lvm files") from None
     text = decode_text(path, path.read_bytes())
-    data = lvm_read.read_str(text)  # its read() takes a pickle that lies beside the file
+    data = lvm_read.read_str(text)  # its read() takes a pickle that lies next to the file
     segment = data[0]
     names = list(map(str, segment["Channel names"]))
     rows = np.atleast_2d(np.asarray(segment["data"], float))

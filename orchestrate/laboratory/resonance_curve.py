@@ -215,7 +215,7 @@ def curve_coordinates(faces: list[str], frequency: Floats) -> dict[str, Any]:
 
 
 def plain_numbers(name: str, given: Any, kind: type = float) -> NDArray[Any]:
-    """Return an argument as an array; raise unless it has numbers alone."""
+    """Return an argument as an array; raise unless it has only numbers."""
     unmasked(name, given)
     try:
         return np.array(given, dtype=kind)

@@ -21,7 +21,7 @@ def record_of_run(run: xr.Dataset) -> xr.Dataset:
     ----------
     run : xarray.Dataset
         Of :func:`orchestrate.passage`: whole, or a part of it in equal steps.
-        (:func:`orchestrate.couple` keeps revolutions alone.)
+        (:func:`orchestrate.couple` keeps only revolutions.)
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """What every excitation is: an acceleration of the box, or a force, over time, and sums of them.
 
 Each can be passed to the FMU as cubic pieces with a bound of their error (see :mod:`.pieces`).
-The box's displacement is not needed: the structure feels the acceleration alone.
+The box's displacement is not needed: the structure feels only the acceleration.
 """
 
 from __future__ import annotations
@@ -171,7 +171,7 @@ class SumOfSignals(ExcitationSignal):
     def __post_init__(self) -> None:
         object.__setattr__(self, "duration", max(part.duration for part in self.parts))
         if len(driven := dict.fromkeys(part.drives for part in self.parts)) > 1:
-            text = "expected signals of the box's acceleration alone, or knocks on one half"
+            text = "expected only signals of the box's acceleration, or only knocks on one half"
             raise InputError(f"a sum of {' and '.join(driven)}: {text}")
 
     @property

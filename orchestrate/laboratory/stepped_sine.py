@@ -24,7 +24,7 @@ class SteppedSine(Sine):
     """A sine of one frequency after the other: at each the structure settles, then it is measured.
 
     The frequency changes at a peak of the acceleration, where the box's velocity passes zero: the
-    sine goes on without a jump while its level stays, and the box does not drift. The first one
+    sine continues without a jump while its level stays, and the box does not drift. The first one
     begins at zero and has a quarter of a cycle more.
 
     Parameters

@@ -152,7 +152,7 @@ class Drive(Described):
         box_mass, box_stiffness, box_damping : float
             kg, N/m, N s/m.
         rotor_inertia : float, optional
-            Of the rotor alone, kg m^2; the unbalance is added.
+            Of the rotor without the unbalance, kg m^2; the unbalance is added.
         mechanical_time_constant : float, optional
             Instead of the inertia, s: J_rotor = tau_m K^2/R_a.
         armature_inductance : float
@@ -164,7 +164,7 @@ class Drive(Described):
 
         Notes
         -----
-        K = U/omega_0 and R_a = K U/T_stall: friction is not told apart, its torque is part of the
+        K = U/omega_0 and R_a = K U/T_stall: friction is not separated, its torque is part of the
         line between both points.
 
         Examples

@@ -27,7 +27,7 @@ def frequency_ratio(frequency: float, omega: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Excitation(Described):
-    """Harmonic motion of the box, ``a sin(Omega t + phase)``, and what pushes beside it.
+    """Harmonic motion of the box, ``a sin(Omega t + phase)``, and other loads.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Excitation(Described):
     phase : float
         Phase at time 0, rad.
     box_acceleration : float
-        Constant acceleration of the box beside the harmonic one, m/s2: gravity.
+        Constant acceleration of the box, added to its own, m/s2: gravity.
     force1, force2 : float
         Amplitudes F of harmonic forces on the masses, N: ``F sin(Omega t + phase)``.
 

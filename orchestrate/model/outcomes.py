@@ -8,7 +8,7 @@ from enum import IntEnum
 class Outcome(IntEnum):
     """How a motion's period was decided; the numbers are those of CF flags in datasets.
 
-    - *repeated*: states so many periods apart agree, and their deviation has died or dies.
+    - *repeated*: states n periods apart agree, and their deviation has died or dies.
     - *orbit*: Newton's method confirms it by a stable orbit that the FMU runs through.
     - *irregular*: no number of periods repeats, or its states drift: chaos, a torus, a transient.
     - *undecided*: all else, such as a sweep's states that nearly repeat, or near an unstable orbit.

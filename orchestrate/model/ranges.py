@@ -143,7 +143,7 @@ SHAKER = quantities_of(
 )
 
 SMALLEST, LARGEST = STRUCTURE["m1"].minimum, STRUCTURE["m1"].maximum
-PUSHES = {  # beside the box's harmonic motion, by the FMU's inputs
+PUSHES = {  # loads other than the box's harmonic motion, by the FMU's inputs
     "box_acceleration": "box_acceleration",
     "force1": "force1_amplitude",
     "force2": "force2_amplitude",

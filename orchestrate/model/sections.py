@@ -106,7 +106,7 @@ class Section:
         if first_keys and second_keys:
             kinds = f"{', '.join(first)}, or {', '.join(second)}"
             raise self.error(
-                second_keys[0], f"beside {first_keys[0]}; expected keys of one kind: {kinds}"
+                second_keys[0], f"given with {first_keys[0]}; expected keys of one kind: {kinds}"
             )
         return bool(second_keys)
 
@@ -216,7 +216,7 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
     if box.uses_second_form(SI_BOX, BOX_NUMBERS) != by_numbers:
         kind = ", ".join(BOX_NUMBERS if by_numbers else SI_BOX)
         form = "non-dimensional" if by_numbers else "SI"
-        raise InputError(f"{box.path}: [box] beside a {form} [motor]: expected {kind}")
+        raise InputError(f"{box.path}: [box] with a {form} [motor]: expected {kind}")
     if not by_numbers:
         box.need(SI_BOX)
         return si_drive(motor, box.numbers(SI_BOX))
@@ -251,7 +251,7 @@ def check_masses(structure: Section, motor: Section) -> None:
     ):
         key = structure.present(OMEGAS)[0]
         raise structure.error(
-            "m1", f"missing beside {key}; expected it, as the motor feels the masses"
+            "m1", f"missing with {key}; expected it, as the motor feels the masses"
         )
 
 

@@ -22,7 +22,7 @@ class StructureText(StructureNumbers):
 
     @property
     def halves(self) -> str:
-        """Return the numbers of the masses, of a wall that of the first alone."""
+        """Return the numbers of the masses; only the first with a wall."""
         return "1" if self.wall else "12"
 
     @property

@@ -16,7 +16,7 @@ section           keys
                   armature_resistance armature_inductance``, SI; or, in place of ``motor_constant
                   armature_resistance``, a datasheet's ``rated_voltage stall_torque`` and one of
                   ``no_load_speed_rpm no_load_speed_rad_s no_load_speed_hz``: ``rotor_inertia`` is
-                  then the rotor's alone, without the unbalance, or ``mechanical_time_constant``
+                  then the rotor's, without the unbalance, or ``mechanical_time_constant``
                   (s) stands in place of it; or ``beta epsilon b``
 ``[shaker]``      an electrodynamic shaker, SI: ``table_mass suspension_stiffness suspension_damping
                   voltage_limit current_limit travel_limit``; or its data sheet's ``rated_force
@@ -56,7 +56,7 @@ from .structure import Structure
 
 FOLDER = Path(__file__).parent / "sets"
 SETS = {name: FOLDER / f"{name}.toml" for name in ("paper", "quick", "beam", "rig")}
-SHAKERS = {  # sets of shakers alone
+SHAKERS = {  # sets of shakers
     name: FOLDER.with_name("shakers") / f"{name}.toml"
     for name in ("shaker_10N", "shaker_100N", "shaker_1kN")
 }

@@ -218,7 +218,7 @@ class Datasets:
         return [mu, kappa, len(closing), found.sticks.sum().item(), slow.sum(), pulled.sum()]
 
     def figure(self, number: str) -> xr.Dataset:
-        """Return the curves of Figure 5, 7, 8, 9 or 12, and write them beside the results."""
+        """Return the curves of Figure 5, 7, 8, 9 or 12, and write them next to the results."""
         name = f"figure{number}"
         if name not in self.known:
             etas, keep, points = cases.PANELS[number]

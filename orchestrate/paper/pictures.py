@@ -79,7 +79,7 @@ PARTS = {
         "3T and 4T; the excitation below.",
         "A window nT is the longest run of the up-sweep with period nT and one impact in it; its "
         "relative peak is the largest local maximum of the largest xi_Rel inside it. The last "
-        "window goes on beyond eta = 8.0: the sweep is continued upwards to 9.0.",
+        "window continues beyond eta = 8.0: the sweep is continued upwards to 9.0.",
         histories.draw_paper_histories,
     ),
     "8": curves_part(

@@ -1,6 +1,6 @@
 """Multiplicity of a response (period in excitation periods), decided by how deviations decay.
 
-A tolerance alone decides little: a transient that turns round, or that changes sides as next to a
+A tolerance decides little: a transient that turns round, or that changes sides as next to a
 period doubling, comes back closer after some periods than after one; a torus comes back as close as
 one likes after enough of them; and a narrow period doubling stays within any tolerance. So
 :func:`decide_multiplicity` follows how deviations develop: those of a response that repeats have
@@ -26,7 +26,7 @@ DECIDED = {n: WORDS[n] for n in (repetition.IRREGULAR, repetition.REPEATED, repe
 
 
 class Repetition(NamedTuple):
-    """Multiplicity of a response, and the largest deviation of states so many periods apart."""
+    """Multiplicity of a response, and the largest deviation of states that many periods apart."""
 
     multiplicity: int  # least n such that the state repeats after n periods; 0: none
     # largest difference of states n periods apart over the motion's size; infinity where there is

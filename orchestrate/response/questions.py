@@ -213,7 +213,7 @@ def varied_values(
     if values is None:
         raise InputError(f"over = {over!r}: expected values= with it")
     if over in excitation:
-        raise InputError(f"over = {over!r}: is given as {over}= too; expected values= alone")
+        raise InputError(f"over = {over!r}: is given as {over}= too; expected only values=")
     return {over: values if isinstance(values, tuple) else (values,)}
 
 
@@ -462,7 +462,7 @@ class SeriesQuestion(Question, ABC):
 
     @property
     def pushes(self) -> tuple[tuple[str, Numbers], ...]:
-        """Return what pushes beside the box's harmonic motion by name, where it is not zero."""
+        """Return the loads other than the box's harmonic motion by name, if not zero."""
         given = ((name, getattr(self, name, 0.0)) for name in PUSHES if name != self.over)
         return tuple((name, value) for name, value in given if value != 0.0)
 

@@ -46,7 +46,7 @@ class Response:
         return find_repetition(self.samples, self.frequency, self.x_rel_max, tolerance)
 
     def lacks_impacts(self, impacts: float, n: int) -> bool:
-        """Return whether so many impacts, namely none, are too few for n periods to last."""
+        """Return whether no impacts are too few for n periods to last."""
         return bool(lacks_impacts(impacts, n, self.has_to_impact))
 
     @property

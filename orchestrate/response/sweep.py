@@ -258,7 +258,7 @@ def sweep(
     frequency, amplitude : array_like, optional
         The physical form instead: rad/s and m, one amplitude or one for each frequency.
     box_acceleration : array_like, optional
-        Constant acceleration of the box beside the harmonic one, m/s2: gravity. One number or one
+        Constant acceleration of the box, added to its own, m/s2: gravity. One number or one
         for each frequency, as forces.
     force1, force2 : array_like, optional
         Amplitudes F of harmonic forces F sin(phase) on the masses, N. With forces the amplitude may

@@ -49,7 +49,7 @@ def progress_bar(label: str, shown: bool, *, total: int, initial: int, unit: str
 
 
 def refresh(bar: Any, label: str) -> None:
-    """Show a bar's label, time and time left as they are now; in a log a new label alone."""
+    """Show a bar's label, time and time left as they are now; in a log only a new label."""
     if bar.disable:
         return
     bar.delay = 0.0  # it is shown from now on, or tqdm would not end its line

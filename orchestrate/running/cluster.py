@@ -65,7 +65,7 @@ def dask_client(address: str) -> Iterator[Any]:
         from distributed import Client
     except ImportError:
         raise InputError(NO_DASK) from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is told by us
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is reported by us
     connect: Any = Client
     try:
         with ThreadPoolExecutor(1) as thread:  # a notebook has a loop in this thread

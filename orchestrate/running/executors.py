@@ -34,7 +34,7 @@ from .identity import changed_modules, code_digests
 from .job import Job, Table, last_entries
 
 IDLE_TIMEOUT = 30  # s that worker processes wait for the next question before they end
-RESUMES = "what was stored is kept, the same call goes on from there (without force)"
+RESUMES = "what was stored is kept; repeat the call to resume (without force)"
 _writing = threading.Lock()  # workers may be threads of one process
 
 

@@ -18,7 +18,7 @@ from .job import Job
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ROOT = PACKAGE.name
-KERNELS = ["fmu_src", "kernels"]  # of Python that runs beside the FMUs
+KERNELS = ["fmu_src", "kernels"]  # of Python that runs besides the FMUs
 PACKAGES_WITHOUT_NUMBERS = ("running", "cli", "show")  # packages that do not affect any number
 DIGITS = 16  # hexadecimal, of a digest: short to read, and equal by chance in 2^-64
 

@@ -89,13 +89,13 @@ class Job(ABC):
         """Compute a chunk's items by the FMUs, in a worker; return arrays, see `item_columns`."""
 
     def has_rows_of(self, table: Table, count: int) -> bool:
-        """Return whether a chunk's table has the rows that so many items have by `item_columns`."""
+        """Return whether a chunk's table has the rows that its items have by `item_columns`."""
         names = set(table if self.item_columns is None else self.item_columns).intersection(table)
         lengths = {len(table[name]) for name in names if table[name].ndim}
         return bool(table) and lengths <= {count}
 
     def progress_note(self, first: int) -> str:
-        """Return a text shown beside the progress bar while a chunk runs; usually empty."""
+        """Return a text shown next to the progress bar while a chunk runs; usually empty."""
         return ""
 
     def boundary_state(self, table: Table) -> bytes:

@@ -3,7 +3,7 @@
 An SQLite database, one chunk a row, one transaction a row: a process killed at any moment loses the
 chunks that were being computed, a full disk the one that was being written. Each row is sealed: its
 checksum, verified on reading, covers the job, the chunk's number and its content, so a row that was
-damaged, moved or brought from elsewhere is computed anew.
+damaged, moved or brought from elsewhere is recomputed.
 """
 
 from __future__ import annotations
@@ -132,9 +132,9 @@ class Journal:
         return b""
 
     def drop(self, index: int, reason: str) -> None:
-        """Delete a stored chunk; log the reason for which it is computed anew, if there is one."""
+        """Delete a stored chunk; log the reason for which it is recomputed, if there is one."""
         if reason:
-            log.warning("%s: chunk %s is %s, it is computed anew", self.path, index, reason)
+            log.warning("%s: chunk %s is %s, it is recomputed", self.path, index, reason)
         self._query("DELETE FROM chunks WHERE i = ?", index)
 
     def is_empty(self) -> bool:
@@ -158,7 +158,7 @@ class Journal:
         try:
             return self._db.execute(statement, values).fetchall()
         except (sqlite3.Error, OverflowError) as error:
-            advice = "what was computed before is kept, the same call goes on (without force)"
+            advice = "what was computed before is kept; repeat the call to resume (without force)"
             if any(word in str(error) for word in ("malformed", "not a database", "decode")):
                 advice = ANEW
             raise StoreError(f"{self.path}: {error}; {advice}") from error

@@ -39,12 +39,12 @@ class Running(TypedDict, total=False):
         Whether what takes longer than a second shows a progress bar; true by default. A function
         to be called is not taken: log messages and the bar are what there is.
     store : path, optional
-        NetCDF file of the result. What is computed goes there step by step: the same call goes on
+        NetCDF file of the result. Results are stored there step by step: the same call resumes
         where it was interrupted, and reads the file when it is finished. Without it all is kept in
         memory.
     force : bool
-        Compute all anew, whatever is stored. An older result stays until the new one is complete;
-        after an interruption, the same call without ``force`` goes on with the new one.
+        Recompute all, whatever is stored. An older result stays until the new one is complete;
+        after an interruption, the same call without ``force`` resumes the new one.
     keep_stale : bool
         Take a stored result even where the code or the FMU has changed since.
     fmu : path or mapping, optional
@@ -78,9 +78,7 @@ class RunOptions:
 
     def __post_init__(self) -> None:
         if isinstance(self.force, float):
-            text = (
-                "expected true or false, to compute anew; a force on a half is force1= or force2="
-            )
+            text = "expected true or false, to recompute; a force on a half is force1= or force2="
             raise InputError(f"force = {self.force!r}: {text}")
         for name in ("progress", "force", "keep_stale"):
             object.__setattr__(self, name, checked_flag(name, getattr(self, name)))

@@ -133,7 +133,7 @@ class Progress:
                 yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
 
     def previous_table(self, chunk: Chunk) -> Table | None:
-        """Return the rows a chunk continues from, all if it gathers; None if it starts alone."""
+        """Return the rows a chunk continues from, all if it gathers; None if it needs none."""
         if chunk.after is None:
             return None
         if self.job.gathers and chunk.index == len(self.chunks) - 1:
@@ -251,7 +251,7 @@ class Progress:
         if self.wasted:
             log.debug("%s: %d items were guessed in vain", self.job.name, self.wasted)
         about = self.job, self.identity, self.fmus, self.store.begun
-        # the store alone holds the dataset, and lets go of it
+        # only the store holds the dataset, and lets go of it
         self.result = self.store.finish(with_provenance(self.job.dataset(self.table()), *about))
         self.items = None
 

@@ -183,7 +183,7 @@ class Disk(Store):
             )
         if not self.options.keep_stale:
             raise StaleError(
-                f"{path}: stale ({reason}); force to compute it anew, or "
+                f"{path}: stale ({reason}); force to recompute it, or "
                 "keep stale results as they are"
             )
         log.warning("%s: stale (%s), taken as it is", path, reason)
@@ -239,7 +239,7 @@ class Disk(Store):
         for anew in (False, True):  # of runs that were killed as they finished
             discard(journal_path(self.path, anew))
         self._journal = None
-        del dataset  # there may be no room for it beside what is read
+        del dataset  # there may be no room for both it and what is read
         self._result = load(self.path)
         return self._result
 

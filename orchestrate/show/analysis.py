@@ -281,7 +281,7 @@ def draw_shock_spectra(results: Results) -> Figure:
 
 
 def draw_densities(results: Results) -> Figure:
-    """Draw probability densities over standard deviations, beside the Gaussian one."""
+    """Draw probability densities over standard deviations, with the Gaussian one."""
     names = channels_in(results)
     figure, axes = make_panels(1, len(names), (1.0 + 3.8 * len(names), 4.2), sharey=True)
     gauss = np.linspace(-4.5, 4.5, 181)

@@ -90,12 +90,12 @@ def signs_section(answer: xr.Dataset) -> Section:
         for one in known
     ]
     marked = [number for number, one in enumerate(known) if bool((one.exceeds == 1).any())]
-    columns = ("sign", "value", "noise alone", "sound structure", "stands out")
+    columns = ("sign", "value", "by noise", "sound structure", "stands out")
     moved = [MOVED.format(known[number]) for number in marked]
     both = ", for sensor 1 and sensor 2" if answer.sizes["channel"] > 1 else ""
     text = (
         "A sign stands out where it is above twice what noise and a sound structure with the same "
-        "noise show. Signs know nothing of the model; each is moved by other things too. "
+        "noise show. Indicators do not use the model; each also has other causes. "
         f"Numbers have no unit{both}. "
         f"Noise from {answer.attrs.get('noise_from', 'the record')}; sound structure: "
         f"{answer.attrs.get('sound_from', '')}, seeds {answer.attrs.get('seeds', '')}."

@@ -31,7 +31,7 @@ def draws(*kinds: str, beside: str = "") -> Callable[[Drawer], Drawer]:
 def kind_of(answer: Any) -> str:
     """Return the kind of a result; an empty text if it does not say."""
     attributes = answer.attrs if isinstance(answer, xr.Dataset) else {}
-    # files made before have the text of the call alone
+    # older files have only the text of the call
     before = str(attributes.get("call", "")).partition("(")[0]
     return str(attributes.get("question") or attributes.get("analysis") or before)
 

@@ -110,7 +110,7 @@ def is_constant(values: xr.DataArray) -> bool:
 
 
 def gap_name(data: xr.Dataset) -> str:
-    """Return the gap's name for an axis label; with a clearance it is not ``x2 - x1`` alone."""
+    """Return the gap's name for an axis label; with a clearance it is not just ``x2 - x1``."""
     return "gap" if data.attrs.get("clearance") else "gap $x_2 - x_1$"
 
 

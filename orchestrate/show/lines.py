@@ -25,9 +25,9 @@ from .overlay import Overlay, draw_bifurcations, draw_orbits, length_factors
 from .scales import axis_values, displayed_gaps, gap_scale, parameter_scale, varied_dimension
 from .style import draw_line, legend_below, make_panels, styled
 
-MAX_DISTINCT = 600  # values along an axis that marks are told apart at
+MAX_DISTINCT = 600  # values along an axis at which marks can be distinguished
 CELLS = (1500, 750)  # of a panel, for samples that lie on each other
-SHADES = ((1, 0.35), (3, 0.6), (8, 1.0))  # from so many samples in a cell on: opacity
+SHADES = ((1, 0.35), (3, 0.6), (8, 1.0))  # from this number of samples in a cell on: opacity
 VERDICTS = {1: (RED, "o"), 0: (BLUE, "s"), -1: (BLACK, ".")}  # chaotic, neutral, periodic
 KINDS = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW)
 IRREGULAR, OTHER = "irregular", "other periodic"

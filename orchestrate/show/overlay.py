@@ -1,4 +1,4 @@
-"""Draw branches of orbits, alone or over responses, once both are known to belong together."""
+"""Draw branches of orbits, or over responses, once both are known to belong together."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MARKERS = {  # by the bifurcation's kind
 }
 SAME = 1e-9  # relative: numbers that are nearer than this are one
 SI = (*STRUCTURE, "bonded")
-MOVED = {  # by a parameter that is none of SI
+MOVED = {  # by a parameter that is not in SI
     **{"mu": {"m2", "d2"}, "kappa": {"k2"}, "omega": {"k1", "k2", "d1", "d2"}},
     **{"D": {"d1", "d2"}, "D1": {"d1"}, "D2": {"d2"}, "zeta1": {"d1"}, "zeta2": {"d2"}},
     **{"f1": {"k1", "d1"}, "f2": {"k2", "d2"}},

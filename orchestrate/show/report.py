@@ -32,7 +32,7 @@ def report(
     *answers : xarray.Dataset
         Of any questions, stored ones too. A verdict of :func:`orchestrate.detect` comes first,
         with its sentence, what was measured over the fits, parameters with errors, what was
-        assumed and what would change it; :func:`orchestrate.signs` of the same record beside it.
+        assumed and what would change it; :func:`orchestrate.signs` of the same record, with it.
     output : path-like
         The file.
     title : str

@@ -315,7 +315,7 @@ def capture(
     Beyond the resonance is half way between the speeds of the averaged theory's folds, moved with
     the resonance where that of the delaminated structure lies clearly apart. A speed
     that is there may swing back, and one that hardly changes may be creeping past a fold: what
-    counts as settled is told in :mod:`orchestrate.weak_drive.capture_rule`.
+    counts as settled is stated in :mod:`orchestrate.weak_drive.capture_rule`.
 
     Examples
     --------

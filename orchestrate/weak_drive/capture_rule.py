@@ -7,7 +7,7 @@
   as its means have been for `stay` revolutions.
 - It has settled *at the resonance*, which is neither, where both are within the tolerance and
   `errors`.
-- All else is *undecided*: a motion that goes on to swing slowly, or across the resonance.
+- All else is *undecided*: a motion that keeps swinging slowly, or across the resonance.
 
 The resonance is the speed that divides motions below it from those beyond (:mod:`.own_resonance`).
 """

@@ -71,7 +71,7 @@ def checked_links(
         raise InputError(f"connect = {connect!r}: expected names of theirs by names of ours")
     for name in connect:
         if name not in UNITS:
-            raise InputError(f"connect: {name} is none of our names{near(name, UNITS)}; {EXPECTED}")
+            raise InputError(f"connect: {name} is no name of ours{near(name, UNITS)}; {EXPECTED}")
     if alone and set(connect) & set(FORCE):
         raise InputError("connect: box_force has no structure that exerts it; leave it out")
     if not (alone or "box_force" in connect) or not set(connect) & set(MOTION):
@@ -106,7 +106,7 @@ def checked_units(units: Mapping[str, str] | None, drive: Description) -> dict[s
 
 
 def checked_variable(drive: Description, name: str, causality: str, any_type: bool = False) -> Any:
-    """Return a variable of the drive of a causality; raise ``InputError`` if it is none."""
+    """Return a variable of the drive of a causality; raise ``InputError`` if it has another."""
     if name not in drive.variables:
         raise InputError(
             f"the FMU {drive.name} has no variable {name!r}{near(name, drive.variables)}; "
@@ -166,7 +166,7 @@ def proposals(drive: Description) -> dict[str, str]:
 
     - An input (force) or output (motion) whose unit is of the same dimension is likely, whose name
       looks most like ours first; where none has a unit, one with a part that abbreviates ours.
-    - Derivatives of the force are proposed by our own names alone, no variable is proposed twice,
+    - Derivatives of the force are proposed only by our own names, no variable is proposed twice,
       and without a motion and a force nothing is.
     """
     found: dict[str, str] = {}

@@ -65,7 +65,7 @@ def cosimulate(
     Parameters
     ----------
     structure : Structure or None
-        Delaminated or bonded; ``None`` for the drive alone, which has no ``box_force`` then.
+        Delaminated or bonded; ``None`` for only the drive, which has no ``box_force`` then.
     drive : path, Drive or Shaker
         An FMU of FMI 2.0 or 3.0 for co-simulation that moves the box, of any tool; or one of the
         package's own: a motor with an unbalance, an electrodynamic shaker.
@@ -131,14 +131,14 @@ def cosimulate(
     The drive does each step once, so it need not be able to go back; the oscillator does it two or
     three times, see :mod:`orchestrate.weak_drive.master`. A drive takes the force held, or with its
     derivatives. Errors are of fourth order in the step if a velocity is connected, of third order
-    otherwise, of second order if it is the acceleration alone and inputs change or the force acts
+    otherwise, of second order if it is only the acceleration and inputs change or the force acts
     late, as long as the acceleration is that under the present force when it is read. Of a drive
-    whose outputs change in steps alone they are of first order, unless its velocity is connected.
+    whose outputs change only in steps they are of first order, unless its velocity is connected.
     After impacts that one of the two runs has and the other not, or in chaos, the estimated error
     is as large as the motion.
 
     An interrupted run resumes where the drive can save its state (``canSerializeFMUstate``); else
-    it begins anew, as ``resumable`` in the attributes says.
+    it restarts, as ``resumable`` in the attributes says.
 
     Examples
     --------

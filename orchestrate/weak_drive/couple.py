@@ -138,7 +138,7 @@ class CoupleJob(MotorJob):
         return jump_labels(directions), columns
 
     def decision(self, jump: Jump | None, record: RampRecord) -> tuple[str, str]:
-        """Return how a jump or its absence was decided, and why there is none."""
+        """Return how a jump or its absence was decided, and why there is no jump."""
         if jump is not None and jump.outcome == UNDECIDED:
             volts = record.sense * self.drive.volts(self.structure)
             low, high = volts * jump.low, volts * jump.high
@@ -378,7 +378,7 @@ def couple(
         ones as "up 2". ``jumps`` (V): the voltage at which the motion is lost, whatever the rate;
         NaN where there is no jump or it is undecided. ``jump_low`` and ``jump_high`` (V): its
         bracket, or that in which it is undecided. ``decided`` says how: "by held voltages", or
-        "undecided"; ``no_jump`` says why there is none.
+        "undecided"; ``no_jump`` says why there is no jump.
         ``ramp_voltage`` (V), ``jump_time`` (s), ``jump_speed`` (rad/s), speed and amplitude before
         and after, and ``jump_rate`` (V/s) are what the ramp shows, ``jump_lag`` (V) by how much
         later; NaN where it ends before. For a bonded structure ``averaged_jumps`` (V) and

@@ -1,6 +1,6 @@
 """Run many coupled systems side by side: several systems, ramp rates, bonded or not.
 
-Each run is a job of its own: with a folder as store it is a file of its own there, goes on where it
+Each run is a job of its own: with a folder as store it is a file of its own there, resumes where it
 was interrupted, and is not computed again by a later call with more sets or rates.
 """
 

@@ -288,7 +288,7 @@ def drive_branch(
     followed further. ``stable`` is false within 1e-7 of the unit circle.
 
     Under a preload (``clearance`` below 0) the delaminated structure moves as the bonded one while
-    the contact force lasts, and its branch goes on from there without a gap: the masses part for a
+    the contact force lasts, and its branch goes on without a gap: the masses part for a
     moment in each revolution, chatter, and stick. Such motions are begun in contact. ``impacts``
     counts all of a chattering. Where a chattering no longer comes to its end, a branch ends with
     ``"loss of permanent contact"``.

@@ -103,7 +103,7 @@ def next_grazing(
 
 NO_START = "no motion at the start"
 NOT_BEGUN = "not begun: the other leg has gone all the way"
-HALVED = "meets the motion of half its period"
+HALVED = "reaches the motion of half its period"
 UNFINISHED = KINDS[Kind.CONTACT_LOST]  # of a chattering that no longer comes to its end
 ENDS = (LIMIT, NO_CONVERGENCE, MAX_POINTS, NO_START, NOT_BEGUN, HALVED, FLIGHT, IMPACT, UNFINISHED)
 AT_GRAZING = 1e-4  # of voltage over K omega and speed over omega: so near, a grazing is located

@@ -82,7 +82,7 @@ class EnergyBalance:
 
     def relative_energy(self, motion: OscillatorOutputs) -> Any:
         """Return the structure's energy by its motion relative to the box, J."""
-        # a preload adds itself times the gap: little is lost of a motion that is small beside it
+        # a preload adds itself times the gap: little is lost of a much smaller motion
         s, (rest_1, rest_2) = self.structure, self.structure.at_rest
         x1, x2, v1, v2 = motion.x1 - rest_1, motion.x2 - rest_2, motion.v1, motion.v2
         own = 0.5 * (s.m1 * v1 * v1 + s.m2 * v2 * v2 + s.k1 * x1 * x1 + s.k2 * x2 * x2)

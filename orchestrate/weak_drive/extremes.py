@@ -3,7 +3,7 @@
 Between impacts the first mass follows m x'' + d x' + k x = -m y'' with the cubic y'' that it was
 told: its Taylor series is known from a state at either end of the step. Before an impact the series
 from the beginning holds, after it the one from the end, so the turning points are as exact as the
-states at the communication points. Of several impacts in one step only the last is told apart.
+states at the communication points. Of several impacts in one step only the last is resolved.
 """
 
 from __future__ import annotations

@@ -60,7 +60,7 @@ class HysteresisSettings(SettledSettings):
     neighbour: float = 0.25  # of a step, what one next to it is at least to be compared with
     same: float = 2e-3  # largest difference of two settled speeds of one motion
     clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
-    again: int = 3  # times that a motion beside a jump is held again
+    again: int = 3  # times that a motion next to a jump is held again
     growths: float = 30.0  # growth times after which a motion is seen to last, or not
     patience: float = 10.0  # longest holds that these may be
     max_rounds: int = 150  # of looking at the largest step of a ramp
@@ -239,7 +239,7 @@ class HysteresisLoop(VoltageHolder):
                 return None
             outcome = UNDECIDED
         if outcome != NONE and sign * (high.speed - low.speed) < 0.0:
-            del points[i + 2 :]  # what a ramp comes to there is chance
+            del points[i + 2 :]  # the ramp's landing point is unpredictable here
         return Jump(outcome, low.voltage, high.voltage, low.speed, high.speed)
 
     def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:

@@ -181,7 +181,7 @@ def jump_voltages(
     Notes
     -----
     The rule is that of :mod:`orchestrate.weak_drive.hysteresis`, as for :func:`couple`. With a
-    clearance the voltages of the delaminated structure depend on how large it is beside the
+    clearance the voltages of the delaminated structure depend on how large it is compared with the
     amplitude.
 
     Examples

@@ -10,7 +10,7 @@ each amplitude is as n / (w sin(w pi/Omega)), and the gap closes at the flight's
 The sum rises with Omega between any two of its poles, so each root is bracketed. The mode is that
 with a positive gap between the two upper frequencies w. Its speed does not depend on the amplitude.
 It is mostly that of the bonded structure, within a few thousandths; where the halves are unlike it
-is another one. A clearance is left out: motions at the resonance are large beside it.
+is another one. A clearance is left out: motions at the resonance are large compared with it.
 
 Non-dimensional throughout: speeds over omega.
 """

@@ -122,7 +122,7 @@ class MotorJob(CoupledJob):
     speed_start: float  # of the motor, rad/s
     # time for which a voltage is held at most until the speed settles, s
     hold: float
-    # what takes the voltage from the schedule; the motor gets all of it where there is none
+    # what takes the voltage from the schedule; the motor gets all of it if there is no such part
     control: Controller | None = None
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
@@ -167,7 +167,7 @@ class MotorRun(Run):
         return self.revolutions.add(self.record(steps))[0]
 
     def speeds(self, steps: range) -> np.ndarray:
-        """Run some steps; return the mean speeds of completed revolutions alone, rad/s."""
+        """Run some steps; return only the mean speeds of completed revolutions, rad/s."""
         return self.revolutions.completed(self.record(steps))[:, 2]
 
 

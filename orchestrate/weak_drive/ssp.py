@@ -4,7 +4,7 @@ What all tools read alike was found by trying: parameter bindings of the compone
 system; connections between components only; no connector for the voltage, which some tools would
 set to 0 where nothing is connected to it; a Boolean only where it is true, since FMPy takes any
 other for true as well. Importers of SSP 1.0 need not read 2.0, whose types are those of FMI 3.0.
-Neither has terminals: those stand in the FMUs alone.
+Neither has terminals: those stand only in the FMUs.
 
 A sign and a unit are a connection's linear transformation, in place of the tool's own conversion.
 

@@ -67,7 +67,7 @@ class Motion:
         return y[2] - y[0] + self.p["clearance"]
 
     def set(self, **values):
-        """Change inputs now: a cubic begins; whether the masses stay together is decided anew."""
+        """Change inputs now: a cubic begins; whether the masses stay together is decided again."""
         p = self.p
         self.phase += p["box_frequency"] * (self.time - self.begun)
         self.begun = self.time

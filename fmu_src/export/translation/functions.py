@@ -30,9 +30,9 @@ from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Value, common_type
 WIDTH = 100
 STORAGE = "static INLINE"  # of every function, until it is known how often it is called
 INDENT = "    "
-# comments beside an if that tell a compiler which way it goes, and what they are in C
+# comments on an if that say which way it usually goes, and what they are in C
 HINTS = {"rarely": "RARELY", "usually": "USUALLY"}
-INLINE = "inline"  # the comment beside a def: its lines are to stand where it is called
+INLINE = "inline"  # the comment on a def: it is to be inlined
 
 
 @dataclass
@@ -183,7 +183,7 @@ class Body(Expressions):
         self.lines += wrapped(text, indent, indent + INDENT)
 
     def block(self, statements: Block) -> None:
-        """Translate statements in their order, each after the comments beside it."""
+        """Translate statements in their order, each after its comments."""
         for statement in statements:
             if self.is_final:
                 for line in [line for line in sorted(self.comments) if line <= statement.lineno]:

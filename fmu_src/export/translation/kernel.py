@@ -50,7 +50,7 @@ HEAD = """\
 #define RESTRICT restrict
 #endif
 
-/* How often lines run, for speed alone; -DINLINE=inline makes smaller code. */
+/* How often lines run, only for speed; -DINLINE=inline makes smaller code. */
 #if defined(__GNUC__)
 #define USUALLY(test) __builtin_expect(test, 1)
 #define RARELY(test) __builtin_expect(test, 0)

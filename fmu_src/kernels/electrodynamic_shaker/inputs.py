@@ -4,7 +4,7 @@ from . import memory as at
 
 
 def cubic_begins(m, flag, inputs):
-    """Return whether a cubic begins anew: an input has another value, or one was set of a cubic
+    """Return whether a cubic restarts: an input has another value, or one was set of a cubic
     that is no constant.
     """
     moves = False

@@ -49,7 +49,7 @@ def initialize(m, time):
 
 
 def derive(m):
-    """Compute what follows from the parameters alone.
+    """Compute what follows from the parameters.
 
     Returns
     -------
@@ -68,7 +68,7 @@ def derive(m):
 
 
 def restore(m, time):
-    """Compute anew what the parameters decide in a saved memory; ``time`` is not used.
+    """Recompute what the parameters decide in a saved memory; ``time`` is not used.
 
     Returns
     -------

@@ -1,9 +1,9 @@
-/* The communication steps of two instances together: in an ordinary step the oscillator alone goes back.
+/* The communication steps of two instances together: in an ordinary step only the oscillator goes back.
  *
  * The structure's box_force depends on its states only, the box's acceleration on the force: there is no algebraic loop, but what each side assumes of the
  * other over a step decides everything.
  *
- * - The oscillator does the step under an extrapolated acceleration: the cubic of the last step goes on from the present value.
+ * - The oscillator does the step under an extrapolated acceleration: the cubic of the last step continues from the present value.
  * - The drive does it under the force that came of it: the cubic with its ends, mean and first moment, which are exact through impacts. A drive that takes a held
  *   force gets its mean, and a share of the impulse and of the first moment that the forces held until then lack (`owed`), so that nothing is owed two steps
  *   later if the moment stays as it is.
@@ -79,7 +79,7 @@ typedef struct {
 
 EXPORT const unsigned sizes_of_couple[] = {sizeof(Pair), MOTION, POSITION, ANGLE};  /* Python has to have the same */
 
-/* -- calls of the FMUs: true where the run goes on -- */
+/* -- calls of the FMUs: true if the run continues -- */
 
 static bool put(Side *s, const double *values) { return set_reals(&s->fmi, s->inputs, s->input_count, values); }
 
@@ -204,7 +204,7 @@ static double point_of(const double *row, double w) {
 /* What a held force did over a step to a point that is `age` from the step's end: nothing after it. */
 static double moved_by(double held, int order, double h, double age) { return order == 0 ? 0.0 : order == 1 ? held * h : held * h * (0.5 * h + age); }
 
-/* The rest over a step through the points of velocity, position or acceleration alone. */
+/* The rest over a step through the points of velocity, position or acceleration only. */
 static void rest_of_points(const Pair *p, Cubic f, const double *now, const double *next, double h) {
     int order = order_of(now), most = 2 + order, known = p->point_count < most ? p->point_count : most, first = p->point_count - known;
     double ages[PAST + 1], values[PAST + 1];

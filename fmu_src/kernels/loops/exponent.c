@@ -8,7 +8,7 @@ enum { NUMBERS = 18, MOST_ROWS = 6 };
 static const int places[NUMBERS] = {M1, M2, K1, K2, D1, D2, E, GAMMA, BONDED, WALL, CLEARANCE, STROKE, E_SLOPE, BOX_AMPLITUDE, BOX_AMPLITUDE + 1, BOX_ACCELERATION,
                                      FORCE1_AMPLITUDE, FORCE1_AMPLITUDE + 1};
 
-/* Numbers of the memory for so many impacts. */
+/* Size of the memory for a number of impacts. */
 EXPORT size_t exponent_size(size_t count) { return TABLES + (ROW + STATES * STATES + 3) * count; }
 
 /* For each impact (time, state after it, closing speed, whether contact follows; SI) up to an end in s the matrix that maps a deviation before it to that
@@ -34,7 +34,7 @@ static double logarithm(double x) {
     return exponent * LN2 + 2.0 * s * total;
 }
 
-/* Logarithmic growth of a vector over blocks of so many matrices; false where it becomes zero. */
+/* Logarithmic growth of a vector over blocks of matrices; false where it becomes zero. */
 EXPORT bool find_growth(const double *matrices, size_t count, size_t rows, size_t size, double *growth) {
     double vector[MOST_ROWS], next[MOST_ROWS], total = 0.0;
     for (size_t k = 0; k < rows; k++) vector[k] = 1.0 / (1.0 + 0.7 * (double)k);  /* in no special direction */
@@ -86,7 +86,7 @@ EXPORT void largest_exponent(const double *numbers, const double *impacts, size_
 /* What an exponent that only wanders, by this factor over a time, is at most. */
 EXPORT double wander_floor(double wander, double span) { return logarithm(wander) / span; }
 
-/* 1 chaotic, -1 periodic, 0 neither: within so many standard errors of zero, or within the floor. */
+/* 1 chaotic, -1 periodic, 0 neither: within a number of standard errors of zero, or within the floor. */
 EXPORT int classify_exponent(double value, double error, double floor, double sigmas) {
     double distance = sigmas * error > floor ? sigmas * error : floor;
     return (value > distance) - (value < -distance);

@@ -25,7 +25,7 @@ typedef struct {  /* fmu/fmi.py has the same */
     void *instance;
     int version;  /* of FMI, 2 or 3 */
     int (*reset)(void *);
-    Function *setup, *enter_initialization;  /* of FMI 2.0 two calls, of 3.0 the second one alone */
+    Function *setup, *enter_initialization;  /* of FMI 2.0 two calls, of 3.0 only the second */
     int (*exit_initialization)(void *);
     Function *step, *set_real, *set_integer, *set_boolean, *get_real, *get_integer, *get_boolean;
     int (*enter_event_mode)(void *);  /* of an instance that has events; else NULL */
@@ -33,7 +33,7 @@ typedef struct {  /* fmu/fmi.py has the same */
     int (*enter_step_mode)(void *);
     const char *failed;
     int status;
-    int warned;  /* whether a call answered with a warning; the run goes on */
+    int warned;  /* whether a call answered with a warning; the run continues */
 } Fmi;
 
 typedef int (*Setup2)(void *, int, double, double start, int, double);

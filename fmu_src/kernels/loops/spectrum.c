@@ -34,7 +34,7 @@ static size_t transform_length(size_t count) {
 }
 
 /* Amplitudes of count/2 + 1 lines of the signal at the memory's begin, by Bluestein's transform: a convolution with a chirp.
-   The window takes the mean, which it would spread to the line beside it, from all lines but the mean's own. */
+   The window takes the mean, which it would spread to the next line, from all lines but the mean's own. */
 static void find_lines(double *memory, size_t count, double *amplitudes) {
     size_t length = transform_length(count), part = 0;
     Complex *one = (Complex *)(memory + count), *other = one + length, *turns = other + length;
@@ -59,7 +59,7 @@ static void find_lines(double *memory, size_t count, double *amplitudes) {
     amplitudes[0] = fabs(2.0 * whole / number);
 }
 
-/* Numbers of the memory for so many samples. */
+/* Size of the memory for a number of samples. */
 EXPORT size_t spectrum_size(size_t count) { return count + 5 * transform_length(count); }
 
 EXPORT void amplitude_spectrum(const double *signal, size_t count, double *memory, double *amplitudes) {

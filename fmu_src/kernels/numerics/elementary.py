@@ -1,4 +1,4 @@
-"""Sine, cosine and exponential function from ``+ - * /`` and ``floor`` alone.
+"""Sine, cosine and exponential function from ``+ - * /`` and ``floor``.
 
 The mathematical libraries of different systems, and different processors under one library, round
 these functions differently; a chaotic trajectory shows it after some hundred impacts. Here they are

@@ -139,7 +139,7 @@ def set_node_values(m, slot, node, tau):
 
 def set_remainder(m):
     """Set how far the quintic between two nodes may be wrong, from the node to the left on, until
-    the state is written anew.
+    the state is rewritten.
     """
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     square = m[at.NODE_ETA] * m[at.NODE_ETA]

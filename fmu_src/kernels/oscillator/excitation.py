@@ -29,7 +29,7 @@ def inputs_changed(m):
 
 
 def begin_segment(m):
-    """Set the excitation constants from the present inputs; a cubic goes on where its inputs were
+    """Set the excitation constants from the present inputs; a cubic continues where its inputs were
     not set.
     """
     scale = 1.0 / m[at.OMEGA]
@@ -44,7 +44,7 @@ def begin_segment(m):
 
 
 def renew_cubic(m, place, inputs, known, unit):
-    """Begin a cubic anew at the present state's start where one of its inputs was set, or has
+    """Restart a cubic at the present state's start if one of its inputs was set, or has
     another value than in the segment before, ``known``.
 
     ``unit`` turns its value, in SI, into that of a forcing.

@@ -141,7 +141,7 @@ def largest_value(m, slot, sign, start, stop, highest):
     """Return the larger of ``highest`` and the largest value of ``sign`` times a signal of the
     present state in ``start <= tau <= stop``.
 
-    From each point the walk goes on as far as the signal certainly stays below what is known, or,
+    From each point the walk continues as far as the signal certainly stays below what is known, or,
     climbing, to the first root of its slope.
     """
     tau = start

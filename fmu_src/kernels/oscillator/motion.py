@@ -161,7 +161,7 @@ def state_and_phase_at(m, tau):  # inline
 
 
 def beside_wall(m, x):
-    """Return the displacement of both masses where they touch: 0 beside a wall."""
+    """Return the displacement of both masses where they touch: 0 for a wall."""
     return x if m[at.WALL] == 0.0 else 0.0
 
 
@@ -201,7 +201,7 @@ def advance_origin(m, tau):
 
 def move_origin_to_end(m):
     """Move the origin of time to the end of the present state; the phase is rotated there from node
-    to node, or computed anew after as many rotations as a block has nodes.
+    to node, or recomputed after as many rotations as a block has nodes.
     """
     turns = m[at.ROTATIONS] + m[at.AT_END_NODE] + 1.0
     if m[at.AT_END_NODE] == 0.0 or m[at.NODE_ETA] == 0.0 or turns > BLOCK:

@@ -3,8 +3,8 @@
 A free part is the pair of its displacement and velocity (x, v): an age t later it is ``((C + D S) x
 + S v, (C - D S) v - omega^2 S x)``, whatever the damping, with C and S of (10) at t. So is the
 excitation the pair of its cosine and sine. Nodes lie at multiples of a spacing after the state's
-start; from one to the next all pairs rotate by constants, and every 32 nodes they are made anew
-from the closed form, so that rounding does not grow. A pair at a node depends on the node alone,
+start; from one to the next all pairs rotate by constants, and every 32 nodes they are recomputed
+from the closed form, so that rounding does not grow. A pair at a node depends only on the node,
 never on how it was reached.
 """
 
@@ -19,7 +19,7 @@ ANGLE = 1.25  # of the fastest oscillation over a spacing: half of it is for the
 STEEPEST = 0.65  # decay over half a spacing that small_decay serves
 NEAR = 0.00390625  # of a radian of the fastest change: six terms of a Taylor series are exact
 BLOCK = 32.0  # nodes from one renewal to the next
-# nodes after which a state is written anew: its angles and their rounding stay small
+# nodes after which a state is rewritten: its angles and their rounding stay small
 LONGEST = 1024.0
 FASTEST_RATE = 1e36  # products of eight rates, as in the root finder, neither overflow nor vanish
 FURTHEST = 4503599627370496.0  # 2**52 nodes, or turns: up to there each has its own number
@@ -93,7 +93,7 @@ def oscillator_a(m):
 
 
 def max_nodes(m):
-    """Return the number of nodes after which the present state is written anew."""
+    """Return the number of nodes after which the present state is rewritten."""
     return LONGEST if m[at.SECULAR] == 0.0 else LONGEST_DRIVEN
 
 
@@ -145,7 +145,7 @@ def put_phasors(m, slot, p0, p1, p2, p3, cosine, sine):
 
 
 def is_plain_flight(m):
-    """Return whether the present state is a flight that a harmonic alone drives, at no
+    """Return whether the present state is a flight that only a harmonic drives, at no
     resonance.
     """
     return m[at.MODE] == at.FLIGHT and m[at.SECULAR] == 0.0 and m[at.CUBIC_PRESENT] == 0.0
@@ -170,7 +170,7 @@ def next_phasors(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
 
 
 def starts_block(node):
-    """Return whether the phasors at a node are computed anew from the closed form."""
+    """Return whether the phasors at a node are recomputed from the closed form."""
     return math.floor(node * (1.0 / BLOCK)) * BLOCK == node
 
 

@@ -40,7 +40,7 @@ def derive(m):
     set_oscillator(m, at.OSCILLATOR_1, damping_1, 1.0)
     set_oscillator(m, at.OSCILLATOR_2, damping_2, omega_2_squared)
     set_oscillator(m, at.OSCILLATOR_3, damping_3, (1.0 + kappa) / (1.0 + mu))
-    m[at.SPACING] = 0.0  # the nodes are to be set anew
+    m[at.SPACING] = 0.0  # the nodes are to be reset
     m[at.FASTEST] = max(1.0, math.sqrt(omega_2_squared))  # omega_3 lies between
     m[at.STICKING_TIME] = m[at.GAMMA] * (1.0 - m[at.E]) / m[at.FASTEST]
     if m[at.WALL] != 0.0:  # rarely

@@ -1,7 +1,7 @@
 """Certified first root of an event function, (13) and (19).
 
-By the certified steps of :mod:`..numerics.first_root`. The walk depends on the state alone, not on
-where the importer's communication points lie: it goes on where it was left.
+By the certified steps of :mod:`..numerics.first_root`. The walk depends only on the state, not on
+where the importer's communication points lie: it resumes where it was left.
 """
 
 import math
@@ -46,7 +46,7 @@ def flight_limit(m):
 def cross_clear_intervals(m, target, ceiling):
     """Go on from node to node, not beyond ``target``, while the intervals between have no root and
     the event function stays below ``ceiling`` in them, which is at most the gap's limit; after many
-    nodes the state is written anew.
+    nodes the state is rewritten.
     """
     if not is_plain_flight(m):  # rarely
         cross_intervals_loop(m, target, ceiling, False, True)

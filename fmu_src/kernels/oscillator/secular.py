@@ -15,7 +15,7 @@ from .parameters import are_nearly_equal
 
 # detuning^2 + (damping over critical)^2 below which the closed form has no four digits to spare
 NEAR_RESONANCE = 1e-8
-# nodes after which a state driven so is written anew: what it may grow by stays small
+# nodes after which a state driven so is rewritten: what it may grow by stays small
 LONGEST_DRIVEN = 32.0
 SMALL = 0.5  # of |sigma t|: fourteen terms are exact
 

@@ -38,7 +38,7 @@ from .parameters import derive
 from .roots import value_on_decided_side, walk
 from .secular import clear_secular, set_event_drive
 
-TOUCHING = 4.440892098500626e-16  # 2**-51, relative: a gap at the start that is rounding alone
+TOUCHING = 4.440892098500626e-16  # 2**-51, relative: a gap at the start that is only rounding
 WORK_BASE = 100000.0  # evaluations of the event function a step may take whatever its length,
 WORK_RATE = 256.0  # and in gamma radians of the fastest oscillation,
 WORK_MOST = 1e7  # and at the very most: a second or two, compiled; EVALUATION_LIMIT may allow less
@@ -129,7 +129,7 @@ def begin_first_state(m, x1, x2, gap):
 
 
 def restore(m, time):
-    """Compute anew what parameters and inputs decide in a saved memory that began at ``time`` (s):
+    """Recompute what parameters and inputs decide in a saved memory that began at ``time`` (s):
     then every step of it ends, whatever its other numbers are.
 
     Returns
@@ -171,7 +171,7 @@ def starting_point(m):
     below zero where the masses overlap.
 
     Start positions count from the position at rest: with a preload that is where the masses rest
-    together. With a clearance, a gap that is rounding alone is none.
+    together. With a clearance, a gap that is only rounding counts as zero.
     """
     x1, x2, clearance = m[at.X1_START], m[at.X2_START], m[at.GAP_OFFSET]
     gap = x2 - x1
@@ -334,7 +334,7 @@ def renew_segment(m, now):
     """Begin a segment with the present inputs, ``now`` after the present state's start.
 
     Positions and phase are continuous; so is a cubic, where none of its inputs was set. Where what
-    drives the gap jumps, the contact force does: whether the masses stay together is decided anew.
+    drives the gap jumps, the contact force does: whether the masses stay together is decided again.
     """
     x1, v1, x2, v2 = state_at(m, now)
     gap = gap_between(m, now, x1, x2)

@@ -1,6 +1,6 @@
 """A communication step in sub-steps of the formula, as long as its error estimate allows.
 
-Sub-steps begin anew at each communication point, because the force on the box may be a new cubic
+Sub-steps restart at each communication point, because the force on the box may be a new cubic
 there; only the length that the tolerance allowed is remembered. Everything remembered is part of
 the state, so a run that is resumed gives the same bits.
 """

@@ -48,7 +48,7 @@ def initialize(m, time):
 
 
 def restore(m, time):
-    """Compute what follows from the parameters alone, of a saved memory too; ``time`` is not used.
+    """Compute what follows from the parameters, of a saved memory too; ``time`` is not used.
 
     Returns
     -------

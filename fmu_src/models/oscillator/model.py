@@ -33,7 +33,7 @@ MODEL = Model(
     differentiate=rates.differentiate,
     restore=stepper.restore,
     ranges=(
-        SlotRange(at.OMEGA, at.SEGMENT_INPUTS - at.OMEGA),  # computed anew, as the next ones
+        SlotRange(at.OMEGA, at.SEGMENT_INPUTS - at.OMEGA),  # recomputed, as the next ones
         SlotRange(at.SPACING, at.NODE_SINE + 1 - at.SPACING),
         SlotRange(at.EVENT_DRIVE, 2 * at.EVENT_ORDERS),
         *(

@@ -12,7 +12,7 @@
 #include "names.h"
 
 #if defined(__GNUC__) && !defined(_WIN32)
-/* names of this library alone, whatever options compile it: the C library, too, has a function step */
+/* names of this library only, whatever options compile it: the C library, too, has a function step */
 #pragma GCC visibility push(hidden)
 #endif
 

@@ -21,7 +21,7 @@ static void report(Instance *instance, Status status, const char *text) {
         *to++ = *from;
     }
     *to = 0;
-    /* errors are told whether debug logging is on or not */
+    /* errors are logged whether debug logging is on or not */
     callbacks->logger(instance->environment, instance->name, (fmi2Status)status, CATEGORY(status), format);
 }
 

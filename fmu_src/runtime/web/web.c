@@ -1,4 +1,4 @@
-/* What a web page calls beside the loops, with the prefix of a model: an instance of the FMU, as fmi.h has it, and its last message. */
+/* What a web page calls besides the loops, with the prefix of a model: an instance of the FMU, as fmi.h has it, and its last message. */
 #include <string.h>
 
 #include "core.h"

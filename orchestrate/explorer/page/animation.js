@@ -45,7 +45,7 @@ export class Animation {
     requestAnimationFrame((next) => this.tick(next));
   }
 
-  /** Go on to the next impact; the turn it happens at, null where there is none. */
+  /** Continue to the next impact; the turn it happens at, null where there is none. */
   nextImpact() {
     if (!this.motion) return null;
     this.running = false;

@@ -189,7 +189,7 @@ export class App {
     if (other) this.carryOn();
   }
 
-  /** Other parameters: the diagram follows, the motion goes on from where it was; frequencies stay, in Hz those in Hz once one was chosen there. @param {Structure} structure @param {Level} [level] */
+  /** Other parameters: the diagram follows, the motion continues from where it was; frequencies stay, in Hz those in Hz once one was chosen there. @param {Structure} structure @param {Level} [level] */
   change(structure, level = this.level) {
     this.tour.leave();
     const hertz = inHertz(level) && inHertz(this.level) && !this.carried;

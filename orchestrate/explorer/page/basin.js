@@ -40,7 +40,7 @@ export function* destination(instance, point, start) {
 
 /**
  * Number of an attractor among those known, to which it is added where it is new. Periodic ones are
- * the same where a state of one lies near one of the other; irregular ones are not told apart, nor
+ * the same where a state of one lies near one of the other; irregular ones are not distinguished, nor
  * are undecided ones.
  * @param {Attractor[]} known
  * @param {Attractor} one

@@ -79,7 +79,7 @@ function levelOption(points) {
   return held ? `--g ${level}` : "";
 }
 
-/** Values as a range of decimal numbers; nothing where they are none. @param {string} option @param {number[]} values @param {(value: number) => number} of what the option's number becomes */
+/** Values as a range of decimal numbers; nothing if they are not. @param {string} option @param {number[]} values @param {(value: number) => number} of what the option's number becomes */
 function rangeOf(option, values, of) {
   const decimals = values.map((value) => Number((value / of(1)).toFixed(9)));
   const [first, last] = [decimals[0], decimals[decimals.length - 1]];
@@ -88,12 +88,12 @@ function rangeOf(option, values, of) {
   return even ? `${option} ${first}:${last}:${step}` : "";
 }
 
-/** Whether an excitation is told by the frequency ratio alone. @param {Point} point */
+/** Whether an excitation is given by the frequency ratio alone. @param {Point} point */
 function isPlain({ eta, amplitude }) {
   return amplitude === 1 / (eta * eta);
 }
 
-/** The motion that goes on from a response. @param {Point} point @param {number[]} start @param {{transient: number, periods: number, points: number}} asked @param {Structure} usual */
+/** The motion that continues a response. @param {Point} point @param {number[]} start @param {{transient: number, periods: number, points: number}} asked @param {Structure} usual */
 export function motionCommand(point, start, { transient, periods, points }, usual) {
   const how = `--transient ${transient} --periods ${periods} --points ${points}`;
   return `${PROGRAM} simulate ${where(point)} ${how} --start=${start.join(",")}${sets(point.structure, usual)}`;

@@ -1,4 +1,4 @@
-/** Sliders with a number beside each: the paper's parameters, or those of a beam of one's own, and the SI numbers. */
+/** Sliders with a number next to each: the paper's parameters, or those of a beam of one's own, and the SI numbers. */
 
 import { inHertz } from "./excitation.js";
 import { onNumber, showNumber } from "./field.js";

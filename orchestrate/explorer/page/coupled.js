@@ -15,7 +15,7 @@ const SIDES = /** @type {Side[]} */ (Object.keys(MODELS));
 
 /** Both instances, with the loop that couples them; to be closed. */
 export class Coupled {
-  /** @param {Library} library @param {Start} start @param {Run | null} run where it goes on */
+  /** @param {Library} library @param {Start} start @param {Run | null} run where it resumes */
   constructor(library, start, run) {
     this.library = library;
     this.start = start;
@@ -103,7 +103,7 @@ export class Coupled {
     return new Uint8Array(/** @type {Uint8Array} */ (this.library.view("u8", bytes, count)));
   }
 
-  /** All that a run goes on from. */
+  /** All that a run resumes from. */
   memory() {
     const [oscillator, drive] = SIDES.map((side) => this.save(side));
     const [row, last] = [this.numbers(this.row, this.start.columns.length), this.numbers(this.last, 3)];

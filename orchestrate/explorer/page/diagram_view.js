@@ -18,7 +18,7 @@ export function panels(size) {
   return { gaps: [left, top, width, upper], impacts: [left, from, width, top + height - from] };
 }
 
-/** What the axes of a diagram hold so far. */
+/** What the axes of a diagram show at present. */
 export class Reach {
   constructor() {
     this.low = Infinity;
@@ -205,7 +205,7 @@ export class DiagramView {
     this.refresh();
   }
 
-  /** Draw everything anew. */
+  /** Redraw everything. */
   refresh() {
     this.stale = true;
     this.picture.redraw();

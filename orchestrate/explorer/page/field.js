@@ -1,4 +1,4 @@
-/** A field for a number: what is expected is said beside it, and what is not changes nothing. */
+/** A field for a number: what is expected stands next to it, and anything else changes nothing. */
 
 /**
  * Watch a field.
@@ -29,7 +29,7 @@ export function toDefault(input) {
   complain(input, "");
 }
 
-/** Say beside a field what is expected; nothing where all is well. @param {HTMLInputElement} input @param {string} words */
+/** Say next to a field what is expected; nothing where all is well. @param {HTMLInputElement} input @param {string} words */
 function complain(input, words) {
   if (input.validationMessage === words) return;
   input.setCustomValidity(words);

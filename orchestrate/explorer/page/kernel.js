@@ -64,7 +64,7 @@ export class Rooms {
     return address;
   }
 
-  /** An array of numbers, or of so many zeros. @param {Kind} kind @param {ArrayLike<number> | number} values */
+  /** An array of numbers, or of a number of zeros. @param {Kind} kind @param {ArrayLike<number> | number} values */
   array(kind, values) {
     const count = typeof values === "number" ? values : values.length;
     const address = this.take(count * WIDTH[kind]);
@@ -164,7 +164,7 @@ export class Oscillator {
   }
 
   /**
-   * Amplitudes of mass 1's absolute acceleration, impulses included, of the motion that goes on from where the instance stands.
+   * Amplitudes of mass 1's absolute acceleration, impulses included, of the motion that continues from where the instance stands.
    * @param {Point} point
    * @param {number} first periods since the start
    * @param {{periods: number, points: number, highest: number}} span
@@ -195,7 +195,7 @@ export class Oscillator {
    * @param {Point} point
    * @param {Iterable<number>} start
    * @param {{transient: number, samples: number, tolerance: number}} settings
-   * @param {boolean} decides whether its multiplicity is decided; the instance goes on for that
+   * @param {boolean} decides whether its multiplicity is decided; the instance continues for that
    * @returns {Generator<undefined, {states: Float64Array, largest: number, impacts: number, end: number[], counts: Record<string, number>}>}
    */
   *respond(point, start, { transient, samples, tolerance }, decides) {
@@ -277,7 +277,7 @@ export class Oscillator {
   }
 
   /**
-   * The largest Lyapunov exponent per unit of tau, of an instance that stops: over so many periods, or twice as many
+   * The largest Lyapunov exponent per unit of tau, of an instance that stops: over a number of periods, or twice as many
    * again and again while it is undecided.
    * @param {Point} point
    * @param {number[]} start on the attractor, at phase 0

@@ -60,7 +60,7 @@ function* stopping({ library }, run) {
 }
 
 /**
- * The response at a start and how it goes on.
+ * The response at a start and how it continues.
  * @param {Oscillator} instance
  * @param {{point: Point, start: number[], settings: Settings, periods: number, points: number}} asked
  */

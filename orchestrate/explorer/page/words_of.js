@@ -16,7 +16,7 @@ const UNDECIDED_MOTION = "Nearly repeats, or is still settling: undecided here";
 /** What an exponent says. @param {Exponent} exponent @returns {Kind} */
 export const kindOf = ({ verdict }) => (verdict > 0 ? "chaotic" : verdict < 0 ? "converging" : "undecided");
 
-/** The same in words, with its standard error. @param {Exponent | null} exponent @param {number} repeats after so many periods, 0 if not */
+/** The same in words, with its standard error. @param {Exponent | null} exponent @param {number} repeats its period in those of the box, 0 if none */
 export function exponentWords(exponent, repeats) {
   if (!exponent) return "none of so few impacts";
   const { value, error } = exponent;

@@ -23,7 +23,7 @@ CHANNELS = {  # and what the result of shake calls them
 }
 
 
-@dataclass(frozen=True, eq=False)  # equal to itself alone: what is computed of it is kept by it
+@dataclass(frozen=True, eq=False)  # equal only to itself: what is computed of it is kept by it
 class Channels:
     """Acceleration channels of a record as one array."""
 

@@ -1,6 +1,6 @@
 """Frequency response functions of the masses over the box or a force, and their coherence.
 
-SciPy estimates the spectra: pyFRF 1.5 takes sampling rates that are whole numbers alone, divides
+SciPy estimates the spectra: pyFRF 1.5 takes only sampling rates that are whole numbers, divides
 by omega^2 on the way (no line at 0 Hz), and does not know the error of overlapping segments.
 """
 
@@ -97,7 +97,7 @@ def frf(
     driven, drive = what_drives(record, channels)
     names, responses = channels.responses()
     if not names:
-        raise InputError("record: no acceleration1; expected it beside the excitation, in m/s2")
+        raise InputError("record: no acceleration1, m/s2; frf needs it and the excitation")
     knocks = None if driven == BOX else Knocks.from_force(drive, channels, resolution)
     if knocks is not None:
         window, overlap = "force and exponential", 0.0

@@ -236,7 +236,7 @@ def moves_as_sine(
 def divide(
     channels: Channels, phase: Floats, periods: float, overlap: float, smooth: bool
 ) -> Iterator[Window]:
-    """Yield a record's windows of so many periods each, which overlap by a part of their length."""
+    """Yield the windows of a record, `periods` periods each, overlapping by a part of that."""
     edge = EDGE * TURN if smooth else 0.0
     length = TURN * periods
     grown = np.maximum.accumulate(phase)

@@ -65,7 +65,7 @@ def spectrogram(
     transform = ShortTimeFFT.from_window(
         window, rate, length, length - hop, fft_mode="onesided2X", scale_to="magnitude"
     )
-    first = -(-(length // 2) // hop)  # whole parts alone: nothing is put before or after
+    first = -(-(length // 2) // hop)  # only whole parts: nothing is put before or after
     last = (count - (length - length // 2)) // hop
     amplitude = np.abs(transform.stft(channels.values, p0=first, p1=max(last, first) + 1))
     time = channels.time[0] + np.arange(first, max(last, first) + 1) * hop / rate

@@ -24,7 +24,7 @@ def interchange(data: Datasets, claim: Claim) -> Measured:
     windows = reading.runs_of(settled.multiplicity.values == 1)
     chaotic, neutral = data.shares("elastic", 0.43, 0.89)
     text = (
-        "T-periodic with so many impacts: "
+        "T-periodic, by number of impacts: "
         f"{', '.join(run.text() for run in reading.impact_runs(settled))}; {100 * chaotic:.0f} % "
         f"of all frequencies chaotic, {100 * neutral:.0f} % neutral"
     )

@@ -96,7 +96,7 @@ def many_loops(data: Datasets, claim: Claim) -> Measured:
     released = len([run for run in reading.runs_of(in_contact) if run[1] < len(kinds) - 1])
     loops = len(jumps)  # each ends at an impact; after a contact one begins without
     text = (
-        f"{loops} loops in T, each ends at an impact, a jump of the velocity alone: {at_zero}; "
+        f"{loops} loops in T, each ends at an impact, a jump of only the velocity: {at_zero}; "
         f"{loops - released} begin at one, {released} at the end of contact; contact is a point at "
         f"the origin: {point}"
     )
