@@ -70,7 +70,6 @@ class HeldFolder:
             return
 
     def remove(self) -> None:
-        """Delete the folder with all that is in it."""
         remove_held(self.path, self._lock)
 
 

@@ -81,7 +81,6 @@ class Notes(logging.Handler):
             self.lines.append(record.getMessage())
 
     def close(self) -> None:
-        """Stop collecting."""
         self.logger.removeHandler(self)
         super().close()
 

@@ -175,7 +175,6 @@ class Child:
         return array if "array" in value else array[()]
 
     def end_late(self) -> None:
-        """End the process at its deadline."""
         self.is_late = True
         self.process.kill()
 
@@ -185,7 +184,6 @@ class Child:
         return self.is_late or bool(worn_out and self.process.returncode == worn_out)
 
     def close(self) -> None:
-        """End the process."""
         self.process.kill()
         for stream in (self.process.stdin, self.process.stdout):
             with suppress(OSError):
@@ -204,7 +202,6 @@ IDLE: dict[int, Child] = {}  # by the process that started it: a fork must not a
 
 
 def end_idle() -> None:
-    """End the idle process of this one."""
     if child := IDLE.pop(os.getpid(), None):
         child.close()
 

@@ -143,7 +143,6 @@ def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
 
 
 def is_finite_number(value: Any) -> bool:
-    """Return whether an attribute is one finite number."""
     try:
         return not isinstance(value, str) and math.isfinite(value)
     except TypeError:

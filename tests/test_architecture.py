@@ -404,12 +404,46 @@ def test_functions_are_short():
     expect_none(lambda file: [n.name for n in functions_of(file) if code_lines(n) > 45])
 
 
-def test_all_that_is_public_has_a_docstring():
+def test_modules_classes_and_the_public_face_have_docstrings():
+    """An internal function whose name says it all needs none."""
+
     def bare(file):
-        names = [n.name for n in definitions(tree_of(file)) if not ast.get_docstring(n)]
-        return names + ["the module"] * (not ast.get_docstring(tree_of(file)))
+        tree = tree_of(file)
+        face = [node for node in tree.body if getattr(node, "name", None) in PUBLIC]
+        needed = [n for n in definitions(tree) if isinstance(n, ast.ClassDef)]
+        needed += definitions(ast.Module(face, []))
+        names = [node.name for node in needed if not ast.get_docstring(node)]
+        return names + ["the module"] * (not ast.get_docstring(tree))
 
     expect_none(bare)
+
+
+EMPTY_WORDS = {
+    *("return", "returns", "the", "a", "an", "of", "in", "at", "to", "for", "and"),
+    *("or", "that", "is", "are", "as", "it", "its", "with", "by", "on", "from", "this"),
+}
+
+
+def stems(text: str) -> set[str]:
+    """Words of a text or of a name, without their endings."""
+    words = re.findall(r"[a-z0-9]+", re.sub(r"([A-Z])", r" \1", text).lower())
+    return {
+        re.sub(r"(ies|y|ing|ed|es|s|e)$", "", word) for word in words if word not in EMPTY_WORDS
+    }
+
+
+def test_no_docstring_repeats_its_name():
+    """Names, arguments and types say it already; punctuation adds a unit or a condition."""
+
+    def repeats(file):
+        nodes = [n for n in definitions(tree_of(file)) if isinstance(n, FUNCTIONS)]
+        texts = [(n, ast.get_docstring(n) or "") for n in nodes if n.name not in PUBLIC]
+        short = [(n, text) for n, text in texts if text and not re.search(r"[\n;,:`\"()=]", text)]
+        return [
+            n.name for n, text in short if not stems(text) - stems(ast.unparse(n.args) + n.name)
+        ]
+
+    expect_none(repeats)
 
 
 def described(docstring: str | None) -> list[str] | None:

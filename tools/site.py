@@ -55,7 +55,6 @@ class Site:
 
     @cached_property
     def pages(self) -> dict[Path, Page]:
-        """Return a dict from file to page of all HTML files of the site."""
         return {path: Page(path) for path in sorted(self.folder.resolve().rglob("*.html"))}
 
     def external_resources(self) -> list[str]:

@@ -89,12 +89,10 @@ def file_name(source: Path, platform: str) -> str:
 
 
 def digest(library: bytes) -> str:
-    """Return the digest stored next to a library."""
     return hashlib.sha256(library).hexdigest()
 
 
 def digest_file(path: Path) -> Path:
-    """Return the path of the file with a library's digest."""
     return path.with_name(f"{path.name}.sha256")
 
 

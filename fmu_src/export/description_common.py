@@ -122,7 +122,6 @@ def add_shared_elements(parent: ET.Element, model: Model) -> ET.Element:
 
 
 def add_units(parent: ET.Element, model: Model) -> None:
-    """Add the definitions of the units in use."""
     definitions = ET.SubElement(parent, "UnitDefinitions")
     used = {variable.unit for variable in model.variables} | {"s"}  # of time
     for name, exponents in UNITS.items():
@@ -135,7 +134,6 @@ def add_units(parent: ET.Element, model: Model) -> None:
 
 
 def variable_attributes(variable: Variable, reference: int) -> dict[str, str]:
-    """Return the attributes that every variable has."""
     found = {
         "name": variable.name,
         "valueReference": str(reference),

@@ -56,7 +56,6 @@ def fmi2_xml(
 
 
 def add_variable(parent: ET.Element, variable: Variable) -> None:
-    """Add one ScalarVariable."""
     attributes = common.variable_attributes(variable, variable.slot)
     scalar = ET.SubElement(parent, "ScalarVariable", attributes)
     common.add_values(ET.SubElement(scalar, variable.type), variable)

@@ -44,7 +44,6 @@ def fmi3_xml(model: Model, token: str) -> bytes:
 
 
 def add_time(parent: ET.Element, model: Model) -> None:
-    """Add the independent variable."""
     attributes = {
         "name": "time",
         "valueReference": str(model.time_slot),
@@ -57,19 +56,16 @@ def add_time(parent: ET.Element, model: Model) -> None:
 
 
 def add_variable(parent: ET.Element, variable: Variable) -> None:
-    """Add one scalar variable."""
     attributes = common.variable_attributes(variable, variable.slot)
     common.add_values(ET.SubElement(parent, TYPES[variable.type], attributes), variable)
 
 
 def array_elements(model: Model, array: Array) -> tuple[Variable, ...]:
-    """Return the variables an array is made of."""
     first = [variable.name for variable in model.variables].index(array.first)
     return model.variables[first : first + array.size]
 
 
 def add_array(parent: ET.Element, model: Model, array: Array, reference: int) -> None:
-    """Add one array output."""
     scalar = array_elements(model, array)[0]
     attributes = common.variable_attributes(scalar, reference)
     attributes |= {"name": array.name, "description": array.description, "unit": scalar.unit}

@@ -23,7 +23,6 @@ typedef struct { unsigned first, size; double lowest, highest; } SlotRange;"""
 
 
 def c_string(text: str) -> str:
-    """Return a C string literal."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
 
 
@@ -35,7 +34,6 @@ def c_number(value: float) -> str:
 
 
 def c_variable(variable: Variable, model: Model) -> str:
-    """Return one row of the C variable table."""
     minimum = -math.inf if variable.minimum is None else variable.minimum
     maximum = math.inf if variable.maximum is None else variable.maximum
     cells = [

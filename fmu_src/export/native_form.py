@@ -59,7 +59,6 @@ def model_description(model: Model, token: str, version: str, sources: Files) ->
 
 
 def shim_sources(version: str) -> Files:
-    """Return the C sources of the shim for an FMI version."""
     found = read_sources(*(f"runtime/native/{name}" for name in SHIM[version]))
     return {Path(name).name: content for name, content in found.items()}
 
@@ -106,7 +105,6 @@ def plain_model(model: Model) -> Model:
 
 
 def plain_variable(variable: Variable, excites: bool) -> Variable:
-    """Return a variable as the plain form describes it."""
     if excites:
         return replace(variable, causality="parameter", variability="tunable", initial="exact")
     if variable.causality != "output" or variable.type == REAL:

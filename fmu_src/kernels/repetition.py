@@ -27,7 +27,6 @@ INFINITE = float("inf")
 
 
 def memory_size(count: int) -> int:
-    """Return the memory size for a number of samples."""
     return HEAD + (STATE + COLUMNS + 1) * count
 
 
@@ -240,7 +239,6 @@ def measure_deviations(m, n):
 
 
 def largest_between(m, first, last):
-    """Return the largest of the deviations in a range."""
     away = int(m[AWAY])
     largest = 0.0
     for k in range(first, last):

@@ -51,7 +51,6 @@ class Text(ctypes.Structure):
     _fields_ = (("words", ctypes.c_uint64 * 2), ("length", ctypes.c_uint64 * 2))
 
     def read(self) -> bytes:
-        """Return the characters."""
         if os.name == "nt":
             length, capacity = self.length
             start = self.words[0] if capacity > 15 else ctypes.addressof(self)
@@ -226,7 +225,6 @@ class Slave:
         self._start_time, self._stop_time = start_time, stop
 
     def enter_initialization_mode(self) -> None:
-        """Begin initialisation."""
         if self._phase != INSTANTIATED:
             self.refuse("fmi2EnterInitializationMode: expected one call on a new or reset instance")
         self._phase = INITIALIZING
@@ -343,7 +341,6 @@ class Slave:
         return found
 
     def read(self, references: Sequence[int], kind: str) -> list[float]:
-        """Return the values at value references."""
         if references != self._checked[kind]:
             self.find(references, kind)
             self._checked[kind] = list(references)
@@ -352,15 +349,12 @@ class Slave:
         return list(map(self._memory.__getitem__, references))
 
     def get_real(self, references: Sequence[int]) -> list[float]:
-        """Return values of Real variables."""
         return self.read(references, REAL)
 
     def get_integer(self, references: Sequence[int]) -> list[int]:
-        """Return values of Integer variables."""
         return [int(value) for value in self.read(references, INTEGER)]
 
     def get_boolean(self, references: Sequence[int]) -> list[bool]:
-        """Return values of Boolean variables."""
         return [value != 0.0 for value in self.read(references, BOOLEAN)]
 
     def get_string(self, references: Sequence[int]) -> list[str]:
@@ -393,15 +387,12 @@ class Slave:
         return variable.problem(value)
 
     def set_real(self, references: Sequence[int], values: Sequence[float]) -> None:
-        """Set Real variables."""
         self.write(references, values, REAL)
 
     def set_integer(self, references: Sequence[int], values: Sequence[int]) -> None:
-        """Set Integer variables."""
         self.write(references, values, INTEGER)
 
     def set_boolean(self, references: Sequence[int], values: Sequence[bool]) -> None:
-        """Set Boolean variables."""
         self.write(references, [1.0 if value else 0.0 for value in values], BOOLEAN)
 
     def set_string(self, references: Sequence[int], values: Sequence[str]) -> None:

@@ -102,7 +102,6 @@ class Variable:
         return f"{self.name} = {self.text(value)}{unit}: expected {self.range_text()}"
 
     def range_text(self) -> str:
-        """Return the expected range in words."""
         if self.type == BOOLEAN:
             return "true or false"
         if self.minimum is None and self.maximum is None:
@@ -232,7 +231,6 @@ class SlotRange:
     highest: float = -inf
 
     def has(self, value: float) -> bool:
-        """Return whether a slot may have a value."""
         return self.lowest > self.highest or self.lowest <= value <= self.highest
 
 

@@ -51,7 +51,6 @@ class Asked(Command):
         """Return the lines that are printed of the result."""
 
     def has_picture(self, question: Question) -> bool:
-        """Return whether a question has a picture."""
         return True
 
     def draw(self, data: xr.Dataset, *others: xr.Dataset) -> Any:

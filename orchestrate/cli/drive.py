@@ -377,7 +377,6 @@ class Driven(Command):
         """Return a part of the picture's title."""
 
     def draw(self, results: Runs, title: str) -> Any:
-        """Return the figure."""
         import orchestrate
 
         return orchestrate.plot(*results.values(), title=title)

@@ -45,7 +45,6 @@ if TYPE_CHECKING:
 
 
 def ask_along_parameter(arguments: Any, si: bool = False) -> tuple[Structure, Question]:
-    """Return structure and keywords of a function along a parameter."""
     structure = arguments.read_structure()
     excitation, _ = arguments.varied_arguments(structure, si=si)
     return structure, {**arguments.keywords(), **excitation}

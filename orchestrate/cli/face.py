@@ -96,7 +96,6 @@ class Option:
         return self.help if said else f"{self.help} (default: {usual})"
 
     def parameter(self, attribute: str, kind: Any, group: cyclopts.Group) -> inspect.Parameter:
-        """The parameter that cyclopts reads."""
         read, choices = reader_of(kind)
         flag = self.name or option_names([attribute])
         details = Parameter(
@@ -228,13 +227,11 @@ class Command(Debugging, ABC):
 
     @classmethod
     def flags(cls) -> list[str]:
-        """Return the names of all options that have one."""
         rows = cls.options().items()
         return [one.name or option_names([name]) for name, (one, _, _) in rows if not one.position]
 
     @classmethod
     def name(cls) -> str:
-        """Return the name on the command line."""
         return cyclopts.default_name_transform(cls.__name__)
 
     def given(self, *groups: type[Options]) -> Question:
@@ -260,7 +257,6 @@ class Command(Debugging, ABC):
 
     @classmethod
     def app(cls) -> cyclopts.App:
-        """Return the cyclopts application of the command."""
         groups: dict[str, cyclopts.Group] = {}
         parameters = []
         for name, (one, kind, of) in cls.options().items():
@@ -365,7 +361,6 @@ def help_text(meaning: str) -> str:
 
 
 def explain(error: CycloptsError, command: type[Command]) -> str:
-    """Return a mistake of the command line in one line."""
     lists = f"({command.name()} --help lists them)"
     if isinstance(error.__cause__, InputError):
         return str(error.__cause__)

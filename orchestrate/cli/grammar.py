@@ -72,7 +72,6 @@ def read_int(option: str, text: str) -> int:
 
 
 def read_choice(choices: Collection[Any], option: str, text: str) -> Any:
-    """Return that one of several choices which the text is."""
     for choice in choices:
         if text == str(choice):
             return choice

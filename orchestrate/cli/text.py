@@ -222,7 +222,6 @@ def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) 
 
 
 def format_share(count: int, whole: int, word: str = "") -> str:
-    """Format a number of responses with its share."""
     number = f"{count:,} {word}".rstrip()
     return f"{number} ({100.0 * count / whole:.0f} %)"
 

@@ -101,7 +101,6 @@ class CurveData:
         return round(min(max(cycles, SETTLE_CYCLES[0]), SETTLE_CYCLES[1]))
 
     def evidence(self) -> CurveEvidence:
-        """Return the evidence of the whole curve."""
         return curve_evidence(self, self.settle_cycles, SAMPLES_PER_PERIOD)
 
     def coarse_evidence(self) -> CurveEvidence:

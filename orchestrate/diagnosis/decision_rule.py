@@ -203,7 +203,6 @@ class Beam:
         ]
 
     def stops(self) -> list[Condition]:
-        """Return the unmet conditions that stop a verdict."""
         if self.verdict() not in (UNDECIDED, NOT_DESCRIBED):
             return []
         if self.against:

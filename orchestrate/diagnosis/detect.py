@@ -203,7 +203,6 @@ class DetectJob(SearchJob):
         return self.is_delaminated and super().is_worth_a_search
 
     def beam(self) -> Beam:
-        """Return what all records show."""
         assert isinstance(self.data, RecordData)  # a resonance curve has no strikes
         every = (*self.others[0], self.data, *self.others[1])
         return Beam(tuple(record_findings(one, self.guess, self.is_guessed) for one in every))

@@ -153,7 +153,6 @@ class Evidence:
 
     @property
     def samples(self) -> int:
-        """Number of samples of each channel."""
         return len(self.orders.channels.time)
 
     @cached_property

@@ -260,7 +260,6 @@ class Results:
 
     @classmethod
     def from_table(cls, job: SearchJob, table: Table) -> Results:
-        """Read the results from the table of a finished job."""
         part = {name: table[f"end_{name}"][0] for name in END_COLUMNS}
         real, imaginary = np.moveaxis(part.pop("fitted"), 1, 0)
         return cls(job, fitted=real + 1j * imaginary, **part)

@@ -188,7 +188,6 @@ class PositiveStop(Sound):
         return found
 
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
-        """Build the single mass with the stop of these values."""
         linear = super().single_mass(values, evidence)
         position = values["position"] * evidence.displacement
         return replace(linear, stop=values["stop"], position=position, side=self.side)
@@ -298,7 +297,6 @@ class Delaminated(Hypothesis):
         return self.guess.replace(bonded=False, **{name: numbers[name] for name in self.free})
 
     def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
-        """Return the bounds of the numbers that are free."""
         f, (low, high) = evidence.resonance, [math.log(zeta) for zeta in DAMPING_RANGE]
         every = {
             "common": ((0.6 * f, 1.6 * f), {"f1", "f2"}),

@@ -97,5 +97,4 @@ class LinearModel:
 
 
 def clipped(value: float, bounds: tuple[float, float]) -> float:
-    """Clip a number to its bounds."""
     return float(min(max(value, bounds[0]), bounds[1]))

@@ -60,7 +60,6 @@ class OrderWindows:
     samples: int  # of the record
 
     def __len__(self) -> int:
-        """Return the number of windows."""
         return len(self.parts)
 
     @property

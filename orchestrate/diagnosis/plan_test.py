@@ -176,7 +176,6 @@ class PlanJob(Job):
     reserve: float
 
     def items(self) -> Sequence[float]:
-        """Return the levels."""
         return self.levels
 
     def work(

@@ -226,7 +226,6 @@ def signs_dataset(
     factor: float,
     described: dict[str, Any],
 ) -> xr.Dataset:
-    """Assemble the dataset of the signs."""
     over = ("sign", "channel")
     value, floor = np.stack(list(values.values())), np.stack(list(floors.values()))
     highest = np.fmax.reduce(shown)
@@ -272,7 +271,6 @@ def peak_frequencies(own: ResponseSigns, names: Sequence[str]) -> Any:
 
 
 def sound_variables(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
-    """Return the sound structure's parameters and the noise as variables."""
     return {
         "noise": variable("channel", noise, "m/s2", "root mean square of the noise"),
         "sound_f": variable((), sound.f, "Hz", "natural frequency of the sound structure"),

@@ -171,7 +171,6 @@ def is_heard(orders: RecordOrders, row: int, settings: WiringSettings) -> bool:
 
 
 def swapped_note(face: str) -> Note:
-    """Return the note on exchanged channels."""
     text = f"{face} moves as a base and the base as {face}: swapped? exchange both in channels="
     return Note("swapped", text)
 

@@ -152,7 +152,6 @@ class BasinJob(Question):
             )
 
     def plane(self) -> Plane:
-        """Return the plane of starts."""
         return Plane(Point(self.structure, self.excitation), self.x, self.y, self.at)
 
     def count(self) -> int:

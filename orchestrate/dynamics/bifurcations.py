@@ -11,7 +11,6 @@ class NamedKind(IntEnum):
     label: str
 
     def __new__(cls, number: int, label: str) -> NamedKind:
-        """Return the member with its number and name."""
         kind = int.__new__(cls, number)
         kind._value_, kind.label = number, label
         return kind

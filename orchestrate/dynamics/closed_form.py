@@ -59,7 +59,6 @@ class ClosedForm:
 
     @classmethod
     def from_structure(cls, structure: Structure, excitation: Excitation) -> ClosedForm:
-        """Return the coefficients for a structure under an excitation."""
         omega, m1, m2, wall = structure.omega, structure.m1, structure.m2, structure.wall
         unit, length = omega * omega, excitation.length(structure)
         shares = np.array([0.0, 1.0] if wall else [m1, m2]) / (1.0 if wall else m1 + m2)

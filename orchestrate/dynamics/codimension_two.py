@@ -186,7 +186,6 @@ def points_between(
 def characteristic_polynomial(
     curve: BifurcationCurve, unknowns: Floats, log_size: float = -np.inf
 ) -> CharacteristicPolynomial:
-    """Return the characteristic polynomial of the orbit in a curve's unknowns."""
     scale = curve.scale[: curve.family.size]
     return CharacteristicPolynomial(curve.orbit(unknowns), scale, log_size)
 

@@ -54,7 +54,6 @@ class Root:
     iterations: int  # of Newton's method
 
     def reversed(self) -> Root:
-        """Return the same root with its tangent reversed."""
         return replace(self, tangent=-self.tangent)
 
 
@@ -170,7 +169,6 @@ def leading_component(vector: NDArray[np.inexact]) -> int:
 
 
 def unit_vector(size: int, component: int) -> Floats:
-    """Return the unit vector of a size along one component."""
     vector = np.zeros(size)
     vector[component] = 1.0
     return vector
@@ -250,7 +248,6 @@ class ArclengthStepper(Generic[AnyCurve]):
         return nearest
 
     def solve_at(self, unknown: int, value: float) -> Root:
-        """Return the nearby root at which one unknown has a given value."""
         rate = self.root.tangent[unknown] * self.curve.scale[unknown]
         length = (value - self.root.unknowns[unknown]) / rate
         guess = self.root.unknowns + length * self.root.tangent * self.curve.scale

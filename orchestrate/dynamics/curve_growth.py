@@ -66,7 +66,6 @@ class GrownCurve:
     end: str = ""
 
     def add(self, point: CurvePoint, distance: float) -> None:
-        """Append a point at a distance from the last one."""
         self.arclength.append((self.arclength[-1] if self.arclength else 0.0) + distance)
         self.points.append(point)
 

@@ -140,7 +140,6 @@ class LyapunovJob(ImpactsQuestion):
         return np.concatenate(spectrum)
 
     def exponent(self, impacts: Impacts, item: FollowedResponse) -> Exponent:
-        """Return the largest exponent and its error for one response."""
         if len(impacts.time) or exact_exponent_without_impacts(item.point) is None:
             self.require_enough_impacts(impacts, item)
         return exponent_of(impacts, self.periods, item.point, self.blocks, self.batches)

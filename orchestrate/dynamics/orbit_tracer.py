@@ -52,7 +52,6 @@ class OrbitPoint:
 
     @property
     def values(self) -> Floats:
-        """Return the values of the continuation parameters at this point."""
         return self.root.unknowns[self.family.size :]
 
     @cached_property

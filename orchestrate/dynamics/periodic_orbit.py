@@ -60,7 +60,6 @@ class ImpactSequence:
         return ImpactSequence(2 * self.periods, self.kinds * 2)
 
     def without(self, node: int) -> ImpactSequence:
-        """Return the sequence without the node of this index."""
         return ImpactSequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
 
     def with_impact(self, before: int, outer: bool = False) -> ImpactSequence:
@@ -84,7 +83,6 @@ class PeriodicOrbit:
 
     @property
     def count(self) -> int:
-        """Return the number of nodes."""
         return len(self.nodes)
 
     @cached_property

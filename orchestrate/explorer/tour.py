@@ -49,7 +49,6 @@ class View:
 
     @property
     def link_text(self) -> str:
-        """Text of the page's link to this view."""
         low, high = self.region
         start = ",".join(f"{value:g}" for value in self.start)
         level = {"g": self.level} if self.level else {}

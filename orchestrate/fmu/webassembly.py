@@ -135,7 +135,6 @@ def place_members(kind: Any) -> tuple[int, int, dict[str, tuple[str, int]]]:
 
 
 def round_up(place: int, alignment: int) -> int:
-    """Return the first multiple of an alignment from a place on."""
     return -(-place // alignment) * alignment
 
 

@@ -56,7 +56,6 @@ class AnalogFilter:
         return cls(upper, np.array(residues))
 
     def frequency_response(self, frequency: Floats) -> Complexes:
-        """Compute the complex frequency response at frequencies in Hz."""
         s = 1j * TURN * np.asarray(frequency)[..., None]
         there = self.residues / (s - self.poles)
         mirrored = np.conj(self.residues) / (s - np.conj(self.poles))

@@ -163,7 +163,6 @@ def write_setup(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
 
 
 def toml_value(value: Any) -> str:
-    """Return a text or a number as TOML."""
     if not isinstance(value, str):
         return repr(value)
     escaped = value.replace("\\", "\\\\").replace('"', '\\"')

@@ -161,7 +161,6 @@ def is_unit(text: str) -> bool:
 
 
 def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
-    """Return the factor that converts a unit to SI."""
     if plain_unit(unit) not in known:
         usual = ("ms", "rad/s", "deg")
         names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
@@ -182,7 +181,6 @@ class Assignment:
     known: dict[str, str]  # one of the words above, by channel
 
     def text(self, table: Columns) -> str:
-        """Return a text that says which column was taken for what."""
         said = [
             f'{SHORT_NAMES.get(name, name)} "{table.columns[place].name}"'
             + (f" ({BY_ORDER})" if self.known[name] == BY_ORDER else "")

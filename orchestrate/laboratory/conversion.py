@@ -52,7 +52,6 @@ ByChannel = str | float | Mapping[str, Any] | None  # as an argument: of all, or
 
 
 def plain_unit(text: str) -> str:
-    """Return a unit in the spelling of the tables of units."""
     plain = text.strip().lower().replace("\u00b2", "2").replace("\u207b", "-")
     return plain.translate(str.maketrans("", "", "^*_. \u00b7[]()"))
 

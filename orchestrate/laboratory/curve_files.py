@@ -135,7 +135,6 @@ def curve_places(
 def curve_columns(
     table: Columns, places: Mapping[str, int], unit: str | None, level: float | None
 ) -> CurveColumns:
-    """Return the columns of a curve with their units."""
     at = {name: table.columns[place] for name, place in places.items()}
     faces = [f"amplitude{n}" for n in "12" if f"amplitude{n}" in at]
     frequency = scaled_column(table, at["frequency"], "Hz", FREQUENCIES)

@@ -156,7 +156,6 @@ class Reading:
     delay: Mapping[str, float] = field(default_factory=dict)  # s by which channels are late
 
     def acceleration(self, name: str, values: Floats, rate: float) -> Floats:
-        """Return a channel's acceleration."""
         lateness = self.delay.get(name, 0.0)
         made = differentiated(values, rate, self.derivatives.get(name, 0), lateness)
         return made if name not in self.scale else self.scale[name] * made
@@ -203,7 +202,6 @@ def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
 
 
 def unit_of_channel(name: str) -> str:
-    """Return the unit of a record's channel."""
     return "N" if name in FORCES else "m/s2"
 
 

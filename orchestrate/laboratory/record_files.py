@@ -195,7 +195,6 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
 
 
 def file_kind(path: Path) -> str:
-    """Return the kind of a file by its ending."""
     if path.suffix.lower() not in ENDINGS:
         raise InputError(f"{path}: expected a file that ends in {', '.join(ENDINGS)}")
     return ENDINGS[path.suffix.lower()]

@@ -74,7 +74,6 @@ def read_tdms(path: Path) -> Columns:
 
 
 def tdms_columns(channels: list[tuple[Any, dict[str, Any]]]) -> Iterator[Column]:
-    """Yield the channels with numbers as columns."""
     for channel, properties in channels:
         if len(channel) and channel.dtype.kind in "iuf":
             unit = str(properties.get("unit_string", properties.get("NI_UnitDescription", "")))

@@ -51,7 +51,6 @@ def read_uff(path: Path) -> Columns:
 def columns_over_time(
     path: Path, kinds: list[int], functions: list[tuple[int, Dataset]]
 ) -> Columns:
-    """Return the time and the columns of all datasets that are functions of the same times."""
     for i, kind in enumerate(kinds):
         if kind != 58:
             log.info("%s: dataset %d, number %d of the file, is skipped", path, kind, i)
@@ -78,7 +77,6 @@ def columns_over_time(
 
 
 def is_over_time(path: Path, number: int, one: Dataset) -> bool:
-    """Return whether a dataset is a real function of time."""
     kind = int(one.get("abscissa_spec_data_type", TIME))
     over_time = kind == TIME or (kind == 0 and int(one.get("func_type", 0)) == TIME_RESPONSE)
     if over_time and not np.iscomplexobj(one["data"]):

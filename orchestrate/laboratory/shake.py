@@ -69,7 +69,6 @@ class ShakeJob(Question):
         return found
 
     def items(self) -> Sequence[int]:
-        """Return the indices of the pieces."""
         return range(len(self.pieces.derivatives))
 
     def times(self, first: float = 0.0, end: float = math.inf) -> NDArray[np.float64]:
@@ -109,13 +108,11 @@ class ShakeJob(Question):
 
     @property
     def beside(self) -> Excitation:
-        """What acts beside the excitation."""
         pushes = {name: getattr(self, name) for name in PUSHES}
         return Excitation(frequency=self.frequency, amplitude=0.0, **pushes)
 
     @property
     def forced(self) -> bool:
-        """Whether a force acts on a mass."""
         return self.excitation.drives in FORCES or any(getattr(self, name) for name in FORCES)
 
     def driven(self, times: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:

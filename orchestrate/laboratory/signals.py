@@ -117,7 +117,6 @@ class ExcitationSignal(ABC):
         """Return it as cubic pieces."""
 
     def __add__(self, other: ExcitationSignal) -> SumOfSignals:
-        """Return the sum of both signals."""
         if not isinstance(other, ExcitationSignal):
             return NotImplemented
         return SumOfSignals((*parts_of(self), *parts_of(other)))
@@ -176,7 +175,6 @@ class SumOfSignals(ExcitationSignal):
 
     @property
     def drives(self) -> str:
-        """What all parts drive."""
         return self.parts[0].drives
 
     @property

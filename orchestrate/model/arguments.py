@@ -108,7 +108,6 @@ def checked_positive(name: str, value: Any) -> float:
 
 
 def whole(minimum: int, maximum: int = MAX_COUNT) -> Check:
-    """Return a check for a whole number from minimum to maximum."""
     return partial(checked_integer, minimum=minimum, maximum=maximum)
 
 

@@ -59,7 +59,6 @@ class StructureText(StructureNumbers):
         printer.text(f"Structure({self})")
 
     def _repr_html_(self) -> str:
-        """Return a table for notebooks."""
         rows = {"structure": self.kind, **self._described()}
         cells = (f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in rows.items())
         return f"<table>{''.join(cells)}</table>"

@@ -52,7 +52,6 @@ class Claim:
         return 0.5 * 10.0 ** -len(self.printed.partition(".")[2]) + 1e-9
 
     def rounds(self, value: float) -> bool:
-        """Return whether a value rounds to the printed number."""
         return abs(value - float(self.printed)) <= self.slack
 
 

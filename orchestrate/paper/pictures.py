@@ -40,7 +40,6 @@ class Part:
 
 
 def orbit_diagram_part(number: str, case: str) -> Part:
-    """Return the part of an orbit diagram."""
     structure = CASES[case]
     text = (
         f"Bifurcation diagram for e = {structure.e:g}, D = {structure.get('D'):g}: all "
@@ -53,7 +52,6 @@ def orbit_diagram_part(number: str, case: str) -> Part:
 
 
 def curves_part(number: str, text: str, method: str, draw: Callable[..., Figure]) -> Part:
-    """Return the part of a figure of curves."""
     show: Any = draw, lambda data: [data.figure(number)], (f"figure{number}",)
     return Part(f"Figure {number}", text, method, *show)
 
@@ -175,5 +173,4 @@ PARTS = {
 
 
 def picture_name(part: str) -> str:
-    """Return the name of a part's picture files."""
     return f"figure{part}" if part.isdigit() else part

@@ -42,7 +42,6 @@ def edges_around(data: xr.Dataset, flags: np.ndarray, inside: float) -> tuple[Ed
 
 
 def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
-    """Return the edges of the longest run of true flags."""
     longest = max(runs_of(flags), key=lambda run: run[1] - run[0], default=None)
     return edges_of_run(data, longest)
 
@@ -70,7 +69,6 @@ class ImpactRun(NamedTuple):
     high: float
 
     def text(self) -> str:
-        """Return the number of impacts with the frequencies that have it."""
         return f"{self.impacts} ({self.low:.3f} to {self.high:.3f})"
 
 

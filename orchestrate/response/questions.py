@@ -109,7 +109,6 @@ class Points(Sequence[Point]):
         return list(map(self.make, chosen)) if isinstance(chosen, list) else self.make(chosen)
 
     def taken(self, numbers: NDArray[np.intp]) -> Points:
-        """Return the points of given numbers."""
         return Points(self.make, self.numbers[numbers])
 
 

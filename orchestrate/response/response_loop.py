@@ -53,7 +53,6 @@ class Responses(NamedTuple):
     must_impact: NDArray[np.bool_]  # whether no motion without impacts exists
 
     def rows(self, chosen: NDArray[np.intp]) -> Responses:
-        """Return the results of chosen responses."""
         return self._replace(
             states=self.states[chosen],
             ends=self.ends[chosen],
@@ -120,7 +119,6 @@ class ResponseLoop:
         return results
 
     def run(self, task: ResponseTask) -> None:
-        """Run a task to its end."""
         progress, answer = ResponseProgress(), PAUSED
         while answer == PAUSED:
             answer = self.oscillator.run("respond", byref(task), byref(progress), MAX_WORK)
@@ -128,7 +126,6 @@ class ResponseLoop:
             raise self.oscillator.error()
 
     def rows(self, points: Sequence[Point]) -> Rows:
-        """Return what the loop needs of each point."""
         if self.last_rows is not None and points == self.last_points:
             return self.last_rows
         different = {id(point): point for point in points}  # as of a basin: one for all starts
@@ -153,6 +150,5 @@ class ResponseLoop:
 
 
 def traits_of(point: Point) -> Any:
-    """Return what a point is for the loops."""
     excitation, pushed = point.excitation, any(point.excitation.pushes)
     return traits(point.structure, excitation.frequency, excitation.amplitude, pushed)

@@ -25,7 +25,6 @@ class LogLines:
             sys.stderr.write(f"{text.strip()}\n")
 
     def flush(self) -> None:
-        """Flush standard error."""
         sys.stderr.flush()
 
 

@@ -131,7 +131,6 @@ class ThreadExecutor(Executor):
 
 @contextmanager
 def threads(count: int) -> Iterator[Workers]:
-    """Provide threads of this process."""
     with ThreadExecutor(count) as executor:
         yield Workers(executor, lambda: count + (count > 1))
 

@@ -69,7 +69,6 @@ class Job(ABC):
             refuse_family(self.asked or type(self).__name__, value)
 
     def count(self) -> int:
-        """Return the number of items."""
         return len(self.items())
 
     def total(self) -> int:

@@ -73,7 +73,6 @@ def iterate_records(results: Results, channel: str) -> Iterator[tuple[str, xr.Da
 
 
 def colours_by_label(results: Results) -> dict[str, str]:
-    """Return a dict from record label to line colour."""
     colours = {label: STRUCTURES[label] for label in results if label in STRUCTURES}
     free = [colour for colour in COLOURS if colour not in (BLACK, *colours.values())]
     for number, label in enumerate(label for label in results if label not in colours):

@@ -48,7 +48,6 @@ def answer_section(answer: xr.Dataset) -> Section:
 
 
 def scalar_table(answer: xr.Dataset) -> Table:
-    """Return a table of all scalar variables of a result."""
     rows = []
     for name, array in as_shown(answer).data_vars.items():
         if not array.dims and array.dtype.kind in "iufb":

@@ -29,7 +29,6 @@ def warm_up_matplotlib() -> None:
 
 
 def png_bytes(figure: Figure) -> bytes:
-    """Return a figure as the bytes of a PNG file."""
     file = io.BytesIO()
     with style_context():
         figure.savefig(file, format="png", metadata=UNDATED["png"])

@@ -76,7 +76,6 @@ class Page:
         return [(place, sections) for place, sections in parts if sections]
 
     def html(self) -> str:
-        """Render the page as HTML text."""
         environment = jinja2.Environment(
             loader=jinja2.PackageLoader("orchestrate.show"),
             autoescape=True,

@@ -107,12 +107,10 @@ def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, felt: float, t
 
 
 def has_jump(data: xr.Dataset, direction: str) -> bool:
-    """Return whether a run jumps in a direction."""
     return bool(np.isfinite(float(data.jumps.sel(jump=direction))))
 
 
 def undecided_directions(data: xr.Dataset) -> list[str]:
-    """Return the labels of the jumps that are undecided."""
     decided = zip(data.jump.values, data.decided.values, strict=True)
     return [str(direction) for direction, decision in decided if decision == "undecided"]
 

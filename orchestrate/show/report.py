@@ -77,7 +77,6 @@ def report(
 
 
 def sections_of(answer: xr.Dataset) -> list[Section]:
-    """Return all sections of a result."""
     kind = required_kind(answer)
     if kind == "detect":
         return verdict_sections(answer)

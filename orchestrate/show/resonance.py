@@ -168,7 +168,6 @@ def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: AxisValues) -> N
 
 
 def axis_position(value: float, parameter: xr.DataArray, x: AxisValues) -> float:
-    """Return a parameter's value in the unit of the axis."""
     order = np.argsort(parameter.values)
     return float(np.interp(value, parameter.values[order], x.values[order]))
 

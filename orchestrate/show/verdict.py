@@ -53,7 +53,6 @@ def fitted_frequencies(answer: xr.Dataset) -> str:
 
 
 def delaminated_statement(answer: xr.Dataset) -> str:
-    """Return the statement on a delaminated beam."""
     level = format_level(answer, scalar(answer, "opening_level"))
     lowest = f" from {level} on" if level else ""
     times = scalar(answer, "ratio") if stated_fits(answer) else math.nan
@@ -86,7 +85,6 @@ def scalar(answer: xr.Dataset, name: str) -> float:
 
 
 def verdict_sections(answer: xr.Dataset) -> list[Section]:
-    """Return all report sections on which a verdict rests."""
     front = (decision_section, fits_section, measured_record)
     appendix = (parameter_section, misfit_section, assumption_section)
     made = [section_of(answer) for section_of in (*front, *appendix)]
@@ -266,7 +264,6 @@ def format_parameter(at: xr.Dataset, unit: str) -> str:
 
 
 def assumption_section(answer: xr.Dataset) -> Section:
-    """Return a section with the verdict's assumptions."""
     own = [text.strip() for text in str(answer.attrs.get("assumed", "")).split(";")]
     points = [*ALWAYS_ASSUMED, *describe_guess(answer), *map(make_sentence, filter(None, own))]
     return Section("What was assumed", [NAMES_OF_CHANNELS], points, place="appendix")

@@ -210,12 +210,10 @@ def branch_stability(
 
 
 def conjugate_polynomial(polynomial: Polynomial) -> Polynomial:
-    """Return the polynomial with complex conjugate coefficients."""
     return Polynomial(polynomial.coef.conj())
 
 
 def imaginary_part(polynomial: Polynomial) -> Polynomial:
-    """Return the polynomial made of the imaginary parts of the coefficients."""
     return Polynomial(polynomial.coef.imag)
 
 

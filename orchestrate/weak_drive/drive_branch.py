@@ -131,7 +131,6 @@ class DriveBranchJob(Job):
         return not any(np.abs(at - end).max() < 2.0 * self.longest for end in ends)
 
     def trace_doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
-        """Trace the leg of twice the period from a period doubling."""
         try:
             start = double_period(shooter, flip)
             return DriveTracer(shooter, start, speeds, self.settings).trace(start)

@@ -137,7 +137,6 @@ class MotorVoltage(StepInputs):
 
 
 def cubic_names(name: str) -> list[str]:
-    """Return the names of an input and its derivatives."""
     return [name, *(f"{name}_{order}" for order in (1, 2, 3))]
 
 

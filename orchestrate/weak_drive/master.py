@@ -230,7 +230,6 @@ class Master:
     def _run_pieces(
         self, pieces: Iterable[NDArray[np.float64]], count: int, h: float | None
     ) -> Record:
-        """Run pieces of intervals together into one record."""
         now, width = np.array(self.row), len(self.row)
         rows = np.empty((1 + self.scheme.most_rows(count), width))
         rows[0], ends, at, intervals = self.row, np.zeros(count, dtype=np.intc), 0, 0

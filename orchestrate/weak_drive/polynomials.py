@@ -28,19 +28,16 @@ def matched_cubics(*given: Any) -> NDArray[np.float64]:
 
 
 def end_value(cubic: Cubic, h: Any) -> Any:
-    """Return the value of a cubic at the end of a step."""
     f0, f1, f2, f3 = cubic
     return f0 + h * (f1 + 0.5 * h * (f2 + h * f3 / 3.0))
 
 
 def mean_value(cubic: Cubic, h: Any) -> Any:
-    """Return the mean of a cubic over a step."""
     f0, f1, f2, f3 = cubic
     return f0 + 0.5 * h * (f1 + h / 3.0 * (f2 + 0.25 * h * f3))
 
 
 def end_derivatives(cubic: Cubic, h: Any) -> Cubic:
-    """Return the value and the derivatives of a cubic at the end of a step."""
     _, f1, f2, f3 = cubic
     return end_value(cubic, h), f1 + h * (f2 + 0.5 * h * f3), f2 + h * f3, f3
 

@@ -35,7 +35,6 @@ class RampRecord:
 
     @property
     def sense(self) -> float:
-        """Return the sense of rotation of the run."""
         return sense_of(self.table["voltage"])
 
     @property
@@ -55,7 +54,6 @@ class RampRecord:
         return np.flatnonzero((trend > 0.0) & (voltage > 0.0))
 
     def legs(self) -> list[np.ndarray]:
-        """Return the rows of each ramp in this direction."""
         rows = self.rows()
         return np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if rows.size else []
 

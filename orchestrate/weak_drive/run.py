@@ -61,7 +61,6 @@ class Run:
         return self.inputs.run(self.master, steps, self.master.scheme.h)
 
     def get_state(self) -> Table:
-        """Return the complete state of the run as a table of one row."""
         states = {name + STATE: one.save_state() + END for name, one in self._saved.items()}
         numbers = {name + MEMORY: one.get_state() for name, one in self._memories.items()}
         numbers["control" + MEMORY] = self.inputs.state

@@ -71,12 +71,10 @@ REAL = {"1.0": "Real", "2.0": "Float64"}  # types, by the version of SSP
 
 
 def qualified_tag(prefix: str, name: str) -> str:
-    """Return an XML tag with its namespace."""
     return f"{{{NAMESPACES[prefix]}}}{name}"
 
 
 def xml_bytes(root: ET.Element) -> bytes:
-    """Convert an XML element to the bytes of an XML file."""
     for prefix, address in NAMESPACES.items():
         ET.register_namespace(prefix, address)
     ET.indent(root)

@@ -73,7 +73,6 @@ class Record:
         return replace(self, columns=self.columns[:, self.ends])
 
     def __getitem__(self, name: str) -> Floats:
-        """Return a column."""
         return self.columns[self.names.index(name)]
 
     def motion(self) -> OscillatorOutputs:

@@ -112,7 +112,6 @@ class Expressions(ABC):
         """Return the name in C of a type."""
 
     def expression(self, node: ast.expr) -> Value:
-        """Translate one expression."""
         known: Mapping[type, Callable[[Any], Value]] = {
             ast.Constant: self.literal,
             ast.Name: self.read,
@@ -274,7 +273,6 @@ class Expressions(ABC):
         return values
 
     def grouped(self, parts: Sequence[Value]) -> Value:
-        """Return a C structure of values."""
         kind = tuple(part.type for part in parts)
         return Value(f"({self.c_type(kind)}){{{', '.join(part.text for part in parts)}}}", kind)
 
@@ -341,7 +339,6 @@ class Expressions(ABC):
 
 
 def in_c(name: str) -> str:
-    """Return a variable's name in C."""
     return f"{name}_" if name in TAKEN else name
 
 

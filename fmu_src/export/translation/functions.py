@@ -172,7 +172,6 @@ class Body(Expressions):
         return unit.name, unit.result
 
     def c_type(self, kind: Type) -> str:
-        """Return the name in C of a type."""
         return self.kernel.c_type(kind)
 
     # -- lines --
@@ -214,7 +213,6 @@ class Body(Expressions):
     # -- statements --
 
     def statement(self, node: ast.stmt) -> None:
-        """Translate one statement."""
         known: Mapping[type, Callable[[Any], None]] = {
             ast.Assign: self.assign,
             ast.AugAssign: self.augmented_assignment,

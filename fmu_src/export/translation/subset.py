@@ -76,7 +76,6 @@ def origin(module: ModuleType, name: str) -> tuple[ModuleType, str]:
 
 
 def names_in(node: ast.AST) -> set[str]:
-    """Return all names in a part of the tree."""
     return {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
 
 
@@ -108,7 +107,6 @@ def may_declare(statement: ast.stmt, name: str) -> bool:
 
 
 def inner_blocks(statement: ast.stmt) -> list[Block]:
-    """Return the blocks of a compound statement."""
     blocks = (getattr(statement, part, []) for part in ("body", "orelse"))
     return [block for block in blocks if block]
 

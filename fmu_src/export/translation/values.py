@@ -47,12 +47,10 @@ class Value:
         return self.text if self.rank >= rank else f"({self.text})"
 
     def item(self, place: int) -> Value:
-        """Return a part of a tuple."""
         assert isinstance(self.type, tuple)
         return Value(f"{self.within(ATOM)}.i{place}", self.type[place])
 
     def items(self) -> list[Value]:
-        """Return all parts of a tuple."""
         return [self.item(place) for place in range(len(self.type))]
 
     def converted(self, kind: Type) -> Value:

@@ -42,7 +42,6 @@ def leading_term(m, series, terms, lowest):
 
 
 def clip_command(m):
-    """Decide whether the command is clipped."""
     limit = m[at.COMMAND_LIMIT]
     side = 1.0 if m[at.COMMAND_SERIES] >= 0.0 else -1.0
     m[at.COMMAND_SIDE] = side

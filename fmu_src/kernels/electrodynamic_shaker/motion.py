@@ -12,7 +12,6 @@ from .series import is_voltage_driven, write_interval, write_states
 
 
 def begin_state(m):
-    """Begin a state at ORIGIN from BEGIN."""
     for i in range(at.STATES):
         m[at.STATE + i] = m[at.BEGIN + i]
     m[at.INTERVAL] = 0.0

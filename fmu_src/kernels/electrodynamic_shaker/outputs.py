@@ -6,7 +6,6 @@ from .series import slopes, value, write_states
 
 
 def write_outputs(m):
-    """Write all outputs."""
     part, h = part_at(m, m[at.TIME]), m[at.SPACING]
     write_states(m, at.GUARD, part)
     position, velocity = m[at.GUARD + at.PLACE], m[at.GUARD + at.SPEED]

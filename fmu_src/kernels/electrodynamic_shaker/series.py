@@ -37,14 +37,12 @@ def write_interval(m):
 
 
 def write_constant(m, series, number):
-    """Write a constant as a series."""
     for k in range(at.TERMS):
         m[series + k] = 0.0
     m[series] = number
 
 
 def copy_source(m, series):
-    """Write the source as a series of all terms."""
     for k in range(at.TERMS):
         m[series + k] = 0.0
     for k in range(at.CUBIC):

@@ -92,7 +92,6 @@ def brief_contact(m, tau):
 
 
 def state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
-    """Return displacements and velocities from all phasors."""
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
         x2, v2 = displacement(m, at.HARMONIC_2, at.CUBIC_B, tau, x_b, v_b, sine, cosine)

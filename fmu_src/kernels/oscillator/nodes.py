@@ -194,7 +194,6 @@ def renew_right_phasors(m, node):
 
 
 def phasors_from_closed_form(m, age):
-    """Return all phasors at an age of the state from the closed form."""
     cosine, sine, x_b, v_b = m[at.COSINE], m[at.SINE], 0.0, 0.0
     if m[at.NODE_ETA] != 0.0:  # usually
         sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)

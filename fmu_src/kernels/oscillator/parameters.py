@@ -100,7 +100,6 @@ def set_shares(m, b, box, force_1, force_2):
 
 
 def are_nearly_equal(m):
-    """Return whether the two oscillators are nearly equal."""
     return abs(m[at.FORCE_V]) + abs(m[at.FORCE_X]) < ALIKE
 
 

@@ -114,7 +114,6 @@ def check_start(m, gap):
 
 
 def start_rounding(m):
-    """Return the rounding of the gap at the start."""
     return TOUCHING * (abs(m[at.X1_START]) + abs(m[at.X2_START]) + m[at.STROKE])
 
 

@@ -34,7 +34,6 @@ def not_negative(name: str, unit: str, start: float, description: str, **more: A
 
 
 def start(name: str, unit: str, description: str, **more: Any) -> Variable:
-    """Return the start value of a state."""
     return parameter(name, unit, 0.0, description, minimum=-LIMIT, maximum=LIMIT, **more)
 
 

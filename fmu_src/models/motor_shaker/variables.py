@@ -44,12 +44,10 @@ def not_negative(name: str, unit: str, start: float, description: str) -> Variab
 
 
 def start(name: str, unit: str, description: str, limit: float = LIMIT, **more: Any) -> Variable:
-    """Return the start value of a state."""
     return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit, **more)
 
 
 def given(name: str, unit: str, description: str, start: float = 0.0, **more: Any) -> Variable:
-    """Return an input."""
     return drive(name, unit, start, description, minimum=-LIMIT, maximum=LIMIT, **more)
 
 
