@@ -123,3 +123,30 @@ def test_sweeps_change_where_a_branch_with_a_force_folds_and_doubles():
     along = orchestrate.branch(OPEN, start=start, over="force1", limits=(0.38, 0.42), **QUICK)
     assert bifurcations(along, Kind.FLIP) == pytest.approx([0.4], abs=1e-9)
     assert along.force1.values.min() == 0.38 and along.eta.values == pytest.approx(flip)
+
+
+def test_a_branch_goes_on_with_impacts_at_the_outer_end_of_a_play():
+    """Where a flight touches it; the border over the stroke is where the gap just fills it."""
+    play = Structure.one_mass(m=1.0, k=1.0, d=0.1, e=0.6, clearance=0.2, stroke=2.5)
+    box, along = {"frequency": 1.6, "amplitude": 0.0}, {"over": "force1", "longest": 0.3, **QUICK}
+    start = orchestrate.orbit(play, **box, force1=1.2, **QUICK)
+    first = orchestrate.branch(play, start=start, limits=(1.0, 2.5), **along)
+    (touching,) = bifurcations(first, Kind.TOUCHING)
+    other = orchestrate.branch(play, start=first, switch=0, limits=(1.0, 2.5), **along)
+    assert (
+        set(first.node_kind.values.ravel()) == {0}
+        and first.attrs["last_end"] == "grazing of a flight"
+    )
+    assert set(other.node_kind.values.ravel()) == {0, 3} and other.fmu_same_impacts[1:].all()
+    assert other.force1[0] == pytest.approx(touching, abs=1e-9)
+    limits = ((1.0, 2.5), (2.2, 2.8))
+    curve = orchestrate.border(
+        play, start=first, bifurcation=0, **{**along, "over": ("force1", "stroke")}, limits=limits
+    )
+    assert np.abs(curve.xi_rel_max - curve.stroke / curve.force1).max() < 1e-13
+    last = first.isel(point=-1).state.values[0]
+    asked = {**box, "start": last, "transient": 100, "periods": 20, **QUICK}
+    below, above = (
+        orchestrate.simulate(play, **asked, force1=touching + away) for away in (-0.01, 0.01)
+    )
+    assert below.sizes["impact"] == 20 < above.sizes["impact"]
