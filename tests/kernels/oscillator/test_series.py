@@ -98,6 +98,7 @@ def leaving_with_clearance(values, x, v, slope):
 # pressed hard, so that the preload alone brings the faces together again
 @example({"clearance": -100.0, "phase_start": 1.0}, 0.3, -0.2, 0.05)
 @example({"clearance": -3.0, "phase_start": 0.0, "m2": 0.4, "d2": 0.3}, -0.5, 0.7, 1e-3)
+@example({"clearance": -3.0, "phase_start": 0.0, "d2": 0.3, "force1_2": 30.0}, -0.5, 0.7, 1e-3)
 def test_a_short_flight_under_a_preload_is_that_of_the_gap(values, x, v, slope):
     """Value and curvature all along, and the end: those of Newton's law, to rounding of the gap's
     own terms; the fifth derivative stays below the bound that makes the root certain.
