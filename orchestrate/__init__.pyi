@@ -38,8 +38,8 @@ from .laboratory.random_vibration import Random as Random
 from .laboratory.record import record as record
 from .laboratory.record_files import read_record as read_record
 from .laboratory.record_files import write_record as write_record
+from .laboratory.record_of_run import record_of_run as record_of_run
 from .laboratory.resonance_curve import resonance_curve as resonance_curve
-from .laboratory.run_up import record_of_run as record_of_run
 from .laboratory.sampled import Sampled as Sampled
 from .laboratory.sensors import Sensor as Sensor
 from .laboratory.sensors import measure as measure

@@ -56,11 +56,11 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
 PARTS: dict[str, set[str]] = {  # and of fmu_src
     "kernels.numerics": set(),
     "kernels.oscillator": {"kernels.numerics"},
-    "kernels.shaker": {"kernels.numerics"},
+    "kernels.motor_shaker": {"kernels.numerics"},
     "kernels.electrodynamic_shaker": {"kernels.numerics"},
     "kernels.deviations": {"kernels.numerics", "kernels.oscillator"},
     "runtime": set(),
-    "models": {"kernels.oscillator", "kernels.shaker", "runtime", "version"}
+    "models": {"kernels.oscillator", "kernels.motor_shaker", "runtime", "version"}
     | {"kernels.electrodynamic_shaker"},
     "export": {"runtime", "kernels.repetition", "kernels.linear_response"}
     | {"kernels.numerics", "kernels.deviations"},

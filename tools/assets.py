@@ -21,7 +21,15 @@ from orchestrate.fmu import Instance, describe, find
 from orchestrate.show import figure_files
 
 from .pictures import electrodynamic_shaker, icon, oscillator, shaker
-from .references import COIL, MODELS, REFERENCES, SHAKER, Reference, reference_rows, write_reference
+from .references import (
+    COIL,
+    MODELS,
+    MOTOR_SHAKER,
+    REFERENCES,
+    Reference,
+    reference_rows,
+    write_reference,
+)
 
 TABLES = Path(__file__).resolve().parents[1] / "docs" / "variables.md"
 SERIES = re.compile(r"\[(?!1\])\d+\]$")  # of a series, the first stands for all
@@ -106,7 +114,7 @@ def draw_documentation(
     """Draw a model's scheme, icon and example run into its documentation folder."""
     folder = MODELS / reference.folder
     tight: Any = {"dpi": 100, "bbox_inches": "tight"}
-    if reference is SHAKER:
+    if reference is MOTOR_SHAKER:
         scheme, image = shaker.draw_shaker(), icon.draw_motor()
         values = dict(zip(("time", *reference.outputs), np.array(rows).T, strict=True))
         plot = shaker.draw_run_up(values["time"], values["speed"], values["box_position"])

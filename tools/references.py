@@ -48,7 +48,7 @@ OSCILLATOR = Reference(
     step=0.05,
     stop=60.0,
 )
-SHAKER = Reference(
+MOTOR_SHAKER = Reference(
     model="MotorShaker",
     folder="motor_shaker",
     inputs=("voltage", "box_force"),
@@ -74,7 +74,7 @@ COIL = Reference(
     step=0.005,
     stop=3.0,
 )
-REFERENCES = (OSCILLATOR, SHAKER, COIL)
+REFERENCES = (OSCILLATOR, MOTOR_SHAKER, COIL)
 
 
 def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:

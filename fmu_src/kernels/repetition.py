@@ -35,9 +35,9 @@ def decide(m, time):
 
     Of the later half of the samples, as parts of the motion's size:
 
-    - *Repeated* after n periods: states n apart agree within the tolerance; what they still drift
-      is less than the tolerance too; and states a divisor of n apart keep a steady difference.
-    - An n above a quarter of these samples is seen too seldom for that: it counts if no smaller one
+    - *Repeated* after n periods: states n apart agree within the tolerance; the drift that
+      remains is below the tolerance too; and states a divisor of n apart keep a steady difference.
+    - An n above a quarter of these samples returns too rarely for that: it counts if no smaller one
       agrees and the deviation is below ``NEGLIGIBLE`` of the tolerance.
     - *Undecided*, with the best guess: some n agrees but is not confirmed, or a deviation shrinks
       (to ``MAX_DYING_RATIO`` if some n agrees, of all samples to ``MAX_CONTRACTION`` if none does).

@@ -1,6 +1,6 @@
 """Command line's entry: parse the arguments, run one command, turn errors into exit codes.
 
-A command is a class (:mod:`.face`); the classes stand in one module for each family of commands.
+A command is a class (:mod:`.command`); the classes stand in one module for each family of commands.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ..errors import InputError, StaleError, Terminated, VibroimpactError, print
 from ..model.ranges import closest
 from ..version import __version__
 from . import cosimulation, diagnosis, dynamics, laboratory, pages, records, responses, weak_drive
-from .face import Command, explain
+from .command import Command, explain
 from .grammar import with_option_names
 from .options import QUANTITIES, list_shipped_sets
 from .safe_output import safe_outputs

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
-from .face import Command, Options, Question, option
+from .command import Command, Options, Question, option
 from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
 from .output import Files, digest, importing_matplotlib, result_name

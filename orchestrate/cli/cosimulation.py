@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..units import text_of
 from .answer import Asked
-from .face import Options, Question, option
+from .command import Options, Question, option
 from .grammar import plain_float, read_pairs
 from .options import OfStructure
 from .output import Results, Stored

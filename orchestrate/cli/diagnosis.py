@@ -14,7 +14,7 @@ from ..constants import GRAVITY
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, range_text, text_of, with_readable_lengths, with_units
-from .face import Command, Options, Question, option
+from .command import Command, Options, Question, option
 from .grammar import Listed, with_option_names
 from .options import OfStructure
 from .output import Files, InColumns, Reading, Results, digest, result_name, unit_note

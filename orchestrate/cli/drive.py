@@ -13,7 +13,7 @@ from ..constants import TURN
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
-from .face import Command, Options, Question, option, option_names
+from .command import Command, Options, Question, option, option_names
 from .grammar import Positive, parse_changes, parse_ends, parse_number_or_ends, parse_rate
 from .options import print_assumptions
 from .output import Files, digest

@@ -14,7 +14,7 @@ from ..flags import flag_words
 from ..lazy import xr
 from ..units import is_in_ratios, range_text, units_of, with_units
 from .answer import Asked, is_curve
-from .face import Question, option
+from .command import Question, option
 from .grammar import parse, plain_int
 from .options import CONTINUED, OfBox, OfStored, OfStructure, Over, parse_varied
 from .output import Files, Results, Stored, result_name

@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..units import text_of, with_units
 from .answer import Asked
-from .face import Command, Options, Question, option, option_names
+from .command import Command, Options, Question, option, option_names
 from .grammar import (
     Density,
     Listed,

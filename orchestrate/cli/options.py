@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
-from .face import Options, option, option_names
+from .command import Options, option, option_names
 from .grammar import (
     Length,
     is_single_number,

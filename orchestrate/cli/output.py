@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..lazy import xr
-from .face import Options, option
+from .command import Options, option
 from .grammar import floats
 
 if TYPE_CHECKING:

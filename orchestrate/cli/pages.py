@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..lazy import xr
-from .face import Command, option, option_names
+from .command import Command, option, option_names
 from .grammar import parse_changes, read_earlier_result
 from .options import OfStored
 from .output import HowRun, InColumns, InFolder, InUnits, Reading, check_output

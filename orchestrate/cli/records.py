@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from ..errors import InputError
-from .face import Command, option
+from .command import Command, option
 from .grammar import floats
 from .output import InColumns, Reading
 from .text import table

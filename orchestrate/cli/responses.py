@@ -13,8 +13,8 @@ from ..flags import flag_words
 from ..lazy import xr
 from ..units import is_in_ratios, text_of, with_units
 from .answer import Asked, Overlay, is_curve
+from .command import Question, option
 from .drive import OfMotor, OfVoltage
-from .face import Question, option
 from .grammar import is_single_number, parse_changes, parse_listed
 from .options import Beside, OfBox, OfStructure, Over
 from .output import Files, OfBoth, Results, Stored, digest

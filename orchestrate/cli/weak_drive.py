@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from ..errors import InputError
 from ..lazy import xr
 from ..units import range_text, text_of, units_of, with_units
+from .command import Command, Question, option
 from .drive import (
     ETA0,
     RESUME,
@@ -26,7 +27,6 @@ from .drive import (
     format_title,
     times_in_seconds,
 )
-from .face import Command, Question, option
 from .grammar import parse_rates
 from .options import Over
 from .output import Files, OfBoth, Stored, digest, user_fmus

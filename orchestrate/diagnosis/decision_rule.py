@@ -20,7 +20,7 @@ class Condition:
     """Hold whether a condition of a verdict is fulfilled, and what to say where it is not."""
 
     holds: bool
-    otherwise: str  # A sentence: what stops the verdict
+    reason: str  # a sentence: what stops the verdict
     advice: str = ""  # the measurement that would settle it, where that is not the usual one
 
 
@@ -99,7 +99,7 @@ class Findings:
             ),
         ]
 
-    def stops(self) -> list[Condition]:
+    def broken_conditions(self) -> list[Condition]:
         """Return what keeps the record from being usable, else from showing no opening."""
         for conditions in (self.record_conditions(), self.no_opening_conditions()):
             if broken := [one for one in conditions if not one.holds]:
@@ -148,7 +148,7 @@ class Beam:
         words = {self.words[one] for one in usable}
         if FACES in words:
             return UNDECIDED if self.against else DELAMINATED
-        if usable and all(not one.stops() for one in usable):
+        if usable and all(not one.broken_conditions() for one in usable):
             return NOT_SEEN
         is_other = words & {"base strikes", "not locked", "kinks"}
         return NOT_DESCRIBED if is_other and not self.may_be_a_stop else UNDECIDED
@@ -202,14 +202,14 @@ class Beam:
             and self.words[one] not in (FACES, SOFTER)
         ]
 
-    def stops(self) -> list[Condition]:
+    def broken_conditions(self) -> list[Condition]:
         if self.verdict() not in (UNDECIDED, NOT_DESCRIBED):
             return []
         if self.against:
             words = ", ".join(sorted({self.words[one] for one in self.against}))
             text = f"Faces strike in one record, another of no lower level contradicts: {words}."
             return [Condition(False, text)]
-        return [stop for one in self.usable or self.records for stop in one.stops()]
+        return [stop for one in self.usable or self.records for stop in one.broken_conditions()]
 
     def reason(self) -> str:
         """Return sentences that say by which numbers the verdict was decided, or stopped."""
@@ -219,11 +219,13 @@ class Beam:
             sentences.append(f"The response {word} with the level at the same resonance.")
         if len(self.records) > 1 and self.verdict() == DELAMINATED:
             sentences.append(f"Faces strike from {self.opening_level:.3g} m/s\u00b2 on.")
-        return " ".join(dict.fromkeys([*sentences, *(one.otherwise for one in self.stops())]))
+        return " ".join(
+            dict.fromkeys([*sentences, *(one.reason for one in self.broken_conditions())])
+        )
 
     def next_measurement(self) -> str:
         """Recommend, in a sentence, the measurement that would decide or confirm the verdict."""
-        advice = [one.advice for one in self.stops() if one.advice]
+        advice = [one.advice for one in self.broken_conditions() if one.advice]
         one_sensor = all(one.sensors == 1 for one in self.records)
         other = "an accelerometer on the other face" if one_sensor else "a slower sweep"
         second = "" if self.grows is not None else ", or another sweep at twice the level"

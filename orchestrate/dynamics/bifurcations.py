@@ -26,10 +26,8 @@ class Kind(NamedKind):
     TOUCHING = 4, "grazing of a flight"  # the gap falls to zero between two impacts
     CONTACT_LOST = 5, "loss of permanent contact"
     CONTACT_BEGUN = 6, "begin of permanent contact"
-    # the contact force (18) falls to zero in permanent contact
-    EARLIER_RELEASE = 7, "earlier release"
-    # it has become the orbit of half its period, which doubles there
-    HALVING = 8, "period halving"
+    EARLIER_RELEASE = 7, "earlier release"  # the contact force (18) falls to zero in contact
+    HALVING = 8, "period halving"  # it has become the orbit of half its period
 
 
 KINDS: dict[int, str] = {kind: kind.label for kind in Kind}

@@ -38,7 +38,7 @@ from .events import NO_INPUT, EventInstance
 from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_of, up_to_date
 from .impacts import STATE, Impacts
 from .instance import Instance, function_addresses
-from .models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
+from .models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
 from .oscillator import SET, Oscillator, library, sampled, stroboscopic_samples, traits
 from .play import PLAYED, Player
 from .webassembly import build_web_kernels
@@ -54,7 +54,7 @@ __all__ = [
     "PLAYED",
     "REST",
     "SET",
-    "SHAKER",
+    "MOTOR_SHAKER",
     "STATE",
     "Channel",
     "Description",

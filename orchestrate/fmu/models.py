@@ -1,5 +1,5 @@
 """Names of the FMU models."""
 
 OSCILLATOR = "TwoMassImpactOscillator"
-SHAKER = "MotorShaker"
+MOTOR_SHAKER = "MotorShaker"
 ELECTRODYNAMIC_SHAKER = "ElectrodynamicShaker"

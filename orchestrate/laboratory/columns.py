@@ -1,7 +1,7 @@
 """Columns of a file as they stand there, and which of them are a record's channels.
 
-Names are known where they are usual (:data:`NAMES`); what is taken by its order is a proposal and
-said, what is not read is named in a warning.
+Columns with usual names (:data:`NAMES`) are known; those assigned by position are reported as a
+guess, unread ones give a warning.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Kinds of results, which a dataset says itself, and the functions that draw them."""
+"""Which function draws a result, by its attribute `question`; :mod:`.plot` chooses among them."""
 
 from __future__ import annotations
 

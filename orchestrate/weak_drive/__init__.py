@@ -18,7 +18,7 @@ module                  idea
 :mod:`.steady_speed`    whether the speed at a held voltage has settled
 :mod:`.growth`          how fast disturbances of a held motion grow
 :mod:`.hysteresis`      the rule that decides about jumps: voltages held over a ramp, and back
-:mod:`.cosimulation`    the job of the oscillator and any drive that is an FMU
+:mod:`.cosimulation_job`    the job of the oscillator and any drive that is an FMU
 :mod:`.cosimulate`      the function, its checks and warnings
 :mod:`.couple`          a run of both FMUs under a varying voltage, and its jumps
 :mod:`.couple_all`      many coupled runs at once

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu.exported import finder
-from ..fmu.models import OSCILLATOR, SHAKER
+from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
@@ -70,7 +70,7 @@ class CaptureJob(Job):
     scheme: Scheme
     control: Controller | None = None
 
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
     item: ClassVar[str] = "value"
 
     def items(self) -> Sequence[System]:

@@ -1,6 +1,6 @@
 """Couple the oscillator to any drive that is an FMU for co-simulation, ``orchestrate.cosimulate``.
 
-The job is in :mod:`.cosimulation`.
+The job is in :mod:`.cosimulation_job`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ..errors import InputError
 from ..fmu.description import Description, describe_runnable
 from ..fmu.exported import finder
 from ..fmu.instance import REAL_TYPES
-from ..fmu.models import ELECTRODYNAMIC_SHAKER, SHAKER
+from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER
 from ..lazy import Unpack, xr
 from ..model.arguments import Count, checked_integer
 from ..model.drive import Drive
@@ -32,7 +32,7 @@ from ..running.options import Running
 from ..running.runner import answer
 from .connection import FORCE, MOTION, OURS, checked_links, checked_units, checked_variable
 from .controllers import InputControl
-from .cosimulation import AT_THE_DURATION, IN_TIME_TOO, CosimulateJob, Values
+from .cosimulation_job import AT_THE_DURATION, IN_TIME_TOO, CosimulateJob, Values
 from .inputs import Input, check_inputs
 from .schedule import Course, check
 
@@ -154,7 +154,7 @@ def cosimulate(
     foreign = not isinstance(drive, (Drive, Shaker))
     if isinstance(drive, (Drive, Shaker)):
         parameters = {**drive.parameters(), **(parameters or {})}
-        model = SHAKER if isinstance(drive, Drive) else ELECTRODYNAMIC_SHAKER
+        model = MOTOR_SHAKER if isinstance(drive, Drive) else ELECTRODYNAMIC_SHAKER
         ours = {name: name for name in OURS if structure is not None or name not in FORCE}
         connect, drive = connect or ours, finder(running)(model).path
     path = Path(drive).resolve()

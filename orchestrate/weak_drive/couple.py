@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..fmu.instance import Instance
-from ..fmu.models import OSCILLATOR, SHAKER
+from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import unmasked
 from ..model.drive import Drive
@@ -65,7 +65,7 @@ class CoupleJob(MotorJob):
         """Hold voltages over each ramp; return its jumps, a row each: 1 for up, and its fields."""
         if self.control is not None:
             return {"jump_rows": np.empty((0, 1 + len(Jump._fields)))}
-        with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
+        with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[MOTOR_SHAKER]) as shaker:
 
             def start_run(schedule: Schedule) -> MotorRun:
                 """Reset both FMU instances and start a run with another voltage schedule."""

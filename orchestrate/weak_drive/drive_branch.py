@@ -21,7 +21,7 @@ from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSet
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.instance import Instance
-from ..fmu.models import OSCILLATOR, SHAKER
+from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
@@ -73,7 +73,7 @@ class DriveBranchJob(Job):
     steps: int
     settle: float
 
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
     item: ClassVar[str] = "branch"
 
     def items(self) -> Sequence[Structure]:
@@ -83,7 +83,7 @@ class DriveBranchJob(Job):
         """Trace all legs of each structure and return them as arrays padded with NaN."""
         rows = []
         for structure in items:
-            with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
+            with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[MOTOR_SHAKER]) as shaker:
                 rows.append(self.trace_legs((oscillator, shaker), structure))
         columns = {
             "points": lambda leg: self.motion_table(leg.points),

@@ -17,7 +17,7 @@ import numpy as np
 from ..constants import TURN
 from ..errors import InputError
 from ..fmu.exported import finder
-from ..fmu.models import OSCILLATOR, SHAKER
+from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
@@ -47,7 +47,7 @@ class DriveSpectraJob(Job):
     points: int
     highest: float
 
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
 
     def items(self) -> Sequence[Structure]:
         return self.structure.as_bonded(), self.structure.as_delaminated()

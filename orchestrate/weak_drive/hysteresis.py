@@ -3,15 +3,15 @@
 A jump is a loss of stability of the slow motion: two motions exist at one voltage, and the ramp
 loses the first. A steep but continuous branch is not a jump. The rule, for each ramp as a whole:
 
-- Voltages are held on a grid of steps `grid`, from the ramp's own state at its beginning to its
-  end, each taken to at `rate` and held until the speed has settled (:mod:`.steady_speed`); those at
-  which it does not are left out.
+- Voltages on a grid of steps `grid`, from the ramp's own state at its beginning to its end: the
+  voltage is raised to each at `rate` and held until the speed has settled (:mod:`.steady_speed`);
+  those at which it does not are left out.
 - Every step in which the speed gains `smallest` more or less than at the lower rate of the steps
   next to it (without these: than the voltage), or moves by `against` against the voltage, is
   halved, to `width`, and to `finest` where the speed comes back over it.
-- The motion before such a step has to last, and what it becomes counts: where disturbances are
-  known to grow (:mod:`.growth`), after `growths` growth times, and where these are longer than
-  `patience` holds it is left out; where nothing is known, when it is held `again` times.
+- The motion before such a step has to last; if it does not, the motion that follows it is taken.
+  Where disturbances are known to grow (:mod:`.growth`), it is held for `growths` growth times, and
+  left out where these are longer than `patience` holds; otherwise it is held `again` times.
 - It is *lost* over that step where the speed, taken back over it, is `clear` away and stays within
   `same` when it is held `again` times. There is *no* jump where no such step is left but of
   `finest`, over which the speed comes back, and on a way back over all of the ramp the speed is

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..fmu.exported import finder
-from ..fmu.models import OSCILLATOR, SHAKER
+from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.drive import Drive
 from ..model.ranges import STRUCTURE
@@ -55,7 +55,7 @@ class JumpVoltagesJob(Job):
     over: str = ""  # a parameter that the bonded structure ignores
     values: tuple[float, ...] = ()
 
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
     item: ClassVar[str] = "structure"
 
     def items(self) -> Sequence[Structure]:

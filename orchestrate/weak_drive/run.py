@@ -18,7 +18,7 @@ import numpy as np
 
 from ..errors import FmuError
 from ..fmu.instance import Instance
-from ..fmu.models import OSCILLATOR, SHAKER
+from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..running.job import Fmus, Job, Table
@@ -124,7 +124,7 @@ class MotorJob(CoupledJob):
     # what takes the voltage from the schedule; the motor gets all of it if there is no such part
     control: Controller | None = None
 
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
 
     def steps(self) -> int:
         """Return the number of communication steps of the schedule."""
@@ -175,7 +175,7 @@ def begin_run(job: MotorJob, fmus: Fmus) -> Iterator[MotorRun]:
     """Create both FMU instances, start a run on them and free them at the end."""
     with (
         Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
-        Instance(fmus[SHAKER], "shaker") as shaker,
+        Instance(fmus[MOTOR_SHAKER], "shaker") as shaker,
     ):
         run = MotorRun(job, oscillator, shaker)
         try:

@@ -27,7 +27,7 @@ from xml.etree import ElementTree as ET
 from ..errors import InputError
 from ..files import write_whole
 from ..fmu.description import Description, describe
-from ..fmu.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
+from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
 from ..model.drive import Drive
 from ..model.shaker import Shaker
 from ..model.structure import Structure
@@ -319,7 +319,7 @@ def motor_component(
     check("voltage", voltage, "V")
     speed = voltage / drive.motor_constant if speed is None else speed
     check("speed_start", speed, "rad/s")
-    path = fmu or fmu_path(SHAKER)
+    path = fmu or fmu_path(MOTOR_SHAKER)
     values = {**drive.parameters(), "speed_start": speed, "voltage": voltage}
     links = {name: Link(name, 1.0) for name in ("box_force", "box_acceleration", "box_jerk")}
     component = Component(path, describe(path), ("box_force",), MOTOR_GIVES, values)

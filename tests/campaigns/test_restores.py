@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from orchestrate.errors import FmuError, InputError
-from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
 from orchestrate.fmu.events import EventInstance
 
 from .findings import expect_none
@@ -26,7 +26,7 @@ CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
 FORCE = ("box_force", "box_force_1", "box_force_2", "box_force_3")
 POINT = {  # outputs of a point of time; the oscillator has those of the step before it too
     OSCILLATOR: STATE,
-    SHAKER: (
+    MOTOR_SHAKER: (
         *("box_position", "box_velocity", "box_acceleration", "box_jerk", "angle", "speed"),
         *("motor_current", "motor_torque", "motor_energy", "box_force_work", "stored_energy"),
     ),
@@ -82,7 +82,7 @@ def draw_course(seed: int, number: int) -> Course:
             values |= inputs[rng.randrange(4)]
     times = sorted(start + duration * rng.random() for _ in range(STEPS))
     steps = tuple((rng.choice(inputs) if rng.random() < 0.35 else {}, time) for time in times)
-    return Course(OSCILLATOR if number % SHAKER_EVERY else SHAKER, values, start, steps)
+    return Course(OSCILLATOR if number % SHAKER_EVERY else MOTOR_SHAKER, values, start, steps)
 
 
 def undisturbed(course: Course) -> list[Bits]:
@@ -227,7 +227,7 @@ def test_saved_states_restore_a_run_to_the_last_bit(exported, seed, budget):
     """
     counts: Counter[str] = Counter()
     findings = list(attack(seed, budget, counts))
-    assert {OSCILLATOR, SHAKER, "native", "Python"} <= set(counts)
+    assert {OSCILLATOR, MOTOR_SHAKER, "native", "Python"} <= set(counts)
     expect_none(findings, counts)
 
 

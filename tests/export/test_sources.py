@@ -68,7 +68,7 @@ def test_a_change_of_any_source_is_another_guid(monkeypatch, form):
         ("models/oscillator/documentation/index.html.in", False),
         ("models/oscillator/reference/TwoMassImpactOscillator_ref.csv", False),
         ("models/motor_shaker/documentation/index.html.in", True),
-        ("kernels/shaker/stepper.py", True),
+        ("kernels/motor_shaker/stepper.py", True),
         ("export/pythonfmu_form.py", not python),
         ("runtime/slave.py", not python),
     ):

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from ..kernels.electrodynamic_shaker.truth import Shaker
-from ..kernels.shaker.truth import solve
+from ..kernels.motor_shaker.truth import solve
 from .driver import DRIVES, FORMS, path_of, run
 from .programs.driver import Refused, open_fmu
 

@@ -13,8 +13,8 @@ import time
 import pytest
 
 from fmu_src.kernels.electrodynamic_shaker import memory as coil
+from fmu_src.kernels.motor_shaker import memory as shaker
 from fmu_src.kernels.oscillator import memory as oscillator
-from fmu_src.kernels.shaker import memory as shaker
 
 from ..sparing import ordinary
 from .driver import FORMS, MODELS, OSCILLATOR, path_of

@@ -7,7 +7,7 @@ import pytest
 
 from ..fmu.programs.driver import COMMON, harmonic, open_fmu
 
-OSCILLATOR, SHAKER = "TwoMassImpactOscillator", "MotorShaker"
+OSCILLATOR, MOTOR_SHAKER = "TwoMassImpactOscillator", "MotorShaker"
 INTEGRALS = ["box_impulse", "box_impulse_moment"]
 ORDERS = {"box_jerk": 1, "box_snap": 2, "box_crackle": 3}
 
@@ -101,8 +101,8 @@ MOTIONS = {
     "flight": (OSCILLATOR, {**harmonic(1.13), "x2_start": 0.5, "box_acceleration": 0.1}, 0.5),
     "contact": (OSCILLATOR, {**harmonic(0.4), "m2": 1.5, "d2": 0.3, "k2": 1.6}, 0.3),
     "bonded": (OSCILLATOR, {**harmonic(0.4), "m2": 1.5, "d2": 0.3, "bonded": True}, 2.7),
-    "motor": (SHAKER, {"speed_start": 3.0, "voltage": 0.4, "box_force": 0.1}, 0.4),
-    "coil": (SHAKER, {"speed_start": 3.0, "voltage": 0.4, "armature_inductance": 1.0}, 0.4),
+    "motor": (MOTOR_SHAKER, {"speed_start": 3.0, "voltage": 0.4, "box_force": 0.1}, 0.4),
+    "coil": (MOTOR_SHAKER, {"speed_start": 3.0, "voltage": 0.4, "armature_inductance": 1.0}, 0.4),
 }
 
 

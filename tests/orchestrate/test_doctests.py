@@ -18,7 +18,7 @@ LONG = {
     *(f"orchestrate.diagnosis.{name}" for name in ("detect_all", "detect", "fit", "signs")),
     *(f"orchestrate.dynamics.{name}" for name in ("borders", "orbits", "branches", "manifolds")),
     *("orchestrate.dynamics.stable_windows", "orchestrate.show.report"),
-    "orchestrate.laboratory.run_up",
+    "orchestrate.laboratory.record_of_run",
     *(f"orchestrate.weak_drive.{name}" for name in ("couple_all", "drive_branch", "jump_voltages")),
 }
 

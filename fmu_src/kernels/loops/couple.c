@@ -1,12 +1,12 @@
-/* The communication steps of two instances together: in an ordinary step only the oscillator goes back.
+/* The communication steps of two instances together: the oscillator predicts a step, the drive does it, the oscillator repeats it.
  *
  * The structure's box_force depends on its states only, the box's acceleration on the force: there is no algebraic loop, but what each side assumes of the
  * other over a step decides everything.
  *
  * - The oscillator does the step under an extrapolated acceleration: the cubic of the last step continues from the present value.
  * - The drive does it under the force that came of it: the cubic with its ends, mean and first moment, which are exact through impacts. A drive that takes a held
- *   force gets its mean, and a share of the impulse and of the first moment that the forces held until then lack (`owed`), so that nothing is owed two steps
- *   later if the moment stays as it is.
+ *   force gets its mean, and a share of the impulse and the first moment that the forces held until then missed (`owed`): a constant moment is made up for
+ *   within two steps.
  * - The oscillator goes back and does it again. Of a drive that takes a held force the acceleration is w(t) F(t) and a rest: w, the inverse mass, is what 1 N more
  *   adds at once; F is exact; the rest is what is seen of the box less what the held force does to it.
  * - Acceleration and velocity give the ends and the mean of the rest (all of the acceleration where w is 0), the position its first moment, or it is a parabola.

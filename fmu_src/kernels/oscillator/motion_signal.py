@@ -1,4 +1,4 @@
-"""Displacement and acceleration of one mass with their derivatives, for their largest values.
+"""Displacement and acceleration of one mass, derivatives and a bound: what their maxima need.
 
 The derivatives follow from displacement and velocity by the equation of motion (6), whatever the
 state; the fifth is bounded by the free part's envelope and the forced amplitudes. The acceleration

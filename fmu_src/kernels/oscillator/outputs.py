@@ -7,8 +7,8 @@ from .excitation import cubic_ages, cubic_by_ages, drive_at, harmonic_drive, inp
 from .motion import from_outside, from_unloaded, gap_between, side_number, state_and_phase_at
 
 LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the range of numbers
-# of a radian of the fastest change: over shorter steps the momenta at both ends agree in so many
-# digits that a quintic of the force is the better integral, which misses 1e-17 of the momentum
+# of a radian of the fastest change: over shorter steps the difference of momenta loses digits, and
+# a quintic of the force is the better integral, which misses 1e-17 of the momentum
 SHORT = 0.01
 
 

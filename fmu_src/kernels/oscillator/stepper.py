@@ -1,7 +1,7 @@
 """The entry points: initialise once, then advance from one communication point to the next.
 
-Where nothing but time passes, ``coast`` does the same as ``advance``. An instance is one flat
-memory.
+``coast`` is the fast path of ``advance`` if neither an event nor a new input comes. An instance is
+one flat memory.
 """
 
 from ..numerics.elementary import TWO_PI

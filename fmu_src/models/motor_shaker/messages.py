@@ -2,7 +2,7 @@
 FMU.
 """
 
-from ...kernels.shaker import memory as at
+from ...kernels.motor_shaker import memory as at
 from ...runtime.table import with_slots
 
 MESSAGES = with_slots(

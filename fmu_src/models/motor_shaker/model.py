@@ -1,7 +1,7 @@
 """``MotorShaker`` as the exporters see it. Standard library only: it travels inside the FMU."""
 
-from ...kernels.shaker import memory as at
-from ...kernels.shaker import rates, stepper
+from ...kernels.motor_shaker import memory as at
+from ...kernels.motor_shaker import rates, stepper
 from ...runtime.table import Model, SlotRange, Terminal
 from ...version import VERSION
 from .messages import MESSAGES

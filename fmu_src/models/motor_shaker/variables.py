@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...kernels.shaker import memory
+from ...kernels.motor_shaker import memory
 from ...runtime.table import (
     INTEGER,
     LARGE,

@@ -59,7 +59,7 @@ def test_an_argument_of_a_function_is_an_option_without_more(monkeypatch):
         """
 
     monkeypatch.setattr(orchestrate, "echo", echo, raising=False)
-    command = type("Echo", (cli.face.Command,), {"calls": "echo", "__call__": print})
+    command = type("Echo", (cli.command.Command,), {"calls": "echo", "__call__": print})
     options = {name: option.words for name, (option, _, _) in command.options().items()}
     assert options["depth"] == "how deep, m (default: 3)" and options["loud"] == "shout"
     (call, bound, _) = command.app().parse_args(["--depth", "7", "--mood", "cross", "--loud"])

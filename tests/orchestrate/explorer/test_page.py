@@ -10,7 +10,7 @@ import xarray as xr
 import orchestrate
 from orchestrate import cli
 from orchestrate.explorer.page import explore
-from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, begin, find, sampled
+from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, begin, find, sampled
 from orchestrate.model import Excitation
 from orchestrate.response.equations import absolute_accelerations
 from orchestrate.response.questions import Point
@@ -333,7 +333,7 @@ def test_the_weak_drive_is_the_masters(shown, clearance):
 def coupled_by_python(system, voltages, h):
     """The master's row after some steps from rest."""
     drive = {**system.drive.parameters(), "voltage": voltages[0]}
-    with Instance(find(OSCILLATOR).path) as one, Instance(find(SHAKER).path) as other:
+    with Instance(find(OSCILLATOR).path) as one, Instance(find(MOTOR_SHAKER).path) as other:
         one.initialize(**oscillator_start(system.structure))
         other.initialize(**drive)
         master = Master(one, other, Scheme(h))

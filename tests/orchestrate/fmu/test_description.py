@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from orchestrate.errors import InputError
-from orchestrate.fmu import OSCILLATOR, SHAKER, describe, find
+from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, describe, find
 
 from .altered import altered_fmu
 
@@ -62,5 +62,5 @@ def test_an_fmu_that_changes_is_described_anew(tmp_path, any_fmu):
     path = tmp_path / "mine.fmu"
     shutil.copy(any_fmu, path)
     assert describe(path).name == OSCILLATOR
-    shutil.copy(find(SHAKER, any_fmu.parent.name).path, path)
-    assert describe(path).name == SHAKER
+    shutil.copy(find(MOTOR_SHAKER, any_fmu.parent.name).path, path)
+    assert describe(path).name == MOTOR_SHAKER

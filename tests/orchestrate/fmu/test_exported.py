@@ -14,8 +14,8 @@ from orchestrate.errors import InputError, StoreError
 from orchestrate.fmu import (
     FORMS,
     MODELS,
+    MOTOR_SHAKER,
     OSCILLATOR,
-    SHAKER,
     build,
     describe,
     exported,
@@ -114,7 +114,7 @@ def test_what_is_damaged_or_out_of_date_is_made_anew(maker, places, real, damage
     elif damage == "empty":
         path.write_bytes(b"")
     elif damage == "other":
-        shutil.copy(find(SHAKER).path, path)
+        shutil.copy(find(MOTOR_SHAKER).path, path)
         maker.asked.clear()
     else:
         guid = describe(path).guid
@@ -162,8 +162,8 @@ def test_an_own_fmu_is_taken_as_it_is(maker, tmp_path, real):
     guid = describe(real["fmi2"]).guid
     own = altered_fmu(real["fmi2"], tmp_path / "own.fmu", guid=(guid, "{mine}"))
     assert find(OSCILLATOR, fmu=own).guid == "{mine}"
-    with pytest.raises(InputError, match=f"model {OSCILLATOR}; expected {SHAKER}"):
-        find(SHAKER, fmu=own)
+    with pytest.raises(InputError, match=f"model {OSCILLATOR}; expected {MOTOR_SHAKER}"):
+        find(MOTOR_SHAKER, fmu=own)
     assert maker.asked == []
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate import couple
-from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.drive_tracer import motion_near
 from orchestrate.weak_drive.shooting import Shooter
@@ -26,7 +26,7 @@ def leg_of(system, range_, most=40):
 
 def motion_of(system, speed):
     """The motion of a speed."""
-    with Instance(find(OSCILLATOR).path) as one, Instance(find(SHAKER).path) as other:
+    with Instance(find(OSCILLATOR).path) as one, Instance(find(MOTOR_SHAKER).path) as other:
         shooter = Shooter((one, other), *system, revolutions=1, steps=48, length=20.0)
         volts = float(averaged.no_load_speed(*system, speed))
         state = shooter.settle(volts, speed, 600.0)

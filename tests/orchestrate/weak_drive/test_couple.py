@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate import InputError, SpeedControl, couple
-from orchestrate.fmu import OSCILLATOR, SHAKER, find
+from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, find
 from orchestrate.weak_drive.couple import couple_job
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.schedule import Ramp
@@ -85,7 +85,7 @@ def test_it_goes_on_with_the_same_bits():
     control = SpeedControl(speed=1.4, gain=3.0, reset_time=20.0)
     ramp, scheme = Ramp(1.4, 1.41, 2e-4, 50.0), Scheme(0.4, tolerance=1e-8)
     job = couple_job(*QUICK, ramp, scheme, 1.25, control)
-    fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
+    fmus = {model: find(model).path for model in (OSCILLATOR, MOTOR_SHAKER)}
     steps = job.items()
     expected, parts, carry = job.work(fmus, steps, None), [], None
     for first in (0, 1, 70, 71, len(steps)):
@@ -135,7 +135,7 @@ def test_a_finished_result_is_read(tmp_path):
             {"voltage": 0.001, "duration": 10.0},
             ["completed no revolution in 10 s", "raise the voltage"],
         ),
-        ({"fmu": {SHAKER: "nowhere.fmu"}}, ["nowhere.fmu: no such file"]),
+        ({"fmu": {MOTOR_SHAKER: "nowhere.fmu"}}, ["nowhere.fmu: no such file"]),
     ],
 )
 def test_mistakes(arguments, parts):

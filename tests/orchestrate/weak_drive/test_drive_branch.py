@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate import InputError, drive_branch
-from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.drive_tracer import motion_near
 from orchestrate.weak_drive.shooting import Shooter
@@ -81,7 +81,7 @@ def test_neimark_sacker_point(upper):
 def test_an_orbit_and_its_multipliers_are_the_whole_systems():
     """The motion repeats in the monolithic solution, and a change grows as the multipliers say."""
     speed = 1.29
-    with Instance(find(OSCILLATOR).path) as one, Instance(find(SHAKER).path) as other:
+    with Instance(find(OSCILLATOR).path) as one, Instance(find(MOTOR_SHAKER).path) as other:
         shooter = Shooter((one, other), *QUICK, revolutions=2, steps=48, length=20.0)
         volts = float(averaged.no_load_speed(*QUICK, speed))
         state = shooter.settle(volts, speed, 600.0)

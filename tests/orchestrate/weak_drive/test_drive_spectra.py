@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate.errors import InputError
-from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
 from orchestrate.response.spectra import amplitude_spectrum
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import couple_job
@@ -57,7 +57,7 @@ def test_lines_are_those_of_the_whole_system(quick):
     voltage, revolutions, points = voltage_at_resonance(*QUICK), 8, 2048
     ramp = Ramp(0.85 * voltage, voltage, SHORT["rate"], settle=300.0, back=False)
     job = couple_job(*QUICK, ramp, Scheme(0.1))
-    with Instance(find(OSCILLATOR).path) as oscillator, Instance(find(SHAKER).path) as shaker:
+    with Instance(find(OSCILLATOR).path) as oscillator, Instance(find(MOTOR_SHAKER).path) as shaker:
         run = MotorRun(job, oscillator, shaker)
         run.revolve(range(round((ramp.duration + SHORT["hold"]) / 0.1)))
         state = state_of(run.master)

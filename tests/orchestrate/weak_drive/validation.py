@@ -4,7 +4,7 @@ import numpy as np
 
 from orchestrate import Drive, Structure
 from orchestrate.dynamics.bifurcations import Kind
-from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_from_arguments
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
@@ -186,7 +186,7 @@ def branch_of(system, most=120, range_=(0.95, 1.15)):
     job = DriveBranchJob("branch", *system, speeds, **asked)
     grid = np.linspace(*(speed / omega for speed in speeds), 2001)
     length = float(averaged.amplitude(*system.as_bonded(), grid).max()) * system.drive.length
-    with Instance(find(OSCILLATOR).path) as one, Instance(find(SHAKER).path) as other:
+    with Instance(find(OSCILLATOR).path) as one, Instance(find(MOTOR_SHAKER).path) as other:
         return job.trace_legs((one, other), system.structure), length
 
 

@@ -4,8 +4,8 @@ from unittest.mock import patch
 
 import pytest
 
-from fmu_src.kernels.shaker import integrate, stepper
-from fmu_src.kernels.shaker import memory as at
+from fmu_src.kernels.motor_shaker import integrate, stepper
+from fmu_src.kernels.motor_shaker import memory as at
 
 from .truth import DEFAULTS, STATES, solve
 

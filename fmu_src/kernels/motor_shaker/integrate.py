@@ -1,4 +1,4 @@
-"""A communication step in sub-steps of the formula, as long as its error estimate allows.
+"""A communication step in sub-steps of Dormand and Prince's formula, as long as its error allows.
 
 Sub-steps restart at each communication point, because the force on the box may be a new cubic
 there; only the length that the tolerance allowed is remembered. Everything remembered is part of

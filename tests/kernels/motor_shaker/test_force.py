@@ -2,8 +2,8 @@
 
 import pytest
 
-from fmu_src.kernels.shaker import memory as at
-from fmu_src.kernels.shaker import rates, stepper
+from fmu_src.kernels.motor_shaker import memory as at
+from fmu_src.kernels.motor_shaker import rates, stepper
 
 from .test_integration import FORCED, MOVING, started, state
 
