@@ -32,8 +32,7 @@ def test_a_model_is_made_of_what_it_imports(folder):
     kernels = {
         name.split("/")[1] for name in ran if name.startswith("kernels/") and "/" in name[8:]
     }
-    own = "shaker" if folder == "motor_shaker" else folder
-    assert kernels == {"numerics", own}
+    assert kernels == {"numerics", folder}
 
 
 @pytest.mark.parametrize("folder", forms.MODELS.values())

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 import orchestrate
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu.description import describe
-from orchestrate.weak_drive import cosimulate, cosimulation
+from orchestrate.weak_drive import cosimulate, cosimulation_job
 from orchestrate.weak_drive.connection import OURS, proposals
 from orchestrate.weak_drive.master import Master
 
@@ -376,7 +376,7 @@ def tables(monkeypatch, exported, path, **run):
     job = orchestrate.cosimulate(STRUCTURE, path, step=0.01, **{**RUN, "duration": 0.6, **run})
     fmus = {"TwoMassImpactOscillator": exported / "fmi3" / "TwoMassImpactOscillator.fmu"}
     for kind in (Master, PythonMaster):
-        monkeypatch.setattr(cosimulation, "Master", kind)
+        monkeypatch.setattr(cosimulation_job, "Master", kind)
         table = job.work(fmus, range(60), None)
         yield {name: part.tobytes() for name, part in table.items() if "_state" not in name}
 

@@ -11,7 +11,7 @@ import pytest
 import orchestrate
 from orchestrate.errors import FmuError
 from orchestrate.running.runner import answer
-from orchestrate.weak_drive import cosimulate, cosimulation
+from orchestrate.weak_drive import cosimulate, cosimulation_job
 
 from .drives import table
 from .drives.linear import draw, together
@@ -42,7 +42,7 @@ def form(request, monkeypatch):
         cosimulate, "answer", lambda job, *known, foreign=0: answer(job, *known[:2])
     )
     if steps == "Python":
-        monkeypatch.setattr(cosimulation, "Master", PythonMaster)
+        monkeypatch.setattr(cosimulation_job, "Master", PythonMaster)
     return fmi
 
 
