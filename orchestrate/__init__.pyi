@@ -26,7 +26,7 @@ from .laboratory.analysis.density import probability_density as probability_dens
 from .laboratory.analysis.frf import frf as frf
 from .laboratory.analysis.halves import halves as halves
 from .laboratory.analysis.harmonics import harmonics as harmonics
-from .laboratory.analysis.orders import track_orders as track_orders
+from .laboratory.analysis.order_tracking import track_orders as track_orders
 from .laboratory.analysis.psd import psd as psd
 from .laboratory.analysis.shock_spectrum import shock_spectrum as shock_spectrum
 from .laboratory.analysis.spectrogram import spectrogram as spectrogram

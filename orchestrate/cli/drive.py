@@ -101,7 +101,9 @@ class OfMotor(Motor):
             text = f"{first}: without {option_names(missing[:1])}"
             raise InputError(f"{text}; expected {option_names(DATASHEET)} together")
         if twice := [name for name in names if name in changes]:
-            text = f"--set {twice[0]}={changes[twice[0]]:g}: beside {option_names(DATASHEET[:1])}"
+            text = (
+                f"--set {twice[0]}={changes[twice[0]]:g}: given with {option_names(DATASHEET[:1])}"
+            )
             raise InputError(f"{text}; expected one of them")
         voltage, rpm, torque = given.values()
         return dict(zip(names, torque_line(voltage, TURN * rpm / 60.0, torque), strict=True))

@@ -120,7 +120,7 @@ class Explore(OfStored, InColumns, Reading, InUnits, Command):
         reading = self.given(InColumns, Reading)
         if self.record is None:
             if reading:
-                raise InputError(f"{option_names(list(reading)[:1])}: expected with --record alone")
+                raise InputError(f"{option_names(list(reading)[:1])}: expected only with --record")
             return None
         return read_record(self.record, **reading)
 

@@ -200,8 +200,8 @@ def checked_step_count(duration: float, step: float, drive: Description) -> int:
     count = max(1, math.ceil(duration / step - 1e-9))
     if drive.has_fixed_step and not math.isclose(count * step, duration, rel_tol=1e-9):
         raise InputError(
-            f"duration = {duration} s, step = {step} s: the FMU {drive.name} takes steps of one "
-            "length alone; expected a duration that is a whole number of steps"
+            f"duration = {duration} s, step = {step} s: the FMU {drive.name} takes only steps "
+            "of one length; expected a duration that is a whole number of steps"
         )
     return checked_integer("duration/step", count, 1, MAX_STEPS)
 

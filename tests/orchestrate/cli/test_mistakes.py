@@ -65,29 +65,29 @@ MISTAKES = {  # options of each command, then what its line says
         : nothing given | --swept-sine, --stepped-sine, --random, --shock, --hammer, --record
         --hammer 20 : --hammer 20 | two numbers
         --hammer 20:0.004 --half 3 : --half 3 | 1 to 2
-        --hammer 20:0.004 --length 1 : --length | with --shock alone
+        --hammer 20:0.004 --length 1 : --length | only with --shock
         --swept-sine 8:20 --g 1 --shock trapezoid : --swept-sine and --shock given | one of
         --swept-sine 8:20 --g 1 : nothing given | one of --duration and --rate
         --swept-sine 8,20 --g 1 --duration 2 : --swept-sine 8,20 | in Hz, such as 8:20
         --swept-sine 8:20 --duration 2 : level | --g and --acceleration
-        --swept-sine 8:20 --g 1 --duration 2 --seed 1 : --seed | with --random alone
+        --swept-sine 8:20 --g 1 --duration 2 --seed 1 : --seed | only with --random
         --swept-sine 8 --g 1 --duration 2 : --swept-sine 8 | FIRST:LAST
         --stepped-sine 8:20 --g 1 : --stepped-sine 8:20 | FIRST:LAST:STEP
-        --stepped-sine 8,9 --g 1 --duration 2 : --duration: expected with --swept-sine or --random
+        --stepped-sine 8,9 --g 1 --duration 2 : --duration: expected only with --swept-sine
         --random 5-9 --duration 2 : --random 5-9 | HZ:VALUE
         --random 5:1,9:nan --duration 2 : --random 5:1,9:nan | HZ:VALUE
         --random 5:1,9:1 : --random | --duration
         --shock sawtooth --g 1 : --shock | --length
         --record no.csv : no.csv: no such file; expected a record
-        --record a.csv --g 1 : --g: expected with --swept-sine | --random alone
-        --swept-sine 8:20 --g 1 --unit g : --unit | with --record alone
+        --record a.csv --g 1 : --g: expected only with --swept-sine | --random
+        --swept-sine 8:20 --g 1 --unit g : --unit | only with --record
     """,
     "analyse": """
         nowhere.nc : FILE nowhere.nc: no such file
         README.md --show frequency : --show frequency | expected some of frf, psd
         README.md --beside whole.nc : --beside whole.nc: expected LABEL=FILE
         README.md --beside README=x.nc : a second record README
-        README.md --damping 0.1 : --damping: expected with --show shock alone
+        README.md --damping 0.1 : --damping: expected only with --show shock
         README.md --show orders --orders one : --orders one: expected
         README.md --plot gif : --plot gif | png
         lost.csv : lost.csv: no such file; expected a record
@@ -156,7 +156,7 @@ MISTAKES = {  # options of each command, then what its line says
         --rated-voltage 12 : --rated-voltage 12 | without --no-load-rpm | --stall-torque together
         --rated-voltage 9 --no-load-rpm 9 : --rated-voltage 9 | without --stall-torque
         --rated-voltage 9 --no-load-rpm 9 --stall-torque 0 : --stall-torque 0 | a number > 0
-        --rated-voltage 9 --no-load-rpm 9 --stall-torque 1 --set motor_constant=2 : beside --rated
+        --rated-voltage 9 --no-load-rpm 9 --stall-torque 1 --set motor_constant=2 : given with --r
         --eta0 x:2 : --eta0 x:2 | FIRST:LAST
         --eta0 1:2 --voltage 1:2 : --eta0 and --voltage | one of them
         --step -0.1 : --step -0.1 s | 0.0001 <= step <= 1

@@ -112,7 +112,7 @@ def test_preloaded_faces_open_from_a_level_in_closed_form(exported):
         ({"frequencies": [50.0, 40.0]}, "frequencies"),
         ({"frequencies": 50.0}, "two at least"),
         ({"sensor": orchestrate.Sensor(bandwidth=400.0)}, "noise = 0.0"),
-        ({"sensor": {"box_acceleration": SENSOR}}, "box alone"),
+        ({"sensor": {"box_acceleration": SENSOR}}, "only on the box"),
         ({"structure": HALVES.as_bonded()}, "bonded"),
         ({"reserve": 0.5}, "reserve"),
         ({"g": 0.1}, "levels and g: expected one"),

@@ -99,7 +99,7 @@ STOPS = {  # and what is named, and what helps
 @pytest.mark.parametrize("name", STOPS)
 def test_what_keeps_a_quiet_record_from_its_verdict_is_named(name):
     changes, reason, advice = STOPS[name]
-    assert Beam((QUIET,)).verdict() == "no opening seen" and not Beam((QUIET,)).stops()
+    assert Beam((QUIET,)).verdict() == "no opening seen" and not Beam((QUIET,)).broken_conditions()
     stopped = Beam((replace(QUIET, **changes),))
     assert stopped.verdict() == "undecided"
     assert reason.lower() in stopped.reason().lower() and advice in stopped.next_measurement()

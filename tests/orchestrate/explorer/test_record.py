@@ -86,7 +86,7 @@ explorer.choose((2 * Math.PI * arguments[0]) / Math.sqrt(k1 / m1), true, [0, 0, 
 WRONG = {
     "a text": ("notes.txt", "nothing\n", [], "notes.txt"),
     "no file": ("none.csv", None, [], "none.csv"),
-    "an option alone": (None, None, ["--unit", "g"], "--unit: expected with --record alone"),
+    "an option alone": (None, None, ["--unit", "g"], "--unit: expected only with --record"),
 }
 
 

@@ -808,7 +808,7 @@ def test_a_last_line_of_words_is_left_out_with_a_warning(tmp_path, separator):
 def test_one_column_alone_asks_for_its_sampling_rate(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("0.1\n0.3\n-0.2\n0.1\n0.2\n")
-    with pytest.raises(InputError, match="no channel; .* or sample_rate= where there are none$"):
+    with pytest.raises(InputError, match="no channel; .* or sample_rate= if there are no times$"):
         read_record(path)
     assert read_record(path, sample_rate=100.0, unit="g").box_acceleration[1] == G * 0.3
 

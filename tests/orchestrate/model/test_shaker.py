@@ -99,7 +99,7 @@ def test_bad_data_sheets(changes, words):
         ("force_factor = 1\ncoil_resistance = 1\nmass = 1", "shaker.mass = 1: no key of"),
         (
             "force_factor = 1\ncoil_resistance = 1\ntable_mass = 1\nmoving_mass = 1",
-            "shaker.moving_mass = 1: beside table_mass; expected keys of one kind",
+            "shaker.moving_mass = 1: given with table_mass; expected keys of one kind",
         ),
         (
             "force_factor = 1\ncoil_resistance = 1\ncurrent_control = 1",

@@ -110,7 +110,7 @@ def test_the_box_is_needed_to_compare_with_it(name):
     record = swept_record(DAMPED)
     with pytest.raises(InputError, match="no box_acceleration; expected box_acceleration over"):
         getattr(orchestrate, name)(record.drop_vars("box_acceleration"))
-    with pytest.raises(InputError, match="no acceleration1; expected it beside"):
+    with pytest.raises(InputError, match="no acceleration1, m/s2; frf needs it"):
         orchestrate.frf(record[["box_acceleration"]])
     known = orchestrate.track_orders(record.drop_vars("box_acceleration"), phase=SWEEP)
     assert "box_acceleration" not in known.channel.values
