@@ -251,7 +251,10 @@ def test_settings_reach_the_fit_and_a_name_that_is_none_is_one_line():
         for changed in (None, {"model_error": 0.06})
     )
     assert float(wide.misfit) < 0.8 * float(usual.misfit)
-    for wrong, text in (({"rate": 2.0}, "'rate' is none"), ({"ratio": -1.0}, "ratio.* = -1.0")):
+    for wrong, text in (
+        ({"rate": 2.0}, "unknown name 'rate'"),
+        ({"ratio": -1.0}, "ratio.* = -1.0"),
+    ):
         with pytest.raises(orchestrate.InputError, match=text):
             orchestrate.detect(record(), guess(), settings=wrong)
 

@@ -235,7 +235,7 @@ WRONG = [
     (SHEET.format(more="no_load_speed_rpm = 1"), ["expected one of rotor_inertia, mechanical"]),
     (
         SHEET.format(more="no_load_speed_rpm = 1\nrotor_inertia = 1\nmotor_constant = 1"),
-        ["motor.rated_voltage = 12.0", "beside motor_constant"],
+        ["motor.rated_voltage = 12.0", "given with motor_constant"],
     ),
     (HALVES.replace("f2_hz = 55.0", ""), ["structure.f2_hz", "missing", "m1, m2, f1_hz, f2_hz"]),
     (HALVES.replace("f2_hz = 55.0", "k2 = 5.0"), ["structure.k2 = 5.0: given with f1_hz"]),

@@ -162,7 +162,7 @@ class Lost:
 
 @pytest.mark.parametrize("when", ["ncores", "submit", ""])
 def test_a_scheduler_that_ends_is_told(find, when):
-    with pytest.raises(WorkerError, match=r"has ended; .* the same call goes on from there"):
+    with pytest.raises(WorkerError, match=r"has ended; .* repeat the call to resume"):
         answer(JOB, {"cluster": Lost(when)}, find)
 
 
