@@ -264,7 +264,10 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
     )
     ends = range_text(data, float(data.recommended_first), float(data.recommended_last), "Hz")
     seconds, rate = float(data.recommended_duration), float(data.recommended_rate)
-    yield f"sweep {ends} at {level}, then at {second}, {seconds:.0f} s each, {rate:.0f} samples a s"
+    twice = f"at {level}, then at {second}" if second != level else f"twice at {level}"
+    yield f"sweep {ends} {twice}, {seconds:.0f} s each, {rate:.0f} samples a s"
+    if second == level:
+        yield "the highest of the levels: a second, higher one in --g would be a further check"
     if not data.counts:
         yield "no verdict is right at these levels: raise --g, or lower the --noise"
     opens = float(data.opening_level)

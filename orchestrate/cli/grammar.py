@@ -32,6 +32,8 @@ MAPPING_ITEM = re.compile(r"'([^']*)': '([^']*)'")
 
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 
+OWN_UNITS = {"--g": "g", "--hz": "Hz", "--rpm": "rpm"}
+
 # -- numbers --------------------------------------------------------------------------------------
 
 
@@ -53,10 +55,17 @@ def plain_int(text: str) -> int:
     return int(text)
 
 
+def without_own_unit(option: str, text: str) -> str:
+    """Take off the unit that an option is named after, where numbers have it: ``--g 0.1g``."""
+    unit = OWN_UNITS.get(option)
+    pattern = rf"(?<=[0-9.]) *{unit}(?![a-z0-9])"
+    return re.sub(pattern, "", text, flags=re.IGNORECASE) if unit else text
+
+
 def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]) -> Parsed:
     """Call ``reader`` on an option's text; turn its ``ValueError`` into an ``InputError``."""
     try:
-        return reader(text)
+        return reader(without_own_unit(option, text))
     except ValueError:
         raise InputError(f"{option} {text}: expected {expected}") from None
 
@@ -259,7 +268,8 @@ def parse_values(option: str, text: str, zero: bool = False) -> tuple[tuple[floa
     is_range = ":" in text
     try:
         check_digits(text)
-        numbers = [Decimal(part.strip()) for part in text.split(":" if is_range else ",")]
+        parts = without_own_unit(option, text).split(":" if is_range else ",")
+        numbers = [Decimal(part.strip()) for part in parts]
     except (InvalidOperation, ValueError):
         raise InputError(f"{option} {text}: not numbers; {RANGE}") from None
     finite = all(number.is_finite() for number in numbers)
@@ -269,7 +279,9 @@ def parse_values(option: str, text: str, zero: bool = False) -> tuple[tuple[floa
         raise InputError(f"{option} {text}: {RANGE}")
     if is_range:
         first, last, step = numbers
-        if step == 0 or last < first or (last - first) > MAX_VALUES * step:
+        if last < first:
+            raise InputError(f"{option} {text}: {first} > {last}; {RANGE}")
+        if step == 0 or (last - first) > MAX_VALUES * step:
             raise InputError(f"{option} {text}: {RANGE}, and at most {MAX_VALUES} values")
         numbers = [first + i * step for i in range(int((last - first) / step) + 1)]
     return tuple(map(float, numbers)), is_range

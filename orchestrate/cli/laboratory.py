@@ -331,11 +331,12 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
         Files.from_options(self, "", fresh=True)  # before records are read
         settings = self.settings_by_analysis(names)
         paths = self.paths_by_label()
-        records = {label: self.read_cut_record(path) for label, path in paths.items()}
+        whole = {label: self.read_record_file(path) for label, path in paths.items()}
+        self.warn_without_sensor(whole)
+        records = {label: self.cut(record, paths[label]) for label, record in whole.items()}
         for label, record in records.items():
             if note := unit_note(record.attrs):
                 print(f"{paths[label]}: {note}")
-        self.warn_without_sensor(records)
         units = self.read_record_units()
         reading: list[Any] = [self.begin, self.to, self.sensor]
         reading += self.given(InColumns, Reading).items()
@@ -401,9 +402,10 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
             )
         return {label: self.record, **{name: Path(path) for name, path in beside.items()}}
 
-    def read_cut_record(self, path: Path) -> xr.Dataset:
-        """Read a record file and keep its samples between ``--from`` and ``--to``."""
-        record = self.read_record_file(path)
+    def cut(self, record: xr.Dataset, path: Path) -> xr.Dataset:
+        """Apply ``--sensor`` to a simulated record; cut it from ``--from`` to ``--to``."""
+        if self.sensor is not None and "impulse" in record:
+            record = apply_sensor(record, self.sensor)
         begin, end = self.begin, self.to
         if "time" not in record.coords or begin is end is None:
             return record
@@ -414,14 +416,12 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
         return part
 
     def read_record_file(self, path: Path) -> xr.Dataset:
-        """Read a record from a file of any format; apply ``--sensor`` to a simulated one."""
+        """Read a record from a file of any format."""
         from .. import read_record
 
         if path.suffix.lower() == ".nc":
             stored = read_earlier_result("FILE" if path == self.record else "--beside", path)
             units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
-            if self.sensor is not None and "impulse" in stored:
-                return apply_sensor(stored, self.sensor)
             return stored if units <= {"m/s2"} else read_record(path)
         reading = self.given(InColumns, Reading)
         if path.suffix.lower() != ".wav":  # the scale is of the others

@@ -23,6 +23,7 @@ from .bifurcations import KINDS, Kind
 from .branches import (
     NODES,
     OF_SETTING,
+    checked_bifurcation_index,
     checked_limits,
     complete_excitation,
     pushes_at_start,
@@ -203,6 +204,7 @@ def border(
     """
     require_delaminated(structure)
     require_orbit_dataset(start, several=True)
+    checked_bifurcation_index(start, "bifurcation", bifurcation)
     names = tuple(over)
     check_parameters(names)
     if len(set(names)) != 2 or len(names) != 2 or names[0] != start.attrs.get("over"):

@@ -359,9 +359,8 @@ def start_value(
 ) -> float:
     """Return the parameter's value at the start: of the orbit, or of bifurcation ``switch``."""
     if switch is not None:
-        return float(
-            start["bifurcation_value"].values[checked_bifurcation_index(start, "switch", switch)]
-        )
+        index = checked_bifurcation_index(start, "switch", switch)
+        return float(start["bifurcation_value"].values[index])
     if over in pushes:
         return pushes[over]
     if over in start.coords:

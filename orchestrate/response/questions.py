@@ -285,6 +285,13 @@ def checked_structure(structure: object) -> Structure:
     return structure
 
 
+def require_bonded_twin(structure: Structure) -> None:
+    """Raise ``InputError`` for a mass against a wall: nothing can be bonded to it."""
+    if structure.wall:
+        text = "there is no bonded structure to compare with; expected sweep or simulate"
+        raise InputError(f"wall = True: mass 2 is a wall, {text}")
+
+
 def require_delaminated(structure: object, asked: str = "") -> Structure:
     """Return the argument unchanged; raise ``InputError`` unless it is a delaminated structure.
 

@@ -18,7 +18,14 @@ from ..model.outcomes import IRREGULAR
 from ..running.job import Table
 from ..running.options import Running
 from .labels import Variable, make_dataset, parameter_variable, variable, yes_or_no
-from .questions import Point, Series, Values, excitation_numbers, make_series
+from .questions import (
+    Point,
+    Series,
+    Values,
+    excitation_numbers,
+    make_series,
+    require_bonded_twin,
+)
 from .signatures import as_given, question
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, response_variables
 from .threshold import threshold_variables
@@ -38,7 +45,7 @@ class ResonanceJob(SweepJob):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.structure.needs_mass_2("bonded")
+        require_bonded_twin(self.structure)
         if self.direction == "given":
             raise InputError("direction = 'given': expected one of up, down, both")
 

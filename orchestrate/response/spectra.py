@@ -27,7 +27,7 @@ from ..running.job import Table
 from ..running.options import Running
 from .equations import accelerations_under
 from .labels import make_dataset, variable
-from .questions import Point, SeriesQuestion, Values
+from .questions import Point, SeriesQuestion, Values, require_bonded_twin
 from .signatures import as_given, question
 
 KINDS = ("bonded", "delaminated", "sampled")
@@ -79,7 +79,7 @@ class SpectraJob(SeriesQuestion):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.structure.needs_mass_2("bonded")
+        require_bonded_twin(self.structure)
         if self.highest > self.points / 2:
             raise InputError(
                 f"highest = {self.highest:g}: expected at most points/2 = {self.points / 2:g}"

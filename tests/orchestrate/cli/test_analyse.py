@@ -129,6 +129,16 @@ def test_mistakes_are_one_line(ask, tmp_path, files, line):
     assert not (tmp_path / "results").exists() or not any((tmp_path / "results").iterdir())
 
 
+def test_sensors_read_a_result_of_shake(ask, tmp_path):
+    beam = orchestrate.Structure.from_file("beam")
+    sweep = orchestrate.SweptSine(first=11.0, last=13.0, duration=4.0, acceleration=1.0)
+    file = tmp_path / "shaken.nc"
+    orchestrate.shake(beam, sweep, sample_rate=400.0, store=file, progress=False)
+    between = ask("analyse", file, "--show", "psd").success().out
+    read = ask("analyse", file, "--show", "psd", "--sensor", "150").success().out
+    assert "rms" in read and read != between
+
+
 def test_a_file_that_is_no_record(ask, tmp_path):
     xr.Dataset({"x": ("y", [1.0, 2.0])}).to_netcdf(tmp_path / "other.nc")
     ask("analyse", tmp_path / "other.nc").complaint("other.nc: record", "without time")
