@@ -105,4 +105,4 @@ def test_a_scheduler_that_ends_is_told_in_one_line(commands, cluster):
     process = commands.start(*RUN, "--cluster", address)
     read(scheduler, "Receive client connection")
     os.kill(scheduler[0].pid, signal.SIGKILL)
-    end(process).complaint("scheduler", "has ended", "the same call goes on", code=1)
+    end(process).complaint("scheduler", "has ended", "repeat the call to resume", code=1)

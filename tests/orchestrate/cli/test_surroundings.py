@@ -22,7 +22,8 @@ from .commands import ROOT, all_end, below, end, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full, limits, /proc")
 ASKED = ("sweep", "--eta", "1.2", "--transient", "5", "--samples", "2", "--plot", "none")
-LONG = ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "200000", "--jobs", "2")
+GRID = ("--eta", "1.1:1.4:0.005", "--over", "e", "--values", "0.3:0.9:0.005")
+LONG = ("map", *GRID, "--transient", "20000", "--jobs", "2")  # by worker processes
 
 
 def ask(folder, **where):

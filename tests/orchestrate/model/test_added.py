@@ -61,7 +61,7 @@ def test_every_constructor_takes_it(name):
         assert f"{name}0.02" in structure.label()
     assert name not in Structure().label()
     assert Structure().get(name) == STRUCTURE[name].default
-    with pytest.raises(TypeError, match="nothing_of_the_kind"):
+    with pytest.raises(InputError, match="nothing_of_the_kind"):
         Structure.nondimensional(nothing_of_the_kind=1.0)
 
 
