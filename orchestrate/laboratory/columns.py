@@ -25,6 +25,7 @@ from .conversion import (
     VOLTAGES,
     ByChannel,
     plain_unit,
+    si_factor,
     text_by_channel,
     unit_factor,
 )
@@ -158,16 +159,6 @@ def is_unit(text: str) -> bool:
     """Return whether a text is a unit that columns of records or resonance curves may have."""
     known = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, VOLTAGES, FREQUENCIES, ANGLES, RATIOS)
     return any(plain_unit(text) in units for units in known)
-
-
-def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
-    if plain_unit(unit) not in known:
-        usual = ("ms", "rad/s", "deg")
-        names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
-        text = f"unit = {unit!r}" if unit else "no unit"
-        mend = 'give it by unit="time=..."' if known is TIMES else "mend it in the file"
-        raise InputError(f"{label}: {text}; expected one such as {names}: {mend}")
-    return known[plain_unit(unit)]
 
 
 BY_USER, BY_NAME, LEFT, BY_ORDER = "by the caller", "by its name", "what is left", "by its order"

@@ -155,3 +155,13 @@ def differentiated(values: Floats, rate: float, derivatives: int, delay: float =
     made = irfft((1j * turn) ** derivatives * np.exp(1j * turn * delay) * rfft(odd), len(odd))
     line = {0: values[0] + slope * (time + delay), 1: np.full(len(values), slope)}
     return np.asarray(made[: len(values)] + line.get(derivatives, 0.0))
+
+
+def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
+    if plain_unit(unit) not in known:
+        usual = ("ms", "rad/s", "deg")
+        names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
+        text = f"unit = {unit!r}" if unit else "no unit"
+        mend = 'give it by unit="time=..."' if "s" in known else "mend it in the file"
+        raise InputError(f"{label}: {text}; expected one such as {names}: {mend}")
+    return known[plain_unit(unit)]

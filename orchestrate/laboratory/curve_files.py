@@ -24,10 +24,9 @@ from .columns import (
     column_names,
     places_asked_for,
     places_by_name,
-    si_factor,
     warn_of_left_out,
 )
-from .conversion import plain_unit
+from .conversion import plain_unit, si_factor
 from .pieces import Floats
 from .record_files import file_kind, read_columns
 from .resonance_curve import CurveColumns, acceleration_factor, made_curve
