@@ -8,14 +8,14 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from ..constants import GRAVITY
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, range_text, text_of, with_readable_lengths, with_units
 from .command import Command, Options, Question, option
-from .grammar import Listed, with_option_names
+from .grammar import Listed, floats, with_option_names
 from .options import OfStructure
 from .output import Files, InColumns, Reading, Results, digest, result_name, unit_note
 from .text import columns_of, parameter_column, table
@@ -287,13 +287,16 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
     yield from table(rows)
 
 
+PlanEnds = Annotated[Any, floats("FIRST:LAST in Hz, such as 30:60", "[:,]", (2,))]
+
+
 class Plan(OfStructure, Command, Results):
     """Plan a test: rehearse it, and recommend the lowest level at which the verdict is right."""
 
     calls = "plan_test"
-    hz: Listed = option(
-        "the sweep's ends in Hz, FIRST,LAST (default: 0.65 to 1.4 times the bonded resonance)",
-        value="VALUES",
+    hz: PlanEnds = option(
+        "the sweep's ends in Hz (default: 0.65 to 1.4 times the bonded resonance)",
+        value="FIRST:LAST",
     )
     g: Listed = option(
         "levels, peak acceleration in g (default: nine from 0.01 to 1)", value="VALUES"
@@ -302,7 +305,7 @@ class Plan(OfStructure, Command, Results):
     range: float | None = option("of the sensor, g (default: none)")
     examples = """
   {program} plan --structure beam.toml
-  {program} plan --structure beam.toml --hz 30,60 --g 0.05,0.1,0.2,0.5 --noise 3e-4
+  {program} plan --structure beam.toml --hz 30:60 --g 0.05,0.1,0.2,0.5 --noise 3e-4
   {program} plan --structure beam.toml --set clearance=-20um --range 50"""
 
     def ask(self) -> tuple[Structure, Question]:

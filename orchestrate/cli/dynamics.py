@@ -85,6 +85,7 @@ decided with so few --periods."""
             if "exponents" in data:
                 each = data.exponents.transpose(name, "order").values
                 rows["all exponents"] = [", ".join(f"{x:.5g}" for x in row) for row in each]
+                rows |= columns_of(data, "kaplan_yorke_dimension")
             yield from table(rows)
         else:
             top = data.isel(data.exponent.argmax(...))

@@ -90,10 +90,10 @@ def read_choice(choices: Collection[Any], option: str, text: str) -> Any:
 def floats(
     expected: str, separator: str = ",", counts: Collection[int] = (), positive: bool = False
 ) -> Reader[tuple[float, ...]]:
-    """Return a reader of numbers between separators: as many as one of ``counts``, if given."""
+    """Return a reader of numbers between separators (a regular expression), ``counts`` of them."""
 
     def split(text: str) -> tuple[float, ...]:
-        numbers = tuple(plain_float(part) for part in text.split(separator))
+        numbers = tuple(plain_float(part) for part in re.split(separator, text))
         if counts and len(numbers) not in counts:
             raise ValueError(text)
         if positive and not all(math.isfinite(number) and number > 0.0 for number in numbers):

@@ -394,7 +394,7 @@ def test_a_plan(ask, folder):
     assert done.out.startswith("sweep ") and "preload=20um" in done.out
     assert "verdict on the guess" in done.out and "on its sound twin" in done.out
     assert "overload" in done.out and shows_something(next(folder.glob("plan_*.png")))
-    ask("plan", "--structure", "beam", "--hz", "10").complaint("frequencies", "two at least")
+    ask("plan", "--structure", "beam", "--hz", "10").complaint("--hz 10", "FIRST:LAST")
 
 
 def test_forces_of_a_file_act_or_are_refused(ask, tmp_path):
