@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any
@@ -40,7 +40,7 @@ ALTERNATIVES = {  # names that set the same value
     "zeta1": ("d1", "D", "D1"),
     "zeta2": ("d2", "D", "D2"),
 }
-OF_CONTACT = tuple(name for name in STRUCTURE if name[0] not in "mkd")  # not of a half
+OF_HALVES = ("m1", "m2", "k1", "k2", "d1", "d2")
 
 
 def with_table(kind: type[Described]) -> type[Described]:
@@ -57,9 +57,9 @@ def with_table(kind: type[Described]) -> type[Described]:
     return kind
 
 
-def check_names(given: Mapping[str, Any], known: Iterable[str]) -> None:
-    """Raise ``InputError`` for a keyword that is none of the names of parameters."""
-    names = tuple(known)
+def check_names(given: Mapping[str, Any], *known: str) -> None:
+    """Raise ``InputError`` for a keyword that is neither known nor a parameter of the contact."""
+    names = (*known, *(name for name in STRUCTURE if name not in OF_HALVES))
     for name in given:
         if name not in names:
             raise InputError(f"{name}: no parameter here; {expected_one_of(name, names)}")
@@ -181,7 +181,7 @@ class Structure(StructureText, Described):
         >>> mass.omega, mass.at_rest, mass.preload
         (5.0, (-0.01, 0.0), 0.5)
         """
-        check_names(added, ("m", "k", "d", *OF_CONTACT))
+        check_names(added, "m", "k", "d")
         alike: dict[str, Any] = {"m1": m, "m2": m, "k1": k, "k2": k, "d1": d, "d2": d}
         return cls(**alike, clearance=clearance, stroke=stroke, wall=True, **added)
 
@@ -225,7 +225,7 @@ class Structure(StructureText, Described):
         0.02
         """
         numbers = {"mu": mu, "kappa": kappa, "D": D, "D1": D1, "D2": D2, "omega": omega}
-        check_names(added, ("m1", *numbers, *OF_CONTACT, *FLAGS))
+        check_names(added, "m1", *numbers, *FLAGS)
         v = {name: RATIO_QUANTITIES[name].check(x) for name, x in numbers.items() if x is not None}
         m1 = STRUCTURE["m1"].check(m1)
         k1 = m1 * v["omega"] ** 2
@@ -287,7 +287,7 @@ class Structure(StructureText, Described):
         (55.0, 0.007, 0.009167)
         """
         halves = {"f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
-        check_names(added, ("m1", "m2", *halves, *OF_CONTACT, *FLAGS))
+        check_names(added, "m1", "m2", *halves, *FLAGS)
         v = {name: RATIO_QUANTITIES[name].check(value) for name, value in halves.items()}
         warn_of_per_cent({"zeta1": v["zeta1"], "zeta2": v["zeta2"]})
         m1, m2 = STRUCTURE["m1"].check(m1), STRUCTURE["m2"].check(m2)
@@ -358,7 +358,7 @@ class Structure(StructureText, Described):
         >>> round(beam.m1, 12), round(beam.f2 / beam.f1, 12), round(beam.omega_3 * beam.f1, 12)
         (1.2, 0.666666666667, 50.0)
         """
-        check_names(added, ("mass", "f", "zeta", "thicknesses", *OF_CONTACT, *FLAGS))
+        check_names(added, "mass", "f", "zeta", "thicknesses", *FLAGS)
         mass, f = STRUCTURE["m1"].check(mass), RATIO_QUANTITIES["f1"].check(f)
         zeta = RATIO_QUANTITIES["zeta1"].check(zeta)
         warn_of_per_cent({"zeta": zeta})
