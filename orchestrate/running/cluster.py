@@ -65,7 +65,9 @@ def dask_client(address: str) -> Iterator[Any]:
         from distributed import Client
     except ImportError:
         raise InputError(NO_DASK) from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is reported by us
+    for name in [*logging.root.manager.loggerDict]:  # some have levels of their own
+        if name.split(".")[0] == "distributed":  # what is lost is reported by us
+            logging.getLogger(name).setLevel(logging.CRITICAL)
     connect: Any = Client
     try:
         with ThreadPoolExecutor(1) as thread:  # a notebook has a loop in this thread
