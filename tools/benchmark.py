@@ -211,7 +211,7 @@ def main() -> None:
     parser.add_argument("--before", type=Path, metavar="CHECKOUT", help="another version's clone")
     parser.add_argument("--scale", type=float, default=1.0, help="of the questions' sizes")
     parser.add_argument("--only", default="", help="rows whose name contains this")
-    parser.add_argument("--rounds", type=int, default=3, help="the shortest of this number counts")
+    parser.add_argument("--rounds", type=int, default=3, help="runs; the shortest counts")
     arguments = parser.parse_args()
     if arguments.before:
         how = arguments.scale, arguments.rounds, arguments.only

@@ -248,7 +248,7 @@ class LowResponse:
 
 
 def clipped_notes(channels: Channels, clipped: float, row: int = PLATEAU) -> Iterator[Note]:
-    """Yield notes on channels that are saturated, in rows of at least a number of samples."""
+    """Yield notes on channels that are saturated, in long enough rows of samples."""
     for name, values in zip(channels.names, channels.values, strict=True):
         if (share := clipped_share(values, row)) > clipped:
             text = f"{SHORT_NAMES[name]} is saturated in {100.0 * share:.2g} % of its samples"

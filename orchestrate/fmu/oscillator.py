@@ -176,7 +176,7 @@ def stroboscopic_samples(
 
 
 def empty(count: int) -> Floats:
-    """Return room for a number of states."""
+    """Return an array for states, not filled."""
     return np.empty((count, len(STATE)))
 
 

@@ -18,7 +18,7 @@ module                    idea
 :mod:`.sensors`           what accelerometers read of a history
 :mod:`.record`            the one dataset of channels, measured or simulated
 :mod:`.record_checks`     saturated, dead and identical channels, lost samples
-:mod:`.record_of_run`            the run of a weak drive as a record
+:mod:`.record_of_run`     the run of a weak drive as a record
 :mod:`.columns`           which columns of a file are its channels, and their units
 :mod:`.channel_setup`     how the channels of a file are read, as TOML or a mapping
 :mod:`.channel_table`     the columns of a file, and the setup that reads them

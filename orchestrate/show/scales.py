@@ -35,7 +35,7 @@ class AxisValues(NamedTuple):
 
 
 def varied_dimensions(data: xr.DataArray, count: int) -> list[str]:
-    """Return a number of names of an array's dimensions, besides direction and structure."""
+    """Return the dimensions, besides direction and structure; raise unless there are `count`."""
     names = [str(name) for name in data.dims if name not in ("direction", "structure")]
     if len(names) != count:
         raise InputError(

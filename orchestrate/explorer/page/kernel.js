@@ -64,7 +64,7 @@ export class Rooms {
     return address;
   }
 
-  /** An array of numbers, or of a number of zeros. @param {Kind} kind @param {ArrayLike<number> | number} values */
+  /** An array of numbers, or of zeros where their count is given. @param {Kind} kind @param {ArrayLike<number> | number} values */
   array(kind, values) {
     const count = typeof values === "number" ? values : values.length;
     const address = this.take(count * WIDTH[kind]);
