@@ -15,10 +15,10 @@ from .excitation import Excitation
 from .ranges import (
     DATASHEET,
     DRIVE,
+    ELECTRODYNAMIC_SHAKER,
     EXCITATION,
     LARGEST,
     MECHANICS,
-    MOTOR_SHAKER,
     PUSHES,
     RATIO_QUANTITIES,
     SMALLEST,
@@ -53,9 +53,9 @@ SPEEDS = tuple(f"no_load_speed_{unit}" for unit in TO_RAD_S)
 DATASHEET_KEYS = ("rated_voltage", "stall_torque", *SPEEDS, "mechanical_time_constant")
 MOTOR_NUMBERS, BOX_NUMBERS = ("beta", "epsilon", "b"), ("Omega_b", "D_b")
 SHAKER_COMMON = ("force_factor", "coil_resistance", "coil_inductance")
-SHAKER_SI = tuple(name for name in MOTOR_SHAKER if name not in SHAKER_COMMON)
+SHAKER_SI = tuple(name for name in ELECTRODYNAMIC_SHAKER if name not in SHAKER_COMMON)
 QUANTITIES = {
-    **{q.name: q for q in (*MOTOR_SHAKER.values(), *DATASHEET.values())},
+    **{q.name: q for q in (*ELECTRODYNAMIC_SHAKER.values(), *DATASHEET.values())},
     **{q.name: q for q in (*STRUCTURE.values(), *EXCITATION.values(), *DRIVE.values())},
     **RATIO_QUANTITIES,
     "preload": replace(STRUCTURE["clearance"], name="preload", minimum=0.0),

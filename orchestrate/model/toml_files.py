@@ -42,7 +42,7 @@ from ..files import read_text, write_whole
 from .described import Described
 from .drive import Drive
 from .excitation import Excitation
-from .ranges import DRIVE, MOTOR_SHAKER, PUSHES, STRUCTURE, expected_one_of
+from .ranges import DRIVE, ELECTRODYNAMIC_SHAKER, PUSHES, STRUCTURE, expected_one_of
 from .sections import (
     Section,
     check_masses,
@@ -170,7 +170,7 @@ def write(
 
 def toml_table(name: str, values: Mapping[str, float | bool]) -> str:
     """Return one section as TOML text; each key has a comment with its meaning and unit."""
-    described = {**STRUCTURE, **DRIVE, **MOTOR_SHAKER}
+    described = {**STRUCTURE, **DRIVE, **ELECTRODYNAMIC_SHAKER}
     lines = [f"[{name}]"]
     for key, value in values.items():
         line = f"{key} = {str(value).lower() if isinstance(value, bool) else repr(value)}"
