@@ -64,6 +64,8 @@ QUANTITIES = f"""quantities:
   D1 = d1/(2 omega m1), D2 = d2/(2 omega m2); D sets both
   f1 f2, zeta1 zeta2    of each half alone: natural frequency Hz, damping ratio at it (0.007 is
                         0.7 %)
+  wall=true             one mass before a stop: f1, zeta1, e, clearance (from rest to the stop, at
+                        x1 = clearance), stroke (from there to another stop opposite)
   Omega = 2 pi Hz = 2 pi rpm/60 rad/s; the box moves by a sin(Omega t), T = 2 pi/Omega
   eta = Omega/omega     frequency ratio
   g                     a Omega^2 over 9.80665 m/s2: the box's peak acceleration
@@ -95,7 +97,8 @@ class OfStructure(Options):
     )
     set: list[str] = option(
         f"one of its parameters, SI ({' '.join(STRUCTURE)}), of each half (f1 f2 in Hz, zeta1 "
-        "zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
+        "zeta2) or the paper's (mu kappa D D1 D2 omega); wall=true: one mass before a stop; may be "
+        "repeated",
         (),
         value="NAME=VALUE",
     )
@@ -281,9 +284,10 @@ def print_assumptions(structure: Structure, source: str, changes: Mapping[str, A
     if source not in SET_NAMES or not changes.keys() & {"f1", "f2"}:
         return
     left = [name for name, others in ASSUMED.items() if not changes.keys() & {name, *others}]
+    left = [name for name in left if not (structure.wall and name.endswith("2"))]
     texts = [f"{name} = {format_assumed(name, structure.get(name))}" for name in left]
     if texts:
-        masses = "; only the ratio of the masses acts" if {"m1", "m2"} & set(left) else ""
+        masses = "; only the ratio of the masses acts" if "m2" in left else ""
         print(f"assumed, as in the set {source}: {', '.join(texts)} (--set){masses}")
 
 

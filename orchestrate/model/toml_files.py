@@ -5,9 +5,9 @@ section           keys
 ================  ================================================================================
 ``[structure]``   SI: ``m1 m2 k1 k2 d1 d2``; or the paper's numbers: ``mu kappa`` and ``D``, or
                   ``D1 D2``, which ``m1`` and one of ``omega_hz omega_rad_s omega_rpm`` scale;
-                  or each half's ``f1_hz f2_hz zeta1 zeta2`` with ``m1 m2``; with all: ``bonded``
-                  and the numbers of the contact, ``e gamma`` and the others of
-                  :class:`.Structure`
+                  or each half's ``f1_hz f2_hz zeta1 zeta2`` with ``m1 m2``, one mass before a
+                  stop: ``wall f1_hz zeta1``; with all: ``bonded`` and the numbers of the contact,
+                  ``e gamma`` and the others of :class:`.Structure`
 ``[excitation]``  one of ``frequency_hz frequency_rad_s frequency_rpm eta``; one of ``amplitude``
                   (m) and ``acceleration_g`` (peak, in 9.80665 m/s^2), which may be left out with
                   ``eta``: 1/eta^2 m; ``phase`` (rad); ``box_acceleration`` (m/s^2), ``force1``

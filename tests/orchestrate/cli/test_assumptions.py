@@ -43,6 +43,14 @@ def test_what_is_not_set_of_a_beam_is_said(ask):
     assert "m1 =" not in said(ask, *HALVES, "--set", "mu=0.8")[0]
 
 
+def test_one_mass_before_a_stop_is_said_by_half_1(ask):
+    stop = ("wall=true", "f1=12", "zeta1=1%", "clearance=0.3mm")
+    words = [word for one in stop for word in ("--set", one)]
+    out, complaints = said(ask, *words, shaken=("--hz", "11", "--g", "0.1"))
+    assert complaints == [] and re.search(r"[1-9]\d* impacts", out)
+    assert out.startswith("assumed, as in the set paper: m1 = 1 kg, e = 0.7 (--set)\n")
+
+
 def test_numbers_may_have_their_units(ask, tmp_path):
     """To the bit as without."""
     plain = ("clearance=-2e-5", "zeta1=0.007", "f1=42", "m1=1.5")

@@ -238,6 +238,8 @@ WRONG = [
         ["motor.rated_voltage = 12.0", "given with motor_constant"],
     ),
     (HALVES.replace("f2_hz = 55.0", ""), ["structure.f2_hz", "missing", "m1, m2, f1_hz, f2_hz"]),
+    (f"{HALVES}wall = true", ["structure.m2 = 1.2: mass 2 is a wall; expected it left out"]),
+    (f"{S}wall = true\nf1_hz = 12", ["structure.zeta1: missing; expected all of f1_hz, zeta1"]),
     (HALVES.replace("f2_hz = 55.0", "k2 = 5.0"), ["structure.k2 = 5.0: given with f1_hz"]),
     (HALVES.replace("zeta2 = 0.01", "D2 = 0.01"), ["structure.D2 = 0.01: given with f1_hz"]),
 ]
@@ -257,6 +259,16 @@ def test_a_motor_by_its_datasheet(file, speed, rotor):
 def test_halves_by_frequency_and_damping_ratio(file):
     numbers = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": "1 %"}
     assert read(file(HALVES))["structure"] == Structure.from_halves(**numbers, e=0.6)
+
+
+def test_one_mass_before_a_stop(file):
+    text = 'wall = true\nf1_hz = 12\nzeta1 = "1 %"\nclearance = "0.3 mm"\nm1 = "150 g"'
+    stop = read(file(f"[structure]\n{text}"))["structure"]
+    same = Structure.one_mass(m=0.15, f=12.0, zeta="1 %", clearance=3e-4)
+    assert stop.wall and (stop.f1, stop.zeta1) == (12.0, 0.01)
+    assert [stop.get(one) for one in ("m1", "k1", "d1", "clearance")] == [
+        same.get(one) for one in ("m1", "k1", "d1", "clearance")
+    ]
 
 
 @pytest.mark.parametrize(("text", "words"), WRONG, ids=[repr(text) for text, _ in WRONG])
