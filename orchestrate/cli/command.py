@@ -134,7 +134,8 @@ def option_names(names: Iterable[str], joint: str = ", ") -> str:
 def name_of_value(kind: Any) -> str:
     """Return what the help calls a value of a type."""
     known = {int: "N", float: "X", Path: "FILE"}
-    return next((known[one] for one in (kind, *get_args(kind)) if one in known), "TEXT")
+    parts = (name_of_value(one) for one in get_args(kind))
+    return known.get(kind) or next((name for name in parts if name != "TEXT"), "TEXT")
 
 
 def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, tuple[str, ...]]:

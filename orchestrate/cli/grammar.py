@@ -32,7 +32,7 @@ MAPPING_ITEM = re.compile(r"'([^']*)': '([^']*)'")
 
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 
-OWN_UNITS = {"--g": "g", "--hz": "Hz", "--rpm": "rpm"}
+OWN_UNITS = {"--g": "g", "--range": "g", "--hz": "Hz", "--rpm": "rpm"}
 
 # -- numbers --------------------------------------------------------------------------------------
 
@@ -107,6 +107,8 @@ parse_ends = floats("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,))
 parse_number_or_ends = floats("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
 Ends = Annotated[tuple[float, ...] | None, parse_ends]
 parse_numbers = floats("a number, or a list such as 0.5,1,2")
+parse_sensor = floats("HZ or HZ:RATE, such as 10000:25600", ":", (1, 2))
+Bandwidth = Annotated[tuple[float, ...] | None, parse_sensor]
 parse_rates = floats("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
 
 
@@ -169,6 +171,23 @@ def positive_length(option: str, text: str) -> float:
 
 Positive = Annotated[float | None, positive_number]
 Length = Annotated[float | None, positive_length]
+
+
+def parse_noise(option: str, text: str) -> float:
+    """Parse a density of noise, in (m/s2)/sqrt(Hz), or of g as data sheets have it: ``30ug``."""
+
+    def split(text: str) -> float:
+        plain = text.replace("\u00b5", "u").removesuffix("/sqrt(Hz)").removesuffix("/sqrtHz")
+        number = plain.rstrip("ugm ")
+        factors = {"": 1.0, "g": GRAVITY, "mg": 1e-3 * GRAVITY, "ug": 1e-6 * GRAVITY}
+        if (unit := plain[len(number) :].strip()) not in factors:
+            raise ValueError(text)
+        return factors[unit] * plain_float(number)
+
+    return parse(option, text, "a number in (m/s2)/sqrt(Hz), or of g such as 30ug or 0.3mg", split)
+
+
+Noise = Annotated[float | None, parse_noise]
 
 
 def parse_rate(option: str, text: str) -> float:

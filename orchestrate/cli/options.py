@@ -14,7 +14,10 @@ from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
 from .command import Options, option, option_names
 from .grammar import (
+    Bandwidth,
     Length,
+    Noise,
+    Positive,
     is_single_number,
     parse_changes,
     parse_ends,
@@ -25,6 +28,7 @@ from .grammar import (
 from .notes import mass_note
 
 if TYPE_CHECKING:
+    from .. import Sensor
     from ..model import Structure
 
 SETS = Path(__file__).resolve().parents[1] / "model" / "sets"
@@ -263,6 +267,33 @@ class Over(Options):
         if scaled and over in ("m1", "k1", "omega"):
             expected = option_names(UNITS, " or ")
             raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
+
+
+class OfSensors(Options):
+    """Options of accelerometers that read a simulated motion."""
+
+    heading = "sensors of a simulated test"
+    sensor: Bandwidth = option(
+        "what accelerometers of this bandwidth read, with the spikes of impacts; RATE: samples a "
+        "second (default: 2.56 times it)",
+        value="HZ[:RATE]",
+    )
+    noise: Noise = option("density of their noise, (m/s2)/sqrt(Hz), or 30ug of g/sqrt(Hz)")
+    range: Positive = option("of the sensors, g (default: none)")
+
+    def read_sensor(self, usual: Callable[..., Sensor] | None = None) -> Sensor | None:
+        """Return the sensor; without ``--sensor`` the ``usual`` one, None without any option."""
+        from .. import Sensor
+        from ..constants import GRAVITY
+
+        limits = {"noise": self.noise, "range": self.range and GRAVITY * self.range}
+        given: dict[str, Any] = {n: value for n, value in limits.items() if value is not None}
+        if self.sensor is not None:
+            bandwidth, *rate = self.sensor
+            return Sensor(bandwidth=bandwidth, sample_rate=rate[0] if rate else None, **given)
+        if given and usual is None:
+            raise InputError(f"{option_names(given)}: of sensors; expected --sensor HZ with it")
+        return usual(**given) if given and usual else None
 
 
 class Beside(Options):

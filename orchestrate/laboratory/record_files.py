@@ -225,7 +225,9 @@ def read_netcdf(path: Path) -> Columns:
         names = dict(zip(over_time, over_time, strict=True))
         if "a1_abs" in file.variables:  # a result of shake
             if "impact" in file.dimensions and file.dimensions["impact"].size:
-                text = "expected what sensors read of it: orchestrate.measure, then write_record"
+                text = (
+                    "expected what sensors read of it: shake --sensor HZ, or measure, writes that"
+                )
                 raise InputError(f"{path}: simulated accelerations leave out the impacts; {text}")
             names = {"time": "time", **{stored: name for name, stored in ACCELERATIONS.items()}}
             names |= {name: name for name in FORCES}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -137,6 +139,38 @@ def test_sensors_read_a_result_of_shake(ask, tmp_path):
     between = ask("analyse", file, "--show", "psd").success().out
     read = ask("analyse", file, "--show", "psd", "--sensor", "150").success().out
     assert "rms" in read and read != between
+
+
+def test_what_sensors_read_of_a_simulated_test_is_a_record(ask, tmp_path):
+    shaken = "--structure beam --swept-sine 11:13 --duration 4 --acceleration 1 --plot none"
+    sensors = "--sensor 150:400 --noise 30ug --range 9g --format nc,csv"
+    out = ask("shake", *f"{shaken} {sensors}".split()).success().out
+    paths = re.findall("(.*): what the sensors read", out)
+    assert [path[-3:] for path in paths] == [".nc", "csv"]
+    sweep = orchestrate.SweptSine(first=11.0, last=13.0, duration=4.0, acceleration=1.0)
+    history = orchestrate.shake(orchestrate.Structure.from_file("beam"), sweep)
+    sensor = orchestrate.Sensor(
+        bandwidth=150.0, sample_rate=400.0, noise=30e-6 * 9.80665, range=9.0 * 9.80665
+    )
+    felt = orchestrate.measure(history, sensor, excitation=sweep)
+    for path in paths:
+        read = orchestrate.read_record(path).acceleration1.values
+        assert read == pytest.approx(felt.acceleration1.values, rel=1e-9, abs=1e-9)
+    assert "by its name" in ask("channels", paths[0], output=tmp_path / "setup.toml").out
+
+
+SENSORS = """
+    --noise 1 : --noise: of sensors; expected --sensor HZ with it
+    --sensor 9 --noise 3ug/Hz : --noise 3ug/Hz: expected a number in (m/s2)/sqrt(Hz), or of g
+    --sensor 9 --set wall=true : wall = True: --sensor does not know it yet
+"""
+
+
+@pytest.mark.parametrize("line", SENSORS.strip().splitlines())
+def test_sensors_are_refused_before_anything_is_computed(ask, tmp_path, line):
+    options, _, words = line.strip().partition(" : ")
+    ask("shake", "--hammer", "20:0.004", *options.split()).complaint(words)
+    assert not list(tmp_path.rglob("*.nc"))
 
 
 def test_a_file_that_is_no_record(ask, tmp_path):

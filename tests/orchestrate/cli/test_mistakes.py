@@ -92,6 +92,11 @@ MISTAKES = {  # options of each command, then what its line says
         README.md --plot gif : --plot gif | png
         lost.csv : lost.csv: no such file; expected a record
     """,
+    "plan": """
+        --sensor 9:8:7 : --sensor 9:8:7: expected HZ or HZ:RATE
+        --noise 3um : --noise 3um: expected a number
+        --range 0 : --range 0: expected a number > 0
+    """,
     "halves": """
         : RECORDS is missing
         lost.csv : lost.csv: no such file
