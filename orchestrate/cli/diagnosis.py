@@ -167,7 +167,7 @@ what it gives:
         record = read_record(path, **self.given(InColumns, Reading))
         if "acceleration1" not in record and "acceleration2" not in record:
             taken = record.attrs.get("columns", "no columns")
-            text = "expected a face's beside the base's: --channels 0,1,2 or base=Table,face1=Beam"
+            text = "expected a face's too: name its column by --channels, as base=Table,face1=Beam"
             raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
         return record
 

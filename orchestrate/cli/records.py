@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from ..errors import InputError
 from .command import Command, option
-from .grammar import floats
+from .grammar import floats, with_option_names
 from .output import InColumns, Reading
 from .text import table
 
@@ -56,11 +56,10 @@ and others; complete it by e and clearance."""
             print(self.output)
 
 
-class Channels(InColumns, Command):
+class Channels(InColumns, Reading, Command):
     """List the columns of a record, and as which channels they are read; write that as a file."""
 
     record: Path = option("as for analyse", position=True, needed=True)
-    sample_rate: float | None = option("Hz, where the file has no times")
     output: Path | None = option(
         "where to write how the columns are read, as TOML: to complete with units, sensitivities, "
         "delays and sensors, and to give as --channels",
@@ -68,20 +67,22 @@ class Channels(InColumns, Command):
     )
     examples = """
   {program} channels run.csv
-  {program} channels run.csv --channels base=Table,face1=3 --output setup.toml
-  {program} channels run.csv --channels setup.toml"""
+  {program} channels run.csv --channels base=Table,face1=3 --unit face1=g --output setup.toml
+  {program} diagnose run.csv --channels setup.toml
+Where the channels cannot be read as they are, the last line says what is missing."""
 
     def __call__(self) -> None:
         from .. import channels
 
-        found = channels(
-            self.record, self.channels, sample_rate=self.sample_rate, output=self.output
-        )
+        reading = self.given(InColumns, Reading)
+        found = channels(self.record, **reading, output=self.output)
         names = ("role", "known", "quantity", "unit")
         rows = {name: found[name].values.tolist() for name in names}
         rms = ["" if value != value else f"{value:.4g}" for value in found.rms.values]
         print(*table({"column": found.column.values.tolist(), **rows, "rms": rms}), sep="\n")
         if rate := found.attrs["sample_rate"]:
             print(f"{rate:.6g} samples a second")
+        if refused := found.attrs["refused"]:
+            print(f"not to be read so: {with_option_names(refused, self)}")
         if self.output is not None:
             print(self.output)

@@ -65,9 +65,9 @@ def read_record(
         faces, in their order, with a warning; where no name is known, the first ones in that order.
         A time that is not named is in the column of that name, else in the first.
     unit : str or mapping of str to str, optional
-        Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face1=mm/s"``): of an
-        acceleration, velocity, displacement or voltage; before that of ``channels``, as are the
-        next ones. By default what stands in the file, which must be there. Of
+        Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face=mm/s"``, of all
+        faces): of an acceleration, velocity, displacement or voltage; before that of ``channels``,
+        as are the next ones. By default what stands in the file, which must be there. Of
         ``time`` (``"time=us"``) too; without any, s.
     sensitivity : str or mapping of str to str, optional
         Of voltages, such as ``"100 mV/g"`` or ``"base=100 mV/g,face1=50 mV/(mm/s)"``.
