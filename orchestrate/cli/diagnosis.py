@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import logging
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
@@ -15,7 +14,16 @@ from ..units import Units, range_text, text_of, with_readable_lengths, with_unit
 from .command import Command, Options, Question, option
 from .grammar import Listed, floats, with_option_names
 from .options import OfSensors, OfStructure
-from .output import Files, InColumns, Reading, Results, digest, result_name, unit_note
+from .output import (
+    Files,
+    InColumns,
+    Reading,
+    Results,
+    digest,
+    file_checksum,
+    result_name,
+    unit_note,
+)
 from .text import columns_of, parameter_column, table
 
 if TYPE_CHECKING:
@@ -42,11 +50,6 @@ class Sweep(NamedTuple):
     def __str__(self) -> str:
         """Return the file's path, and the number of the sweep where there are several."""
         return f"{self.path}{f', sweep {self.number}' if self.number else ''}"
-
-
-def file_checksum(path: Path) -> str:
-    """Return a file's SHA-256 in hexadecimal digits."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 class DiagnosedRecords(Options):

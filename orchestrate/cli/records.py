@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from ..errors import InputError
 from .command import Command, option
 from .grammar import floats, with_option_names
-from .output import InColumns, Reading
+from .output import InColumns, Reading, file_checksum
 from .text import table
 
 Pair = Annotated[Any, floats("H1,H2, two numbers such as 3,2", ",", (2,))]
@@ -36,14 +36,22 @@ and others; complete it by e and clearance."""
     def __call__(self) -> None:
         from .. import halves, read_record
 
-        if len(self.records) > 2 or len({*self.records}) < len(self.records):
+        if len(self.records) > 2:
             raise InputError(f"{self.records[-1]}: expected one record of each half")
         records = [read_record(path, **self.given(InColumns, Reading)) for path in self.records]
+        if len({*map(file_checksum, self.records)}) < len(records):
+            text = f"the same numbers as {self.records[0]}; expected one record of each half"
+            raise InputError(f"{self.records[-1]}: {text}")
         if len(records) == 2 and all("force1" in one and "force2" not in one for one in records):
             print(f"{self.records[1]}: taken for knocks on half 2, as the second record")
             names = {name: str(name).replace("1", "2") for name in records[1] if "1" in str(name)}
             records[1] = records[1].rename(names)
-        fits = halves(*records, **self.keywords())
+        try:
+            fits = halves(*records, **self.keywords())
+        except InputError as error:
+            name, _, text = str(error).partition(": ")
+            path = dict(zip(("record", "other"), self.records, strict=False)).get(name, name)
+            raise InputError(f"{path}: {text}" if text else name) from None
         columns = {"half": [str(half) for half in fits.knocked.values]}
         for name in ("mass", "frequency", "damping"):
             cells = zip(fits[name].values, fits[f"{name}_error"].values, strict=True)

@@ -100,7 +100,7 @@ MISTAKES = {  # options of each command, then what its line says
     "halves": """
         : RECORDS is missing
         lost.csv : lost.csv: no such file
-        a.csv a.csv : a.csv: expected one record of each half
+        a.csv b.csv c.csv : c.csv: expected one record of each half
         a.csv --thicknesses 3 : --thicknesses 3: expected H1,H2
     """,
     "map": """
