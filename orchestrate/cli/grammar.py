@@ -32,6 +32,7 @@ MAPPING_ITEM = re.compile(r"'([^']*)': '([^']*)'")
 
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 
+COMMA = re.compile(r"-?\d+,\d+ *[a-zA-Z%]*")  # a decimal comma, perhaps with a unit
 OWN_UNITS = {"--g": "g", "--range": "g", "--hz": "Hz", "--rpm": "rpm"}
 
 # -- numbers --------------------------------------------------------------------------------------
@@ -67,7 +68,12 @@ def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]
     try:
         return reader(without_own_unit(option, text))
     except ValueError:
-        raise InputError(f"{option} {text}: expected {expected}") from None
+        raise InputError(f"{option} {text}: expected {expected}{with_point(text)}") from None
+
+
+def with_point(text: str) -> str:
+    """Return the words on a number that seems to have a decimal comma; nothing on others."""
+    return f" (with a decimal point, {text.replace(',', '.')})" if COMMA.fullmatch(text) else ""
 
 
 def read_float(option: str, text: str) -> float:
@@ -269,7 +275,11 @@ def with_option_names(message: str, chosen: Any) -> str:
         name, joint = keyword["name"], keyword["joint"]
         if not (flag := option_of(name)) or (options.get(name) is None) != (joint == " = None"):
             return keyword[0]
-        return flag + {" = None": " is missing", " = ": " "}.get(joint, joint)
+        file = f" {options[name]}" if isinstance(options.get(name), Path) else ""
+        flag = flag if flag in type(chosen).flags() else ""  # else it has none
+        return flag + {" = None": " is missing", " = ": " "}.get(
+            joint, f"{file}{joint}".lstrip(" " * (not flag))
+        )
 
     def named(keyword: re.Match[str]) -> str:  # what to do
         value = MAPPING_ITEM.sub(r"\1=\2", keyword["value"]).strip("'{}")
@@ -345,7 +355,7 @@ def parse_single_number(option: str, text: str) -> float:
     if len(values) != 1:
         raise InputError(
             f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2 (sweep and "
-            "resonance vary one parameter, map two)"
+            f"resonance vary one parameter, map two){with_point(text)}"
         )
     return values[0]
 
@@ -384,7 +394,7 @@ def parse_with_unit(option: str, name: str, value: str, other: str = "") -> floa
         check_name(name)  # before its unit
         known = " or ".join(known_units(name))
         words = f", with {known} if you like" if known else other
-        text = f"{value} is not a number; expected one{words}"
+        text = f"{value} is not a number; expected one{words}{with_point(value)}"
         raise InputError(f"{option}{value}: {text}") from None
 
 

@@ -221,7 +221,9 @@ def read_netcdf(path: Path) -> Columns:
         check_size(path, stored_size(file))
         over_time = {n: one for n, one in file.variables.items() if one.dimensions == ("time",)}
         if "time" not in over_time:
-            raise InputError(f"{path}: no variable time over itself; expected a record")
+            kind = getattr(file, "question", "")
+            what = f"a result of {kind}" if kind else "no variable time over itself"
+            raise InputError(f"{path}: {what}; expected a record")
         names = dict(zip(over_time, over_time, strict=True))
         if "a1_abs" in file.variables:  # a result of shake
             if "impact" in file.dimensions and file.dimensions["impact"].size:
