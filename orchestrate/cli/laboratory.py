@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 import warnings
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -185,8 +186,12 @@ The last one also writes what accelerometers read, a record for diagnose, analys
         structure, shaker = self.read_structure(), self.shaker
         if self.read_sensor() is not None:  # before anything is computed
             refuse_family("--sensor", structure)
+        excitation = self.read_excitation()
+        if (self.sample_rate or math.inf) < (needed := excitation.usual_rate) / 10.0:
+            text = f"--sample-rate {self.sample_rate:g}: too few samples to show the excitation"
+            warnings.warn(f"{text}; the default is {needed:g}", stacklevel=2)
         return structure, {
-            "excitation": self.read_excitation(),
+            "excitation": excitation,
             **self.keywords(),
             "shaker": None if shaker is None else Shaker.from_file(shaker),
         }

@@ -25,7 +25,7 @@ from .grammar import (
     parse_one_or_more,
     positive_number,
 )
-from .notes import mass_note
+from .notes import SETTINGS, mass_note
 
 if TYPE_CHECKING:
     from .. import Sensor
@@ -316,6 +316,12 @@ def print_assumptions(structure: Structure, source: str, changes: Mapping[str, A
         return
     left = [name for name, others in ASSUMED.items() if not changes.keys() & {name, *others}]
     left = [name for name in left if not (structure.wall and name.endswith("2"))]
+    for name in {"f1", "f2"} & {*left}:
+        (own,) = {"f1", "f2"} - {name}
+        if not 1.0 / SETTINGS.unlike < structure.get(name) / structure.get(own) < SETTINGS.unlike:
+            usual = f"{name} would be {structure.get(name):.4g} Hz, as in the set {source}"
+            text = f"expected --set {name}=HZ too, or --set wall=true for one mass before a stop"
+            raise InputError(f"--set {own}={changes[own]:g}: {usual}; {text}")
     texts = [f"{name} = {format_assumed(name, structure.get(name))}" for name in left]
     if texts:
         masses = "; only the ratio of the masses acts" if "m2" in left else ""

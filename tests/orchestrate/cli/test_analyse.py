@@ -159,6 +159,13 @@ def test_what_sensors_read_of_a_simulated_test_is_a_record(ask, tmp_path):
     assert "by its name" in ask("channels", paths[0], output=tmp_path / "setup.toml").out
 
 
+@pytest.mark.parametrize(("rate", "few"), [("19", 1), ("21", 0)])
+def test_a_rate_that_does_not_show_the_excitation_is_wondered_at(ask, rate, few):
+    options = "--structure beam --swept-sine 8:10 --duration 1 --g 0.02 --plot none --sample-rate"
+    done = ask("shake", *options.split(), rate)
+    assert len(done.complaints) == few and (not few or "default is 200" in done.complaints[0])
+
+
 SENSORS = """
     --noise 1 : --noise: of sensors; expected --sensor HZ with it
     --sensor 9 --noise 3ug/Hz : --noise 3ug/Hz: expected a number in (m/s2)/sqrt(Hz), or of g
