@@ -105,7 +105,11 @@ class Asked(Command):
             print(line)
         draw = partial(self.draw, shown, *branches, *beside)
         files.write(asked, draw if picture else None)
+        self.write_more(files, question, data)
         return data
+
+    def write_more(self, files: Files, question: Question, data: xr.Dataset) -> None:
+        """Write what a command has besides the result."""
 
     def read_overlay(self, structure: Structure, question: Mapping[str, Any]) -> list[xr.Dataset]:
         """Return the branches of ``--overlay``; raise for one that does not fit the question."""

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-import hashlib
 import logging
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-from ..constants import GRAVITY
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, range_text, text_of, with_readable_lengths, with_units
 from .command import Command, Options, Question, option
 from .grammar import Listed, floats, with_option_names
-from .options import OfStructure
-from .output import Files, InColumns, Reading, Results, digest, result_name, unit_note
+from .options import OfSensors, OfStructure
+from .output import (
+    Files,
+    InColumns,
+    Reading,
+    Results,
+    digest,
+    file_checksum,
+    result_name,
+    unit_note,
+)
 from .text import columns_of, parameter_column, table
 
 if TYPE_CHECKING:
@@ -44,11 +50,6 @@ class Sweep(NamedTuple):
     def __str__(self) -> str:
         """Return the file's path, and the number of the sweep where there are several."""
         return f"{self.path}{f', sweep {self.number}' if self.number else ''}"
-
-
-def file_checksum(path: Path) -> str:
-    """Return a file's SHA-256 in hexadecimal digits."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 class DiagnosedRecords(Options):
@@ -169,7 +170,7 @@ what it gives:
         record = read_record(path, **self.given(InColumns, Reading))
         if "acceleration1" not in record and "acceleration2" not in record:
             taken = record.attrs.get("columns", "no columns")
-            text = "expected a face's beside the base's: --channels 0,1,2 or base=Table,face1=Beam"
+            text = "expected a face's too: name its column by --channels, as base=Table,face1=Beam"
             raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
         return record
 
@@ -290,7 +291,7 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
 PlanEnds = Annotated[Any, floats("FIRST:LAST in Hz, such as 30:60", "[:,]", (2,))]
 
 
-class Plan(OfStructure, Command, Results):
+class Plan(OfStructure, OfSensors, Command, Results):
     """Plan a test: rehearse it, and recommend the lowest level at which the verdict is right."""
 
     calls = "plan_test"
@@ -301,26 +302,22 @@ class Plan(OfStructure, Command, Results):
     g: Listed = option(
         "levels, peak acceleration in g (default: nine from 0.01 to 1)", value="VALUES"
     )
-    noise: float | None = option("density of the sensor's noise, (m/s2)/sqrt(Hz) (default: 1e-3)")
-    range: float | None = option("of the sensor, g (default: none)")
     examples = """
   {program} plan --structure beam.toml
-  {program} plan --structure beam.toml --hz 30:60 --g 0.05,0.1,0.2,0.5 --noise 3e-4
-  {program} plan --structure beam.toml --set clearance=-20um --range 50"""
+  {program} plan --structure beam.toml --hz 30:60 --g 0.05,0.1,0.2,0.5 --noise 30ug
+  {program} plan --structure beam.toml --set clearance=-20um --range 50
+  {program} plan --structure beam.toml --sensor 2000:5120 --noise 1e-3
+The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s2)/sqrt(Hz)."""
 
     def ask(self) -> tuple[Structure, Question]:
         structure = self.read_structure()
-        hz = self.hz
-        question: Question = {**self.keywords(), "frequencies": hz}
-        if self.noise is not None or self.range is not None:
-            from ..diagnosis.plan_test import USUAL_NOISE, usual_ends, usual_sensor
+        from ..diagnosis.plan_test import USUAL_NOISE, usual_ends, usual_sensor
 
-            question["sensor"] = usual_sensor(
-                (hz or usual_ends(structure))[-1],
-                USUAL_NOISE if self.noise is None else self.noise,
-                GRAVITY * (math.inf if self.range is None else self.range),
-            )
-        return structure, question
+        last = (self.hz or usual_ends(structure))[-1]
+        if self.sensor is not None and self.noise is None:
+            self.noise = USUAL_NOISE
+        sensor = self.read_sensor(partial(usual_sensor, last))
+        return structure, {**self.keywords(), "frequencies": self.hz, "sensor": sensor}
 
     def __call__(self) -> None:
         import orchestrate

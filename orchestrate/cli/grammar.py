@@ -32,7 +32,8 @@ MAPPING_ITEM = re.compile(r"'([^']*)': '([^']*)'")
 
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 
-OWN_UNITS = {"--g": "g", "--hz": "Hz", "--rpm": "rpm"}
+COMMA = re.compile(r"-?\d+,\d+ *[a-zA-Z%]*")  # a decimal comma, perhaps with a unit
+OWN_UNITS = {"--g": "g", "--range": "g", "--hz": "Hz", "--rpm": "rpm"}
 
 # -- numbers --------------------------------------------------------------------------------------
 
@@ -67,7 +68,12 @@ def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]
     try:
         return reader(without_own_unit(option, text))
     except ValueError:
-        raise InputError(f"{option} {text}: expected {expected}") from None
+        raise InputError(f"{option} {text}: expected {expected}{with_point(text)}") from None
+
+
+def with_point(text: str) -> str:
+    """Return the words on a number that seems to have a decimal comma; nothing on others."""
+    return f" (with a decimal point, {text.replace(',', '.')})" if COMMA.fullmatch(text) else ""
 
 
 def read_float(option: str, text: str) -> float:
@@ -107,6 +113,8 @@ parse_ends = floats("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,))
 parse_number_or_ends = floats("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
 Ends = Annotated[tuple[float, ...] | None, parse_ends]
 parse_numbers = floats("a number, or a list such as 0.5,1,2")
+parse_sensor = floats("HZ or HZ:RATE, such as 10000:25600", ":", (1, 2))
+Bandwidth = Annotated[tuple[float, ...] | None, parse_sensor]
 parse_rates = floats("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
 
 
@@ -169,6 +177,23 @@ def positive_length(option: str, text: str) -> float:
 
 Positive = Annotated[float | None, positive_number]
 Length = Annotated[float | None, positive_length]
+
+
+def parse_noise(option: str, text: str) -> float:
+    """Parse a density of noise, in (m/s2)/sqrt(Hz), or of g as data sheets have it: ``30ug``."""
+
+    def split(text: str) -> float:
+        plain = text.replace("\u00b5", "u").removesuffix("/sqrt(Hz)").removesuffix("/sqrtHz")
+        number = plain.rstrip("ugm ")
+        factors = {"": 1.0, "g": GRAVITY, "mg": 1e-3 * GRAVITY, "ug": 1e-6 * GRAVITY}
+        if (unit := plain[len(number) :].strip()) not in factors:
+            raise ValueError(text)
+        return factors[unit] * plain_float(number)
+
+    return parse(option, text, "a number in (m/s2)/sqrt(Hz), or of g such as 30ug or 0.3mg", split)
+
+
+Noise = Annotated[float | None, parse_noise]
 
 
 def parse_rate(option: str, text: str) -> float:
@@ -250,7 +275,11 @@ def with_option_names(message: str, chosen: Any) -> str:
         name, joint = keyword["name"], keyword["joint"]
         if not (flag := option_of(name)) or (options.get(name) is None) != (joint == " = None"):
             return keyword[0]
-        return flag + {" = None": " is missing", " = ": " "}.get(joint, joint)
+        file = f" {options[name]}" if isinstance(options.get(name), Path) else ""
+        flag = flag if flag in type(chosen).flags() else ""  # else it has none
+        return flag + {" = None": " is missing", " = ": " "}.get(
+            joint, f"{file}{joint}".lstrip(" " * (not flag))
+        )
 
     def named(keyword: re.Match[str]) -> str:  # what to do
         value = MAPPING_ITEM.sub(r"\1=\2", keyword["value"]).strip("'{}")
@@ -326,7 +355,7 @@ def parse_single_number(option: str, text: str) -> float:
     if len(values) != 1:
         raise InputError(
             f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2 (sweep and "
-            "resonance vary one parameter, map two)"
+            f"resonance vary one parameter, map two){with_point(text)}"
         )
     return values[0]
 
@@ -365,7 +394,7 @@ def parse_with_unit(option: str, name: str, value: str, other: str = "") -> floa
         check_name(name)  # before its unit
         known = " or ".join(known_units(name))
         words = f", with {known} if you like" if known else other
-        text = f"{value} is not a number; expected one{words}"
+        text = f"{value} is not a number; expected one{words}{with_point(value)}"
         raise InputError(f"{option}{value}: {text}") from None
 
 

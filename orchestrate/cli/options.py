@@ -14,7 +14,10 @@ from ..errors import InputError
 from ..model.ranges import ADDED, STRUCTURE
 from .command import Options, option, option_names
 from .grammar import (
+    Bandwidth,
     Length,
+    Noise,
+    Positive,
     is_single_number,
     parse_changes,
     parse_ends,
@@ -22,9 +25,10 @@ from .grammar import (
     parse_one_or_more,
     positive_number,
 )
-from .notes import mass_note
+from .notes import SETTINGS, mass_note
 
 if TYPE_CHECKING:
+    from .. import Sensor
     from ..model import Structure
 
 SETS = Path(__file__).resolve().parents[1] / "model" / "sets"
@@ -64,6 +68,8 @@ QUANTITIES = f"""quantities:
   D1 = d1/(2 omega m1), D2 = d2/(2 omega m2); D sets both
   f1 f2, zeta1 zeta2    of each half alone: natural frequency Hz, damping ratio at it (0.007 is
                         0.7 %)
+  wall=true             one mass before a stop: f1, zeta1, e, clearance (from rest to the stop, at
+                        x1 = clearance), stroke (from there to another stop opposite)
   Omega = 2 pi Hz = 2 pi rpm/60 rad/s; the box moves by a sin(Omega t), T = 2 pi/Omega
   eta = Omega/omega     frequency ratio
   g                     a Omega^2 over 9.80665 m/s2: the box's peak acceleration
@@ -95,7 +101,8 @@ class OfStructure(Options):
     )
     set: list[str] = option(
         f"one of its parameters, SI ({' '.join(STRUCTURE)}), of each half (f1 f2 in Hz, zeta1 "
-        "zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
+        "zeta2) or the paper's (mu kappa D D1 D2 omega); wall=true: one mass before a stop; may be "
+        "repeated",
         (),
         value="NAME=VALUE",
     )
@@ -262,6 +269,33 @@ class Over(Options):
             raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
 
 
+class OfSensors(Options):
+    """Options of accelerometers that read a simulated motion."""
+
+    heading = "sensors of a simulated test"
+    sensor: Bandwidth = option(
+        "what accelerometers of this bandwidth read, with the spikes of impacts; RATE: samples a "
+        "second (default: 2.56 times it)",
+        value="HZ[:RATE]",
+    )
+    noise: Noise = option("density of their noise, (m/s2)/sqrt(Hz), or 30ug of g/sqrt(Hz)")
+    range: Positive = option("of the sensors, g (default: none)")
+
+    def read_sensor(self, usual: Callable[..., Sensor] | None = None) -> Sensor | None:
+        """Return the sensor; without ``--sensor`` the ``usual`` one, None without any option."""
+        from .. import Sensor
+        from ..constants import GRAVITY
+
+        limits = {"noise": self.noise, "range": self.range and GRAVITY * self.range}
+        given: dict[str, Any] = {n: value for n, value in limits.items() if value is not None}
+        if self.sensor is not None:
+            bandwidth, *rate = self.sensor
+            return Sensor(bandwidth=bandwidth, sample_rate=rate[0] if rate else None, **given)
+        if given and usual is None:
+            raise InputError(f"{option_names(given)}: of sensors; expected --sensor HZ with it")
+        return usual(**given) if given and usual else None
+
+
 class Beside(Options):
     """The option of both structures."""
 
@@ -281,9 +315,16 @@ def print_assumptions(structure: Structure, source: str, changes: Mapping[str, A
     if source not in SET_NAMES or not changes.keys() & {"f1", "f2"}:
         return
     left = [name for name, others in ASSUMED.items() if not changes.keys() & {name, *others}]
+    left = [name for name in left if not (structure.wall and name.endswith("2"))]
+    for name in {"f1", "f2"} & {*left}:
+        (own,) = {"f1", "f2"} - {name}
+        if not 1.0 / SETTINGS.unlike < structure.get(name) / structure.get(own) < SETTINGS.unlike:
+            usual = f"{name} would be {structure.get(name):.4g} Hz, as in the set {source}"
+            text = f"expected --set {name}=HZ too, or --set wall=true for one mass before a stop"
+            raise InputError(f"--set {own}={changes[own]:g}: {usual}; {text}")
     texts = [f"{name} = {format_assumed(name, structure.get(name))}" for name in left]
     if texts:
-        masses = "; only the ratio of the masses acts" if {"m1", "m2"} & set(left) else ""
+        masses = "; only the ratio of the masses acts" if "m2" in left else ""
         print(f"assumed, as in the set {source}: {', '.join(texts)} (--set){masses}")
 
 

@@ -238,6 +238,11 @@ def digest(*arguments: Any) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
+def file_checksum(path: Path) -> str:
+    """Return a file's SHA-256 in hexadecimal digits."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
 # -- files ----------------------------------------------------------------------------------------
 
 

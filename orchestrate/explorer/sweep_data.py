@@ -19,6 +19,7 @@ from ..lazy import xr
 from ..model import Excitation, Structure
 from ..model.ranges import PUSHES
 from ..running.job import refuse_family, refuse_unknown
+from ..running.provenance import what_it_is
 from ..running.store import load
 from ..units import Units
 
@@ -160,7 +161,7 @@ def check_sweep(data: xr.Dataset) -> str:
     missing = needed - {str(name) for name in data.variables}
     direction = str(data.attrs.get("direction"))
     if missing or not {*SETTINGS, "start", "m1"} <= set(data.attrs):
-        raise InputError(f"{data.attrs.get('title', 'data')!r}: no sweep; {EXPECTED}")
+        raise InputError(f"result: {what_it_is(data)}; {EXPECTED}")
     if not set(SWEPT) & {str(name) for name in data.impacts_per_period.dims}:
         raise InputError(f"sweep over {data.impacts_per_period.dims[-1]}: {EXPECTED}")
     if direction not in ("up", "down", "both", "given"):

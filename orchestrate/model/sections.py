@@ -171,10 +171,14 @@ def read_structure(section: Section) -> Structure:
     values |= {name: section.flag(name) for name in FLAGS if name in section.values}
     if section.present(HALVES):
         section.uses_second_form(HALVES, (*MECHANICS[2:], *RATIOS))
-        section.need(("m1", "m2", *HALVES))
+        if wall := values.get("wall", False):
+            for key in section.present(("m2", "f2_hz", "zeta2")):
+                raise section.error(key, "mass 2 is a wall; expected it left out")
+        section.need(("f1_hz", "zeta1") if wall else ("m1", "m2", *HALVES))
         values |= section.numbers(("m1", "m2", *HALVES))
-        frequencies = {name: values.pop(f"{name}_hz") for name in ("f1", "f2")}
-        return section.make(lambda: Structure.from_halves(**frequencies, **values))
+        values = {key.removesuffix("_hz"): value for key, value in values.items()}
+        make = Structure().replace if wall else Structure.from_halves
+        return section.make(lambda: make(**values))
     if not section.uses_second_form(MECHANICS[1:], RATIOS):
         values |= section.numbers(MECHANICS)
         return section.make(lambda: Structure(**values))

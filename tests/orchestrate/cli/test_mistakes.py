@@ -50,7 +50,9 @@ MISTAKES = {  # options of each command, then what its line says
     """,
     "simulate": """
         : frequency: nothing given | --eta | --hz | --rpm | --frequency
-        --eta 1,2 : --eta 1,2 | 2 values
+        --eta 1,2 : --eta 1,2 | 2 values | with a decimal point, 1.2
+        --hz 1 --g 0,5 : --g 0,5: expected a number > 0 | with a decimal point, 0.5
+        --set f1=46,5 --eta 1 : --set f1=46,5 | is not a number | with a decimal point, 46.5
         --eta 1 --frequency 2 : --eta and --frequency | one of them
         --frequency 2 : --frequency 2 | --amplitude | --g
         --hz 2 --g x : --g x | expected a number > 0
@@ -92,10 +94,15 @@ MISTAKES = {  # options of each command, then what its line says
         README.md --plot gif : --plot gif | png
         lost.csv : lost.csv: no such file; expected a record
     """,
+    "plan": """
+        --sensor 9:8:7 : --sensor 9:8:7: expected HZ or HZ:RATE
+        --noise 3um : --noise 3um: expected a number
+        --range 0 : --range 0: expected a number > 0
+    """,
     "halves": """
         : RECORDS is missing
         lost.csv : lost.csv: no such file
-        a.csv a.csv : a.csv: expected one record of each half
+        a.csv b.csv c.csv : c.csv: expected one record of each half
         a.csv --thicknesses 3 : --thicknesses 3: expected H1,H2
     """,
     "map": """
@@ -214,6 +221,8 @@ SYNTAX = """
     sweep --samples 1.5 : --samples 1.5 | whole number
     sweep --direction sideways : --direction sideways | up
     explore a.nc b.nc : b.nc: no option of explore
+    resonance my.toml : my.toml: no option of resonance; did you mean --structure my.toml?
+    simulate beam : beam: no option of simulate; did you mean --structure beam?
     build --folder : --folder | expected one value
     resonance --direction given : --direction given | both
     couple --only glued : --only glued | bonded

@@ -91,6 +91,40 @@ def test_a_setup_file_reads_as_it_says_and_again_the_same(tmp_path):
     assert read_record(path, again).identical(record)
 
 
+def half_known(tmp_path):
+    path = written(tmp_path, "Zeit;Tisch;CH3;CH4;PT")
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace("CH3 [m/s2]", "CH3 (tip)").replace("CH4 [m/s2]", "CH4"))
+    return path
+
+
+def test_what_is_left_is_said_with_the_arguments_that_read_it(tmp_path):
+    path = half_known(tmp_path)
+    columns = "base=Tisch,face1=CH3 (tip),face2=CH4"
+    with pytest.warns(UserWarning) as warned:
+        read_record(path)
+    said = str(warned[0].message)
+    assert said.endswith(f'such as channels="{columns}" with unit="face1=...,face2=..."')
+    wanted = r'"CH3 \(tip\)" \(face 1\), .*"CH4" \(face 2\): no unit; .*"face1=...,face2=..."$'
+    with pytest.raises(InputError, match=wanted):
+        read_record(path, columns)
+    record = read_record(path, columns, unit="face=g")  # of both
+    assert np.array_equal(record[FACE2].values, 9.80665 * WAVES[2])
+    assert np.array_equal(read_record(path, columns, unit="face=g,face2=m/s2")[FACE2], WAVES[2])
+
+
+def test_a_list_of_columns_says_what_is_missing_and_writes_what_completes_it(tmp_path):
+    path, setup = half_known(tmp_path), tmp_path / "setup.toml"
+    columns = "base=Tisch,face1=CH3 (tip),face2=CH4"
+    assert "no unit" in channels(path, columns).attrs["refused"]
+    assert "sensitivity" in channels(path, columns, unit="face=mV").attrs["refused"]
+    given = {"unit": "face=mV", "sensitivity": "face=100 mV/g", "scale": "face2=-1"}
+    found = channels(path, columns, **given, resample=True, output=setup)
+    assert found.attrs["refused"] == "" and "resample = true" in setup.read_text()
+    once = read_record(path, columns, **given, resample=True)
+    assert read_record(path, setup).drop_attrs().identical(once.drop_attrs())
+
+
 @pytest.mark.parametrize(
     ("wrong", "names"),
     [
