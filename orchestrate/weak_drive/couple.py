@@ -272,17 +272,8 @@ def couple_job(
     """Check the arguments of a coupled run and build its job."""
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
-    if speed_start is None:
-        at_rest = control is not None
-        speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
-    check("speed_start", speed_start, "rad/s")
-    if hold is None:
-        hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
-    check("hold", hold, "s", low=0.0)
-    run = (structure, drive, schedule, scheme, float(speed_start), float(hold), control)
-    job = CoupleJob(f"couple_{structure.kind}", *run, hysteresis or HysteresisSettings())
     steps = schedule.duration / scheme.h
-    if steps <= MAX_STEPS and job.steps() < 1:
+    if math.ceil(steps - 1e-9) < 1:
         raise InputError(
             f"duration = {schedule.duration:g} s: expected one communication step or more, "
             f"duration >= {scheme.h:g}"
@@ -292,7 +283,15 @@ def couple_job(
             f"{steps:.2g} steps of {scheme.h:g} s in {schedule.duration:g} s: "
             f"expected at most {MAX_STEPS:g}"
         )
-    return job
+    if speed_start is None:
+        at_rest = control is not None
+        speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
+    check("speed_start", speed_start, "rad/s")
+    if hold is None:
+        hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
+    check("hold", hold, "s", low=0.0)
+    run = (structure, drive, schedule, scheme, float(speed_start), float(hold), control)
+    return CoupleJob(f"couple_{structure.kind}", *run, hysteresis or HysteresisSettings())
 
 
 def couple(

@@ -162,7 +162,8 @@ class VoltageHolder:
         try:
             if state is not None:
                 run.set_state(state)
-            run.speeds(range(moves))
+            if moves:
+                run.speeds(range(moves))
             for begin in range(moves, count, piece):
                 found = run.speeds(range(begin, min(begin + piece, count)))
                 speeds = np.append(speeds, np.abs(found) / self.omega)
