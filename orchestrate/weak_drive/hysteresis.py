@@ -162,8 +162,7 @@ class VoltageHolder:
         try:
             if state is not None:
                 run.set_state(state)
-            if moves:
-                run.speeds(range(moves))
+            run.speeds(range(moves))
             for begin in range(moves, count, piece):
                 found = run.speeds(range(begin, min(begin + piece, count)))
                 speeds = np.append(speeds, np.abs(found) / self.omega)

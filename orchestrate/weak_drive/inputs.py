@@ -78,7 +78,7 @@ class Inputs:
         for i, (_, course) in enumerate(self.held):
             _, ends[:, i], rows[:, i], lever = course.over_steps(edges)
             moments = np.append([0.0, 0.0], lever / h**2)
-            if np.ptp(h) <= 1e-6 * h[0]:
+            if not len(h) or np.ptp(h) <= 1e-6 * h[0]:
                 for back, share in enumerate(MADE_UP):
                     rows[:, i] += share * moments[2 - back : len(moments) - back]
         for i, (_, course) in enumerate(self.cubics):
