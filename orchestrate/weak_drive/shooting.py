@@ -80,7 +80,7 @@ class Shooter:
     ) -> None:
         self.fmus, self.structure, self.drive = fmus, structure, drive
         self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
-        self.used = False
+        self.master: Master | None = None  # of both FMUs, from the first start on
         self.volts, self.length = drive.volts(structure), length
         self.begin_together(structure.bonded)
 
@@ -121,10 +121,8 @@ class Shooter:
     def start_master(self, state: Floats, voltage: float, h: float) -> Master:
         """Initialise both FMUs in a state and return their master."""
         oscillator, shaker = self.fmus
-        if self.used:
-            oscillator.reset()
-            shaker.reset()
-        self.used = True
+        oscillator.reset()
+        shaker.reset()
         values = dict(zip(self.names, (state * self.units).tolist(), strict=True))
         if self.together:
             values |= {"x2": values["x1"], "v2": values["v1"]}
@@ -135,7 +133,17 @@ class Shooter:
         oscillator.initialize(**oscillator_start(self.structure), **structure_starts)
         more = {"angle_start": self.angle, "voltage": voltage}
         shaker.initialize(**self.drive.parameters(), **starts, **more)
-        return Master(oscillator, shaker, Scheme(h))
+        if self.master is None:
+            self.master = Master(oscillator, shaker, Scheme(h))
+        else:
+            self.master.scheme = Scheme(h)
+            self.master.begin()
+        return self.master
+
+    def close(self) -> None:
+        """Free what was saved of both FMUs."""
+        if self.master is not None:
+            self.master.close()
 
     def begin_period(self, unknowns: Floats) -> tuple[Master, float]:
         """Initialise both FMUs at a period's start; return master and voltage, V."""
@@ -176,9 +184,7 @@ class Shooter:
             self.drive = own_drive
         self.angle = master["angle"] % TURN
         self.begin_together(self._touching(master) or self.structure.bonded)
-        state_at_end = self.scaled_state(master)
-        master.close()
-        return state_at_end
+        return self.scaled_state(master)
 
     def _touching(self, master: Master) -> bool:
         """Return whether the masses of a delaminated structure are in contact."""
@@ -193,9 +199,7 @@ class Shooter:
             raise NoConvergenceError(str(error)) from None
         turned = master["angle"] - self.angle - self.turns * TURN
         end = np.append(self.scaled_state(master), turned)
-        apart = self.together and master.motion.x_rel > 0.0
-        master.close()
-        if apart:
+        if self.together and master.motion.x_rel > 0.0:
             raise NoConvergenceError("the masses are apart at the end of a period")
         contact = bool((kept["x_rel"] == 0.0).any())
         return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
@@ -204,7 +208,6 @@ class Shooter:
         """Simulate one period; return its amplitude, impacts and best start."""
         master, voltage = self.begin_period(unknowns)
         record = master.run([voltage] * self.count)
-        master.close()
         impacts = int(self.fmus[0].get("impact_count")[0])
         reached = range_of_mass(self.structure, record)
         amplitude = 0.5 * float(reached.high.max() - reached.low.min())
@@ -235,9 +238,7 @@ class Shooter:
         master.run([voltage] * steps)
         self.angle = master["angle"] % TURN
         self.begin_together(together)
-        shifted = np.append(self.scaled_state(master), unknowns[-2:])
-        master.close()
-        return shifted
+        return np.append(self.scaled_state(master), unknowns[-2:])
 
     # -- the equations --
 
