@@ -303,6 +303,8 @@ class Master:
             (self.drive.channel, self.pair.drive.fmi),
         )
         for channel, side in sides:
+            if not (side.status or side.warned or channel.answer.terminate):
+                continue
             if side.warned:
                 channel.instance.check("the step", WARNING)
                 side.warned = 0
