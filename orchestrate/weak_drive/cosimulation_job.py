@@ -63,8 +63,6 @@ Values = tuple[tuple[str, float | bool], ...]
 class Coupling(Run):
     """Both FMUs of a job, stepped together at its step or a part of it."""
 
-    inputs: Inputs
-
     def __init__(
         self,
         job: CosimulateJob,

@@ -23,7 +23,7 @@ from ..model.drive import Drive
 from ..model.structure import Structure
 from ..running.job import Fmus, Job, Table
 from .controllers import Controller
-from .inputs import MotorVoltage, StepInputs
+from .inputs import Input, Inputs, Supply
 from .master import Master, Scheme
 from .revolutions import Revolutions
 from .schedule import Schedule
@@ -47,7 +47,7 @@ def state_rows(table: Table, rows: slice) -> Table:
 class Run:
     """Step both FMU instances of a master; save and restore all that goes on."""
 
-    def __init__(self, master: Master, inputs: StepInputs, **counted: Any) -> None:
+    def __init__(self, master: Master, inputs: Inputs, **counted: Any) -> None:
         # what is counted is read and set by `get_state` and `set_state`, as numbers
         self.master, self.inputs = master, inputs
         self.oscillator, self.drive = master.oscillator.instance, master.drive.instance
@@ -148,9 +148,12 @@ class MotorRun(Run):
     def __init__(self, job: MotorJob, oscillator: Instance, shaker: Instance) -> None:
         self.job, self.revolutions = job, Revolutions(job.structure)
         oscillator.initialize(**oscillator_start(job.structure))
-        voltage = job.schedule.voltage(0.0)
-        shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
-        inputs = MotorVoltage(job.schedule, job.control, job.speed_start)
+        voltage: Input = job.schedule.course
+        if job.control:
+            voltage = Supply(job.schedule.course, job.control, job.speed_start)
+        inputs = Inputs([("voltage", voltage)], shaker.description)
+        own = {"speed_start": job.speed_start, "voltage": job.schedule.voltage(0.0)}
+        shaker.initialize(**job.drive.parameters(), **own)
         master, balance = Master(oscillator, shaker, job.scheme), self.revolutions.balance
         super().__init__(master, inputs, balance=balance, revolution=self.revolutions)
 
