@@ -80,6 +80,10 @@ def test_exponents_along_a_sweep(ask, folder):
 TRIVIAL = [
     (("simulate", "--eta", "1", "--set", "kappa=1"), "both oscillators are alike"),
     (("sweep", "--eta", "1.2", *SHORT), "one value, eta = 1.2: a table and no picture"),
+    (
+        ("resonance", "--eta", "1.2", *SHORT),
+        "bonded up  bonded down  delaminated up  delaminated down  unit\n  xi_rel_max",
+    ),
     (("sweep", "--eta", "2:2.1:0.05", "--direction", "both", "--samples", "8"), "gap nowhere"),
     (("resonance", "--eta", "0.3:0.4:0.05", *SHORT), "no peak in this range"),
     (
