@@ -366,8 +366,8 @@ def parse_single_number(option: str, text: str) -> float:
     values, _ = parse_values(option, text)
     if len(values) != 1:
         raise InputError(
-            f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2 (sweep varies "
-            f"one parameter, map two, resonance also the level){with_point(text)}"
+            f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2 (sweep "
+            f"varies one parameter, map two, resonance also the level){with_point(text)}"
         )
     return values[0]
 
