@@ -69,6 +69,10 @@ KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of optio
     "array_like": (float, "X"),
 }
 NEEDED = " (needed)"
+SAID = {  # for options of ours
+    **{"--gravity": "--box-acceleration -1g", "--level": "--g", "--g-rms": "--g", "--rms": "--g"},
+    **{"--freq": "--hz", "--force": "--force1", "--csv": "--format csv", "--out": "--output"},
+}
 OF_BOX = ("eta", "frequency", "amplitude", "level")
 READERS: dict[Any, Callable[[str, str], Any]] = {int: read_int, float: read_float}
 STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *SET_NAMES)
@@ -391,4 +395,6 @@ def suggestion(flag: str, error: UnknownOptionError, command: type[Command]) -> 
         after = words[words.index(flag) + 1 :] if flag in words else []
         return f"; did you mean --set {name}={''.join(after[:1]) or 'VALUE'}?"
     near = closest(flag, command.flags()) if flag.startswith("--") else ""
+    if (said := SAID.get(flag, "")).partition(" ")[0] in command.flags():
+        near = said
     return f"; did you mean {near}?" if near else ""

@@ -60,7 +60,8 @@ SENSOR = (
     "accélération|acelerometro|acelerómetro|accelerometro|geber|ch|channel|kanal)?"
 )
 BASE = (
-    "(?:base|basis|box|table|tisch|schwingtisch|shaker|shakertable|erreger|aufnahme|fixture|clamp|"
+    "(?:base|basis|box|table|tisch|schwingtisch|shaker|shakertable|shakerhead|armature|ref|control|"
+    "input|steuersensor|erreger|aufnahme|fixture|clamp|"
     "einspannung|fuß|fuss|socle|embase|mesa|tavola|slip|sliptable|excitation|reference|referenz)"
 )
 FACE = "(?:face|mass|masse|fläche)"
@@ -74,7 +75,7 @@ FORCE = (
 NUMBERED = f"(?:a|acc|accel|acceleration|beschleunigung|{SENSOR}{FACE})"
 NAMES = {
     "time": "time|t|zeit|temps|tiempo|tempo|timestamp|xvalue|zeitachse",
-    "box_acceleration": f"{SENSOR}{BASE}{SENSOR}[xyz]?",
+    "box_acceleration": rf"{SENSOR}\d*{BASE}{SENSOR}[xyz]?",
     "acceleration1": f"{NUMBERED}1{SENSOR}[xyz]?|{SENSOR}{BEAM}{SENSOR}[xyz]?",
     "acceleration2": f"{NUMBERED}2{SENSOR}[xyz]?",
     "force1": f"{FORCE}1?",  # that has no number is on the first half
@@ -85,6 +86,9 @@ RATIO = "(?:transmissibility|ratio|response|magnitude)"
 SWEPT = "f|hz|freq|frequenz|frequency"
 WORDS = r"[^\W\d_]{3,}.*|.*\w \w.*"  # in parentheses, hardly a unit: shaker head, SN 4711
 HEADING = re.compile(r"(?P<name>.*?)[\s_/]*[\[(](?P<unit>[^\[\]()]*)[\])]")
+SUFFIX = re.compile(  # as the last word: LDV mm/s, acc_base_g, time_ms
+    r"(?P<name>.*?\w)[\s_]+(?P<unit>g|m?s|[u\u00b5]s|[mu\u00b5]m|m?m/s(\^?2|\u00b2)?|(?<=_)(m?V|k?N)|mV|kN)"
+)
 QUOTIENT = re.compile(r"(?P<name>.+?)(?:\s*[/,]\s*|\s+in\s+)(?P<unit>.*\D.*|-)")
 TEXTS = {  # what a field is that is no number
     "a clock time": r"\d{1,2}:\d\d(:\d\d([.,]\d+)?)?",
@@ -150,6 +154,7 @@ def split_heading(heading: str) -> tuple[str, str]:
     parts = HEADING.fullmatch(plain)
     if parts and re.fullmatch(WORDS, parts["unit"]) and not is_unit(parts["unit"]):
         return plain, ""  # a place or a sensor
+    parts = parts or SUFFIX.fullmatch(plain)
     if parts is None and (quotient := QUOTIENT.fullmatch(plain)) and is_unit(quotient["unit"]):
         parts = quotient
     return (plain, "") if parts is None else (parts["name"].strip(), parts["unit"].strip())
@@ -192,26 +197,25 @@ class Assignment:
             return
         proposed = {n: i for n, i in self.places.items() if self.known[n] == BY_ORDER}
         said = [f'"{table.columns[i].name}" as {SHORT_NAMES[n]}' for n, i in proposed.items()]
-        rest = unread_columns(table, self.places)
-        unread = [f'"{table.columns[i].name}"' for i in rest]
+        unread = [f'"{table.columns[i].name}"' for i in unread_columns(table, self.places)]
         texts = [f"read {BY_ORDER}: {', '.join(said)}" if said else ""]
         texts += [f"not read: {', '.join(unread)}" if unread else ""]
         if text := "; ".join(filter(None, texts)):
             text = f"{table.path}: {text}; {option} says which column is which"
-            text += self.proposal(table, rest) if unread else ""
+            text += self.proposal(table) if unread else ""
             warnings.warn(text, UserWarning, stacklevel=5)
 
-    def proposal(self, table: Columns, rest: Sequence[int]) -> str:
+    def proposal(self, table: Columns) -> str:
         """Return the arguments that read the columns left as the faces, or the base, missing."""
         missing = [name for name in list(CHANNELS)[:3] if name not in self.places]
-        new = dict(zip(missing, rest, strict=False))
+        new = dict(zip(missing, unread_columns(table, self.places), strict=False))
         names = [column.name for column in table.columns]
         unique = {i: name if names.count(name) == 1 else i for i, name in enumerate(names)}
         places = {name: i for name, i in (self.places | new).items() if name != "time"}
         columns = option_of([*places], {n: str(unique[i]) for n, i in places.items()})
         bare = [name for name, i in places.items() if not table.columns[i].unit]
-        text = f", such as channels={columns}" if new else ""
-        return text + (f" with unit={option_of(bare, {})}" if new and bare else "")
+        unit = f" with unit={option_of(bare, {})}" if bare else ""
+        return f", such as channels={columns}{unit}" if new else ""
 
 
 @dataclass(frozen=True)
@@ -357,9 +361,10 @@ def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
         numbers = sorted({0, *numbers})  # a time that is a text is refused later
     else:
         numbers = [i for i in numbers if not ascends(table.columns[i].values)]
-    names = [table.columns[i].name.lower() for i in numbers]
+    names = (table.columns[i].name.lower() for i in numbers)
     stems = [name[:-1] for name in names if name.endswith(("x", "y", "z"))]
-    expected = "expected channels=, which of them are time and channels"
+    some = dict(zip(wanted, (one.name for one in table.columns), strict=False))
+    expected = f"expected channels=, such as channels={option_of(wanted[:3], some)}"
     if len(stems) > len(set(stems)):
         text = f"directions of one sensor among the columns {column_names(table)}"
         raise InputError(f"{table.path}: {text}; {expected}")

@@ -222,6 +222,9 @@ SYNTAX = """
     sweep --direction sideways : --direction sideways | up
     explore a.nc b.nc : b.nc: no option of explore
     resonance my.toml : my.toml: no option of resonance; did you mean --structure my.toml?
+    sweep --gravity 9.81 : --gravity: no option of sweep; did you mean --box-acceleration -1g?
+    shake --g-rms 1 : did you mean --g?
+    couple --level 1 : --level: no option of couple
     simulate beam : beam: no option of simulate; did you mean --structure beam?
     build --folder : --folder | expected one value
     resonance --direction given : --direction given | both
