@@ -54,7 +54,6 @@ class PassageJob(couple.CoupleJob):
     asked: ClassVar[str] = "passage"
     around: float | None = None  # time before and after each jump that is kept, s; else all
 
-    chunk_size: ClassVar[int] = 10_000
     item_columns: ClassVar[tuple[str, ...]] = tuple(KEPT + name for name in SAMPLES)
 
     def rows(self, run: MotorRun, steps: range) -> Table:
