@@ -46,8 +46,6 @@ class CoupleJob(MotorJob):
     asked: ClassVar[str] = "couple"
     hysteresis: HysteresisSettings = field(default_factory=HysteresisSettings)
 
-    chunk_size: ClassVar[int] = 4_000
-
     def run_here(self, fmus: Fmus) -> Table:
         """Run all chunks one after the other in this process and join their tables."""
         *chunks, _ = self.chunks()

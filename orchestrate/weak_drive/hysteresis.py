@@ -89,8 +89,8 @@ class Jump(NamedTuple):
     after: float = math.nan
 
 
-class VoltageHolder:
-    """Restore states of a past ramp and hold voltages from there until speeds settle."""
+class HysteresisLoop:
+    """Decide where a course of held voltages loses its motion, from states of a past ramp."""
 
     def __init__(
         self,
@@ -182,9 +182,7 @@ class VoltageHolder:
         finally:
             run.master.close()
 
-
-class HysteresisLoop(VoltageHolder):
-    """Decide where a course of held voltages loses its motion."""
+    # -- the rule --
 
     def decide(self, record: RampRecord) -> list[Jump]:
         """Return all jumps of a run in one direction, by their voltages."""
