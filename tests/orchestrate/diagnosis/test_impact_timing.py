@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 
 from orchestrate.diagnosis import impact_timing
-from orchestrate.diagnosis.impact_timing import TIMING, Strikes, strikes, strikes_at, timed_power
+from orchestrate.diagnosis.impact_timing import (
+    TIMING,
+    Strikes,
+    stiffness_growth,
+    strikes,
+    strikes_at,
+    timed_power,
+)
 from orchestrate.diagnosis.order_windows import checked_channels
 from tests.benches import recipe
 from tests.benches.strikers import STRIKERS
@@ -93,6 +100,35 @@ def timed(kind, seed, sensors=1):
     masses, turns = np.array([guess.m1, guess.m2]), np.array([truth.f1, truth.f2])
     shut = math.sqrt((masses * turns**2).sum() / masses.sum()) * rng.uniform(0.97, 1.03)
     return strikes(checked_channels(case.record), shut)
+
+
+def windows(part=0.5, growth=0.2, count=60):
+    """Order 1 of a mass whose stiffness has grown in ten windows about its resonance of 1 rad/s."""
+    turns, loud = np.linspace(0.5, 1.6, count), np.arange(count) // 10 == 2
+    stroke = -1.0 / (1.0 + growth * loud - turns**2 + 0.02j * turns)
+    return np.array([-part * turns**2 * stroke, np.ones(count), part * stroke]), loud
+
+
+@pytest.mark.parametrize("quiet", [0, 7, 8, 50])
+def test_a_stiffness_that_grows_is_told_from_a_participation(quiet):
+    """From where nothing strikes, or where little moves; and from shut faces 10 % higher."""
+    motion, loud = windows()
+    still = np.flatnonzero(~loud)[:quiet] if quiet < 50 else ~loud
+    mask = np.zeros(60, bool)
+    mask[still] = True
+    rest, known = stiffness_growth(motion, loud, mask, 1.1)
+    assert rest[loud] == pytest.approx(0.2, abs=0.03) and abs(rest[~loud]).max() < 0.03
+    assert known[loud] == pytest.approx(1.2 / 1.21 - 1.0, abs=0.03)
+    assert len(stiffness_growth(motion, loud, mask, math.nan)) == 1
+
+
+def test_beams_of_other_frequencies_have_the_same_numbers():
+    """Six milliseconds were a fifteenth of a period at 12 Hz: blows were not told as opposite."""
+    channels = checked_channels(recipe.draw(np.random.default_rng(5), "delaminated").record)
+    slow = replace(channels, time=4.0 * channels.time, sample_rate=0.25 * channels.sample_rate)
+    expected, found = strikes(channels, 45.0), strikes(slow, 11.25)
+    assert expected.heard > 20.0
+    assert list(vars(found).values()) == pytest.approx([*vars(expected).values()], nan_ok=True)
 
 
 OTHERS = ["sound", "crack", "play", "fixture", "bearing", "washer"]
