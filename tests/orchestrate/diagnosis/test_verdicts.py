@@ -40,7 +40,7 @@ nothing strikes, no order 2: heard=1.5 excess=0.3 -> no opening seen
 the same, by two sensors that differ: heard=1.5 excess=0.3 apart=4 -> undecided
 something faint: heard=5 excess=0.3 -> undecided
 order 2, and nothing strikes, as of a crack: heard=1.5 -> undecided
-where it strikes does not move: spread=0.1 -> undecided
+it stiffens with the stroke: stiffens=0.8 -> undecided
 the resonance is not known: stiffness=nan -> undecided
 the base strikes: base=30 -> not described
 dry friction: locked=0.3 -> not described
@@ -57,7 +57,7 @@ less than twice the level says nothing: stiffness=nan | high=5 stiffness=nan -> 
 one record is saturated: clipped=0.01 | -> delaminated
 nothing at both levels: heard=1.5 excess=0.3 | heard=1.5 excess=0.3 high=8 -> no opening seen
 what knows no frequency does not contradict: | stiffness=nan -> delaminated
-the base strikes, or a stop: base=30 | spread=0.1 -> undecided
+the base strikes, or a stop: base=30 | stiffens=0.8 -> undecided
 kinks: blow=0.05 -> not described
 """  # what is changed of a record in which faces strike, or of several -> their verdict
 
@@ -118,7 +118,7 @@ def test_the_level_from_which_faces_strike_is_stated():
     assert math.isnan(Beam((QUIET,)).opening_level)
     against = Beam((OPENED, replace(QUIET, high=8.0, displacement=2e-3)))
     assert "contradicts: nothing heard" in against.reason()
-    stop = replace(OPENED, strikes=replace(FACES, spread=0.1))
+    stop = replace(OPENED, strikes=replace(FACES, stiffens=0.8))
     for records, second in (((stop,), True), ((stop, replace(stop, high=8.0)), False)):
         advice = Beam(records).next_measurement()
         assert "other face" in advice and ("twice the level" in advice) == second
