@@ -56,7 +56,7 @@ class OrderWindows:
     # each order n, NaN above 0.45 of the sampling rate. The phase is that of the base: its own
     # order 1 has theta = 0
     solutions: tuple[Complexes, ...]
-    sample_rate: float  # hz
+    sample_rate: float  # Hz
     samples: int  # of the record
 
     def __len__(self) -> int:

@@ -29,7 +29,7 @@ class Channels:
     """Acceleration channels of a record as one array."""
 
     time: Floats  # s
-    sample_rate: float  # hz
+    sample_rate: float  # Hz
     names: tuple[str, ...]  # of `CHANNELS`
     values: Floats  # m/s2
     title: str  # of the record
