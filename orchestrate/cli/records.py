@@ -44,8 +44,10 @@ and others; complete it by e and clearance."""
             raise InputError(f"{self.records[-1]}: {text}")
         if len(records) == 2 and all("force1" in one and "force2" not in one for one in records):
             print(f"{self.records[1]}: taken for knocks on half 2, as the second record")
-            names = {name: str(name).replace("1", "2") for name in records[1] if "1" in str(name)}
-            records[1] = records[1].rename(names)
+            names = {"force1": "force2", "acceleration1": "acceleration2"}
+            if "acceleration2" in records[1]:  # both faces are measured
+                del names["acceleration1"]
+            records[1] = records[1].rename({n: new for n, new in names.items() if n in records[1]})
         try:
             fits = halves(*records, **self.keywords())
         except InputError as error:
