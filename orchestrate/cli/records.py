@@ -78,8 +78,9 @@ class Channels(InColumns, Reading, Command):
     examples = """
   {program} channels run.csv
   {program} channels run.csv --channels base=Table,face1=3 --unit face1=g --output setup.toml
-  {program} diagnose run.csv --channels setup.toml
-Where the channels cannot be read as they are, the last line says what is missing."""
+  {program} channels run.csv --channels setup.toml
+diagnose, analyse and others take --channels setup.toml too. Where the channels cannot be read as
+they are, the last line says what is missing."""
 
     def __call__(self) -> None:
         from .. import channels
