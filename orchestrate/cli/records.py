@@ -44,8 +44,10 @@ and others; complete it by e and clearance."""
             raise InputError(f"{self.records[-1]}: {text}")
         if len(records) == 2 and all("force1" in one and "force2" not in one for one in records):
             print(f"{self.records[1]}: taken for knocks on half 2, as the second record")
-            names = {name: str(name).replace("1", "2") for name in records[1] if "1" in str(name)}
-            records[1] = records[1].rename(names)
+            names = {"force1": "force2", "acceleration1": "acceleration2"}
+            if "acceleration2" in records[1]:  # both faces are measured
+                del names["acceleration1"]
+            records[1] = records[1].rename({n: new for n, new in names.items() if n in records[1]})
         try:
             fits = halves(*records, **self.keywords())
         except InputError as error:
@@ -76,8 +78,9 @@ class Channels(InColumns, Reading, Command):
     examples = """
   {program} channels run.csv
   {program} channels run.csv --channels base=Table,face1=3 --unit face1=g --output setup.toml
-  {program} diagnose run.csv --channels setup.toml
-Where the channels cannot be read as they are, the last line says what is missing."""
+  {program} channels run.csv --channels setup.toml
+diagnose, analyse and others take --channels setup.toml too. Where the channels cannot be read as
+they are, the last line says what is missing."""
 
     def __call__(self) -> None:
         from .. import channels
