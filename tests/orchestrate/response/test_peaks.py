@@ -68,8 +68,3 @@ def test_against_dense_communication_points(structure, eta):
     ratios = results.peaks[0] / expected
     assert (ratios >= 1.0 - 1e-12).all()
     assert (ratios <= 1.0 + step**2 / 4.0 + 1e-12).all()
-
-
-@pytest.mark.parametrize(("multiplicity", "periods"), [(0, 4), (1, 1), (3, 3), (20, 8)])
-def test_periods_looked_at(multiplicity, periods):
-    assert periods_to_sample(multiplicity, 8) == periods

@@ -117,14 +117,6 @@ def test_ends_are_rounded(instance, scale):
     assert round_state(np.array([0.25, 0.3, 1.0, -1.0])) == (0.25, 0.30000000000001137, 1.0, -1.0)
 
 
-def test_what_the_fmu_refuses_is_its_own_message(instance):
-    (point,) = points(7, 1)
-    with pytest.raises(FmuError, match="x1_start = nan"):
-        response_loop(instance).respond(
-            [point], [(np.nan, 0.0, 0.0, 0.0)], LoopSettings(transient=5, samples=3)
-        )
-
-
 def test_structures_have_the_sizes_of_the_source():
     """A field forgotten on one side would shift all that follow."""
     sizes = (ctypes.c_uint * 3).in_dll(library(), "sizes_of_respond")
