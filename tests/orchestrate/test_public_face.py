@@ -13,6 +13,7 @@ import xarray as xr
 import orchestrate
 from orchestrate import Drive, InputError, Structure
 
+from ..exports import once
 from .laboratory.analysis.records import analyses
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -79,9 +80,9 @@ def questions() -> dict[str, xr.Dataset]:
 
 
 @pytest.fixture(scope="module")
-def answers(exported) -> dict[str, xr.Dataset]:
+def answers(exported, tmp_path_factory) -> dict[str, xr.Dataset]:
     """The answers to ``questions``."""
-    return questions()
+    return once(tmp_path_factory, "answers", questions)
 
 
 def test_every_name_is_there():

@@ -47,14 +47,6 @@ def test_a_record_has_units_names_and_its_rate():
     assert data.time.attrs["units"] == "s"
 
 
-def test_times_with_few_digits_are_even():
-    time = np.round(np.arange(20_000) / 25_600.0, 6)
-    data = record(time=time, acceleration1=np.sin(time), sample_rate=25_600.0)
-    assert data.attrs["sample_rate"] == 25_600.0
-    alone = record(time=time, acceleration1=np.sin(time))
-    assert alone.attrs["sample_rate"] == pytest.approx(25_600.0, rel=1e-5)
-
-
 def five_digits(count=12_000, rate=1024.0):
     time = np.arange(count) / rate
     return np.array([float(f"{one:.5g}") for one in time]), np.sin(300.0 * time)

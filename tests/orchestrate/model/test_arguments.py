@@ -8,7 +8,7 @@ import pytest
 import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
-from orchestrate.model.arguments import MAX_COUNT, checked_integer, checked_numbers
+from orchestrate.model.arguments import MAX_COUNT, checked_integer
 from orchestrate.model.structure import Structure
 from orchestrate.running.options import RunOptions
 
@@ -82,10 +82,6 @@ def test_masked_entries_are_refused(name, ask):
     text = rf"{name}: 1 of \d entries are masked; expected all to be numbers"
     with pytest.raises(InputError, match=text):
         ask()
-
-
-def test_a_mask_that_hides_nothing_is_no_matter():
-    assert checked_numbers("eta", np.ma.array([0.9, 1.0], mask=[0, 0])) == (0.9, 1.0)
 
 
 def test_words_of_one_flag_and_of_many():
