@@ -105,7 +105,6 @@ def test_the_physical_form_is_the_same_orbit_in_metres():
 @pytest.mark.parametrize(
     ("question", "words"),
     [
-        ({"eta": 4.0, "period": 0}, "period = 0"),
         ({"eta": [1.0, 2.0]}, "eta: 2 values"),
         ({}, "excitation"),
         ({"eta": 4.0, "period": 1, "guess": {"time": [1.0]}}, "guess"),
