@@ -11,11 +11,7 @@ from scipy.linalg import expm
 
 from orchestrate.dynamics.closed_form import FREE, INNER, ClosedForm
 from orchestrate.dynamics.following import follow_impacts
-from orchestrate.dynamics.variational import (
-    contact_durations,
-    deviations,
-    period_in_tau,
-)
+from orchestrate.dynamics.variational import contact_durations, deviations, period_in_tau
 from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point

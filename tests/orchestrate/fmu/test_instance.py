@@ -62,8 +62,7 @@ def test_initialize_begins_at_a_time(any_fmu):
 
 
 @pytest.mark.parametrize(
-    "call",
-    [lambda i: i.get("gap"), lambda i: i.set(gap=1.0), lambda i: i.read("x1", "gap")],
+    "call", [lambda i: i.get("gap"), lambda i: i.set(gap=1.0), lambda i: i.read("x1", "gap")]
 )
 def test_a_variable_that_is_not_there(instance, call):
     with pytest.raises(InputError, match="variable gap: the FMU TwoMassImpactOscillator has none"):
