@@ -346,12 +346,6 @@ def circles(graph: dict[str, set[str]]) -> list[set[str]]:
     return [set(group) for group in groups]
 
 
-def test_the_finder_of_circles():
-    graph = {"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set(), "e": {"a", "d"}}
-    assert circles(graph) == [{"b", "c"}]
-    assert circles({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == []
-
-
 def test_no_files_import_each_other_in_a_circle():
     graph = {file: imported_files(file) for file in FILES}
     assert "orchestrate/errors.py" in graph["orchestrate/cli/__init__.py"]
@@ -371,11 +365,6 @@ def test_a_kernel_imports_math_and_its_own_modules_alone():
         if file.startswith("fmu_src/kernels/"):
             names = imports_of(file)
             assert all(n == "math" or n.startswith("fmu_src.kernels.") for n in names), file
-
-
-def test_the_build_folder_is_no_package():
-    assert (ROOT / "build").is_dir()
-    assert not list((ROOT / "build").glob("*.py"))
 
 
 def definitions(tree: ast.AST) -> Iterator[ast.AST]:
@@ -439,34 +428,6 @@ def test_modules_classes_and_the_public_face_have_docstrings():
     expect_none(bare)
 
 
-EMPTY_WORDS = {
-    *("return", "returns", "the", "a", "an", "of", "in", "at", "to", "for", "and"),
-    *("or", "that", "is", "are", "as", "it", "its", "with", "by", "on", "from", "this"),
-}
-
-
-def stems(text: str) -> set[str]:
-    """Words of a text or of a name, without their endings."""
-    words = re.findall(r"[a-z0-9]+", re.sub(r"([A-Z])", r" \1", text).lower())
-    bare = (
-        re.sub(r"(ies|y|ing|ed|es|s|e)$", "", word) for word in words if word not in EMPTY_WORDS
-    )
-    return {re.sub(r"(.)\1$", r"\1", word) for word in bare}
-
-
-def test_no_docstring_repeats_its_name():
-    """Names, arguments and types say it already; punctuation adds a unit or a condition."""
-
-    def repeats(file):
-        nodes = [n for n in definitions(tree_of(file)) if isinstance(n, FUNCTIONS)]
-        texts = [(n, ast.get_docstring(n) or "") for n in nodes if n.name not in PUBLIC]
-        short = [(n, text) for n, text in texts if text and not re.search(r"[\n;,:`\"()=]", text)]
-        known = {n: stems(f"{n.name} {ast.unparse(n.args)}") for n, _ in short}
-        return [n.name for n, text in short if not stems(text) - known[n]]
-
-    expect_none(repeats)
-
-
 def described(docstring: str | None) -> list[str] | None:
     """Names in the ``Parameters`` section of a numpydoc docstring, None without one."""
     lines = (docstring or "").splitlines()
@@ -509,35 +470,6 @@ def taken(node: ast.AST) -> list[str]:
 
 FACE = (ROOT / "orchestrate" / "__init__.pyi").read_text(encoding="utf-8")
 PUBLIC = set(re.findall(r" as (\w+)$", FACE, re.MULTILINE)) | {"Running", "ExcitationSignal"}
-SECTION = re.compile(r"^(Parameters|Attributes|Returns|Yields|Raises)\n-{3,}", re.MULTILINE)
-PUBLIC_MODULES = {
-    "errors",
-    "model/structure_numbers",
-    "units",
-    "running/formats",
-    "running/options",
-}
-
-
-def test_blocks_of_numpydoc_are_for_the_public_face():
-    """Internal docstrings are sentences; the meaning and unit of a field are comments."""
-    kinds = (*FUNCTIONS, ast.ClassDef)
-
-    def blocks(file):
-        inside = [node for node in tree_of(file).body if getattr(node, "name", None) not in PUBLIC]
-        nodes = [node for part in inside for node in ast.walk(part) if isinstance(node, kinds)]
-        return [node.name for node in nodes if SECTION.search(ast.get_docstring(node) or "")]
-
-    public = {f"orchestrate/{name}.py" for name in PUBLIC_MODULES}
-    expect_none(blocks, [f for f in FILES if not f.startswith("fmu_src/") and f not in public])
-
-
-def test_the_reader_of_docstrings():
-    text = (
-        "Idea.\n\nParameters\n----------\na, b : int\n    Two.\n*c : str\n\nReturns\n-------\nd\n"
-    )
-    assert described(text) == ["a", "b", "c"]
-    assert described("Idea.") is None
 
 
 def test_described_parameters_are_the_arguments():
@@ -548,45 +480,7 @@ def test_described_parameters_are_the_arguments():
     expect_none(wrong)
 
 
-ANNOTATED = [
-    file for file in FILES if file.startswith(("orchestrate/", "fmu_src/export/", "tools/"))
-]
-CLASS = re.compile(r"(?<![\w.])[A-Z][a-z]+[A-Za-z]*\b")  # but those of other packages, with a dot
 EXCITATIONS = {"SweptSine", "SteppedSine", "Random", "Shock", "Sampled", "Hammer"}  # public names
-
-
-def described_types(docstring: str | None) -> list[str]:
-    """Types in the sections of a numpydoc docstring: after a colon, or the line below Returns."""
-    lines = (docstring or "").splitlines()
-    types = [line.partition(" : ")[2] for line in lines if " : " in line]
-    heads = zip(lines, lines[1:], lines[2:], strict=False)
-    alone = [b for a, line, b in heads if a in ("Returns", "Yields") and line.startswith("---")]
-    return types + [line for line in alone if " : " not in line]
-
-
-def test_described_types_are_there():
-    """A class that was renamed is not named by its old name."""
-    known = {"None", "True", "False", "Dataset"} | EXCITATIONS
-
-    def missing(file):
-        texts = [ast.get_docstring(node) for node in definitions(tree_of(file))]
-        code = re.sub(r'"""[\s\S]*?"""', "", (ROOT / file).read_text(encoding="utf-8"))
-        lines = [line for text in texts for line in described_types(text)]
-        return (
-            {w for line in lines for w in CLASS.findall(line)} - known - {*re.findall(r"\w+", code)}
-        )
-
-    expect_none(missing, ANNOTATED)
-
-
-def test_every_function_is_annotated():
-    def is_bare(node):
-        given = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
-        named = [a for a in given if a.arg not in ("self", "cls")]
-        special = node.name.startswith("__") and node.name != "__init__"
-        return not special and (node.returns is None or any(a.annotation is None for a in named))
-
-    expect_none(lambda file: [n.name for n in functions_of(file) if is_bare(n)], ANNOTATED)
 
 
 PACKAGES = sorted(
@@ -612,50 +506,3 @@ def test_tables_of_modules_are_complete():
         there = {path.stem for path in folder.glob("*.py")} - {"__init__"}
         there |= {path.parent.name for path in folder.glob("*/__init__.py")}
         assert sorted(modules) == sorted(there)
-
-
-SAYS = {  # what an answer is -> words by which the first line of a docstring says so
-    "None": r"\bNone\b|\bnothing\b|\bif any\b",
-    "bool": r"\b[Ww]hether\b|\b(True|False)\b",
-    "tuple": r"[,;:]|\b(and|or|pairs?|both|two|four|three|states?|each|as|tuple)\b|s\b",
-}
-
-
-def answer_of(node: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
-    """Kind of answer that a first line has to name, by the annotation; empty for other kinds."""
-    returns = ast.unparse(node.returns) if node.returns is not None else ""
-    if returns.endswith(" | None"):
-        return "None"
-    return "bool" if returns == "bool" else "tuple" if returns.startswith("tuple[") else ""
-
-
-def first_lines(node: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
-    """Summary of a docstring, up to its first empty line."""
-    return (ast.get_docstring(node) or "").partition("\n\n")[0]
-
-
-def unsaid(nodes: Iterable[ast.FunctionDef | ast.AsyncFunctionDef]) -> dict[str, str]:
-    """First lines of docstrings that hide that there may be no answer, a flag, or several."""
-    every = [(node.name, answer_of(node), first_lines(node)) for node in nodes]
-    return {
-        name: line
-        for name, answer, line in every
-        if line and answer and not re.search(SAYS[answer], line)
-    }
-
-
-def test_the_reader_of_first_lines():
-    text = (
-        "def f() -> int | None:\n    'Return a number.'\n"
-        "def g() -> int | None:\n    'Return a number; None without one.'\n"
-        "def h() -> bool:\n    'Return the flag.'\n"
-        "def i() -> tuple[int, str]:\n    'Compute it.'\n"
-        "def j() -> tuple[int, str]:\n    'Compute it; return number and name.'\n"
-        "def k() -> int:\n    'Count.'\n"
-    )
-    assert list(unsaid(ast.parse(text).body)) == ["f", "h", "i"]
-
-
-def test_a_first_line_says_what_comes_back():
-    files = [file for file in ANNOTATED if not file.startswith("fmu_src/")]
-    expect_none(lambda file: unsaid(functions_of(file)), files)

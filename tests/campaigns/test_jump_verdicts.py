@@ -26,14 +26,7 @@ from orchestrate.errors import VibroimpactError
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import schedule_from_arguments
 from orchestrate.weak_drive.schedule import Course, Ramp
-from tests.draws import (
-    RATES,
-    System,
-    draw_with_folds,
-    ramp_ends,
-    scale_to_slope,
-    smallest_slope,
-)
+from tests.draws import RATES, System, draw_with_folds, ramp_ends, scale_to_slope, smallest_slope
 
 from .findings import expect_none
 

@@ -129,11 +129,7 @@ MISTAKES = [  # a model, what is done to a new instance, and what the message mu
     (MOTOR, lambda f: f.start(armature_resistance=-1.0), "armature_resistance = -1.0 Ohm; 1e-24"),
     (MOTOR, lambda f: f.start().set(rotor_inertia=1.0), "rotor_inertia = 1.0; fixed parameter"),
     (MOTOR, lambda f: f.start().set(speed=1.0), "speed = 1.0; output"),
-    (
-        MOTOR,
-        lambda f: f.start(rotor_inertia=1e-9),
-        "rotor_inertia = 1e-09 kg.m2; unbalance_mass = 0.025 kg; expected rotor_inertia >= ",
-    ),
+    (MOTOR, lambda f: f.start(rotor_inertia=1e-9), "rotor_inertia = 1e-09 kg.m2; unbalance_mass"),
     (
         MOTOR,
         lambda f: f.start(armature_inductance=1e-9, voltage=5.0).step(1.0),
@@ -144,25 +140,17 @@ MISTAKES = [  # a model, what is done to a new instance, and what the message mu
     (COIL, lambda f: f.start(table_mass=0.0), "table_mass = 0.0 kg; 1e-24 <= table_mass <= 1e+24"),
     (COIL, lambda f: f.start(voltage_limit=-5.0), "voltage_limit = -5.0 V; 0.0 <= voltage_limit"),
     (COIL, lambda f: f.start().set(command=math.nan), "command = nan V; -1e+30 <= command"),
-    (
-        COIL,
-        lambda f: f.start(position_start=-0.02, travel_limit=0.01),
-        "position_start = -0.02 m; within travel_limit = 0.01 m",
-    ),
+    (COIL, lambda f: f.start(position_start=-0.02, travel_limit=0.01), "position_start = -0.02"),
     (
         COIL,
         lambda f: f.start(current_start=3.0, current_limit=2.0, coil_inductance=0.01),
         "current_start = 3.0 A; within current_limit = 2.0 A",
     ),
-    (
-        COIL,
-        lambda f: f.start(command=40.0, travel_limit=0.01).step(2.0),
-        "box_position = 0.01;  m at time = 0.0; time = 2.0 s; travel_limit = 0.01 m",
-    ),
+    (COIL, lambda f: f.start(command=40.0, travel_limit=0.01).step(2.0), "box_position = 0.01"),
     (
         COIL,
         lambda f: f.start(coil_inductance=1e-9, command=5.0).step(1.0),
-        "coil_inductance = 1e-09 H; expected 0 H; cannot finish; reached 0.0 s",
+        "1e-09 H; cannot finish",
     ),
 ]
 

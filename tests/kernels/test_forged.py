@@ -6,10 +6,14 @@ An index out of range, a division by zero and a floor of no number are exception
 
 import itertools
 import math
+import operator
 import random
 
 import pytest
 
+from fmu_src.kernels.electrodynamic_shaker import memory as coil
+from fmu_src.kernels.motor_shaker import memory as shaker
+from fmu_src.kernels.oscillator import memory as oscillator
 from fmu_src.models.electrodynamic_shaker.model import MODEL as COIL
 from fmu_src.models.motor_shaker.model import MODEL as MOTOR
 from fmu_src.models.oscillator.model import MODEL as OSCILLATOR
@@ -38,6 +42,11 @@ RUNS = {  # flight, contact, chattering, a resonance, a cubic, preload; limits o
         (COIL, {"command": 9.0, "coil_inductance": 0.02, "current_limit": 1.0}),
         (COIL, {"command_1": 9.0, "voltage_limit": 5.0, "current_control": 1.0}),
     ],
+}
+DERIVED = {
+    "oscillator": range(oscillator.OMEGA, oscillator.SEGMENT_INPUTS),
+    "motor": [shaker.UNBALANCE],
+    "coil": range(coil.VOLTAGE_SPACING, coil.BEGIN),
 }
 
 
@@ -80,6 +89,8 @@ def run_on(draw, model, m):
         for entry in (model.coast, model.refresh, model.advance, model.differentiate):
             if entry and entry(m, reached + more):
                 m[:] = before
+            elif entry == model.advance:
+                assert all(math.isfinite(m[v.slot]) for v in model.variables if v.calculated)
     return True
 
 
@@ -110,3 +121,17 @@ def test_no_loop_and_no_index_is_bounded_by_a_number_out_of_its_range(kind):
                 refused = hidden_problem(model, other)
                 assert bool(refused) != row.has(value)
                 assert not refused or f"slot {row.first}" in refused
+
+
+@pytest.mark.parametrize("kind", RUNS)
+def test_what_is_derived_is_not_read(kind):
+    model, values = RUNS[kind][1]
+    (m,) = saved(model, values, [0.3])
+    spoilt = list(m)
+    for slot in DERIVED[kind]:
+        spoilt[slot] = 1.5 * m[slot] + 1.0
+        if hidden_problem(model, spoilt):  # of a fixed range
+            spoilt[slot] = m[slot]
+    assert sum(map(operator.ne, m, spoilt)) > 0.7 * len(DERIVED[kind])
+    assert model.restore(spoilt, 0.0) == 0
+    assert all(m[slot] == spoilt[slot] for slot in DERIVED[kind])

@@ -14,6 +14,7 @@ import resource
 import shutil
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import hypothesis  # noqa: F401  # what the forks share
@@ -96,15 +97,16 @@ def rows_of(table):
         return {(row["line"], row["broken"]): row for row in csv.DictReader(file)}
 
 
-def break_module(module, table, budget, seed, again, thresholds):
-    """Break a module in as many ways as the budget has, and write the table after each."""
+def break_module(module, table, budget, seed, seconds, again, thresholds):
+    """Break a module in as many ways as budget and time allow, and write the table after each."""
+    begun = time.monotonic()
     tests, chosen = SUBJECTS[module], breakages((ROOT / module).read_text())
     known = {(one.text, one.broken) for one in chosen}
     if thresholds:
         chosen = [one for one in chosen if one.threshold]
     before = {key: row for key, row in rows_of(table).items() if key in known}
     if budget and budget < len(chosen):
-        chosen = sorted(random.Random(seed).sample(chosen, budget))
+        chosen = random.Random(seed).sample(chosen, budget)
     token = digest(tests)
     with tempfile.TemporaryDirectory() as home:
         folder = Path(home).resolve()
@@ -125,7 +127,10 @@ def break_module(module, table, budget, seed, again, thresholds):
             result = NOTICED if failed else SURVIVED
             before[key] = dict(zip(COLUMNS, (*key, result, token, by), strict=True))
             write(table, before.values())
-    return [before[one.text, one.broken]["outcome"] for one in chosen]
+            if seconds and time.monotonic() - begun > seconds:
+                break
+    keys = [(one.text, one.broken) for one in chosen]
+    return [before[key]["outcome"] for key in keys if key in before]
 
 
 def write(table, rows):
@@ -145,6 +150,7 @@ def main():
     parser.add_argument("table", type=Path)
     parser.add_argument("--budget", type=int, default=0, help="breakages; 0: all")
     parser.add_argument("--seed", type=int, default=1, help="of the choice")
+    parser.add_argument("--seconds", type=float, default=0.0, help="at most; 0: any")
     parser.add_argument("--again", action="store_true", help="ask all survivors again")
     parser.add_argument("--thresholds", action="store_true", help="fields of Settings alone")
     asked = vars(parser.parse_args())

@@ -28,9 +28,7 @@ def test_the_binary_has_no_instruction_beyond_the_baseline(fmus, tmp_path):
 
 
 def test_the_compiler_s_first_error_is_one_line():
-    with pytest.raises(
-        CannotExport, match="the C compiler failed for x86_64-.*error:.*nothing"
-    ) as e:
+    with pytest.raises(CannotExport, match="the C compiler failed for") as e:
         kernel_object("x86_64-linux", b"int kernel_advance(void) { return nothing; }")
     assert "\n" not in str(e.value)
 

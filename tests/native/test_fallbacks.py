@@ -88,15 +88,3 @@ def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(
     own = importers.Importer(importer_of("fmi3").program, binary, "fmi3")
     expected = importer_of("fmi3").simulate(COMMON, times, **harmonic(1.13))
     assert own.simulate(COMMON, times, **harmonic(1.13)) == expected
-
-
-@pytest.mark.slow  # compiles for 5 s
-def test_without_a_compiler_of_its_own_the_machine_makes_the_same_bytes(
-    fmus, hide, tmp_path, caplog
-):
-    hide("own")
-    made, _ = build(tmp_path)
-    assert {form: path.read_bytes() for form, path in made.items()} == {
-        form: fmus[form].read_bytes() for form in FORMS
-    }
-    assert not caplog.messages

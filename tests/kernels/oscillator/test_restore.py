@@ -112,13 +112,3 @@ def test_a_state_that_nothing_ends_may_be_as_old_as_it_likes(values):
         assert stepper.advance(other, time + 3.3) == at.OK
         assert stepper.advance(m, time + 3.3) == at.OK
         assert bits(m[: at.TIME + 1]) == bits(other[: at.TIME + 1])
-
-
-def test_what_is_derived_is_not_read():
-    m = started(0.0, e=0.5)
-    stepper.advance(m, 20.0)
-    spoilt = list(m)
-    for slot in (*range(at.OMEGA, at.SEGMENT_INPUTS), *range(at.SPACING, at.NODE_SINE + 1)):
-        spoilt[slot] = float("nan")
-    assert hidden_problem(MODEL, spoilt) == "" and stepper.restore(spoilt, 0.0) == at.OK
-    assert bits(spoilt[at.OMEGA : at.END]) == bits(m[at.OMEGA : at.END])

@@ -11,7 +11,6 @@ from matplotlib.image import imread
 from scipy.io import wavfile
 
 import orchestrate
-from orchestrate import write_record
 
 RATE = 1000.0
 
@@ -180,11 +179,6 @@ def test_sensors_are_refused_before_anything_is_computed(ask, tmp_path, line):
     assert not list(tmp_path.rglob("*.nc"))
 
 
-def test_a_file_that_is_no_record(ask, tmp_path):
-    xr.Dataset({"x": ("y", [1.0, 2.0])}).to_netcdf(tmp_path / "other.nc")
-    ask("analyse", tmp_path / "other.nc").complaint("other.nc: record", "without time")
-
-
 def in_g(record, path):
     """An export of an analyser: g, a decimal comma, channels by the names of its inputs."""
     rows = zip(record.time.values, *(record[name].values / 9.80665 for name in record), strict=True)
@@ -214,18 +208,6 @@ def test_records_of_all_kinds_of_files(ask, tmp_path, files, kind):
     record.to_netcdf(tmp_path / "plain.nc")
     assert said(done) == said(ask("analyse", tmp_path / "plain.nc", *show).success())
     assert any("  0.5 m/s2 at" in line for line in said(done))
-
-
-def test_numbers_in_another_unit_are_noticed_in_one_line(ask, tmp_path):
-    """A level of 0.01, called m/s2: the command goes on, and says what it wonders at."""
-    record = sweep(second=False)
-    small = record.assign({name: 0.005 * record[name] for name in record})
-    write_record(small.assign_attrs(record.attrs), tmp_path / "bench.csv")
-    done = ask("analyse", tmp_path / "bench.csv", "--show", "psd", "--plot", "none")
-    words = "no more than 0.03 m/s2: are these numbers in g, or in V? expected m/s2"
-    assert done.code == 0
-    assert f"warning: face 1 (acceleration1): {words}" in done.complaints
-    assert len(done.complaints) == 2 and "box" in done.out
 
 
 def test_knocks_on_each_half_make_a_structure(ask, tmp_path):

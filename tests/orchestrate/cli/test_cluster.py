@@ -97,12 +97,3 @@ def test_a_lost_worker_loses_nothing_and_the_other_leaves_no_fmu(
     workers[1][0].send_signal(signal.SIGTERM)
     workers[1][0].wait(60.0)
     assert not list(temporary.glob("vibroimpact*"))
-
-
-@pytest.mark.slow  # 6 s
-def test_a_scheduler_that_ends_is_told_in_one_line(commands, cluster):
-    address, (scheduler, *_) = cluster
-    process = commands.start(*RUN, "--cluster", address)
-    read(scheduler, "Receive client connection")
-    os.kill(scheduler[0].pid, signal.SIGKILL)
-    end(process).complaint("scheduler", "has ended", "repeat the call to resume", code=1)

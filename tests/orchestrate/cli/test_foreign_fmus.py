@@ -19,7 +19,6 @@ from .commands import all_end, below, end, kill, wait_for
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="binaries of Linux, /proc")
 SLOW = pytest.mark.slow
 SWEEP = ("sweep", "--eta", "1,1.1", "--transient", "5", "--samples", "3", "--plot", "none")
-ENDS = {"aborts": "by SIGABRT", "exits with 3": "with exit code 3"}
 BEGINS_ANEW = "nothing was stored; repeat the command to start again"
 
 
@@ -33,14 +32,6 @@ def bad(exported, tmp_path_factory):
         return path if path.exists() else misbehaving(find(model).path, path, kind)
 
     return made
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", ENDS)
-def test_one_that_ends_its_process_is_told(bad, kind):
-    told = rf"ended without a word \({ENDS[kind]}\): an FMU has crashed or ended it"
-    with pytest.raises(WorkerError, match=told):
-        sweep(Structure(), eta=[1.0], transient=5, samples=3, fmu=bad(kind))
 
 
 def test_a_drive_that_ends_its_process_is_told(bad):

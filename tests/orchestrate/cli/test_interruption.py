@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import random
 import signal
 import sys
 import time
@@ -18,47 +17,20 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups 
 RESUME = "repeat the command (without --force) to resume"
 INTERRUPTED = f"interrupted: what was stored is kept; {RESUME}"
 BEGINS_ANEW = "interrupted: nothing was stored; repeat the command to start again"
-RUNS = {  # long enough to be ended by force, chaotic, so that a wrong start is seen
-    "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "700", "--plot", "none"),
-    "couple": (
-        *("couple", "--only", "delaminated"),
-        *("--eta0", "1.4:1.42", "--rate", "2e-5", "--one-way"),
-    ),
-    "spectra": (
-        *("spectra", "--eta", "1.1:1.3:0.05", "--jobs", "1"),
-        *("--transient", "50000", "--periods", "16", "--points", "128"),
-    ),
-    "paper": ("paper", "--quick", "--figures", "maps"),
-}
+SWEEP = ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "700", "--plot", "none")  # chaotic
 
 
 @pytest.fixture
 def uninterrupted(tmp_path, monkeypatch):
     """Bytes of the results of a run, computed in one go in this process."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    monkeypatch.setattr("orchestrate.paper.reproduce.draw_all", lambda *_: {})
 
-    def results(name: str) -> dict[str, bytes]:
+    def results() -> dict[str, bytes]:
         folder = tmp_path / "uninterrupted"
-        assert main([*RUNS[name], "--output", str(folder)]) == 0
+        assert main([*SWEEP, "--output", str(folder)]) == 0
         return {path.name: path.read_bytes() for path in sorted(folder.glob("*.nc"))}
 
     return results
-
-
-def killed_at_a_random_moment(commands, name: str, chance: random.Random) -> bool:
-    """Start a command and kill it, often between two chunks; false where it was done before."""
-    kept, process = commands.chunks(), commands.start(*RUNS[name])
-    stop = time.monotonic() + chance.uniform(1.0, 10.0)
-    while process.poll() is None and commands.chunks() <= kept and time.monotonic() < stop:
-        time.sleep(0.005)
-    time.sleep(chance.uniform(0.0, 0.2))
-    if process.poll() is not None:
-        end(process).success()
-        return False
-    kill(process)
-    assert commands.chunks() >= kept or commands.results(), "chunks are lost"
-    return True
 
 
 def results_left(commands):
@@ -71,15 +43,15 @@ def results_left(commands):
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_after_an_interruption_the_bytes_are_equal(commands, uninterrupted, number):
     """A sweep, in threads."""
-    process = commands.start(*RUNS["sweep"])
+    process = commands.start(*SWEEP)
     wait_for(lambda: commands.chunks() > 0, process, "a chunk was on disk")
     done = kill(process, number)
     assert commands.chunks() > 0, "chunks are lost"
     if number == signal.SIGINT:
         assert done.complaint(code=130) == INTERRUPTED
         assert list(commands.temporary.iterdir()) == []
-    commands.run(*RUNS["sweep"]).success()
-    assert commands.results() == uninterrupted("sweep")
+    commands.run(*SWEEP).success()
+    assert commands.results() == uninterrupted()
     assert results_left(commands) == []
 
 
@@ -113,16 +85,6 @@ def test_a_signal_ends_a_command_whatever_computes(commands, number, command, pr
     assert done.err.splitlines()[-1].startswith(f"{word}: ")
     assert time.monotonic() - begun < 10.0
     assert all_end(started) and list(commands.temporary.iterdir()) == []
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", RUNS)
-def test_kill_9_at_random_moments(commands, uninterrupted, name):
-    chance = random.Random(name)
-    assert any(killed_at_a_random_moment(commands, name, chance) for _ in range(3))
-    commands.run(*RUNS[name]).success()
-    assert commands.results() == uninterrupted(name)
-    assert results_left(commands) == []
 
 
 def interrupt(*_, **__):
@@ -160,11 +122,11 @@ def test_an_interrupted_command_without_a_store_says_so(tmp_path, capsys, monkey
 
 @pytest.mark.slow
 def test_the_same_command_twice_at_once_spoils_nothing(commands, uninterrupted):
-    first = commands.start(*RUNS["sweep"])
+    first = commands.start(*SWEEP)
     wait_for(lambda: commands.chunks() >= 1, first, "a chunk was on disk")
-    second = commands.start(*RUNS["sweep"])
+    second = commands.start(*SWEEP)
     answers = [end(first), end(second)]
     assert answers[0].code == 0
     assert "Traceback" not in answers[1].err
     assert answers[1].code == 0 or answers[1].complaint("another process", code=answers[1].code)
-    assert commands.results() == uninterrupted("sweep")
+    assert commands.results() == uninterrupted()

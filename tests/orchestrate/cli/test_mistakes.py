@@ -21,10 +21,8 @@ QUICK = ("--transient", "5", "--samples", "8")
 MISTAKES = {  # options of each command, then what its line says
     "sweep": """
         --eta -1 : --eta -1: | 0 < FIRST
-        --eta nan : --eta nan: | FIRST:LAST:STEP
         --eta 1e7 : --eta 10000000.0 | <= eta <= 1e+06
         --eta abc : --eta abc: | not numbers | FIRST:LAST:STEP
-        --eta 1:2 : --eta 1:2: | FIRST:LAST:STEP
         --eta 2:1:0.1 : --eta 2:1:0.1: | FIRST <= LAST
         --eta 1:2:1e-9999999 : --eta 1:2:1e-9999999: | 10000000 values
         --over e --eta 1 : --over and --values | both
@@ -32,14 +30,10 @@ MISTAKES = {  # options of each command, then what its line says
         --over eta --values 1,2 : --over eta | --eta VALUES
         --over amplitude --values 1,2 --hz 1 : --over amplitude | --g VALUES
         --over k1 --values 1,2 --eta 1 --g 1 : --over k1 | --hz
-        --over f --values 0.1 --eta 1 : 'f' | no parameter
         --over e --values 0.1,true --eta 1 : --over e --values true | not a number
-        --set f=1 : f | no parameter of a structure | gamma
         --set e : --set e | NAME=VALUE
         --set e=abc : --set e=abc | abc is not a number
-        --set ee=1% : --set ee: no parameter | did you mean e?
         --set zeta=1% --set zeta2=0.1 : zeta2 is set already
-        --set preload=20 : preload=20: expected a length
         --set preload=-20um : preload=-20um: expected a length above 0
         --set e=0.1 --set e=0.2 : --set e=0.2 | each name once
         --set e=1.2 : e = 1.2 | 0 <= e <= 1
@@ -55,17 +49,13 @@ MISTAKES = {  # options of each command, then what its line says
         --set f1=46,5 --eta 1 : --set f1=46,5 | is not a number | with a decimal point, 46.5
         --eta 1 --frequency 2 : --eta and --frequency | one of them
         --frequency 2 : --frequency 2 | --amplitude | --g
-        --hz 2 --g x : --g x | expected a number > 0
         --structure beam --eta 1 : --eta 1 | 75 rad/s | --amplitude | --g
         --eta 1 --beside --store a.nc : --beside | --store
         --eta 1 --store mine.dat : --store mine.dat | .nc
-        --eta 1 --format nc,doc : --format nc,doc | doc | xlsx
         --eta 1 --start 0,1 : --start 0,1 | four numbers
-        --eta 1 --set E=0.5 : E: no parameter | did you mean e?
     """,
     "shake": """
         : nothing given | --swept-sine, --stepped-sine, --random, --shock, --hammer, --record
-        --hammer 20 : --hammer 20 | two numbers
         --hammer 20:0.004 --half 3 : --half 3 | 1 to 2
         --hammer 20:0.004 --length 1 : --length | only with --shock
         --swept-sine 8:20 --g 1 --shock trapezoid : --swept-sine and --shock given | one of
@@ -73,14 +63,10 @@ MISTAKES = {  # options of each command, then what its line says
         --swept-sine 8,20 --g 1 --duration 2 : --swept-sine 8,20 | in Hz, such as 8:20
         --swept-sine 8:20 --duration 2 : level | --g and --acceleration
         --swept-sine 8:20 --g 1 --duration 2 --seed 1 : --seed | only with --random
-        --swept-sine 8 --g 1 --duration 2 : --swept-sine 8 | FIRST:LAST
         --stepped-sine 8:20 --g 1 : --stepped-sine 8:20 | FIRST:LAST:STEP
         --stepped-sine 8,9 --g 1 --duration 2 : --duration: expected only with --swept-sine
-        --random 5-9 --duration 2 : --random 5-9 | HZ:VALUE
         --random 5:1,9:nan --duration 2 : --random 5:1,9:nan | HZ:VALUE
         --random 5:1,9:1 : --random | --duration
-        --shock sawtooth --g 1 : --shock | --length
-        --record no.csv : no.csv: no such file; expected a record
         --record a.csv --g 1 : --g: expected only with --swept-sine | --random
         --swept-sine 8:20 --g 1 --unit g : --unit | only with --record
     """,
@@ -90,9 +76,6 @@ MISTAKES = {  # options of each command, then what its line says
         README.md --beside whole.nc : --beside whole.nc: expected LABEL=FILE
         README.md --beside README=x.nc : a second record README
         README.md --damping 0.1 : --damping: expected only with --show shock
-        README.md --show orders --orders one : --orders one: expected
-        README.md --plot gif : --plot gif | png
-        lost.csv : lost.csv: no such file; expected a record
     """,
     "plan": """
         --sensor 9:8:7 : --sensor 9:8:7: expected HZ or HZ:RATE
@@ -101,51 +84,36 @@ MISTAKES = {  # options of each command, then what its line says
     """,
     "halves": """
         : RECORDS is missing
-        lost.csv : lost.csv: no such file
         a.csv b.csv c.csv : c.csv: expected one record of each half
         a.csv --thicknesses 3 : --thicknesses 3: expected H1,H2
     """,
     "map": """
-        --over e --values 0.3,0.7 : frequency: nothing given
         --eta 1 --over e --values 0.3,0.7 : map | two parameters
-        --eta 1,2 : map | two parameters
         --eta 1,2 --over e --values 0.3,0.7 --over D --values 0.1,0.2 : --eta 1,2 | 2 values
-        --eta 1 --over e --values 0.3,0.7 --over e --values 0.3,0.7 : --over e | twice
         --eta 1,2 --over e : --over and --values | exactly one --values for each --over
-        --hz 1,2 --g 0,1 : --g 0,1
         --hz 1,2 --g 1 --amplitude 1 --over e --values 0.3,0.7 : --g | --amplitude
     """,
-    "lyapunov": """
-        --eta 1,2 --over e --values 0.3,0.7 : --eta 1,2 | 2 values
-    """,
     "attractors": """
-        --eta 1 --scale 0 : --scale 0.0
         --structure beam --eta 1.32 : --eta 1.32 | --amplitude in m or --g
     """,
     "basin": """
-        --eta 1:2:0.5 : --eta 1:2:0.5 | 3 values
         --eta 1 --x x_rel,0,1 : --x x_rel,0,1 | NAME,FIRST,LAST,COUNT
         --eta 1 --x v1,0,1um,3 : --x v1,0,1um,3 | x_rel,0,20um,60
     """,
     "orbit": """
-        --eta 1 --period 0 : --period 0
         --eta 1 --guess 1,2 : --guess 1,2 | four numbers
     """,
     "branch": """
         : --limits | FIRST:LAST
-        --limits 2 : --limits 2 | FIRST:LAST
         --eta 2.5 --limits 2.6:2.4 : --limits | the lower one first
         --eta 3 --limits 2.4:2.6 : eta = 3.0 at the start | inside
         --over hz --g 1 --limits 2:3 --set clearance=1e-4 : --amplitude 0.0621013 at 2 Hz
         --over frequency --eta 1 --limits 2.4:2.6 : --over frequency | --amplitude
-        --over e --limits 2.4:2.6 : frequency: nothing given
     """,
     "border": """
-        : --start is missing
         --start lost.nc : --limits is missing
         --start lost.nc --limits 1:2,0.1:0.9 : --start lost.nc | no such file
         --start README.md --limits 1:2,0.1:0.9 : --start README.md | not readable
-        --start lost.nc --limits 1:2,3 : --limits 3 | FIRST:LAST
     """,
     "spectra": """
         --eta abc : --eta abc | not numbers
@@ -157,36 +125,23 @@ MISTAKES = {  # options of each command, then what its line says
         --figures '' : unknown figure ''
     """,
     "couple": """
-        --drive rigg : rigg | no such file | quick
         --structure beam : --drive is missing | too slow for 75 rad/s
-        --set x=1 : x | no parameter
         --rated-voltage 12 : --rated-voltage 12 | without --no-load-rpm | --stall-torque together
-        --rated-voltage 9 --no-load-rpm 9 : --rated-voltage 9 | without --stall-torque
         --rated-voltage 9 --no-load-rpm 9 --stall-torque 0 : --stall-torque 0 | a number > 0
         --rated-voltage 9 --no-load-rpm 9 --stall-torque 1 --set motor_constant=2 : given with --r
-        --eta0 x:2 : --eta0 x:2 | FIRST:LAST
         --eta0 1:2 --voltage 1:2 : --eta0 and --voltage | one of them
         --step -0.1 : --step -0.1 s | 0.0001 <= step <= 1
         --eta0 1.2 : one voltage, 1.2 V | --duration
         --eta0 1:2 --duration 3 : --duration | one voltage
-        --voltage high : --voltage high | a number, or FIRST:LAST
-        --rate 0 : --rate 0 | > 0
         --rate 1e-4,5e-5 : --rate 1e-4,5e-5 | expected one | jump-voltages
         --rate 1e-4 --volt-rate 1 : --rate and --volt-rate
-        --course nowhere.csv : nowhere.csv: no such file
         --course a.csv --eta0 1:2 : --course and --eta0
         --set armature_resistance=1e-3 : does not jump | --eta0 or --voltage
         --speed-control 1.5 --speed-gradient : --speed-control and --speed-gradient
         --gain 2 : --gain 2 | --speed-control with it
-        --low 0.5 : --low 0.5 | --speed-gradient with it
-    """,
-    "passage": """
-        --revolutions 0 : --revolutions 0 | >= 1
     """,
     "jump-voltages": """
         --rate 1:2:3 : --rate 1:2:3 | several such as 1e-4,5e-5
-        --rate 1e-4,-1 : --rate 1e-4,-1 | > 0
-        --eta0 1.5 : --eta0 1.5 | FIRST:LAST
     """,
     "drive-branch": """
         --speed 1 : --speed 1 | FIRST:LAST
@@ -214,22 +169,14 @@ SYNTAX = """
     : COMMAND
     swep : swep: no command; did you mean sweep?
     jump : did you mean jump-voltages?
-    sweep --bogus 1 : --bogus: no option of sweep (
     sweep --e 0.3 : --e: | did you mean --set e=0.3?
     analyse --shw=psd x.csv : --shw: | did you mean --show?
     spectra --eta0=1 --volt 1 : --volt: | did you mean --voltage?
-    sweep --samples 1.5 : --samples 1.5 | whole number
-    sweep --direction sideways : --direction sideways | up
-    explore a.nc b.nc : b.nc: no option of explore
     resonance my.toml : my.toml: no option of resonance; did you mean --structure my.toml?
     sweep --gravity 9.81 : --gravity: no option of sweep; did you mean --box-acceleration -1g?
     shake --g-rms 1 : did you mean --g?
     couple --level 1 : --level: no option of couple
     simulate beam : beam: no option of simulate; did you mean --structure beam?
-    build --folder : --folder | expected one value
-    resonance --direction given : --direction given | both
-    couple --only glued : --only glued | bonded
-    attractors --scale big : --scale big | a number
 """
 
 
@@ -263,14 +210,6 @@ def test_a_foreign_fmu_is_refused(ask, tmp_path, exported):
     ask("couple", "--fmu", shaker, "--fmu", shaker).complaint("a second MotorShaker")
     (tmp_path / "empty.fmu").touch()
     ask("sweep", "--eta", "1", "--fmu", tmp_path / "empty.fmu").complaint("not readable")
-
-
-def test_a_wrong_file_is_named_with_section_and_key(ask, tmp_path):
-    path = tmp_path / "own.toml"
-    path.write_text("[structure]\nm1 = 1.0\nstiffness = 2.0\n")
-    ask("sweep", "--eta", "1", "--structure", path).complaint("own.toml", "stiffness")
-    path.write_text("[structure]\nm1 = \n")
-    ask("sweep", "--eta", "1", "--structure", path).complaint("own.toml")
 
 
 def not_netcdf(path):
@@ -327,12 +266,6 @@ def test_debug_shows_where_an_error_came_from(tmp_path):
             cli.main([*arguments, "--set", "e=2", "--output", str(tmp_path)])
 
 
-@pytest.mark.parametrize("asked", [("--eta", "1"), ("--frequency", "1", "--amplitude", "1")])
-def test_no_orbit_is_looked_for_at_an_undamped_resonance(ask, tmp_path, asked):
-    ask("orbit", *asked, "--set", "D=0").complaint(" 1.0 rad/s", "d1 = 0.0")
-    assert list(tmp_path.rglob("*.nc*")) == []
-
-
 def test_what_a_file_says_is_shown_in_one_line(ask, tmp_path):
     """Neither a line of its own, nor a terminal's commands, nor pages of it."""
     path = tmp_path / "own.toml"
@@ -341,13 +274,6 @@ def test_what_a_file_says_is_shown_in_one_line(ask, tmp_path):
     assert "one\\ntwo\\x1b[2J" in line
     path.write_text(f"[structure]\nm1 = '{'x' * 50_000}'\n")
     assert len(ask("sweep", "--eta", "1", "--structure", path).complaint(" ... ")) < 1100
-
-
-def test_a_result_whose_identity_is_damaged(ask, tmp_path):
-    path = tmp_path / "branch.nc"
-    with netCDF4.Dataset(path, "w") as file:
-        file.setncattr("identity", "[")
-    ask("border", "--start", path, "--limits", "1:2,0.1:0.9").complaint("identity is damaged")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names of any bytes")
@@ -387,21 +313,6 @@ def test_an_fmu_of_gigabytes_is_not_read(ask, tmp_path):
     with path.open("wb") as file:
         file.truncate(8 << 30)
     ask("sweep", "--eta", "1", "--fmu", path).complaint(path, f"{8 << 30} bytes, at most")
-
-
-RECOMMENDED = """
-    map --hz 8:20:4 --over g --values 0.3,0.5 : --over g: expected --g VALUES
-    map --hz 8 --over hz --values 1,2 : --over hz: expected --hz VALUES
-    branch --over hz --limits 20:30 --hz 20 : --amplitude in m with it
-    branch --over g --limits 1:2 --hz 20 : expected --over amplitude
-"""
-
-
-@pytest.mark.parametrize("line", RECOMMENDED.strip().splitlines())
-def test_nothing_is_recommended_that_is_refused_then(ask, line):
-    options, _, words = line.strip().partition(" : ")
-    said = ask(*options.split(), "--structure", "beam").complaint(words)
-    assert "--g with it" not in said and "--g in" not in said
 
 
 WORDS = ["1", "-1", "nan", "1:2:0.5", "1,2", "", "a=b", "e=1.2", "beam", "x.nc", "--", "ä", "1_000"]

@@ -8,7 +8,6 @@ import re
 
 import netCDF4
 import numpy as np
-import pandas as pd
 import pytest
 import xarray as xr
 from matplotlib import image
@@ -34,22 +33,6 @@ def shows_something(path):
     """Whether a picture has lines, dots or colours on white."""
     grey = image.imread(path)[..., :3].mean(axis=2)
     return min(grey.shape) > 100 and 0.001 < (grey < 0.95).mean() < 0.95
-
-
-def test_formats_hold_the_same_numbers(ask, folder):
-    options = ("--structure", "beam", "--hz", "12:13:0.1", "--g", "0.02", *SHORT)
-    formats = ("--format", "csv,mat,xlsx", "--plot", "none")
-    assert ask("resonance", *options, *formats).code == 0
-    (result,) = folder.glob("*.nc")
-    data = xr.load_dataset(result)
-    (curves,) = (path for path in folder.glob("*.csv") if path.name.endswith("frequency.csv"))
-    table = pd.read_csv(curves)
-    digits = pd.read_csv(curves, dtype=str)["x1_max [m]"]  # older pandas reads numbers less exactly
-    np.testing.assert_array_equal(list(map(float, digits)), data.x1_max.values.ravel())
-    np.testing.assert_allclose(table["frequency [Hz]"].unique(), np.arange(12.0, 13.05, 0.1))
-    sheet = pd.read_excel(result.with_suffix(".xlsx"), sheet_name="structure_direction_frequency")
-    np.testing.assert_allclose(sheet["a2_max [g]"] * 9.80665, data.a2_max.values.ravel())
-    assert result.with_suffix(".mat").stat().st_size > 1000
 
 
 def test_the_excitation_of_the_file(ask, folder, tmp_path):
@@ -147,12 +130,6 @@ def fingerprint(folder):
     return {p.name: (p.read_bytes(), p.stat().st_mtime_ns) for p in folder.iterdir()}
 
 
-def result_in(folder):
-    """The one result in a folder."""
-    (path,) = folder.glob("*.nc")
-    return xr.load_dataset(path)
-
-
 def test_a_finished_sweep_describes_itself_and_stays(ask, folder):
     done = ask(*SWEEP)
     assert done.code == 0
@@ -219,31 +196,6 @@ def test_a_failed_picture_is_drawn_by_the_same_command(ask, folder):
     picture.rmdir()
     assert ask(*SWEEP).code == 0
     assert picture.is_file()
-
-
-def test_over_another_parameter_of_an_own_structure(ask, folder, tmp_path):
-    path = tmp_path / "own.toml"
-    path.write_text("[structure]\nm1 = 1.5\nm2 = 1.2\nk1 = 8000.0\nk2 = 9000.0\nd1 = 1.0\n")
-    asked = ("--over", "e", "--values", "0.1:0.9:0.2", "--eta", "1.1", "--samples", "4")
-    asked += ("--plot", "none")
-    assert ask("sweep", "--structure", path, "--set", "d2=2", *asked).code == 0
-    data = result_in(folder)
-    assert data.xi_rel.dims == ("e", "sample")
-    assert {n: data.attrs[n] for n in ("m1", "d2")} == {"m1": 1.5, "d2": 2.0}
-
-
-def test_the_default_range_is_the_papers(ask, monkeypatch):
-    asked = {}
-
-    @functools.wraps(orchestrate.sweep)  # whose options are its arguments
-    def sweep(structure, **question):
-        asked.update(question, structure=structure)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("orchestrate.sweep", sweep, raising=False)
-    assert ask("sweep").code == 130
-    assert list(asked["eta"]) == [float(f"{n / 1000:.3f}") for n in range(100, 8001)]
-    assert asked["structure"].label() == "e0.7_D0.005"
 
 
 def test_a_motion(ask, folder):

@@ -88,8 +88,10 @@ def test_help_lists_commands_and_shipped_sets(capsys):
     assert {*cli.COMMANDS, "paper", "quick", "beam"} <= set(words)
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp1251", "utf-8"])
-@pytest.mark.parametrize(("command", "seconds"), [("", 0.5), ("couple", 0.8), ("poincare", 0.8)])
+@pytest.mark.parametrize(
+    ("command", "seconds", "encoding"),
+    [("", 0.5, "ascii"), ("couple", 0.8, "cp1251"), ("poincare", 0.8, "utf-8")],
+)
 def test_help_takes_no_time_whatever_the_encoding(tmp_path, command, seconds, encoding):
     """Time of the processor, so that a busy machine does not count; with compiled modules."""
     others = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}

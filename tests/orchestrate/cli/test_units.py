@@ -156,26 +156,6 @@ def test_prints_are_in_the_units_asked_for_and_in_no_other(ask, command):
     assert re.search(r" [mu]m\b", plain) and not re.search(r"\d m\b| m\b", plain)
 
 
-@pytest.mark.slow
-def test_the_same_question_shown_in_other_units_has_the_same_bits(ask, tmp_path):
-    folder, stored, columns = tmp_path / "results", set(), {}
-    for units in ("Hz,mm,g", ""):
-        more = ("--units", units) if units else ()
-        done = ask("resonance", *SWEPT, *SHORT, "--format", "csv", *more).success()
-        stored |= set(sums(folder).values())
-        (curves,) = (line for line in done.out.splitlines() if line.endswith("n_frequency.csv"))
-        table = pd.read_csv(curves)
-        columns[units] = set(table.columns)
-        assert table["period [s]"].to_numpy() == pytest.approx(1.0 / table["frequency [Hz]"])
-        assert ("complete already" in done.out) == (units != "Hz,mm,g")
-    assert len(stored) == 1
-    assert {"frequency [Hz]", "x1_max [mm]", "a1_max [g]"} <= columns["Hz,mm,g"]
-    assert {"frequency [Hz]", "x1_max [m]", "a1_max [g]"} <= columns[""]
-    (result,) = folder.glob("*.nc")
-    endings = {path.name.removeprefix(result.stem) for path in folder.glob("*.png")}
-    assert endings == {"_Hz-mm-g.png", ".png"}
-
-
 @pytest.mark.parametrize(
     ("asked", "word"),
     [

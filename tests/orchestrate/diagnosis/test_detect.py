@@ -19,41 +19,9 @@ from tests.benches.lumped import Faces, Halves
 from tests.benches.sensors import Sensor
 
 from ...sparing import ordinary
-from .records import BEAM, RATE, SWEEP, guess, record, seen_at
+from .records import BEAM, RATE, SWEEP, guess, record
 
 LIMIT = {"jobs": 1, "progress": False}
-
-
-@pytest.mark.slow  # an ordinary run has the numbers of tests/orchestrate/cli/test_diagnose.py
-@pytest.mark.parametrize("factor", [1.566, 0.532])  # at the tip, and at the middle
-def test_a_delamination_is_found_with_its_numbers_wherever_the_sensor_is(factor):
-    answer = orchestrate.detect(seen_at(factor, noise=0.01, rate=1250.0), guess(), **LIMIT)
-    assert str(answer.verdict.values) == "delaminated", answer.attrs["reason"]
-    assert answer.ratio > 3.0
-    best = answer.sel(hypothesis="delaminated")
-    assert best.participation.item() == pytest.approx(factor, rel=0.05)
-    for name in ("f1", "f2"):
-        one = best.sel(parameter=name)
-        assert float(one.value) == pytest.approx(getattr(BEAM, name), rel=0.02)
-        assert 1e-4 < float(one.standard_error) / float(one.value) < 0.05
-    assert float(best.value.sel(parameter="e")) == pytest.approx(0.5, abs=0.08)
-    assert {"measured", "fitted", "floor", "misfit_at", "evaluations"} <= set(answer.variables)
-
-
-@pytest.mark.slow
-def test_of_a_bonded_structure_no_opening_is_seen_and_its_halves_are_not_stated():
-    answer = orchestrate.detect(record(BEAM.as_bonded(), noise=0.02), guess(), **LIMIT)
-    assert str(answer.verdict.values) == "no opening seen", answer.attrs["reason"]
-    halves = answer.value.sel(parameter=["f1", "f2", "zeta1", "zeta2", "e"])
-    assert halves.isnull().all()
-    common = float(answer.value.sel(hypothesis="bonded", parameter="f"))
-    assert common == pytest.approx(33.79, rel=0.005)
-    assert float(answer.level_high) == pytest.approx(5.0, rel=0.1)
-    assert 0.0 < float(answer.smallest_opening) < 1e-3
-    assert "pressed together" in answer.attrs["settle"]
-    sound = [name for name in answer.hypothesis.values if str(name).startswith("bonded")]
-    misfits = answer.misfit.sel(hypothesis=sound)  # each contains the linear spring
-    assert len(sound) > 3 and (misfits <= 1.001 * float(misfits.sel(hypothesis="bonded"))).all()
 
 
 @pytest.mark.slow

@@ -103,9 +103,7 @@ def test_what_is_no_swept_sine_is_refused_in_one_line(kind):
     record = orchestrate.record(
         box_acceleration=box, acceleration1=rng.standard_normal(count), sample_rate=RATE
     )
-    with pytest.raises(
-        orchestrate.InputError, match="not described by this method: expected a swept"
-    ) as caught:
+    with pytest.raises(orchestrate.InputError, match="not described by this method") as caught:
         record_orders(record)
     assert "\n" not in str(caught.value)
 

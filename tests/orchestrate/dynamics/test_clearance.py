@@ -9,8 +9,6 @@ from orchestrate.dynamics.closed_form import FREE, INNER, OUTER, ClosedForm
 from orchestrate.model import Excitation
 from orchestrate.response.questions import Point
 
-from .stroboscopic import assert_multipliers, flown
-
 DAMPED = Structure(d1=0.1, d2=0.12, e=0.5)
 BOX = {"frequency": 1.2, "amplitude": 1.0}
 CASES = [  # a gap, a preload with and without contact, plastic; apart for good, together for good
@@ -36,12 +34,6 @@ def test_the_fmu_runs_through_orbits_and_returns(clearance, e, frequency):
         seen = float(abs(values).max()) / frequency**2
         assert 0.0 <= float(found[f"{name}_max"]) - seen < 1e-4
     assert found.state.values[0][1] / frequency**2 == pytest.approx(float(found.xi[0, 1]))
-
-
-@pytest.mark.parametrize("clearance", [0.3, -0.05])
-def test_multipliers_are_those_of_the_fmu_s_own_map(clearance):
-    structure = DAMPED.replace(clearance=clearance)
-    assert_multipliers(orchestrate.orbit(structure, **BOX), structure, Excitation(**BOX))
 
 
 @pytest.mark.parametrize("clearance", [0.4, -0.4])
@@ -147,39 +139,3 @@ def test_a_border_follows_the_opening_of_a_pressed_structure():
     expected = orchestrate.contact_threshold(pressed, frequency=curve.frequency.values)
     assert curve.amplitude.values == pytest.approx(expected.threshold_amplitude.values, rel=1e-9)
     assert curve.sizes["point"] > 5 and 0 < curve.amplitude.values.argmin() < len(curve.point) - 1
-
-
-def test_exponents_of_linear_motions_and_of_orbits():
-    """Apart and together for good: the slowest free decay. With impacts: what the multipliers
-    say.
-    """
-    asked = {**BOX, "transient": 100, "periods": 200}
-    apart = orchestrate.lyapunov(DAMPED.replace(clearance=9.0), **asked)
-    together = orchestrate.lyapunov(DAMPED.replace(clearance=-9.0), **asked)
-    assert float(apart.exponent[0]) == pytest.approx(-0.05)
-    assert float(together.exponent[0]) == pytest.approx(-0.22 / 4.0)
-    for clearance in (0.3, -0.05, -0.2):
-        structure = DAMPED.replace(clearance=clearance)
-        orbit = orchestrate.orbit(structure, **BOX)
-        found = orchestrate.lyapunov(structure, **asked, start=orbit.state.values[0])
-        assert float(found.exponent[0]) == pytest.approx(float(orbit.exponent), abs=2e-3)
-
-
-@pytest.mark.parametrize("clearance", [0.6, -0.15])
-def test_attractors_and_a_basin_of_them(clearance):
-    """States on them are states of the FMU that come back; overlapping starts are none."""
-    structure = DAMPED.replace(clearance=clearance, d1=0.05, d2=0.06)
-    box = {"frequency": 0.9, "amplitude": 1.0}
-    found = orchestrate.attractors(structure, **box, starts=8, seed=1).isel(frequency=0)
-    assert float(found.share.sum()) == pytest.approx(1.0)
-    excitation = Excitation(**box)
-    for k in range(found.sizes["attractor"]):
-        state, n = found.state.values[k], int(found.multiplicity[k])
-        if n:
-            assert flown(structure, excitation, state, n)[0] == pytest.approx(state, abs=1e-5)
-    plane = {"x": ("x1", -1.0, 1.0, 3), "y": ("x2", -2.0, 2.0, 5)}
-    basin = orchestrate.basin(structure, **box, **plane)
-    overlap = basin.x2 - basin.x1 + clearance < -1e-12
-    assert np.array_equal((basin.attractor_of < 0).values, overlap.transpose("x2", "x1").values)
-    gaps = orchestrate.basin(structure, **box, x=("x_rel", 0.0, 1.0, 3), y=("v_rel", -0.5, 0.5, 2))
-    assert (gaps.attractor_of >= 0).all()

@@ -9,10 +9,9 @@ from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
-from orchestrate.model import Excitation, Structure
+from orchestrate.model import Structure
 
 from .single_impact import SingleImpact
-from .stroboscopic import assert_multipliers
 
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
 UNDECIDED = "undecided"
@@ -38,15 +37,6 @@ def test_one_impact_in_n_periods_is_that_of_the_closed_form(period, eta):
     assert bool(found.stable) == (truth.largest < 1.0)
     assert found.fmu_same_impacts
     assert found.fmu_return < 1e-13 * max(1.0, truth.largest)
-
-
-@pytest.mark.parametrize(
-    ("eta", "period"), [(1.5, 1), (3.0, 1), (2.865, 2), (0.6, 1), (CONTACT, 1)]
-)
-def test_multipliers_are_those_of_the_fmus_own_map(eta, period):
-    """Central differences of the FMU's stroboscopic map, no equation of ours in them."""
-    box = Excitation.nondimensional(eta, PAPER)
-    assert_multipliers(known(eta, period), PAPER, box, period)
 
 
 def test_chattering_into_permanent_contact_leaves_two_multipliers():
@@ -112,16 +102,9 @@ def test_the_physical_form_is_the_same_orbit_in_metres():
     assert found.exponent.item() == pytest.approx(plain.exponent.item(), rel=1e-9)
 
 
-def test_the_call_told_asks_it_again():
-    first = orbit(PAPER, eta=3.0, guess=known(3.0).state.values[0])
-    again = eval(first.attrs["call"], {"orbit": orbit, "Structure": Structure})  # noqa: S307
-    assert again.xi.identical(first.xi)
-
-
 @pytest.mark.parametrize(
     ("question", "words"),
     [
-        ({"eta": 4.0, "period": 0}, "period = 0"),
         ({"eta": [1.0, 2.0]}, "eta: 2 values"),
         ({}, "excitation"),
         ({"eta": 4.0, "period": 1, "guess": {"time": [1.0]}}, "guess"),

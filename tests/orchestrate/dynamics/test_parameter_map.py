@@ -103,8 +103,6 @@ def test_any_two_parameters_in_any_unit():
         ({"eta": ETAS, "e": [0.5, 0.5]}, "e: a value twice"),
         ({"eta": ETAS, "over": "e"}, "over and values: expected both or none"),
         ({"eta": ETAS, "over": "e", "values": ES, "e": 0.5}, "over= not by its name too"),
-        ({"eta": ETAS, "e": ES, "samples": 0}, "samples = 0"),
-        ({"eta": ETAS, "e": ES, "exponent": 1}, "exponent = 1: expected true or false"),
     ],
 )
 def test_what_is_refused(asked, text):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate import InputError, Structure
+from orchestrate import Structure
 
 PAPER = Structure.nondimensional()
 BEAM = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
@@ -52,17 +52,3 @@ def test_at_releases_the_masses_part(exported):
     ]
     np.testing.assert_allclose(pull[0], pull[1], atol=1e-12 * float(abs(pull[0]).max()))
     assert float(abs(section.v_rel).max()) < 1e-12 * float(abs(section.v1).max())
-
-
-@pytest.mark.parametrize(
-    ("wrong", "named"),
-    [
-        ({"at": "noon"}, "at = 'noon'"),
-        ({"phase": math.nan}, "phase = nan"),
-        ({"phase": [0.0, 1.0]}, "phase"),
-        ({"periods": 0}, "periods = 0"),
-    ],
-)
-def test_what_is_wrong_is_named(wrong, named):
-    with pytest.raises(InputError, match=named):
-        orchestrate.poincare(PAPER, eta=0.8, **wrong)

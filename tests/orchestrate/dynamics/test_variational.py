@@ -11,11 +11,7 @@ from scipy.linalg import expm
 
 from orchestrate.dynamics.closed_form import FREE, INNER, ClosedForm
 from orchestrate.dynamics.following import follow_impacts
-from orchestrate.dynamics.variational import (
-    contact_durations,
-    deviations,
-    period_in_tau,
-)
+from orchestrate.dynamics.variational import contact_durations, deviations, period_in_tau
 from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
@@ -204,10 +200,3 @@ def test_near_critical_damping_nothing_is_lost(damping):
 def test_nothing_overflows_in_a_long_flight():
     form = form_of(make(D1=5.0, D2=50.0))
     assert np.isfinite(form.flow(np.full(2, 1e4), np.array([FREE, INNER]))).all()
-
-
-def test_the_centre_of_mass_is_left_in_contact():
-    matrix = form_of(make(mu=3.0)).centre()
-    np.testing.assert_allclose(matrix @ matrix, matrix, atol=1e-15)
-    np.testing.assert_allclose(matrix @ [1.0, 1.0, 2.0, 2.0], [1.0, 1.0, 2.0, 2.0])
-    np.testing.assert_allclose(matrix @ [3.0, -1.0, 0.0, 0.0], 0.0, atol=1e-15)

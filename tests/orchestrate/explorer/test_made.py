@@ -16,8 +16,6 @@ from orchestrate.explorer.page import explore
 from orchestrate.explorer.sweep_data import read_sweep
 from orchestrate.running.store import load
 
-from .conftest import ETAS
-
 
 def test_the_page_is_one_small_file_without_network(page):
     text = page.read_text(encoding="utf-8")
@@ -139,21 +137,6 @@ def test_a_file_with_a_wrong_attribute_is_refused_in_one_line(swept, tmp_path, n
 
 
 STATE = ("eta", "coordinate")
-SHAPES = {
-    "a state of texts": {"end_state": (STATE, np.full((ETAS.size, 4), "x"))},
-    "a state of three numbers": {"end_state": (("eta", "three"), np.zeros((ETAS.size, 3)))},
-    "a single state": {"end_state": ((), 1.0)},
-    "answers over another dimension": {"impacts_per_period": ("other", np.zeros(5))},
-    "frequencies of zero": {"frequency": ("eta", np.zeros(ETAS.size))},
-    "frequency ratios below zero": {"eta": ("eta", -ETAS)},
-}
-
-
-@pytest.mark.parametrize("name", SHAPES)
-def test_a_file_of_another_shape_is_refused_in_one_line(swept, tmp_path, name):
-    with pytest.raises(InputError, match="expected"):
-        explore(swept.assign(SHAPES[name]), output=tmp_path / "page.html")
-    assert not list(tmp_path.iterdir())
 
 
 def test_the_command_writes_a_page(tmp_path, capsys, swept):

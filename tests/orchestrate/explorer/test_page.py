@@ -10,16 +10,12 @@ import xarray as xr
 import orchestrate
 from orchestrate import cli
 from orchestrate.explorer.page import explore
-from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, begin, find, sampled
+from orchestrate.fmu import OSCILLATOR, Instance, begin, find, sampled
 from orchestrate.model import Excitation
 from orchestrate.response.equations import absolute_accelerations
 from orchestrate.response.questions import Point
 from orchestrate.response.spectra import acceleration_spectrum
-from orchestrate.weak_drive.master import Master, Scheme
-from orchestrate.weak_drive.run import oscillator_start
-from orchestrate.weak_drive.step_record import PLACE
 
-from ...draws import draw_system
 from ...sparing import ordinary
 from .test_own_beam import pasted
 
@@ -328,59 +324,6 @@ def test_the_weak_drive_is_the_masters(shown, clearance):
     for name in ("time", "speed", "impacts"):
         mine = shown.numbers(f"explorer.told.map((row) => row.{name})")
         assert np.array_equal(mine, found[name].values), name
-
-
-def coupled_by_python(system, voltages, h):
-    """The master's row after some steps from rest."""
-    drive = {**system.drive.parameters(), "voltage": voltages[0]}
-    with Instance(find(OSCILLATOR).path) as one, Instance(find(MOTOR_SHAKER).path) as other:
-        one.initialize(**oscillator_start(system.structure))
-        other.initialize(**drive)
-        master = Master(one, other, Scheme(h))
-        master.run(np.array(voltages)[:, None])
-        master.close()
-        return np.array(master.row)
-
-
-def coupled_by_the_page(browser, system, voltages, h):
-    """The same by the page, in two parts, so that another instance goes on."""
-    values = {
-        "oscillator": {k: float(v) for k, v in oscillator_start(system.structure).items()},
-        "drive": {**system.drive.parameters(), "voltage": voltages[0]},
-        "h": h,
-    }
-    browser.run(
-        """
-        const [values, voltages] = arguments;
-        const start = { ...explorer.table.drive, ...values };
-        const asked = { run: null, start, voltages: voltages.slice(0, 400) };
-        explorer.told = null;
-        explorer.pool.ask("drive", asked, ([{ run }]) =>
-          explorer.pool.ask("drive", { run, start, voltages: voltages.slice(400) }, ([last]) => {
-            explorer.told = last.run.row;
-          }));
-        """,
-        values,
-        voltages,
-    )
-    browser.until("return explorer.told")
-    return browser.numbers("explorer.told")
-
-
-@pytest.mark.parametrize("count", ordinary([4, 100]))
-def test_random_drives_run_to_the_same_last_bit(shown, count):
-    """Bonded and delaminated ones, with gap or preload, under a voltage that rises."""
-    rng, impacts = np.random.default_rng(61), 0
-    for i in range(count):
-        system = draw_system(rng).of_kind("bonded" if i % 4 == 3 else "delaminated")
-        h = 0.1 / system.structure.omega
-        unit = system.drive.volts(system.structure)
-        voltages = (unit * np.linspace(0.6, 1.4, 1000)).tolist()
-        expected = coupled_by_python(system, voltages, h)
-        mine = coupled_by_the_page(shown, system, voltages, h)
-        assert mine.tobytes() == expected.tobytes(), system
-        impacts += int(mine[PLACE["impacts"]])
-    assert impacts > 10 * count
 
 
 TURNS = [2.0 * np.pi * hertz for hertz in (12.0, 12.25, 12.5)]

@@ -83,24 +83,6 @@ CHOOSE = """
 const { k1, m1 } = explorer.structure;
 explorer.choose((2 * Math.PI * arguments[0]) / Math.sqrt(k1 / m1), true, [0, 0, 0, 0]);
 """
-WRONG = {
-    "a text": ("notes.txt", "nothing\n", [], "notes.txt"),
-    "no file": ("none.csv", None, [], "none.csv"),
-    "an option alone": (None, None, ["--unit", "g"], "--unit: expected only with --record"),
-}
-
-
-@pytest.mark.parametrize("name", WRONG)
-def test_anything_else_is_refused_in_one_line(tmp_path, capsys, name):
-    file, text, options, words = WRONG[name]
-    if file is not None:
-        options = ["--record", str(tmp_path / file)]
-    if text is not None:
-        (tmp_path / file).write_text(text)
-    asked = ["explore", "--no-open", "--output", str(tmp_path / "page.html")]
-    assert cli.main([*asked, *options]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert words in line and "expected" in line
 
 
 def test_what_write_record_wrote_is_read_by_the_same_gate(tmp_path, capsys):

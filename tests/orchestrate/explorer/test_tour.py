@@ -1,7 +1,6 @@
 """The guided tour shows what it says: each of its motions is computed through the FMU."""
 
 import functools
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,9 +10,6 @@ from orchestrate.constants import GRAVITY
 from orchestrate.explorer.tour import TOUR
 from orchestrate.flags import flag_words
 
-MANUAL = Path(__file__).parents[3] / "docs" / "explorer.md"
-FEW = {"direction": "up", "transient": 200, "samples": 20, "progress": False}
-LOWEST = 1e-5  # gaps over a eta^2 that the diagram draws above its strip of zero
 STOPS = {stop.name: stop for step in TOUR for stop in step.stops}
 
 
@@ -92,33 +88,6 @@ def test_a_pressed_delamination_stays_shut_below_a_level_and_knocks_above_it():
     swept, motion, _ = settled("pressed-hill")
     assert STOPS["pressed-hill"].level == stops[0].level
     assert float(swept.impacts_per_period) > 1.0 and float(motion.x_rel.max()) > 1e-4
-
-
-HILL = (36.2, 47.0)  # Hz, as the page says it of the diagram
-
-
-@pytest.mark.slow
-def test_at_the_level_where_it_is_shut_the_pressed_beam_opens_on_its_hill_alone():
-    """Over the frequencies of the step's diagram, closely at the ends of the hill."""
-    stop = STOPS["pressed"]
-    unit = stop.structure.omega / (2.0 * np.pi)
-    first, last = (end * unit for end in stop.region)
-    ends = [end + change for end in HILL for change in (-0.2, -0.1, 0.0, 0.1, 0.2)]
-    hertz = np.unique(np.round([*np.arange(first, last + 0.5, 1.0), *ends], 4))
-    assert hertz[0] == first and hertz[-1] == last
-    turns = 2.0 * np.pi * hertz
-    amplitude = stop.level * GRAVITY / turns**2
-    swept = orchestrate.sweep(stop.structure, frequency=turns, amplitude=amplitude, **FEW)
-    opens = (swept.xi_rel_max > 0.0).values & (swept.impacts_per_period > 0.0).values
-    hill = (hertz >= HILL[0]) & (hertz <= HILL[1])
-    assert 5 < hill.sum() < len(hertz) - 5
-    assert np.array_equal(opens.reshape(-1), hill), hertz[opens.reshape(-1) != hill]
-    dots = swept.xi_rel.max("sample").values.reshape(-1) > LOWEST
-    assert (opens.reshape(-1) & ~dots).any()  # the page says so: impacts under a gap of 0
-    (step,) = [step for step in TOUR if stop in step.stops]
-    assert f"{stop.eta * unit:g} Hz and {stop.level:g} g" in step.text
-    for one in step.stops:
-        assert one.label.startswith(f"{one.level:g} g at {one.eta * unit:g} Hz: ")
 
 
 TEXTS = (

@@ -103,14 +103,6 @@ def test_pauses_change_no_bit(event_fmu, monkeypatch):
     assert (bits(result), compiled_end) == (bits(expected), end)
 
 
-def test_where_it_is_read_changes_no_impact(event_fmu):
-    at_samples, end = done(EventLoop, event_fmu, STRUCTURE)
-    unread, same_end = done(EventLoop, event_fmu, STRUCTURE, samples=np.empty(0))
-    assert bits(at_samples)[2:] == bits(unread)[2:]
-    assert unread.rows.shape == (0, len(PLAYED))
-    assert len(end) == len(same_end)
-
-
 def test_an_open_instance_serves_any_number_of_motions(event_fmu):
     """After another structure, and after a refusal, the motion is that of a new instance."""
     expected, _ = done(EventLoop, event_fmu, STRUCTURE)
@@ -181,12 +173,3 @@ def test_structures_have_the_sizes_of_the_source():
     """A field forgotten on one side would shift all that follow."""
     sizes = (ctypes.c_uint * 3).in_dll(loaded_loop("play"), "sizes_of_play")
     assert list(sizes) == [ctypes.sizeof(kind) for kind in (PlayerCalls, PlayTask, PlayProgress)]
-
-
-def test_what_is_not_read_changes_nothing(event_fmu):
-    with Player(event_fmu) as player:
-        rows = []
-        for outputs in (PLAYED, ("x2", "v1")):
-            player.start(STRUCTURE, (0.1, 0.2, 0.0, 0.0))
-            rows.append(player.play(NODES, CUBICS, SAMPLES, outputs).rows)
-    assert rows[1].tobytes() == rows[0][:, [1, 2]].tobytes()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate.errors import FmuError, InputError
-from orchestrate.fmu import REST, EventInstance, Instance, begin, sampled
+from orchestrate.fmu import REST, EventInstance, Instance, begin
 from orchestrate.model import Excitation, Structure
 
 STRUCTURE = Structure.nondimensional(mu=0.7, kappa=1.3, D=0.013, e=0.6)
@@ -61,17 +61,6 @@ def test_begin_sets_all(any_fmu):
 def test_a_start_has_four_numbers(events, start):
     with pytest.raises(InputError, match=r"start = .*: expected 4 numbers, x1, x2, v1, v2"):
         begin(events, STRUCTURE, CHAOS, start)
-
-
-@pytest.mark.parametrize("count", [1, 7, 300])
-def test_samples_are_the_states_at_equal_parts(any_fmu, count):
-    with Instance(any_fmu) as instance:
-        begin(instance, STRUCTURE, CHAOS)
-        states = sampled(instance, 0.0, 30.0, count)
-        begin(instance, STRUCTURE, CHAOS)
-        for n, state in enumerate(states, start=1):
-            instance.step((n - 1) * (30.0 / count), n * (30.0 / count))
-            np.testing.assert_allclose(instance.read(*STATE), state, rtol=1e-9, atol=1e-9)
 
 
 def test_fmi_2_has_no_events(oscillator_in):

@@ -1,7 +1,6 @@
 """What is set is what is read, errors are the FMU's words, states come back bit by bit."""
 
 import math
-import os
 
 import pytest
 
@@ -63,43 +62,22 @@ def test_initialize_begins_at_a_time(any_fmu):
 
 
 @pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda i: i.set(box_amplitude=math.nan), ["box_amplitude = nan m"]),
-        (lambda i: i.set(box_frequency=-1.0), ["box_frequency = -1.0 rad/s", "<= box_frequency"]),
-        (lambda i: i.set(e=0.5), ["e = 0.5", "fixed"]),
-        (lambda i: i.set(x1=0.5), ["x1 = 0.5", "output"]),
-        (lambda i: i.step(100.0, 99.0), ["communicationStepSize = -1.0 s"]),
-        (lambda i: i.step(100.0, math.inf), ["communicationStepSize = inf s"]),
-        (lambda i: i.step(50.0, 51.0), ["currentCommunicationPoint = 50.0 s", "100.0 s"]),
-        (lambda i: i.restore_state(b"short"), ["saved by this FMU"]),
-        (lambda i: i.restore_state(b"?" * len(i.save_state())), ["saved by this FMU"]),
-        (lambda i: i.read("in_contact"), ["in_contact", "Boolean", "Real"]),
-    ],
-)
-def test_errors_are_the_fmus_words_and_change_nothing(instance, call, words):
-    before = instance.get(*STATE)
-    with pytest.raises(FmuError) as error:
-        call(instance)
-    text = str(error.value)
-    assert all(word in text for word in words), text
-    assert "\n" not in text and "Traceback" not in text
-    assert instance.get(*STATE) == before
-    instance.step(100.0, 101.0)
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda i: i.get("gap"),
-        lambda i: i.set(gap=1.0),
-        lambda i: i.read("x1", "gap"),
-        lambda i: i.variable("gap"),
-    ],
+    "call", [lambda i: i.get("gap"), lambda i: i.set(gap=1.0), lambda i: i.read("x1", "gap")]
 )
 def test_a_variable_that_is_not_there(instance, call):
     with pytest.raises(InputError, match="variable gap: the FMU TwoMassImpactOscillator has none"):
         call(instance)
+
+
+def test_errors_are_the_fmus_words_in_one_line(instance):
+    for call, words in (
+        (lambda: instance.set(box_amplitude=math.nan), "box_amplitude = nan m"),
+        (lambda: instance.restore_state(b"short"), "saved by this FMU"),
+        (lambda: instance.read("in_contact"), "in_contact.*Boolean"),
+    ):
+        with pytest.raises(FmuError, match=words) as error:
+            call()
+        assert "\n" not in str(error.value)
 
 
 def test_a_restored_state_gives_the_same_bits(instance, any_fmu):
@@ -126,14 +104,6 @@ def test_reset(instance):
     instance.reset()
     instance.initialize(**CHAOS)
     assert trajectory(instance, 0.0) == once
-
-
-def test_the_environment_is_left_alone(any_fmu):
-    before = dict(os.environ)
-    with Instance(any_fmu) as instance:
-        instance.initialize()
-        instance.step(0.0, 1.0)
-    assert dict(os.environ) == before
 
 
 def test_an_fmu_without_a_binary_for_this_machine(any_fmu, tmp_path):

@@ -96,8 +96,6 @@ def test_what_cannot_be_unpacked_leaves_nothing(any_fmu, tmp_path, monkeypatch):
     monkeypatch.setattr(fmpy, "extract", full)
     fmu = altered_fmu(any_fmu, tmp_path / "mine.fmu", version=(VERSION, "0.1.3"))
     before = set(process_folder().iterdir())
-    with pytest.raises(
-        StoreError, match=r"cannot be unpacked \(No space left on device\); expected"
-    ):
+    with pytest.raises(StoreError, match=r"cannot be unpacked \(No space left on device\)"):
         Instance(fmu)
     assert set(process_folder().iterdir()) == before

@@ -217,10 +217,7 @@ def test_a_sound_beam_is_split_by_its_layers_and_touching_halves_are_refused():
         (lambda: halves(sound), "neither of a second record and thicknesses="),
         (lambda: halves(sound, sound), "both knock on half 1"),
         (lambda: halves(on_the_box, thicknesses=(1, 1)), "no force"),
-        (
-            lambda: frf(sound.drop_vars("force1")),
-            "box_acceleration does not change; expected box_acceleration over time, in m/s2, or",
-        ),
+        (lambda: frf(sound.drop_vars("force1")), "box_acceleration does not change; expected"),
         (lambda: KNOCK + SweptSine(first=1, last=2, duration=1, acceleration=1.0), "a sum of"),
         (lambda: KNOCK + Hammer(peak=1.0, width=0.1, half=2), "a sum of force1 and force2"),
         (lambda: Hammer(peak=1.0, width=0.1, half=3), "half = 3"),

@@ -47,14 +47,6 @@ def test_a_record_has_units_names_and_its_rate():
     assert data.time.attrs["units"] == "s"
 
 
-def test_times_with_few_digits_are_even():
-    time = np.round(np.arange(20_000) / 25_600.0, 6)
-    data = record(time=time, acceleration1=np.sin(time), sample_rate=25_600.0)
-    assert data.attrs["sample_rate"] == 25_600.0
-    alone = record(time=time, acceleration1=np.sin(time))
-    assert alone.attrs["sample_rate"] == pytest.approx(25_600.0, rel=1e-5)
-
-
 def five_digits(count=12_000, rate=1024.0):
     time = np.arange(count) / rate
     return np.array([float(f"{one:.5g}") for one in time]), np.sin(300.0 * time)
@@ -67,9 +59,7 @@ def test_rounded_times_say_so_and_a_sampling_rate_corrects_them():
     assert (alone.time.values == np.arange(len(time)) / 1024.0).all()
     data = record(time=time, acceleration1=values, sample_rate=1024.0)
     assert (data.time.values == np.arange(len(time)) / 1024.0).all()
-    with pytest.raises(
-        InputError, match=r"sample_rate = 1000.0 Hz: expected 102\d.*, as the times"
-    ):
+    with pytest.raises(InputError, match=r"sample_rate = 1000.0 Hz: expected 102\d.*, as the"):
         record(time=time, acceleration1=values, sample_rate=1000.0)
     kept = np.delete(np.arange(len(time)), [5000, 7000, 9000])
     for rate in (1024.0, None):
@@ -93,10 +83,7 @@ def changed(column, row, value):
         (changed("time", 20, 0.0), "time, row 20: 0 s after 0.00371093"),
         ({"time": [0.0, 1.0]}, "record: no channel given; expected one of box_acceleration"),
         ({"acceleration1": [1.0] * 5}, "record: neither time nor sample_rate given"),
-        (
-            {"acceleration1": [], "sample_rate": 9.0},
-            "acceleration1: 0 values; expected a list of 4",
-        ),
+        ({"acceleration1": [], "sample_rate": 9.0}, "acceleration1: 0 values; expected a list of"),
         ({"acceleration1": "abc", "sample_rate": 9.0}, "acceleration1: expected a list of numbers"),
         ({"time": [0.0, 1.0, 2.0, 3.0, 4.0], "acceleration1": [1.0] * 4}, "4 values; expected 5"),
         ({"time": [0.0, 1.0, 2.0, 4.0], "acceleration1": [1.0] * 4}, "time, row 3: a step of 2 s"),
@@ -363,18 +350,12 @@ def test_a_record_says_which_unit_was_taken_in_place_of_the_file_s(tmp_path):
         (lines(r10="0.010,,3"), 'column "base", row 12: nothing; expected a number'),
         (lines(r10="0.010,nan,3"), 'column "base", row 12: nan; expected numbers'),
         (lines(r10="0.010,1,inf"), 'column "mass 1", row 12: inf; expected numbers'),
-        (
-            lines(r10="0.010,-1e101,3"),
-            'column "base", row 12: -1e+101; expected numbers of sizes up to 1e+100',
-        ),
+        (lines(r10="0.010,-1e101,3"), 'column "base", row 12: -1e+101; expected numbers of sizes'),
         (lines(r10="0.010,1"), "row 12: 2 columns; expected 3"),
         (lines(r10="0.010,1,2,3"), "row 12: 4 columns; expected 3"),
         (lines(r10="0.0105,1,2"), "time, row 12: a step of 0.0015 s where others are 0.001 s"),
         (lines(r10="0.005,1,2"), "time, row 12: 0.005 s after 0.009 s; expected ascending"),
-        (
-            "t [s],base [V]\n0,1\n1,2\n2,3\n3,1\n",
-            'column "base" (base): in V, without a sensitivity; expected one',
-        ),
+        ("t [s],base [V]\n0,1\n1,2\n2,3\n3,1\n", 'column "base" (base): in V, without a'),
         ("t,base\n0,1\n1,2\n2,3\n3,1\n", 'column "base" (base): no unit; expected one such'),
         ("t [s],base [g]\n0,1\n1,2\n", "base_acceleration"),
         ("\0\1\2", "no text; expected columns of numbers"),
@@ -388,15 +369,9 @@ def test_a_record_says_which_unit_was_taken_in_place_of_the_file_s(tmp_path):
         ("t;base\n2026-01-01;1.234,5\n", "row 2: '2026-01-01', a date; expected columns of num"),
         ("frequency,H1,phase\n1,2,3\n2,3,4\n3,4,5\n", "an FRF, a spectrum or a resonance curve"),
         ("f [Hz],base [g\u00b2/Hz]\n1,2\n2,3\n3,4\n", "a spectral density over the frequency in"),
-        (
-            "time,acc_x,acc_y,acc_z\n0,1,2,3\n1,2,3,4\n",
-            "directions of one sensor among the columns",
-        ),
+        ("time,acc_x,acc_y,acc_z\n0,1,2,3\n1,2,3,4\n", "directions of one sensor among the"),
         ("time,base x,base y\n0,1,2\n1,2,3\n", 'columns "base x", "base y" may each be base; ex'),
-        (
-            wide(14),
-            "14 columns c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11 and 2 more; expected",
-        ),
+        (wide(14), "14 columns c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11 and 2 more"),
     ],
 )
 def test_damaged_text_is_refused_in_one_line(tmp_path, text, words):
@@ -602,10 +577,7 @@ def test_a_sensitivity_of_all_columns_asks_for_the_units_that_are_missing(tmp_pa
         ({"unit": "base=g", "sensitivity": "base=1 V/g"}, "expected volts: a sensitivity does not"),
         ({"unit": "g,time=us"}, "'g' of which channel? expected base="),
         ({"unit": "base=N"}, "unit = 'N'; expected one such as m/s2, g, mm/s, um, V"),
-        (
-            {"unit": "g", "scale": "base=x"},
-            "scale = 'base=x': expected numbers of sizes from 1e-12 to",
-        ),
+        ({"unit": "g", "scale": "base=x"}, "scale = 'base=x': expected numbers of sizes from"),
     ],
 )
 def test_mistaken_units_and_sensitivities_are_one_line(tmp_path, options, words):
@@ -738,9 +710,7 @@ def test_nested_structures_of_matlab(tmp_path):
         assert np.allclose(read_record(path).acceleration1, acceleration)
     frf = {"run": {"frequency": np.arange(9.0), "H1": np.arange(9.0) * 1j}}
     scipy.io.savemat(path, frf)
-    with pytest.raises(
-        InputError, match=r"a frequency response or a spectrum \(run.H1\); expected"
-    ):
+    with pytest.raises(InputError, match=r"a frequency response or a spectrum \(run.H1\)"):
         read_record(path)
 
 

@@ -75,23 +75,6 @@ def test_the_sets_give_their_rated_force(exported, name):
 
 
 @pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"rated_force": 0.0}, "rated_force = 0.0 N: expected"),
-        ({"moving_mass": math.nan}, "moving_mass = nan kg: expected"),
-        ({"payload": -1.0}, "payload = -1.0 kg: expected 0 <= payload"),
-        ({"force_factor": 0.0}, "force_factor = 0.0 N/A: expected a force factor > 0"),
-        ({"travel": "wide"}, "travel = 'wide': expected a number"),
-        ({"current_control": 2}, "current_control = 2: expected true or false"),
-        ({"amplifier_power": 90.0}, "amplifier_power = 90.0 VA: expected at least 100 VA"),
-    ],
-)
-def test_bad_data_sheets(changes, words):
-    with pytest.raises(InputError, match=words):
-        Shaker.from_datasheet(**{**SHEET, **changes})
-
-
-@pytest.mark.parametrize(
     ("text", "words"),
     [
         ("table_mass = 1", "shaker.force_factor: missing"),
@@ -100,10 +83,7 @@ def test_bad_data_sheets(changes, words):
             "force_factor = 1\ncoil_resistance = 1\ntable_mass = 1\nmoving_mass = 1",
             "shaker.moving_mass = 1: given with table_mass; expected keys of one kind",
         ),
-        (
-            "force_factor = 1\ncoil_resistance = 1\ncurrent_control = 1",
-            "shaker.current_control = 1: expected true or false",
-        ),
+        ("force_factor = 1\ncoil_resistance = 1\ncurrent_control = 1", "current_control = 1:"),
     ],
 )
 def test_bad_files(tmp_path, text, words):

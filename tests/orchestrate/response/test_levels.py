@@ -46,20 +46,6 @@ def test_resonance_at_levels_is_resonance_at_each(exported, direction):
     assert "0.102 g" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
-@pytest.mark.parametrize(
-    ("given", "named"),
-    [
-        ({"frequency": [300.0], "level": [1.0, 1.0]}, "level: expected numbers, each once"),
-        ({"frequency": [300.0], "level": -1.0}, "level = -1.0"),
-        ({"frequency": [300.0], "level": []}, "level"),
-        ({"frequency": "fast", "level": 1.0}, "frequency"),
-    ],
-)
-def test_wrong_levels_are_named(given, named):
-    with pytest.raises(InputError, match=named):
-        orchestrate.resonance_levels(PRESSED, **given)
-
-
 def test_a_branch_does_not_vary_the_level():
     with pytest.raises(InputError, match="over = 'level'"):
         orchestrate.branch(Structure.nondimensional(), eta=2.0, over="level", limits=(1.0, 2.0))

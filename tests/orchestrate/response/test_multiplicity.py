@@ -18,11 +18,7 @@ from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.model import Excitation
 from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
-from orchestrate.response.multiplicity import (
-    MIN_RELATIVE_GAP,
-    decide_multiplicity,
-    find_repetition,
-)
+from orchestrate.response.multiplicity import MIN_RELATIVE_GAP, decide_multiplicity, find_repetition
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import respond
 

@@ -1,22 +1,20 @@
-"""The compiled loop of responses: the bits of plain Python, for FMUs of every form."""
+"""The compiled loop of responses: however it is cut in pieces, for FMUs of every form."""
 
 import ctypes
-import functools
+import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from orchestrate.errors import FmuError, InputError
-from orchestrate.fmu import OSCILLATOR, Instance, find, library, sampled
+from orchestrate.fmu import OSCILLATOR, Instance, find, gap_between, library, sampled
 from orchestrate.fmu.oscillator import OscillatorCalls, ResponseProgress, ResponseTask
 from orchestrate.model import Excitation
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import LoopSettings, response_loop
 
 from ...draws import draw_structure
-from ...sparing import ordinary
-from . import reference_loop
-from .reference_loop import round_state
 
 pytestmark = pytest.mark.usefixtures("exported")
 SETTINGS = {  # of a loop that decides
@@ -41,6 +39,25 @@ def points(seed, count=12):
         yield Point(structure, Excitation.nondimensional(eta, structure))
 
 
+def round_state(state, offset=0.0, bits=44):
+    """A state to so many binary digits of the larger face, and of the larger velocity."""
+    x1, x2, v1, v2 = state.tolist()
+    velocities = round_to_bits(v1, v2, bits)
+    if offset == 0.0:
+        return (*round_to_bits(x1, x2, bits), *velocities)
+    face_1, face_2 = round_to_bits(x1, x1 + float(gap_between(state, offset)), bits)
+    return (face_1, face_2 - offset, *velocities)
+
+
+def round_to_bits(first, second, bits):
+    """Two numbers to so many binary digits of the larger one."""
+    exponent = math.frexp(max(abs(first), abs(second)))[1]
+    if exponent < -970:  # too small to have so many digits
+        return first, second
+    digit = math.ldexp(1.0, exponent - bits)
+    return tuple(math.copysign(round(x / digit) * digit, x) for x in (first, second))
+
+
 def bits(results):
     counts = [results.counts[name] for name in sorted(results.counts)]
     tables = (*results[:6], results.must_impact, *counts)
@@ -48,9 +65,9 @@ def bits(results):
 
 
 @pytest.mark.parametrize("is_chain", [False, True])
-@pytest.mark.parametrize("number", ordinary([12, 400]))
-def test_the_loop_has_the_bits_of_python(instance, is_chain, number, monkeypatch):
-    some, random = list(points(3, number)), np.random.default_rng(4)
+def test_pauses_change_no_bit(instance, is_chain, monkeypatch):
+    """Transients in pieces, and several calls."""
+    some, random = list(points(3)), np.random.default_rng(4)
     starts = random.uniform(0.0, 1.0, (len(some), 4)) * (-1, 5, 1, 1)
     starts[:, 1] += [max(0.0, -structure.clearance) for structure, _ in some]
     starts[0] = 0.0
@@ -61,11 +78,26 @@ def test_the_loop_has_the_bits_of_python(instance, is_chain, number, monkeypatch
         **SETTINGS,
     )
     chosen = starts[1:2] if is_chain else starts
-    expected = reference_loop.respond(instance, some, chosen, settings)
+    expected = response_loop(instance).respond(some, chosen, settings)
     assert np.any(expected.counts["multiplicity"]) and np.any(expected.impacts)
-    for work in (10, 200):  # transients in pieces, and several calls
+    for work in (10, 200):
         monkeypatch.setattr("orchestrate.response.response_loop.MAX_WORK", work)
         assert bits(response_loop(instance).respond(some, chosen, settings)) == bits(expected)
+
+
+def test_a_chain_goes_on_from_the_end_before_it_with_the_same_gap(instance):
+    some, gap = list(points(3)), 0.5
+    settings = LoopSettings(transient=30, is_chain=True, chain_gap=gap, **SETTINGS)
+    chain, start = response_loop(instance).respond(some, [(0.0, 2.0, 0.1, 0.0)], settings), None
+    assert len({point.structure.gap_offset for point in some}) > 3
+    for i, point in enumerate(some):
+        start = chain.ends[i - 1].copy() if i else np.array([0.0, 2.0, 0.1, 0.0])
+        offset = point.structure.gap_offset
+        start[1] = max(start[1] + (gap - offset if np.any(start) else 0.0), start[0] - offset)
+        alone = LoopSettings(transient=30, **SETTINGS)
+        found = response_loop(instance).respond([point], [start], alone)
+        assert found.states.tobytes() == chain.states[i].tobytes(), i
+        gap = offset
 
 
 @pytest.mark.parametrize("form", ["fmi2", "fmi2-python", "fmi2-plain"])
@@ -85,24 +117,31 @@ def test_every_form_runs_through_the_same_loop(instance, form):
             response_loop(other).respond(some[:1], np.full((1, 4), np.nan), settings)
 
 
-def test_repetitions_within_two_tolerances_have_the_bits_of_python(instance):
-    some = list(points(9))
-    settings = LoopSettings(transient=60, samples=24, tolerance=1e-6, loose=1e-2)
-    arguments = some, np.zeros((len(some), 4)), settings
-    compiled = response_loop(instance).respond(*arguments)
-    assert bits(compiled) == bits(reference_loop.respond(instance, *arguments))
-    counts = compiled.counts["multiplicity"], compiled.counts["nearly"]
-    assert np.any(counts[0]) and np.any(counts[0] != counts[1]) and np.any(compiled.deviations)
+def test_repetitions_within_two_tolerances(instance):
+    some, starts = list(points(9)), np.zeros((12, 4))
+    both = LoopSettings(transient=60, samples=24, tolerance=1e-6, loose=1e-2)
+    counts, deviations = [], []
+    for settings in (both, replace(both, tolerance=1e-2)):
+        found = response_loop(instance).respond(some, starts, settings)
+        counts += [found.counts["multiplicity"], found.counts["nearly"]]
+        deviations.append(found.deviations)
+    assert np.any(counts[0]) and np.any(counts[0] != counts[1])
+    assert np.array_equal(counts[1], counts[2]) and np.array_equal(counts[2], counts[3])
+    assert np.any(deviations[0]) and np.array_equal(*deviations)
 
 
 def test_samples_are_more_than_a_step_keeps(instance):
     (point,) = points(5, 1)
-    arguments = [point], [(0.0,) * 4], LoopSettings(transient=0, samples=1700)
-    end, states = 1700 * point.excitation.period, []
-    for loop, more in ((response_loop(instance), sampled), (None, reference_loop.sampled)):
-        respond = loop.respond if loop else functools.partial(reference_loop.respond, instance)
-        states.append(bits(respond(*arguments)) + more(instance, end, end + 9.0, 4500).tobytes())
-    assert states[0] == states[1]
+    whole, last = (
+        response_loop(instance).respond(
+            [point], [(0.0,) * 4], LoopSettings(transient=before, samples=samples)
+        )
+        for before, samples in ((0, 1700), (1693, 7))
+    )
+    assert np.array_equal(whole.states[0, -7:], last.states[0])
+    end = 1700 * point.excitation.period
+    states = sampled(instance, end, end + 9.0, 4500)
+    assert states[-1].tolist() == instance.get("x1", "x2", "v1", "v2")
 
 
 @pytest.mark.parametrize("scale", [2.0**-1000, 2.0**-960, 1.0, 2.0**300])
@@ -115,14 +154,6 @@ def test_ends_are_rounded(instance, scale):
     results = response_loop(instance).respond([point], [(0.0,) * 4], settings)
     assert tuple(results.ends[0]) == round_state(results.states[0, -1])
     assert round_state(np.array([0.25, 0.3, 1.0, -1.0])) == (0.25, 0.30000000000001137, 1.0, -1.0)
-
-
-def test_what_the_fmu_refuses_is_its_own_message(instance):
-    (point,) = points(7, 1)
-    with pytest.raises(FmuError, match="x1_start = nan"):
-        response_loop(instance).respond(
-            [point], [(np.nan, 0.0, 0.0, 0.0)], LoopSettings(transient=5, samples=3)
-        )
 
 
 def test_structures_have_the_sizes_of_the_source():

@@ -3,9 +3,9 @@
 import ast
 import dataclasses
 import inspect
+import math
 import textwrap
 import typing
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,7 +18,6 @@ from orchestrate.response.signatures import as_given, question
 
 from ..running.test_kills import kinds_of_questions
 
-PACKAGE = Path(orchestrate.__file__).parent
 KINDS = {
     kind.asked: kind
     for kind in sorted(kinds_of_questions(), key=lambda kind: kind.__name__)
@@ -94,7 +93,9 @@ def test_what_a_job_reads_of_itself_is_there(name):
                     assert node.attr in known, f"{parent.__name__}: self.{node.attr}"
 
 
-def test_no_function_passes_its_local_variables_on():
-    for path in PACKAGE.rglob("*.py"):
-        nodes = ast.walk(ast.parse(path.read_bytes()))
-        assert "locals" not in {node.id for node in nodes if isinstance(node, ast.Name)}, path
+@pytest.mark.parametrize("name", ASKED)
+def test_every_keyword_that_has_a_check_refuses_by_its_name_in_one_line(name):
+    for key, check in checks_of(KINDS[name]).items():
+        for wrong in (object(), "\n", math.nan):
+            with pytest.raises(InputError, match=rf"^{key}\b[^\n]* expected [^\n]+$"):
+                check(key, wrong)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.response.simulate import simulate
 
@@ -80,18 +79,3 @@ def test_the_impulse_that_begins_contact_is_plastic():
     assert sticking.sum() == 1
     np.testing.assert_allclose(m.impulse[sticking], 0.5 * m.impact_velocity[sticking])
     np.testing.assert_allclose(m.impulse[~sticking], 0.85 * m.impact_velocity[~sticking])
-
-
-@pytest.mark.parametrize(
-    ("asked", "text"),
-    [
-        ({"eta": [1.0, 2.0]}, "eta: 2 values; expected one number"),
-        ({"eta": 1.0, "periods": 0}, "periods = 0"),
-        ({"eta": 1.0, "points": 2.5}, r"points = 2\.5"),
-        ({"eta": 1.0, "phase": np.nan}, "phase = nan"),
-        ({"eta": 1.0, "start": (1.0, 0.0, 0.0, 0.0)}, "x2 >= x1"),
-    ],
-)
-def test_what_is_refused(asked, text):
-    with pytest.raises(InputError, match=text):
-        simulate(PAPER, **asked)

@@ -1,6 +1,5 @@
 """Sweeps: order, directions, any parameter; chunks and scales change nothing."""
 
-import math
 from unittest.mock import patch
 
 import numpy as np
@@ -9,7 +8,6 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, Instance, begin, find, sampled
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
@@ -140,17 +138,6 @@ def test_the_unit_of_mass_and_time_does_not_matter(mass, time, eta, kappa, e):
     np.testing.assert_allclose(two.a1_max, omega**2 * one.a1_max, rtol=1e-12)
 
 
-def test_a_bonded_structure_has_the_linear_amplitude():
-    structure = Structure.nondimensional(D=0.05, bonded=True)
-    found = sweep(structure, eta=[0.5, 1.0, 1.1], transient=300, samples=10)
-    for eta, x, a in zip(found.eta.values, found.x1_max.values, found.a1_max.values, strict=True):
-        reach = complex(structure.omega_3**2 - eta**2, 2.0 * structure.D3 * eta)
-        assert x == pytest.approx(1.0 / abs(reach), rel=1e-6)
-        assert a == pytest.approx(abs(1.0 + eta**2 / reach), rel=1e-6)
-    assert (found.xi_rel_max == 0.0).all()
-    assert found.permanent_contact.values.tolist() == [1, 1, 1]
-
-
 def test_it_is_told_how_the_multiplicity_was_decided():
     found = sweep(PAPER, eta=[1.047, 1.13])
     assert found.multiplicity_decided.values.tolist() == [REPEATED, IRREGULAR]
@@ -168,26 +155,3 @@ def test_impacts_of_a_response_are_counted_over_its_own_period():
         assert (int(found.multiplicity[0]), float(found.impacts_per_period[0])) == (22, 24 / 22)
     motion = simulate(structure, eta=2.615, transient=700, periods=22, points=1)
     assert motion.sizes["impact"] == 24
-
-
-@pytest.mark.parametrize(
-    ("asked", "text"),
-    [
-        ({"eta": [1.0, 1.0]}, r"eta: 1\.0 twice; expected each value once"),
-        ({"eta": 1.0, "direction": "left"}, "direction = 'left': expected one of up, down"),
-        ({"eta": 1.0, "tolerance": 0.0}, r"tolerance = 0\.0: expected a number > 0"),
-        ({"eta": 1.0, "transient": -1}, "transient = -1: expected a whole number from 0"),
-        ({"eta": 1.0, "start": (0.0, -1.0, 0.0, 0.0)}, "with x2 >= x1"),
-    ],
-)
-def test_what_is_refused(asked, text):
-    with pytest.raises(InputError, match=text):
-        sweep(PAPER, **asked)
-    assert sweep(PAPER, eta=[1.0, 1.0], direction="given", transient=1, samples=1).sizes["eta"] == 2
-
-
-def test_everything_has_units_and_a_name():
-    found = sweep(PAPER, over="m2", values=[1.0, 2.0], eta=1.0, direction="both", **SHORT)
-    for name, variable in found.variables.items():
-        assert variable.attrs["units"] and variable.attrs["long_name"], name
-    assert math.isclose(float(found.period[0]), 2.0 * math.pi)

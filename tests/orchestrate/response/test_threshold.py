@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate import InputError, Structure
+from orchestrate import Structure
 from orchestrate.fmu import OSCILLATOR, Instance, begin, find
 from orchestrate.model import Excitation
 from orchestrate.show import plot
@@ -95,25 +95,6 @@ def test_forms_units_and_limits():
     assert orchestrate.contact_threshold(alike, eta=1.0).threshold_amplitude[0] == np.inf
     twice = orchestrate.contact_threshold(pressed.replace(clearance=-0.5), eta=[0.5, 1.0])
     assert np.array_equal(twice.threshold_amplitude, 2.0 * by_eta.threshold_amplitude)
-
-
-@pytest.mark.parametrize(
-    ("structure", "asked", "text"),
-    [
-        (
-            Structure(bonded=True, clearance=-1.0),
-            {"eta": 1.0},
-            "bonded = True: expected a delaminated structure",
-        ),
-        (Structure(clearance=-1.0), {}, "expected eta= or frequency="),
-        (Structure(clearance=-1.0), {"eta": 1.0, "frequency": 1.0}, "expected eta= or frequency="),
-        (Structure(clearance=-1.0), {"eta": [1.0, -1.0]}, r"-1\.0: expected"),
-        ("beam", {"eta": 1.0}, "expected a Structure"),
-    ],
-)
-def test_wrong_arguments_are_one_line(structure, asked, text):
-    with pytest.raises(InputError, match=text):
-        orchestrate.contact_threshold(structure, **asked)
 
 
 def test_resonance_has_the_threshold_as_a_curve_and_the_picture_shows_it():

@@ -2,7 +2,6 @@
 
 import os
 import sys
-import threading
 import warnings
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from types import SimpleNamespace
@@ -14,7 +13,7 @@ import pytest
 from orchestrate.errors import InputError, WorkerError
 from orchestrate.fmu import OSCILLATOR
 from orchestrate.running import cluster, executors, runner
-from orchestrate.running.executors import compute, processes, threads
+from orchestrate.running.executors import compute, processes
 from orchestrate.running.runner import answer
 
 from .sums import Forgetful, Gathered, Squares, Sums
@@ -68,22 +67,6 @@ def test_on_windows_a_worker_waits_for_the_end_of_its_parent(monkeypatch, ended)
     monkeypatch.setattr(sys, "platform", "win32")
     executors.wait_for_end(42)
     assert waited == ([] if ended else [((0x100000, 42), 0xFFFFFFFF)])
-
-
-def test_threads_compute_at_once_and_no_more_than_so_many():
-    meeting = threading.Barrier(2, timeout=20.0)
-    running, most = [], []
-
-    def work(number):
-        running.append(number)
-        most.append(len(running))
-        meeting.wait()
-        running.remove(number)
-
-    with threads(2) as workers:
-        futures = [workers.executor.submit(work, number) for number in range(6)]
-        assert [future.result() for future in futures] == [None] * 6
-    assert max(most) == 2
 
 
 class Dying(Squares):

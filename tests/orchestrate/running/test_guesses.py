@@ -71,14 +71,10 @@ def test_a_guess_is_stored_for_a_run_that_is_interrupted(tmp_path, monkeypatch):
     assert np.array_equal(again.result.value, again.job.work({}, again.job.items(), None)["value"])
 
 
-FIGURES = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D
-
-
-def job(figure: str, direction: str, low: float = 0.1, high: float = 8.0, step: float = 0.05):
-    """A figure's sweep."""
-    e, D = FIGURES[figure]
-    etas = np.round(np.arange(low, high + 0.5 * step, step), 3)
-    asked = {"structure": Structure.nondimensional(e=e, D=D), "eta": etas, "start": None}
+def job(direction: str):
+    """The sweep of the paper's Figure 6 in large steps."""
+    etas = np.round(np.arange(0.1, 8.025, 0.05), 3)
+    asked = {"structure": Structure.nondimensional(), "eta": etas, "start": None}
     rest = {"transient": 40, "samples": 40, "tolerance": 1e-2, "peak_periods": 8}
     return SweepJob(**asked, **rest, name="sweep", direction=direction)
 
@@ -92,10 +88,9 @@ def played(sweep: SweepJob, workers: int, store=None):
 
 
 @pytest.mark.usefixtures("exported")
-@pytest.mark.parametrize("figure", ordinary(FIGURES))
-@pytest.mark.parametrize("direction", ordinary(["both", "up", "down"]))
-def test_any_number_of_workers_gives_the_same_sweep(figure, direction):
-    sweep = job(figure, direction)
+@pytest.mark.parametrize("direction", ordinary(["both", "down"]))
+def test_any_number_of_workers_gives_the_same_sweep(direction):
+    sweep = job(direction)
     alone, wasted = played(sweep, 1)
     assert wasted == 0
     for workers in (2, 7):

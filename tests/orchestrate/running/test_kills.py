@@ -112,10 +112,7 @@ QUESTIONS: Mapping[str, tuple[int, Ask]] = {  # with the items of a chunk
     "CoupleJob": (60, asked(orchestrate.couple, *MOTOR, voltage=1.5, duration=30.0)),
     "PassageJob": (100, asked(orchestrate.passage, *MOTOR, voltage=1.5, duration=50.0)),
     "JumpVoltagesJob": (1, asked(orchestrate.jump_voltages, *MOTOR, voltage=(1.5, 1.6), **RAMP)),
-    "DriveBranchJob": (
-        1,
-        asked(orchestrate.drive_branch, *MOTOR, speed=(1.29, 1.32), longest=0.2),
-    ),
+    "DriveBranchJob": (1, asked(orchestrate.drive_branch, *MOTOR, speed=(1.29, 1.32), longest=0.2)),
     "DriveSpectraJob": (
         1,
         asked(drive_spectra, *MOTOR, voltage=1.3, begin=1.29, hold=50.0, revolutions=8, points=64),

@@ -203,27 +203,7 @@ def test_one_process_at_a_time(find, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"model.fmu", "squares.nc"}
 
 
-def test_a_folder_that_cannot_be_made(find, tmp_path):
-    (tmp_path / "file").write_text("")
-    with pytest.raises(StoreError, match="expected a folder that can be written"):
-        answer(JOB, {"store": tmp_path / "file" / "squares.nc"}, find)
-
-
 # -- keywords and the progress bar ----------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("running", "text"),
-    [
-        ({"jobs": 0}, "jobs = 0: expected a whole number from 1"),
-        ({"jobs": 1000000}, "jobs = 1000000: expected"),
-        ({"jobs": 1.5}, r"jobs = 1\.5: expected"),
-        ({"cluster": 8786}, "cluster = 8786: expected the address of a Dask scheduler"),
-    ],
-)
-def test_wrong_keywords(find, running, text):
-    with pytest.raises(InputError, match=text):
-        answer(JOB, running, find)
 
 
 def test_an_unknown_keyword_is_an_error_of_pythons_kind(find):

@@ -10,7 +10,6 @@ from orchestrate.dynamics.branches import branch
 from orchestrate.model import Structure
 from orchestrate.show.lines import draw_branch
 from orchestrate.show.planes import draw_border, draw_map
-from orchestrate.units import with_units
 
 from .made import mapped
 
@@ -62,12 +61,3 @@ def test_a_border_is_a_line_over_both_parameters_with_its_points():
     marks = [plane.get_lines()[2] for plane in figure.axes if plane.get_lines()]
     assert len(marks) == 4 and len({round(plane.get_position().y0, 2) for plane in figure.axes}) > 1
     assert all(mark.get_xdata()[0] == 2.8 and mark.get_ydata()[0] == 0.7 for mark in marks)
-
-
-def test_gaps_of_a_branch_are_lengths_where_they_are_asked_for():
-    found = with_units(window(), "Hz, mm")
-    (plane,) = draw_branch(found).axes
-    assert plane.get_ylabel() == "gap $x_2 - x_1$ in mm, at $t = nT$"
-    lengths = 1e3 * (found.xi_rel * found.amplitude * found.eta**2).values
-    drawn = np.concatenate([np.ravel(line.get_ydata()) for line in plane.lines[:2]])
-    assert np.nanmax(drawn) == pytest.approx(lengths.max())

@@ -101,21 +101,6 @@ def test_all_public_questions_are_drawn_or_known_to_have_no_picture():
     }
 
 
-@pytest.mark.parametrize(
-    ("kinds", "words"),
-    [
-        ((), "plot: no picture of nothing; expected results of one of"),
-        (("simulate", "sweep"), "plot: no picture of simulate and sweep"),
-        (("couple", "branch"), "plot: no picture of couple and branch"),
-        (("orbit",), "plot: no picture of orbit"),
-    ],
-)
-def test_what_has_no_picture(kinds, words):
-    with pytest.raises(InputError) as error:
-        plot(*(xr.Dataset(attrs={"question": kind}) for kind in kinds))
-    assert words in str(error.value) and "\n" not in str(error.value)
-
-
 @pytest.mark.parametrize("given", [3, xr.Dataset(), None])
 def test_what_is_no_answer(given):
     with pytest.raises(InputError, match="cannot plot"):

@@ -10,8 +10,6 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate.errors import InputError
-from orchestrate.show.answers import title_of
 from orchestrate.show.page import Page, Section, Table, Verdict, format_number, format_with_error
 from orchestrate.show.verdict import make_verdict, measured_record, verdict_sections
 
@@ -128,14 +126,6 @@ def test_numbers_have_the_digits_of_their_errors():
     assert (format_number(np.inf, "Hz"), format_number(2e-6, "m")) == ("–", "2 µm")
 
 
-def test_nothing_is_no_report(tmp_path):
-    with pytest.raises(InputError, match="no answer given"):
-        orchestrate.report(output=tmp_path / "r.html")
-    with pytest.raises(InputError, match="cannot plot"):
-        orchestrate.report(xr.Dataset(), output=tmp_path / "r.html")
-    assert not list(tmp_path.iterdir())
-
-
 @pytest.fixture(scope="module")
 def verdict():
     return xr.Dataset(
@@ -193,9 +183,3 @@ def test_the_record_is_described_in_the_units_that_are_asked_for():
     rows = dict(measured_record(noted).tables[0].rows)
     assert "although" in rows["unit of its numbers"]
     assert measured_record(xr.Dataset()) is None
-
-
-def test_a_heading_has_no_name_of_a_file():
-    told = {"title": "Map over frequency and e: e0.6_m1.5-1.4_f11.9-13.5", "call": "map()"}
-    assert title_of(xr.Dataset(attrs=told)) == "Map over frequency and e"
-    assert title_of(xr.Dataset(attrs={**told, "title": "Orders: Record a.csv"})).endswith("a.csv")

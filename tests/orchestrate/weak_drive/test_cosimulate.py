@@ -11,14 +11,12 @@ from scipy.linalg import expm
 import orchestrate
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu.description import describe
-from orchestrate.weak_drive import cosimulate, cosimulation_job
-from orchestrate.weak_drive.connection import OURS, proposals
-from orchestrate.weak_drive.master import Master
+from orchestrate.weak_drive import cosimulate
+from orchestrate.weak_drive.connection import proposals
 
 from ...sparing import ordinary
 from .drives import table
 from .drives.linear import draw, sine, table_drive, together
-from .reference_master import PythonMaster, derivatives
 
 STRUCTURE = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
 CONNECT = {"box_acceleration": "table_acc", "box_force": "specimen_force"}
@@ -360,58 +358,3 @@ def test_a_coupling_that_diverges_says_what_to_look_at(drive, tmp_path, duration
             orchestrate.cosimulate(STRUCTURE, path, parameters=parameters, step=0.01, **run)
         words = rf"at t = [\d.]+ s \(box_force = .* N\): look at the unit of {unit} .*={force}; or"
         assert re.fullmatch(f"the coupling diverges {words} reduce the step", str(raised.value))
-
-
-def test_derivatives_of_a_polynomial_through_points():
-    times = [-0.3, -0.1, 0.0, 0.4]
-    values = [2.0 - t + 3.0 * t**2 + 5.0 * t**3 for t in times]
-    for order in range(3):
-        expected = [2.0, -1.0, 6.0, 30.0, 0.0, 0.0][order : order + 4]
-        assert derivatives(times, values, order) == pytest.approx(expected, abs=1e-9)
-
-
-def tables(monkeypatch, exported, path, **run):
-    """What compiled steps and those in Python leave of a run, in this process."""
-    monkeypatch.setattr(cosimulate, "answer", lambda job, *_: job)
-    job = orchestrate.cosimulate(STRUCTURE, path, step=0.01, **{**RUN, "duration": 0.6, **run})
-    fmus = {"TwoMassImpactOscillator": exported / "fmi3" / "TwoMassImpactOscillator.fmu"}
-    for kind in (Master, PythonMaster):
-        monkeypatch.setattr(cosimulation_job, "Master", kind)
-        table = job.work(fmus, range(60), None)
-        yield {name: part.tobytes() for name, part in table.items() if "_state" not in name}
-
-
-@pytest.mark.parametrize(
-    "links", [["acceleration"], ["acceleration", "velocity"], [*"apv"], ["velocity"], ["position"]]
-)
-def test_compiled_steps_have_the_bits_of_python(tmp_path, monkeypatch, exported, links):
-    drive = draw(0)
-    names = dict(zip(("acceleration", "position", "velocity"), drive.names[2:], strict=True))
-    run = {"inputs": {drive.names[1]: RUN["inputs"]["volts"]}, "parameters": drive.parameters}
-    more = {f"box_{n}": names[n] for n in names if any(n.startswith(one) for one in links)}
-    run |= {"record": [drive.names[3]], "connect": {**more, **drive.connect}}
-    compiled, python = tables(monkeypatch, exported, drive.write(tmp_path), **run)
-    assert compiled == python and len(compiled["recorded 1"]) == 61 * 8
-
-
-def test_controlled_steps_of_fmi_2_have_the_bits_of_python(monkeypatch, exported):
-    """With a cubic of the command, and the force alone."""
-    sine = orchestrate.SteppedSine(frequencies=(8.0,), acceleration=2.0, settle_cycles=60)
-    shaker = orchestrate.Shaker.from_file("shaker_100N")
-    run = {"inputs": {"command": orchestrate.LevelControl(sine=sine, start=0.1)}}
-    run |= {"parameters": shaker.parameters(), "record": ["current", "command"]}
-    run["connect"] = {name: name for name in ("box_acceleration", "box_force")}
-    path = exported / "fmi2" / "ElectrodynamicShaker.fmu"
-    compiled, python = tables(monkeypatch, exported, path, **run)
-    assert compiled == python and np.frombuffer(compiled["recorded 1"]).any()
-
-
-@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
-def test_halves_of_discarded_steps_have_the_bits_of_python(monkeypatch, exported, form):
-    """The command is a cubic, which goes on in the halves."""
-    shaker, times = orchestrate.Shaker.from_file("shaker_1kN"), np.linspace(0.0, 0.6, 61)
-    run = {"inputs": {"command": (times, 3.0 * np.sin(30.0 * times))}, "record": ["current"]}
-    run |= {"parameters": {**shaker.parameters(), "evaluation_limit": 30}, "connect": OURS}
-    path = exported / form / "ElectrodynamicShaker.fmu"
-    compiled, python = tables(monkeypatch, exported, path, **run)
-    assert compiled == python and len(compiled["nodes 1"]) > 1.5 * 60 * 8

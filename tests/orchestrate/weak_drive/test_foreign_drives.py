@@ -11,11 +11,10 @@ import pytest
 import orchestrate
 from orchestrate.errors import FmuError
 from orchestrate.running.runner import answer
-from orchestrate.weak_drive import cosimulate, cosimulation_job
+from orchestrate.weak_drive import cosimulate
 
 from .drives import table
 from .drives.linear import draw, together
-from .reference_master import PythonMaster
 
 STRUCTURE = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
 START = (0.0, 0.02, 0.0, 0.0)
@@ -34,16 +33,13 @@ def run(folder, does="NOTHING", fmi=3, has_states=False, **more):
     return orchestrate.cosimulate(STRUCTURE, path, **more)
 
 
-@pytest.fixture(params=[(2, "compiled"), (3, "compiled"), (2, "Python"), (3, "Python")])
+@pytest.fixture(params=[2, 3])
 def form(request, monkeypatch):
-    """FMI 2.0 and 3.0, by compiled steps and by those in Python; in this process."""
-    fmi, steps = request.param
+    """FMI 2.0 and 3.0, in this process."""
     monkeypatch.setattr(
         cosimulate, "answer", lambda job, *known, foreign=0: answer(job, *known[:2])
     )
-    if steps == "Python":
-        monkeypatch.setattr(cosimulation_job, "Master", PythonMaster)
-    return fmi
+    return request.param
 
 
 def test_the_first_acceleration_is_that_under_the_force(tmp_path):

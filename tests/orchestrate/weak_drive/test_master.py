@@ -7,11 +7,10 @@ import pytest
 
 from orchestrate.errors import FmuError, InputError
 from orchestrate.weak_drive.energy_balance import EnergyBalance
-from orchestrate.weak_drive.master import Master, Scheme
+from orchestrate.weak_drive.master import Scheme
 
 from .coupled import GRID, QUICK, history, master, rest, settled, state_of
 from .monolithic import Monolith
-from .reference_master import PythonMaster
 
 PRESSED = QUICK.with_structure(clearance=-3.0)  # part, chatter and stick in each revolution
 JUMPING = QUICK.with_structure(D1=0.01, D2=0.05)  # the force on the box jumps at impacts
@@ -99,27 +98,6 @@ def test_losses_of_the_balance_are_those_of_the_dampers():
 
 
 # -- the same bits ---------------------------------------------------------------------------------
-
-
-def done(kind, system, scheme, speed):
-    """All rows of a run under varying voltages, and the states of master and FMUs at its end."""
-    voltages = [1.4 + 0.3 * math.sin(0.02 * i // 7) for i in range(200)]
-    with master(system, scheme, rest(speed, system.structure), "fmi3", kind) as m:
-        assert type(m) is kind
-        record = m.run(voltages)
-        m.run(voltages[:2], h=0.03)
-        states = [one.save_state() for one in (m.oscillator.instance, m.drive.instance)]
-        return record.columns.tobytes(), record.ends.tolist(), str(m.get_state()), *states
-
-
-@pytest.mark.parametrize(
-    ("system", "speed"),
-    [(JUMPING, 1.2), (PRESSED, 1.2), (QUICK.as_bonded(), 1.2), (QUICK.with_lag(0.3), -1.2)],
-    ids=["impacts", "pressed", "bonded", "backward, with a lag"],
-)
-@pytest.mark.parametrize("scheme", [Scheme(0.1), CONTROLLED], ids=["fixed", "controlled"])
-def test_compiled_steps_have_the_bits_of_python(system, speed, scheme):
-    assert done(Master, system, scheme, speed) == done(PythonMaster, system, scheme, speed)
 
 
 def test_all_forms_give_the_same_bits():
