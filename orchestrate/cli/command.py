@@ -72,6 +72,8 @@ NEEDED = " (needed)"
 SAID = {  # for options of ours
     **{"--gravity": "--box-acceleration -1g", "--level": "--g", "--g-rms": "--g", "--rms": "--g"},
     **{"--freq": "--hz", "--force": "--force1", "--csv": "--format csv", "--out": "--output"},
+    **{"--levels": "--g", "--guess": "--structure", "--time": "--periods", "--beam": "--structure"},
+    **{"--duration": "--periods", "--sine": "--swept-sine", "--sweep": "--swept-sine"},
 }
 OF_BOX = ("eta", "frequency", "amplitude", "level")
 READERS: dict[Any, Callable[[str, str], Any]] = {int: read_int, float: read_float}

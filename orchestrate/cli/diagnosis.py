@@ -52,6 +52,10 @@ class Sweep(NamedTuple):
         return f"{self.path}{f', sweep {self.number}' if self.number else ''}"
 
 
+EXPECTED = "a factor for face 1, or for both faces, such as 1.57 or 0.53,0.6"
+Participation = Annotated[tuple[float, ...] | None, floats(EXPECTED, ",", (1, 2))]
+
+
 class DiagnosedRecords(Options):
     """Options of the records of a diagnosis."""
 
@@ -64,7 +68,7 @@ class DiagnosedRecords(Options):
         "all; may be repeated",
         (),
     )
-    participation: str | None = option(
+    participation: Participation = option(
         "of the sensors on face 1 and face 2: the beam's mode there over that of a mass on a "
         "spring, 1.57 at the tip of a cantilever (default: fitted)",
         value="G,...",
@@ -107,7 +111,6 @@ what it gives:
         import orchestrate
 
         Files.from_options(self, "", fresh=True)  # before records are read
-        self.participation_by_sensor()
         if self.structure is None and self.set:
             raise InputError("--set: of a guess; expected --structure FILE.toml with it")
         guess = None if self.structure is None else self.read_structure()
@@ -175,19 +178,9 @@ what it gives:
         return record
 
     def participation_by_sensor(self) -> dict[str, float] | None:
-        """Parse ``--participation G,...`` into a dict by face; None if it is not given."""
-        if self.participation is None:
-            return None
-        from ..laboratory.sensors import PARTICIPATION
-
-        texts = self.participation.split(",")
+        """Return ``--participation G,...`` by face; None if it is not given."""
         faces = ("acceleration1", "acceleration2")
-        try:
-            factors = [PARTICIPATION.check(float(text)) for text in texts]
-            return dict(zip(faces[: len(texts)], factors, strict=True))
-        except ValueError:
-            expected = "expected -10 to 10 for face 1, or for both faces, such as 1.57 or 0.53,0.6"
-            raise InputError(f"--participation {self.participation}: {expected}") from None
+        return dict(zip(faces, self.participation, strict=False)) if self.participation else None
 
     def compute_verdicts(
         self,
@@ -217,18 +210,12 @@ what it gives:
 
     def origin_attributes(self, path: Path, record: xr.Dataset) -> dict[str, str]:
         """Return a verdict's attributes on its record, the guess's file and the command."""
-        words = {
-            "record_file": path.name,
-            "record_sha256": file_checksum(path),
-            "record_columns": record.attrs.get("columns", ""),
-            "record_unit": record.attrs.get("unit", ""),
-            "record_unit_note": unit_note(record.attrs),
-            "record_converted": record.attrs.get("converted", ""),
-            "record_time_base": record.attrs.get("time_base", ""),
-            "sensors": record.attrs.get("sensors", ""),
-            "guess_file": str(self.structure or ""),
-            "command": getattr(self, "command_line", ""),
-        }
+        told = ("columns", "unit", "converted", "time_base")
+        words = {f"record_{name}": record.attrs.get(name, "") for name in told}
+        words |= {"record_file": path.name, "record_sha256": file_checksum(path)}
+        words |= {"record_unit_note": unit_note(record.attrs), "command": self.command_line}
+        words |= {"sensors": record.attrs.get("sensors", "")}
+        words |= {"guess_file": str(self.structure or "")}
         return {name: text for name, text in words.items() if text}
 
     def write_files(self, stem: str, answers: Mapping[str, xr.Dataset]) -> None:

@@ -33,6 +33,8 @@ MAPPING_ITEM = re.compile(r"'([^']*)': '([^']*)'")
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 
 COMMA = re.compile(r"-?\d+,\d+ *[a-zA-Z%]*")  # a decimal comma, perhaps with a unit
+OF_ONE_MASS = {name: (f"{name}1",) for name in ("m", "k", "d", "f", "zeta")}  # before a stop
+SAID = {"gap": "clearance", "restitution": "e", "mass": "m1", "frequency": "f1", "damping": "zeta1"}
 OWN_UNITS = {"--g": "g", "--range": "g", "--hz": "Hz", "--rpm": "rpm"}
 
 # -- numbers --------------------------------------------------------------------------------------
@@ -375,11 +377,14 @@ def parse_single_number(option: str, text: str) -> float:
 # -- names and values -----------------------------------------------------------------------------
 
 
-def parse_changes(texts: Iterable[str]) -> dict[str, float | bool]:
+def parse_changes(texts: Iterable[str], wall: bool = False) -> dict[str, float | bool]:
     """Parse the texts ``NAME=VALUE`` of ``--set`` into a dict from parameter to value."""
     changes: dict[str, float | bool] = {}
-    for name, text in read_pairs("--set", texts, "NAME=VALUE such as e=0.3").items():
-        names = SET_NAMES.get(name, (name,))
+    pairs = read_pairs("--set", texts, "NAME=VALUE such as e=0.3")
+    alone = wall or pairs.get("wall") == "true"
+    known = {**SET_NAMES, **(OF_ONE_MASS if alone else {})}
+    for name, text in pairs.items():
+        names = known.get(name, (name,))
         value = parse_changed_value(names[0], text)
         if name == "preload":  # as a length: in N it depends on the springs
             if text[-1:] != "m" or value < 0.0:
@@ -417,4 +422,6 @@ def check_name(name: str) -> None:
 
     known = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)
     if name not in (*known, *DRIVE):
-        raise InputError(f"--set {name}: no parameter; {expected_one_of(name, known)}")
+        expected = expected_one_of(name, known).partition(" (did")[0] if name in SAID else ""
+        said = f"{expected} (did you mean {SAID[name]}?)" if expected else ""
+        raise InputError(f"--set {name}: no parameter; {said or expected_one_of(name, known)}")

@@ -113,8 +113,9 @@ class OfStructure(Options):
         from ..model import Structure
         from ..model.toml_files import parse, resolve
 
-        changes = parse_changes(self.set)
-        structure = Structure.from_file(self.structure).replace(**changes)
+        structure = Structure.from_file(self.structure)
+        changes = parse_changes(self.set, structure.wall)
+        structure = structure.replace(**changes)
         print_assumptions(structure, self.structure, changes)
         file = {} if self.structure in SET_NAMES else parse(resolve(self.structure))
         if not structure.bonded and "e" not in {**file.get("structure", {"e": 0}), **changes}:

@@ -196,7 +196,9 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
 
 def file_kind(path: Path) -> str:
     if path.suffix.lower() not in ENDINGS:
-        raise InputError(f"{path}: expected a file that ends in {', '.join(ENDINGS)}")
+        text = f"expected a file that ends in {', '.join(ENDINGS)}"
+        text += "; a structure= or channels= file is given so" * (path.suffix == ".toml")
+        raise InputError(f"{path}: {text}")
     return ENDINGS[path.suffix.lower()]
 
 

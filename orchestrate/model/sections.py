@@ -40,6 +40,7 @@ COMMON_NUMBERS = tuple(name for name in STRUCTURE if name not in MECHANICS)
 COMMON_KEYS = (*COMMON_NUMBERS, *FLAGS)
 OMEGAS = tuple(f"omega_{unit}" for unit in TO_RAD_S)
 HALVES = ("f1_hz", "f2_hz", "zeta1", "zeta2")
+OF_ONE_MASS = {"m": "m1", "k": "k1", "d": "d1", "f_hz": "f1_hz", "zeta": "zeta1"}
 RATIOS = ("mu", "kappa", "D", "D1", "D2", *OMEGAS)
 FREQUENCIES = (*(f"frequency_{unit}" for unit in TO_RAD_S), "eta")
 AMPLITUDES = ("amplitude", "acceleration_g")
@@ -164,6 +165,9 @@ class Section:
 
 def read_structure(section: Section) -> Structure:
     """Return the ``Structure`` that a section ``[structure]`` describes, SI or non-dimensional."""
+    if section.values.get("wall") is True:  # one mass, as Structure.one_mass calls its numbers
+        own = {OF_ONE_MASS.get(key, key): value for key, value in section.values.items()}
+        section = dataclasses.replace(section, values=own)
     section.allow(*COMMON_KEYS, "preload", *MECHANICS, *HALVES, *RATIOS)
     values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
     if section.at_most_one(("clearance", "preload")) == "preload":

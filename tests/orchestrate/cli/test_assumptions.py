@@ -44,12 +44,18 @@ def test_what_is_not_set_of_a_beam_is_said(ask):
     assert "m1 =" not in said(ask, *HALVES, "--set", "mu=0.8")[0]
 
 
-def test_one_mass_before_a_stop_is_said_by_half_1(ask):
+def test_one_mass_before_a_stop_is_said_by_half_1(ask, tmp_path):
     stop = ("wall=true", "f1=12", "zeta1=1%", "clearance=0.3mm")
     words = [word for one in stop for word in ("--set", one)]
     out, complaints = said(ask, *words, shaken=("--hz", "11", "--g", "0.1"))
     assert complaints == [] and re.search(r"[1-9]\d* impacts", out)
     assert out.startswith("assumed, as in the set paper: m1 = 1 kg, e = 0.7 (--set)\n")
+    alike = ("f=12", "zeta=1%", "clearance=0.3mm", "wall=true")
+    same = said(ask, *(w for one in alike for w in ("--set", one)), shaken=("--hz", "11", "--g=.1"))
+    assert same[0].splitlines()[:-1] == out.splitlines()[:-1]
+    (tmp_path / "stop.toml").write_text("[structure]\nwall = true\nf_hz = 12\nzeta = 0.01\n")
+    options = ("--structure", tmp_path / "stop.toml", "--set", "zeta=2%", "--set", "e=0.5")
+    assert said(ask, *options, shaken=("--hz", "11", "--g", "0.1"))[1] == []
 
 
 def test_numbers_may_have_their_units(ask, tmp_path):

@@ -33,6 +33,8 @@ MISTAKES = {  # options of each command, then what its line says
         --over e --values 0.1,true --eta 1 : --over e --values true | not a number
         --set e : --set e | NAME=VALUE
         --set e=abc : --set e=abc | abc is not a number
+        --set gap=1mm : --set gap: no parameter | did you mean clearance?
+        --set m=1 : m: no parameter of a structure | did you mean m1?
         --set zeta=1% --set zeta2=0.1 : zeta2 is set already
         --set preload=-20um : preload=-20um: expected a length above 0
         --set e=0.1 --set e=0.2 : --set e=0.2 | each name once
@@ -175,6 +177,9 @@ SYNTAX = """
     resonance my.toml : my.toml: no option of resonance; did you mean --structure my.toml?
     sweep --gravity 9.81 : --gravity: no option of sweep; did you mean --box-acceleration -1g?
     shake --g-rms 1 : did you mean --g?
+    plan --levels 1 : did you mean --g?
+    simulate --duration 5 : did you mean --periods?
+    diagnose --guess a.toml : did you mean --structure?
     couple --level 1 : --level: no option of couple
     simulate beam : beam: no option of simulate; did you mean --structure beam?
 """

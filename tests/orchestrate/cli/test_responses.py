@@ -278,6 +278,18 @@ def test_gravity_and_forces_reach_the_function(ask, monkeypatch, name, shaken):
     assert (asked["box_acceleration"], asked["force1"]) == (-9.80665, 2.0)
 
 
+def test_the_picture_of_attractors_is_under_their_forces(ask, monkeypatch):
+    asked, simulate = [], orchestrate.simulate
+
+    def noted(structure, **question):
+        asked.append(question)
+        return simulate(structure, **question)
+
+    monkeypatch.setattr(orchestrate, "simulate", noted)
+    ask("attractors", "--eta", "1.2", "--force1", "0.1", "--starts", "4").success()
+    assert asked and all(question["force1"] == 0.1 for question in asked)
+
+
 def test_levels_do_not_know_forces(ask):
     asked = ("resonance", "--structure", "beam", "--hz", "12", "--g", "0.1,0.2", "--force2", "1")
     ask(*asked).complaint("--force2: resonance_levels does not know it yet")

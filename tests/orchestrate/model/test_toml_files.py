@@ -268,6 +268,8 @@ def test_halves_by_frequency_and_damping_ratio(file):
 def test_one_mass_before_a_stop(file):
     text = 'wall = true\nf1_hz = 12\nzeta1 = "1 %"\nclearance = "0.3 mm"\nm1 = "150 g"'
     stop = read(file(f"[structure]\n{text}"))["structure"]
+    own = text.replace("f1_hz", "f_hz").replace("zeta1", "zeta").replace("m1", "m")
+    assert read(file(f"[structure]\n{own}"))["structure"] == stop
     same = Structure.one_mass(m=0.15, f=12.0, zeta="1 %", clearance=3e-4)
     assert stop.wall and (stop.f1, stop.zeta1) == (12.0, 0.01)
     assert [stop.get(one) for one in ("m1", "k1", "d1", "clearance")] == [
