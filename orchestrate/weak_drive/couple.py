@@ -211,6 +211,7 @@ def schedule_from_arguments(
     spin_up: float | None = None,
 ) -> Schedule:
     """Build the voltage schedule from the arguments of :func:`couple`."""
+    require_motor(drive)
     if isinstance(voltage, Schedule):
         return voltage
     unmasked("voltage", voltage)
@@ -405,7 +406,6 @@ def couple(
     from ..fmu.exported import finder
     from ..running.runner import answer
 
-    require_motor(drive)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     settings = (duration, rate, settle, increment, back, spin_up)
