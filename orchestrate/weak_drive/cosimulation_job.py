@@ -199,7 +199,7 @@ class CosimulateJob(CoupledJob, Question):
                     if before:
                         coupling.set_state(before)
                     found = {**coupling.rows(steps), **coupling.get_state()}
-                    coupling.master.close()
+                    coupling.close()
                     warned |= drive.warnings
             table |= {f"{name} {parts}": values for name, values in found.items()}
         table["warned"] = np.array(["\n".join(warned)])

@@ -10,8 +10,6 @@ from typing import ClassVar, get_type_hints
 import numpy as np
 
 from ..errors import InputError
-from ..fmu.instance import Instance
-from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import unmasked
 from ..model.drive import Drive
@@ -26,7 +24,7 @@ from .hysteresis import LOST, UNDECIDED, HysteresisLoop, HysteresisSettings, Jum
 from .master import Scheme
 from .ramp_record import DONE, RampRecord, jump_labels, time_beyond, variables_shown
 from .revolutions import COLUMNS
-from .run import MotorJob, MotorRun
+from .run import MotorJob, motor_runs
 from .schedule import Constant, Ramp, Schedule, check
 
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
@@ -64,17 +62,13 @@ class CoupleJob(MotorJob):
         """Hold voltages over each ramp; return the jumps of both directions."""
         if self.control is not None:
             return {"verdicts": np.array([], VERDICT)}
-        with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[MOTOR_SHAKER]) as shaker:
-
-            def start_run(schedule: Schedule) -> MotorRun:
-                """Reset both FMU instances and start a run with another voltage schedule."""
-                for instance in (oscillator, shaker):
-                    instance.reset()
-                return MotorRun(replace(self, schedule=schedule), oscillator, shaker)
-
+        with motor_runs(fmus) as start:
             volts = RampRecord(self, table, True).sense * self.drive.volts(self.structure)
             units = self.scheme.h, self.structure.omega, volts, self.hold
-            loop = HysteresisLoop(start_run, self.schedule, *units, self.hysteresis, growth_rate)
+            loop = HysteresisLoop(
+                lambda schedule: start(replace(self, schedule=schedule)),
+                *(self.schedule, *units, self.hysteresis, growth_rate),
+            )
             loop.add_checkpoints(table, self.chunk_size, self.steps())
             found = [(up, loop.decide(RampRecord(self, table, up))) for up in (True, False)]
         jumps = [(up, tuple(jump)) for up, each in found for jump in each]
@@ -211,6 +205,7 @@ def schedule_from_arguments(
     spin_up: float | None = None,
 ) -> Schedule:
     """Build the voltage schedule from the arguments of :func:`couple`."""
+    require_motor(drive)
     if isinstance(voltage, Schedule):
         return voltage
     unmasked("voltage", voltage)
@@ -405,7 +400,6 @@ def couple(
     from ..fmu.exported import finder
     from ..running.runner import answer
 
-    require_motor(drive)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     settings = (duration, rate, settle, increment, back, spin_up)

@@ -150,7 +150,6 @@ def passage(
     >>> found.x1.dims, found.sizes["time"], found.speed.attrs["units"]
     (('time',), 1000, 'rad/s')
     """
-    couple.require_motor(drive)
     if around is not None:
         check("around", around, "s", low=0.0, exclusive=True)
     if spin_up is None and speed_start is not None:

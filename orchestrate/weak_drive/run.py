@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -59,6 +59,10 @@ class Run:
     def record(self, steps: range) -> Record:
         """Run some communication steps; return their record."""
         return self.inputs.run(self.master, steps, self.master.scheme.h)
+
+    def close(self) -> None:
+        """Free what was saved of both FMUs to go back."""
+        self.master.close()
 
     def get_state(self) -> Table:
         states = {name + STATE: one.save_state() + END for name, one in self._saved.items()}
@@ -174,14 +178,23 @@ class MotorRun(Run):
 
 
 @contextmanager
-def begin_run(job: MotorJob, fmus: Fmus) -> Iterator[MotorRun]:
-    """Create both FMU instances, start a run on them and free them at the end."""
+def motor_runs(fmus: Fmus) -> Iterator[Callable[[MotorJob], MotorRun]]:
+    """Create both FMU instances; give what resets them and starts a run, one after the other."""
     with (
         Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
         Instance(fmus[MOTOR_SHAKER], "shaker") as shaker,
     ):
-        run = MotorRun(job, oscillator, shaker)
-        try:
-            yield run
-        finally:
-            run.master.close()
+
+        def start(job: MotorJob) -> MotorRun:
+            oscillator.reset()
+            shaker.reset()
+            return MotorRun(job, oscillator, shaker)
+
+        yield start
+
+
+@contextmanager
+def begin_run(job: MotorJob, fmus: Fmus) -> Iterator[MotorRun]:
+    """Create both FMU instances, start a run on them and free them at the end."""
+    with motor_runs(fmus) as start, closing(start(job)) as run:
+        yield run
