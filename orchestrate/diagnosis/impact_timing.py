@@ -40,9 +40,10 @@ class TimingSettings:
     bins: int = 32  # of a period; half as many of slow records
     tail: float = 1e-4  # probability of a bin by noise, in a window
     loud: float = 0.3  # of the loudest window's power: windows that count
-    # loudest bin over the quietest third's mean, over the limit of noise: what may be a strike,
-    # and what is one
+    # loudest bin over the quietest third's mean, over the limit of noise: what may be a strike
+    # once a period, what may be one of a loose part, and what is one
     faint: float = 3.0
+    rattles: float = 5.0
     heard: float = 10.0
     base: float = 0.25  # of the sensor's ratio that the base may reach
     locked: float = 0.7  # circular concentration of the peaks' phases
@@ -93,7 +94,7 @@ class Strikes:
     def word(self, settings: TimingSettings = TIMING) -> str:
         """Return what strikes.
 
-        - "nothing heard" up to `faint`, and up to `heard` unless the peaks' phases agree by
+        - "nothing heard" up to `faint`, and up to `rattles` unless the peaks' phases agree by
           `locked`; "base strikes" if the base has more than `faint` and `base` of it.
         - "faces strike": the phases agree, orders 6 to 12 are above `blow` of order 2, and the
           blows of two sensors are `opposite`.
@@ -107,7 +108,7 @@ class Strikes:
           are `together`; else "stop or softer face".
         """
         is_blow, is_locked = self.blow > settings.blow, self.locked >= settings.locked
-        if not self.heard > (settings.faint if is_locked else settings.heard):
+        if not self.heard > (settings.faint if is_locked else settings.rattles):
             return NOTHING
         if self.base > max(settings.base * self.heard, settings.faint):
             return "base strikes"

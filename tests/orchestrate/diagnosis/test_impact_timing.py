@@ -29,8 +29,8 @@ FACES = Strikes(
     stiffness=1.0,
 )  # fmt: skip
 WORDS = {  # on both sides of each threshold
-    "nothing heard": [{"heard": 2.9}, {"heard": 9.9, "locked": 0.69}],
-    "something faint": [{"heard": 3.1}, {"heard": 9.9, "locked": 0.71}],
+    "nothing heard": [{"heard": 2.9}, {"heard": 4.9, "locked": 0.69}],
+    "something faint": [{"heard": 3.1}, {"heard": 9.9}, {"heard": 5.1, "locked": 0.69}],
     "base strikes": [{"base": 16.0}],
     "not locked": [{"locked": 0.69}, {"one_sided": 0.49}, {"locked": 0.69, "opposite": -0.99}],
     "kinks": [{"blow": 0.16}, {"blow": 0.16, "opposite": -0.99}],
