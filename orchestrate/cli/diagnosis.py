@@ -256,7 +256,9 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
     yield f"sweep {ends} {twice}, {seconds:.0f} s each, {rate:.0f} samples a s"
     if second == level:
         yield "the highest of the levels: a second, higher one in --g would be a further check"
-    if not data.counts:
+    if not data.counts and data.decides.any():
+        yield "both verdicts are right at lower levels only, not at all above: see the table"
+    elif not data.counts:
         yield "no verdict is right at these levels: raise --g, or lower the --noise"
     opens = float(data.opening_level)
     if opens > 0.0:

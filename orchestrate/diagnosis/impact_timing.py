@@ -40,9 +40,10 @@ class TimingSettings:
     bins: int = 32  # of a period; half as many of slow records
     tail: float = 1e-4  # probability of a bin by noise, in a window
     loud: float = 0.3  # of the loudest window's power: windows that count
-    # loudest bin over the quietest third's mean, over the limit of noise: what may be a strike,
-    # and what is one
+    # loudest bin over the quietest third's mean, over the limit of noise: what may be a strike
+    # once a period, what may be one of a loose part, and what is one
     faint: float = 3.0
+    rattles: float = 5.0
     heard: float = 10.0
     base: float = 0.25  # of the sensor's ratio that the base may reach
     locked: float = 0.7  # circular concentration of the peaks' phases
@@ -51,13 +52,17 @@ class TimingSettings:
     # correlation of both sensors' blows: clamps with torsion make -0.9, and above 0 it is one blow
     opposite: float = -0.95
     together: float = 0.0
-    order2: float = 0.05  # over order 1: parts of a percent of the mass make 0.042
-    # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.54 or less
-    stiffens: float = 0.5
+    order2: float = 0.045  # over order 1: parts of a percent of the mass make 0.042
+    # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.54 or less;
+    # halves that meet at the stroke's end -1, and a slow one that a moving one strikes up to 2
     softens: float = -0.5
-    at_end: float = 0.9  # of the stroke: halves that meet there soften by up to -1
+    softens_end: float = -1.0
+    at_end: float = 0.9  # of the stroke
+    stiffens: float = 0.5
+    stiffens_moving: float = 2.0
+    spread: float = 0.35  # range of the place, over the stroke: play makes 0.31
     known: float = 0.03  # error of a frequency that is known
-    stiffer: float = 1.06  # resonance over that of the faces shut
+    stiffer: float = 1.06  # frequency while something strikes, over that of the faces shut
 
 
 TIMING = TimingSettings()
@@ -78,7 +83,8 @@ class Strikes:
     order2: float  # over order 1, the largest
     stiffens: float  # growth of the stiffness, over order 2: see `stiffness_growth`
     place: float  # where it strikes, over the stroke: -1 or 1 at its ends
-    stiffness: float  # resonance over that of the faces shut; NaN where that is not known
+    spread: float  # range of the place over the windows, over the largest stroke
+    stiffness: float  # frequency over that of the faces shut; NaN where that is not known
 
     def numbers(self) -> str:
         """Format the quantities of the rule."""
@@ -88,33 +94,35 @@ class Strikes:
     def word(self, settings: TimingSettings = TIMING) -> str:
         """Return what strikes.
 
-        - "nothing heard" up to `faint`, and up to `heard` unless the peaks' phases agree by
+        - "nothing heard" up to `faint`, and up to `rattles` unless the peaks' phases agree by
           `locked`; "base strikes" if the base has more than `faint` and `base` of it.
         - "faces strike": the phases agree, orders 6 to 12 are above `blow` of order 2, and the
           blows of two sensors are `opposite`.
         - "something faint" up to `heard`; "not locked" if the phases do not agree, or the power is
           not on one side of the period by `one_sided`; "kinks" below `blow`; "something small
           strikes" with an order 2 below `order2`.
-        - "stop" if the stiffness grows with the stroke, or from that of shut faces, by more than
-          `stiffens` of order 2, or falls by more than `softens`, or than order 2 `at_end` of the
-          stroke.
-        - "faces strike" with a known resonance, up to `stiffer`, unless two sensors hear blows that
+        - "stop" if the stiffness grows with the stroke, over order 2, by more than `stiffens`
+          (`stiffens_moving` where the place moves by `spread`), other than to that of shut faces,
+          or falls by more than `softens` (`softens_end` where it strikes `at_end` of the stroke).
+        - "faces strike" with a known frequency, up to `stiffer`, unless two sensors hear blows that
           are `together`; else "stop or softer face".
         """
         is_blow, is_locked = self.blow > settings.blow, self.locked >= settings.locked
-        if not self.heard > (settings.faint if is_locked else settings.heard):
+        if not self.heard > (settings.faint if is_locked else settings.rattles):
             return NOTHING
         if self.base > max(settings.base * self.heard, settings.faint):
             return "base strikes"
         if is_locked and is_blow and self.opposite < settings.opposite:
             return FACES
-        softens = -1.0 if abs(self.place) >= settings.at_end else settings.softens
+        is_end, moves = abs(self.place) >= settings.at_end, self.spread >= settings.spread
+        softens = settings.softens_end if is_end else settings.softens
+        stiffens = settings.stiffens_moving if moves else settings.stiffens
         limits = {
             FAINT: self.heard > settings.heard,
             "not locked": is_locked and self.one_sided >= settings.one_sided,
             "kinks": is_blow,
             "something small strikes": self.order2 >= settings.order2,
-            STOP: softens <= self.stiffens <= settings.stiffens,
+            STOP: softens <= self.stiffens <= stiffens,
             SOFTER: self.stiffness <= settings.stiffer and not self.opposite > settings.together,
         }
         return next((word for word, holds in limits.items() if not holds), FACES)
@@ -134,20 +142,19 @@ def strikes_at(
 ) -> Strikes:
     """Measure what strikes at the first of these sensors, with the other one's blows."""
     columns = np.array(list(timed_windows(channels, rows, settings))).T
-    heard, base, power, peak, moment, blow, second, hertz, opposite = columns[:-3].real
+    heard, base, power, peak, moment, blow, second, opposite = columns[:-3].real
     motion = columns[-3:]
     top = int(np.argmax(np.where(heard > 1.0, power, 0.0)))
     loud = (power >= settings.loud * power[top]) & (heard > 1.0)
     loud[top] = True
-    resonance = hertz[int(np.argmax(abs(motion[0] / motion[1])))]
-    turned = np.exp(1j * peak[loud])
-    growths = stiffness_growth(
-        motion * np.array([[1.0], [1.0], [(TURN * resonance) ** 2]]),
-        loud,
-        heard <= 1.0,
-        (1.0 - settings.known) * shut / resonance,
-    )
-    grown = [float(np.median((one / second)[loud])) for one in growths]
+    size, turned = abs(motion[2]), np.exp(1j * peak[loud])
+    shut *= 1.0 - settings.known
+    rest, stiffness = stiffnesses(motion, loud, heard <= 1.0)
+    grown = [
+        float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
+    ]
+    is_known = grown[0] > settings.stiffens and math.isfinite(shut)
+    position = (size * np.cos(peak))[loud] / size.max()
     return Strikes(
         heard=float(heard[loud].max()),
         base=float(np.median(base[loud])),
@@ -156,35 +163,35 @@ def strikes_at(
         blow=float(np.median(blow[loud])),
         opposite=float(np.median(opposite[loud])),
         order2=float(second[loud].max()),
-        stiffens=grown[0] if grown[0] <= settings.stiffens else grown[-1],
+        stiffens=grown[is_known],
         place=float(np.median(turned.real)),
-        stiffness=float(resonance / shut),
+        spread=float(np.ptp(position)),
+        stiffness=math.sqrt(max(np.median(stiffness[loud]), 0.0)) / shut * (1.0 - settings.known),
     )
 
 
-def stiffness_growth(
-    motion: NDArray[Any], loud: NDArray[np.bool_], quiet: NDArray[np.bool_], shut: float
-) -> list[Floats]:
-    """Return by how much the stiffness in each window exceeds that at rest, and of shut faces.
+def stiffnesses(
+    motion: NDArray[Any], loud: NDArray[np.bool_], quiet: NDArray[np.bool_]
+) -> tuple[float, Floats]:
+    """Return the frequency of the beam at rest and the squared one in each window, in Hz.
 
     ``motion`` has order 1 of the sensor's acceleration relative to the base, the base's, and the
-    displacement times the squared angular frequency of the resonance; ``shut`` is the frequency of
-    shut faces over the resonance. By whatever force F the beam is held, ``a + p b + F = 0`` holds
-    with the participation p, which the windows in which nothing strikes tell with the stiffness.
+    displacement. By whatever force F the beam is held, ``a + p b + F = 0`` holds with the
+    participation p, which the windows in which nothing strikes tell with the stiffness at rest.
     """
     moved, base, stroke = motion
     size = abs(stroke)
     if quiet.sum() < MIN_QUIET:  # faces that touch strike at any stroke
         quiet = size <= max(0.5 * size[loud].min(), np.sort(size)[len(size) // 3])
     toward = stroke.conj() / size
-    rows = np.array([size, (base * toward).real])[:, quiet]
+    scale = float(np.median(abs(moved) / size))
+    rows = np.array([scale * size, (base * toward).real])[:, quiet]
     products, sums = rows @ rows.T, -rows @ (moved * toward).real[quiet]
     # where windows do not tell the participation from the stiffness it is 1
     weight = PRIOR * float(np.sum(abs(base[quiet]) ** 2))
     rest, part = np.linalg.solve(products + np.diag([0.0, weight]), sums + [0.0, weight])
     stiffness = -((moved + part * base) / stroke).real
-    known = [] if math.isnan(shut) else [stiffness / shut**2 - 1.0]
-    return [stiffness / rest - 1.0, *known]
+    return math.sqrt(max(scale * rest, 1e-9)) / TURN, stiffness / TURN**2
 
 
 def timed_windows(
@@ -217,7 +224,7 @@ def timed_windows(
         blow = float(np.median(high)) / abs(size[1]) if len(high) else math.nan
         quantities = heard, base_heard, power, peak, moment, blow, abs(size[1] / size[0])
         motion = size[0], amplitudes(base, waves[:1])[0], amplitudes(stroke[part], waves[:1])[0]
-        yield *quantities, channels.sample_rate / samples, opposite, *motion
+        yield *quantities, opposite, *motion
 
 
 def amplitudes(signal: Floats, waves: NDArray[np.complex128]) -> NDArray[np.complex128]:

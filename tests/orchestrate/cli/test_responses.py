@@ -15,6 +15,7 @@ from matplotlib import image
 import orchestrate
 from orchestrate import InputError, Structure, cli
 from orchestrate.cli import responses
+from orchestrate.cli.diagnosis import plan_lines
 from orchestrate.cli.dynamics import is_on_curve
 from orchestrate.cli.options import OfBox
 from orchestrate.fmu import OSCILLATOR, find
@@ -392,6 +393,20 @@ def test_a_plan(ask, folder):
     assert "verdict on the guess" in done.out and "on its sound twin" in done.out
     assert "overload" in done.out and shows_something(next(folder.glob("plan_*.png")))
     ask("plan", "--structure", "beam", "--hz", "10").complaint("--hz 10", "FIRST:LAST")
+
+
+@pytest.mark.parametrize(("decides", "said"), [([1, 0], "lower levels only"), ([0, 0], "raise")])
+def test_a_plan_of_which_the_higher_levels_do_not_decide(decides, said):
+    """It said that no verdict was right, and to raise the level."""
+    names = ("recommended_level", "second_level", "recommended_first", "recommended_last")
+    numbers = dict.fromkeys((*names, "recommended_duration", "recommended_rate"), ((), 40.0))
+    rows = dict.fromkeys(("verdict", "sound_verdict"), ("level", ["undecided"] * 2))
+    made = {**numbers, **rows, "decides": ("level", decides), "overload": ("level", [0, 0])}
+    made |= {"counts": ((), 0), "opening_level": ((), 0.0)}
+    made |= {"opening": ("level", [0.0, 0.0], {"units": "m", "long_name": "opening"})}
+    level = ("level", [20.0, 40.0], {"units": "m/s2", "long_name": "level"})
+    data = xr.Dataset(made, {"level": level}, {"clearance": 1.0})
+    assert any(said in line for line in plan_lines(data))
 
 
 def test_forces_of_a_file_act_or_are_refused(ask, tmp_path):
