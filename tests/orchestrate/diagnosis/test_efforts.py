@@ -1,0 +1,103 @@
+"""How long a search goes on, and what its residuals say of errors: made-up misfits, no motions."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from orchestrate.diagnosis import multistart
+from orchestrate.diagnosis.hypotheses import Bonded
+from orchestrate.diagnosis.misfit import soft_squares
+from orchestrate.diagnosis.multistart import Search, Solution
+from orchestrate.diagnosis.settings import SETTINGS
+from orchestrate.diagnosis.standard_errors import estimate_with_covariances
+
+HERE = {"f": 34.0, "log_zeta": -4.0}
+
+
+class MadeUp(Search):
+    """A search whose residuals are a function of both numbers."""
+
+    def __init__(self, residuals):
+        record = {"settings": SETTINGS, "resonance": 34.0, "has_floor": False}
+        super().__init__(Bonded(), SimpleNamespace(**record))
+        self.function = residuals
+
+    def computed_residuals(self, values):
+        self.evaluations += 1
+        x, y = values["f"] / 34.0 - 1.0, values["log_zeta"] + 4.0
+        return np.array(self.function(x, y), dtype=float)
+
+
+@pytest.fixture(autouse=True)
+def bounds(monkeypatch):
+    wide = {"f": (20.0, 50.0), "log_zeta": (-9.0, -1.0)}
+    monkeypatch.setattr(Bonded, "bounds", lambda *_: wide)
+
+
+def test_one_goes_downhill_from_two_starts_that_differ(monkeypatch):
+    begun = []
+    search = MadeUp(lambda x, y: [x, y])
+    monkeypatch.setattr(
+        search, "refine", lambda values: begun.append(values) or Solution("", {}, 1)
+    )
+    search.minima([{**HERE, "f": f} for f in (40.0, 35.0, 36.0)])
+    assert [values["f"] for values in begun] == [35.0, 36.0]
+
+
+def motions(function):
+    """Motions of a way downhill, its end again among them, without those for derivatives."""
+    search, places = MadeUp(function), []
+    derivatives = search.derivatives
+    search.derivatives = lambda *at: places.append(1) or derivatives(*at)
+    search.refine({"f": 36.0, "log_zeta": -3.5})
+    return search.evaluations - 2 * len(places)
+
+
+def test_a_way_downhill_ends_after_eight_motions():
+    narrow = lambda x, y: [1e-3 * (1.0 + 30.0 * y + 1e4 * x), 1.0 - np.tanh(4.0 * y)]  # noqa: E731
+    assert motions(narrow) == 1 + 8
+
+
+@pytest.mark.parametrize(("gain", "ends"), [(0.99e-3, True), (1.01e-3, False)])
+def test_a_step_that_gains_less_than_a_thousandth_is_the_last(gain, ends):
+    away = 0.5 * np.sqrt(gain / (1.0 - gain)) / 0.25
+    few = motions(lambda x, y: [1e-2, 1e-2 * away * y])
+    assert few == 1 + (2 if ends else 3)
+
+
+@pytest.mark.parametrize(("gain", "rounds"), [(2.1e-3, 7), (1.9e-3, 3)])
+def test_seven_regressions_at_most_and_three_that_gain_little(monkeypatch, gain, rounds):
+    """Of clouds of the whole size, a fifth of it and a twenty-fifth."""
+    done = []
+
+    def from_cloud(residuals, bounds, values, covariance, seed):
+        done.append(covariance[0, 0])
+        lowest = (1.0 - gain) ** len(done) if gain > 2e-3 else 1.0 - gain
+        model = {"best": HERE, "lowest": lowest, "damped_minima": lambda *_: [HERE]}
+        return SimpleNamespace(**model, cloud_covariance=lambda: np.eye(2))
+
+    monkeypatch.setattr(multistart, "LinearModel", SimpleNamespace(from_cloud=from_cloud))
+    MadeUp(lambda x, y: [9.0]).polish(Solution("", HERE, 1.0))
+    assert len(done) == rounds
+    assert rounds > 3 or done[1:] == pytest.approx([0.2, 0.04])
+
+
+@pytest.mark.parametrize(("times", "more"), [(1.29, False), (1.31, True)])
+def test_squares_are_beyond_noise_from_1_3_times_its_own(monkeypatch, times, more):
+    """A tenth of what is beyond is hidden: a number is as uncertain as that moves it."""
+    noise = np.full((1, 1, 60), 0.01)
+    search = MadeUp(lambda x, y: np.full((1, 1, 60), 0.01 * np.sqrt(times)))
+    monkeypatch.setattr(
+        "orchestrate.diagnosis.standard_errors.scatter_changes", lambda residuals: [noise]
+    )
+    rows = np.zeros((60, 2))
+    model = {"weighted_slopes": rows, "slopes": rows.reshape(1, 1, 60, 2)}
+    model |= {"scatter": np.zeros((3, 60)), "influence": -4.0 * np.eye(2)}
+    search.evidence.settings = replace(SETTINGS, contact_misfit=1e9)
+    found = estimate_with_covariances(search, HERE, SimpleNamespace(**model))
+    squares = soft_squares(noise).sum()
+    beyond = max(soft_squares(noise * np.sqrt(times)).sum() - 1.3 * squares, 0.0)
+    assert (beyond > 0.0) == more
+    assert found.discrepancy[0] == pytest.approx(np.sqrt(0.1 * 4.0 * beyond), rel=1e-6)
