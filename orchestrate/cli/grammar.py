@@ -168,15 +168,27 @@ def positive_number(option: str, text: str) -> float:
     return reader(option, text)[0]
 
 
-def positive_length(option: str, text: str) -> float:
-    """Parse an option's text as one length > 0, in m or with a unit."""
-    expected = f"a length > 0 in m, or with its unit such as {option} 20um"
-    number = parse(option, text, expected, lambda given: float_with_unit("amplitude", given))
-    return positive_number(option, repr(number))
+def read_length(option: str, text: str) -> float:
+    """Parse an option's text as one length from 0 on, in m or with a unit."""
+
+    def split(text: str) -> float:
+        if not 0.0 <= (number := float_with_unit("amplitude", text)) < math.inf:
+            raise ValueError(text)
+        return number
+
+    return parse(option, text, f"a length in m, or with its unit such as {option} 20um", split)
+
+
+def read_acceleration(option: str, text: str) -> float:
+    """Parse an acceleration in m/s2, or in g with that behind it."""
+    number = text.removesuffix("g")
+    factor = 1.0 if number == text else GRAVITY
+    return factor * parse(option, number, "a number in m/s2, or in g such as -1g", plain_float)
 
 
 Positive = Annotated[float | None, positive_number]
-Length = Annotated[float | None, positive_length]
+Length = Annotated[float | None, read_length]
+Acceleration = Annotated[float | None, read_acceleration]
 
 
 def parse_noise(option: str, text: str) -> float:

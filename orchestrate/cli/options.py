@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..model.ranges import ADDED, STRUCTURE
+from ..model.ranges import ADDED, PUSHES, STRUCTURE
 from .command import Options, option, option_names
 from .grammar import (
+    Acceleration,
     Bandwidth,
     Length,
     Noise,
@@ -145,6 +146,17 @@ class OfBox(Options):
     eta: Any = option("the same as frequency ratio Omega/omega", value="VALUES")
     amplitude: Length = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
     g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
+    box_acceleration: Acceleration = option(
+        "constant acceleration of the box beside it, m/s2 or with g: -1g is gravity towards "
+        "positive x, as to a stop"
+    )
+    force1: float | None = option("amplitude of a force F sin(Omega t) on half 1, N")
+    force2: float | None = option("the same on half 2")
+
+    def pushes(self) -> dict[str, float]:
+        """Return the constant acceleration and the forces that are given, by name."""
+        given = {name: getattr(self, name) for name in PUSHES}
+        return {name: value for name, value in given.items() if value is not None}
 
     def read_excitation(
         self, structure: Structure, si: bool = False, one: bool = False
@@ -168,23 +180,22 @@ class OfBox(Options):
                     f"--eta {text}: omega is {structure.omega:g} rad/s; expected --amplitude in m "
                     "or --g with it (1/eta^2 m is the paper's, for omega = 1 rad/s)"
                 )
-            return {"eta": values}
+            return {"eta": values, **self.pushes()}
         if amplitude is None:
             raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
         omega = structure.omega
         frequencies = apply_to_each(
             TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values
         )
-        if self.g is None:
-            return {"frequency": frequencies, "amplitude": amplitude}
-        held = apply_to_each(lambda value: amplitude * GRAVITY / (value * value), frequencies)
-        return {"frequency": frequencies, "amplitude": held}
+        if self.g is not None:
+            level = amplitude * GRAVITY
+            amplitude = apply_to_each(lambda value: level / (value * value), frequencies)
+        return {"frequency": frequencies, "amplitude": amplitude, **self.pushes()}
 
     def excitation_from_file(self) -> dict[str, Any] | None:
         """Return keywords of the excitation in the structure's file, or None; set ``--phase``."""
         import orchestrate
 
-        from ..model.ranges import PUSHES
         from ..model.toml_files import read
 
         excitation: Any = read(self.structure).get("excitation")
@@ -192,8 +203,8 @@ class OfBox(Options):
             return None
         if getattr(self, "phase", None) == 0.0:
             self.phase = excitation.phase
-        values = {name: getattr(self, name, None) or getattr(excitation, name) for name in PUSHES}
-        pushes = {name: value for name, value in values.items() if value}
+        pushes = {name: getattr(excitation, name) for name in PUSHES if getattr(excitation, name)}
+        pushes |= self.pushes()
         called: str = getattr(self, "calls")  # noqa: B009 (of the command, which has this group)
         known = inspect.signature(getattr(orchestrate, called)).parameters
         if unknown := [name for name in pushes if name not in known]:
@@ -223,7 +234,8 @@ class OfBox(Options):
         plain = copy(self)
         plain.g, plain.amplitude = None, 1.0
         frequency = plain.read_excitation(structure, one=one)["frequency"]
-        return {"frequency": frequency, "level": apply_to_each(lambda peak: peak * GRAVITY, levels)}
+        level = apply_to_each(lambda peak: peak * GRAVITY, levels)
+        return {"frequency": frequency, "level": level, **self.pushes()}
 
 
 class Over(Options):
@@ -246,8 +258,8 @@ class Over(Options):
         """Return excitation and varied parameter as keywords, and whether a range was given."""
         if self.over is None and self.g is not None and not is_single_number(self.g):
             box = self.excitation_by_level(structure, one=True)
-            levels = {"over": "level", "values": box["level"]}
-            return {"frequency": box["frequency"], **levels}, ":" in self.g
+            levels = {"over": "level", "values": box.pop("level")}
+            return {**box, **levels}, ":" in self.g
         if (values := self.read_over()) is not None:
             self.check_over(self.over)
             fixed = self.read_excitation(structure, si, one=True)

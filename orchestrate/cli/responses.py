@@ -158,7 +158,7 @@ class Spectra(OfMotor, OfVoltage, OfBox, Asked, Stored, OfBoth):
 
     def __call__(self) -> None:
         of_motor = self.one_of("eta0", "voltage")
-        if not self.is_shaken():
+        if not (self.is_shaken() or self.pushes()):
             self.answer_motor_spectra()
             return
         if of_motor is not None:

@@ -14,9 +14,10 @@ import xarray as xr
 from matplotlib import image
 
 import orchestrate
-from orchestrate import Structure
+from orchestrate import InputError, Structure, cli
 from orchestrate.cli import responses
 from orchestrate.cli.dynamics import is_on_curve
+from orchestrate.cli.options import OfBox
 from orchestrate.fmu import OSCILLATOR, find
 from orchestrate.version import __version__
 
@@ -296,6 +297,34 @@ def test_a_record_is_played_again(ask, folder, tmp_path):
     assert named.out.splitlines()[0] == done.out.splitlines()[0]
     done = ask("shake", *played, "--column", "side")
     assert done.code and "no column 'side'; expected one of t, top, base" in done.err
+
+
+OF_BOX = {name: kind for name, kind in cli.COMMANDS.items() if issubclass(kind, OfBox)}
+MORE = {
+    "map": "--over e --values 0.5,0.6 --over D --values 0.1,0.2",
+    "branch": "--over e --limits 0.5:0.9",
+}
+
+
+@pytest.mark.parametrize("name", OF_BOX)
+@pytest.mark.parametrize("shaken", ["--hz 12 --g 0.1", "--hz 12 --amplitude 0", "--eta 1.2"])
+def test_gravity_and_forces_reach_the_function(ask, monkeypatch, name, shaken):
+    asked, function = {}, getattr(orchestrate, OF_BOX[name].calls)
+
+    @functools.wraps(function)
+    def stop(_, **question):
+        asked.update(question)
+        raise InputError("stop")
+
+    monkeypatch.setattr(orchestrate, OF_BOX[name].calls, stop)
+    options = f"{shaken} --box-acceleration -1g --force1 2 {MORE.get(name, '')}"
+    assert ask(name, *options.split()).complaints[-1].startswith("error: stop")
+    assert (asked["box_acceleration"], asked["force1"]) == (-9.80665, 2.0)
+
+
+def test_levels_do_not_know_forces(ask):
+    asked = ("resonance", "--structure", "beam", "--hz", "12", "--g", "0.1,0.2", "--force2", "1")
+    ask(*asked).complaint("--force2: resonance_levels does not know it yet")
 
 
 # -- branches over a picture -----------------------------------------------------------------------
