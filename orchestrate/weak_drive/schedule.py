@@ -220,6 +220,7 @@ class Course(Schedule):
 
     @property
     def course(self) -> Course:
+        """Return the course itself, as other schedules return theirs."""
         return self
 
     def voltage(self, time: float) -> float:
