@@ -239,7 +239,7 @@ FUNCTIONS_OF_PAGE = {  # of Math: axes, dots, swinging box, clicks, natural freq
     "diagram_view": {"sqrt"},
 }
 PRODUCTS = {  # how many products, quotients and powers: places in arrays, axes, starts, units
-    **{"app": 10, "basin": 14, "basin_part": 5, "caption": 8, "command": 21, "controls": 3},
+    **{"app": 10, "basin": 14, "basin_part": 6, "caption": 10, "command": 21, "controls": 3},
     **{"coupled": 7, "diagram": 13, "diagram_input": 3, "drive_part": 13, "inspector": 2},
     **{"kernel": 32, "model": 7, "motion": 3, "opening": 5, "payload": 5, "player": 5},
     **{"regions": 5, "requests": 3, "response": 2, "shaking": 6, "tables": 6, "tasks": 3},

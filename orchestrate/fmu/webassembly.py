@@ -18,6 +18,7 @@ from fmu_src.export.sources import model_sources
 
 from ..errors import InputError
 from ..files import made_once, open_folder, write_whole
+from ..model.ranges import PUSHES
 from . import event_loop
 from .exported import SHIPPED, default_folder
 from .models import OSCILLATOR
@@ -94,6 +95,7 @@ def loop_tables(*more: type[ctypes.Structure]) -> dict[str, Any]:
     booleans = [name for name, value in START_VALUES.items() if isinstance(value, bool)]
     return {
         "structures": {kind.__name__: layout(kind) for kind in structures},
+        "pushes": PUSHES,
         "set": {name: float(value) for name, value in START_VALUES.items()},
         "booleans": booleans,
         "reals": [name for name in START_VALUES if name not in booleans],
