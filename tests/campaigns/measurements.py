@@ -225,7 +225,7 @@ def reading(kind: str, draw: random.Random) -> dict[str, object]:
         "unit": (None, "g", "m/s2", "base=V,face1=V", "mm/s", "um"),
         "sample_rate": (None, None, 1000.0),
         "sensitivity": (None, None, "100 mV/g"),
-        "columns": (None, None, [0, 1], {"acceleration1": 1}, {"box_acceleration": "base"}),
+        "channels": (None, None, [0, 1], {"acceleration1": 1}, {"box_acceleration": "base"}),
         "resample": (False, True),
         "delay": (None, None, "base=1e-4"),
         "scale": (None, None, "base=-1"),
