@@ -27,7 +27,6 @@ module                   idea
 :mod:`.search_job`       all searches of a record as a job, in parallel
 :mod:`.fit`              the numbers of a structure from a record
 :mod:`.decision_rule`    the rule by which the records of a beam become a verdict
-:mod:`.detect`           the verdict on a record
-:mod:`.detect_all`       verdicts on many records, in parallel
+:mod:`.detect`           the verdict on a beam's records, and on those of many beams, in parallel
 =======================  ===========================================================================
 """
