@@ -1,7 +1,7 @@
 """The public names and where each lives: ``__init__.py`` reads them here, type checkers too."""
 
 from .diagnosis.detect import detect as detect
-from .diagnosis.detect_all import detect_all as detect_all
+from .diagnosis.detect import detect_all as detect_all
 from .diagnosis.fit import fit as fit
 from .diagnosis.plan_test import plan_test as plan_test
 from .diagnosis.signs import signs as signs

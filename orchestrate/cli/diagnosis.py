@@ -146,7 +146,7 @@ what it gives:
     def read_all_records(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
         """Read all record files; return a dict of sweeps, and an error line per refused file."""
         from ..diagnosis.fit import checked_data
-        from ..diagnosis.sweeps import split_sweeps
+        from ..diagnosis.order_windows import split_sweeps
 
         records: dict[Sweep, xr.Dataset] = {}
         refused: list[str] = []

@@ -1,4 +1,4 @@
-"""Residuals around a minimum as a linear model, by regression over a cloud of points.
+"""The soft misfit of residuals, and these as a linear model around a minimum, from a cloud.
 
 Impacts that come or stay away make residuals rugged: differences over small steps are those of
 single impacts. Over a cloud of points they average out.
@@ -6,15 +6,31 @@ single impacts. Over a cloud of points they average out.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..laboratory.pieces import Floats
-from .misfit import misfit, soft_weights
 
 Bounds = Mapping[str, tuple[float, float]]
+SOFT_LIMIT = 3.0  # residuals above count by their size, not its square: a jump may be a window off
+
+
+def soft_squares(residuals: Floats) -> Floats:
+    """Return the soft l1 loss: squares of small residuals, sizes of large ones."""
+    return np.asarray(2.0 * SOFT_LIMIT**2 * (np.sqrt(1.0 + (residuals / SOFT_LIMIT) ** 2) - 1.0))
+
+
+def soft_weights(residuals: Floats) -> Floats:
+    """Return the derivative of the soft l1 loss over that of the plain squares."""
+    return np.asarray(1.0 / np.sqrt(1.0 + (residuals / SOFT_LIMIT) ** 2))
+
+
+def misfit(residuals: Floats) -> float:
+    """Return the square root of the mean soft l1 loss of the residuals."""
+    return math.sqrt(float(np.mean(soft_squares(residuals))))
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from ..fmu import Player
 from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .hypotheses import Hypothesis
-from .linear import LinearModel
-from .misfit import SOFT_LIMIT, misfit
+from .linear import SOFT_LIMIT, LinearModel, misfit
 
 STEPS = {  # of the differences that make derivatives; f and common: parts of the resonance's
     **{"common": 3e-4, "f": 1e-4, "split": 3e-3, "e": 0.02, "clearance": 0.01},

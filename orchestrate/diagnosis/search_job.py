@@ -20,7 +20,7 @@ from .curve_evidence import COARSE_SAMPLES, CurveData
 from .even_orders import EvenOrders, even_orders
 from .evidence import Evidence
 from .hypotheses import SOUND, Delaminated, DelaminatedWithClearance, Hypothesis, Onset
-from .misfit import misfit
+from .linear import misfit
 from .multistart import Search, Solution, difference_step, with_distinct_misfits, without_neighbours
 from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
 from .settings import SETTINGS, Settings

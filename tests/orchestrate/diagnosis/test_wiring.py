@@ -9,8 +9,7 @@ import pytest
 from scipy.signal import detrend
 
 from orchestrate import InputError, detect, read_record, record, signs
-from orchestrate.diagnosis.order_windows import sensor_channels
-from orchestrate.diagnosis.sweeps import split_sweeps
+from orchestrate.diagnosis.order_windows import sensor_channels, split_sweeps
 from orchestrate.diagnosis.undamaged import SoundStructure
 from orchestrate.diagnosis.wiring import WiringSettings, wiring_notes
 from orchestrate.laboratory.analysis.channels import Channels
