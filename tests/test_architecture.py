@@ -238,11 +238,19 @@ FUNCTIONS_OF_PAGE = {  # of Math: axes, dots, swinging box, clicks, natural freq
     **{"waveform": {"sqrt", "exp", "sin"}, "structure": {"sqrt"}},
     "diagram_view": {"sqrt"},
 }
+PRODUCTS = {  # how many products, quotients and powers: places in arrays, axes, starts, units
+    **{"app": 10, "basin": 14, "basin_part": 6, "caption": 10, "command": 21, "controls": 3},
+    **{"coupled": 7, "diagram": 13, "diagram_input": 3, "drive_part": 13, "inspector": 2},
+    **{"kernel": 32, "model": 7, "motion": 3, "opening": 5, "payload": 5, "player": 5},
+    **{"regions": 5, "requests": 3, "response": 2, "shaking": 6, "tables": 6, "tasks": 3},
+    **{"words_of": 8},
+}
 COMMENT_OR_TEXT = re.compile(r"/\*[\s\S]*?\*/|//[^\n]*|\"[^\"\n]*\"")
 MATHEMATICS = re.compile(r"\bMath\.(?!abs|ceil|floor|max|min|PI|round|sign)(\w+)")
 PARAMETERS = re.compile(r"\b(?:m1|m2|k1|k2|d1|d2|gamma|e_slope)\b|\.clearance\b")
 OF_STATES = re.compile(r"\bstates?\[[^\]]*\]\s*[-+*/]|[-+*/]\s*(?:\w+\.)?states?\[")
 EXPORTS = re.compile(r"\bcalls\b|\.exports\b")
+PRODUCT = re.compile(r"[\w)\]](?<!yield)(?<!function)(?<!import)\s*[*/%]{1,2}\s*(?=[\w(])")
 
 
 def model_arithmetic(name: str, source: str) -> set[str]:
@@ -252,18 +260,25 @@ def model_arithmetic(name: str, source: str) -> set[str]:
     - Parameters of the structure, but where units are: no equation of motion does without.
     - Sums and products of states, but where they are drawn.
     - Functions of the compiled loops, but where they are called for all others.
+    - More products than are counted, but where units are and where something is drawn.
     """
     code = COMMENT_OR_TEXT.sub("", source)
     drawing, units, calls = list(PAGE.values())[:3]
     found = set(MATHEMATICS.findall(code)) - FUNCTIONS_OF_PAGE.get(name, set())
     for rule, allowed in ((PARAMETERS, units), (OF_STATES, drawing), (EXPORTS, calls)):
         found |= set() if name in allowed else set(rule.findall(code))
-    return found
+    products = PRODUCT.findall(code)
+    too_many = name not in drawing | units and len(products) > PRODUCTS.get(name, 0)
+    return found | (set(products) if too_many else set())
+
+
+def modules_of_page() -> dict[str, str]:
+    folder = ROOT / "orchestrate/explorer/page"
+    return {file.stem: file.read_text(encoding="utf-8") for file in folder.glob("*.js")}
 
 
 def test_the_page_computes_nothing_of_the_model():
-    folder = ROOT / "orchestrate/explorer/page"
-    texts = {file.stem: file.read_text(encoding="utf-8") for file in folder.glob("*.js")}
+    texts = modules_of_page()
     named = [name for names in PAGE.values() for name in names]
     assert sorted(named) == sorted(texts)
     found = {name: model_arithmetic(name, text) for name, text in texts.items()}
@@ -279,11 +294,17 @@ def test_the_page_computes_nothing_of_the_model():
         "const gap = states[4 * i + 1] - states[4 * i];",
         "const preload = Math.max(0, -structure.clearance);",
         "instance.library.calls.begin(instance.own, task, 0);",
+        "const energy = 0.5 * mass * speed * speed;",
+        "const speed = (next - last) / step;",
     ],
 )
 def test_arithmetic_of_the_model_is_seen(line):
-    assert model_arithmetic("tables", line)
-    assert not model_arithmetic("tables", f'/** {line} */ const text = "Math.hypot(s.k1)";')
+    """Inserted in any module that neither draws nor converts units."""
+    drawing, units, calls = list(PAGE.values())[:3]
+    for name, text in modules_of_page().items():
+        if name not in drawing | units | calls:
+            assert model_arithmetic(name, f"{text}\n{line}"), name
+            assert not model_arithmetic(name, f'{text}/** {line} */ const text = "s.k1 * x";')
 
 
 def test_imports_can_be_read():

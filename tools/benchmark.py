@@ -77,6 +77,14 @@ QUESTIONS = {  # the sizes are scaled
         "o.couple(o.Structure.from_file('quick'), o.Drive.from_file('quick'), voltage=1.5, "
         "duration=40.0 * {runs}, **quiet)"
     ),
+    "drive_branch of 200 points": (
+        "o.drive_branch(o.Structure.from_file('quick'), o.Drive.from_file('quick'), "
+        "most=2 * {runs}, **quiet)"
+    ),
+    "jump_voltages of 1.3 to 1.8 V": (
+        "o.jump_voltages(o.Structure.from_file('quick'), o.Drive.from_file('quick'), "
+        "voltage=(1.8 - 0.005 * {runs}, 1.8), **quiet)"
+    ),
 }
 
 

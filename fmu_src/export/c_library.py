@@ -1,4 +1,4 @@
-"""Compile one C source to a shared library, for what orchestration uses besides the FMUs.
+"""Compile a loop (``couple.c``, ``respond.c``, ...) to a shared library for orchestration.
 
 A library has a token of its sources among its bytes: so one of other sources is known, for whatever
 platform it was made. A digest of the bytes lies next to it: one that was damaged, or replaced, is

@@ -47,6 +47,9 @@ EXAMPLES = """examples:
   {program} sweep
   {program} sweep --set e=0.3 --eta 0.9:1.1:0.001
   {program} resonance --structure beam --hz 8:20:0.05 --g 0.02
+  {program} simulate --set wall=true --set f1=12 --set clearance=0.3mm --hz 11 --g 0.1
+  {program} channels record.csv
+  {program} diagnose record.csv --structure beam.toml
   {program} COMMAND --help
 
 sets of parameters that come with the package, for --structure and --drive:

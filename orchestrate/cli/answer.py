@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from abc import abstractmethod
 from collections.abc import Collection, Iterable, Mapping
 from functools import partial
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
-from .command import Command, Options, Question, option
+from .command import Command, Options, Question, option, option_names
 from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
 from .output import Files, digest, importing_matplotlib, result_name
@@ -87,6 +88,10 @@ class Asked(Command):
         import orchestrate
 
         function = function or self.calls
+        known = inspect.signature(getattr(orchestrate, function)).parameters
+        if "others" not in known and (unknown := [name for name in question if name not in known]):
+            text = f"{function} does not know it yet; expected the command without it"
+            raise InputError(f"{option_names(unknown[:1])}: {text}")
         branches = self.read_overlay(structure, question) if structure else []
         over = f"over_{digest(*branches)}" if branches else ""
         file = getattr(self, "structure", "") or getattr(self, "start", None) or "paper"
@@ -105,7 +110,11 @@ class Asked(Command):
             print(line)
         draw = partial(self.draw, shown, *branches, *beside)
         files.write(asked, draw if picture else None)
+        self.write_more(files, question, data)
         return data
+
+    def write_more(self, files: Files, question: Question, data: xr.Dataset) -> None:
+        """Write what a command has besides the result."""
 
     def read_overlay(self, structure: Structure, question: Mapping[str, Any]) -> list[xr.Dataset]:
         """Return the branches of ``--overlay``; raise for one that does not fit the question."""

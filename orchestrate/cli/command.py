@@ -42,6 +42,7 @@ from .grammar import (
     Orders,
     PlaneSide,
     State,
+    parse_state,
     read_choice,
     read_earlier_result,
     read_float,
@@ -53,7 +54,7 @@ MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
 MAPPING = re.compile(r'\{"(\w+)": "?([^"}]*)"?\}')  # on the command line NAME=VALUE
 KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of options are read, named
     "array_like or xarray.Dataset": (State, "X1,X2,V1,V2|FILE.nc"),
-    "array_like of 4 floats": (State, "X1,X2,V1,V2"),
+    "array_like of 4 floats": (Annotated[Any, parse_state], "X1,X2,V1,V2"),
     "(str, float, float, int)": (PlaneSide, "NAME,FIRST,LAST,COUNT"),
     "(float, float)": (Ends, "FIRST:LAST"),
     "int or sequence of float": (Orders, "N|A,B,..."),
@@ -68,6 +69,12 @@ KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of optio
     "array_like": (float, "X"),
 }
 NEEDED = " (needed)"
+SAID = {  # for options of ours
+    **{"--gravity": "--box-acceleration -1g", "--level": "--g", "--g-rms": "--g", "--rms": "--g"},
+    **{"--freq": "--hz", "--force": "--force1", "--csv": "--format csv", "--out": "--output"},
+    **{"--levels": "--g", "--guess": "--structure", "--time": "--periods", "--beam": "--structure"},
+    **{"--duration": "--periods", "--sine": "--swept-sine", "--sweep": "--swept-sine"},
+}
 OF_BOX = ("eta", "frequency", "amplitude", "level")
 READERS: dict[Any, Callable[[str, str], Any]] = {int: read_int, float: read_float}
 STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *SET_NAMES)
@@ -134,7 +141,8 @@ def option_names(names: Iterable[str], joint: str = ", ") -> str:
 def name_of_value(kind: Any) -> str:
     """Return what the help calls a value of a type."""
     known = {int: "N", float: "X", Path: "FILE"}
-    return next((known[one] for one in (kind, *get_args(kind)) if one in known), "TEXT")
+    parts = (name_of_value(one) for one in get_args(kind))
+    return known.get(kind) or next((name for name in parts if name != "TEXT"), "TEXT")
 
 
 def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, tuple[str, ...]]:
@@ -369,8 +377,12 @@ def explain(error: CycloptsError, command: type[Command]) -> str:
         near = suggestion(flag, error, command)
         return f"{flag}: no option of {command.name()}{near} {lists}"
     if isinstance(error, UnusedCliTokensError):
+        from ..model.toml_files import SETS
+
         words = " ".join(error.unused_tokens or ())
-        return f"{words}: no option of {command.name()} {lists}"
+        known = words.endswith(".toml") or words in SETS
+        near = f"; did you mean --structure {words}?" if known else ""
+        return f"{words}: no option of {command.name()}{near} {lists}"
     name = error.argument.name if error.argument else ""
     if isinstance(error, MissingArgumentError):
         return f"{error.keyword}: expected one value" if error.keyword else f"{name} is missing"
@@ -385,4 +397,6 @@ def suggestion(flag: str, error: UnknownOptionError, command: type[Command]) -> 
         after = words[words.index(flag) + 1 :] if flag in words else []
         return f"; did you mean --set {name}={''.join(after[:1]) or 'VALUE'}?"
     near = closest(flag, command.flags()) if flag.startswith("--") else ""
+    if (said := SAID.get(flag, "")).partition(" ")[0] in command.flags():
+        near = said
     return f"; did you mean {near}?" if near else ""

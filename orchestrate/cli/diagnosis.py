@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-import hashlib
 import logging
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-from ..constants import GRAVITY
 from ..errors import InputError
 from ..lazy import xr
 from ..units import Units, range_text, text_of, with_readable_lengths, with_units
 from .command import Command, Options, Question, option
 from .grammar import Listed, floats, with_option_names
-from .options import OfStructure
-from .output import Files, InColumns, Reading, Results, digest, result_name, unit_note
+from .options import OfSensors, OfStructure
+from .output import (
+    Files,
+    InColumns,
+    Reading,
+    Results,
+    digest,
+    file_checksum,
+    result_name,
+    unit_note,
+)
 from .text import columns_of, parameter_column, table
 
 if TYPE_CHECKING:
@@ -46,9 +52,8 @@ class Sweep(NamedTuple):
         return f"{self.path}{f', sweep {self.number}' if self.number else ''}"
 
 
-def file_checksum(path: Path) -> str:
-    """Return a file's SHA-256 in hexadecimal digits."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+EXPECTED = "a factor for face 1, or for both faces, such as 1.57 or 0.53,0.6"
+Participation = Annotated[tuple[float, ...] | None, floats(EXPECTED, ",", (1, 2))]
 
 
 class DiagnosedRecords(Options):
@@ -63,7 +68,7 @@ class DiagnosedRecords(Options):
         "all; may be repeated",
         (),
     )
-    participation: str | None = option(
+    participation: Participation = option(
         "of the sensors on face 1 and face 2: the beam's mode there over that of a mass on a "
         "spring, 1.57 at the tip of a cantilever (default: fitted)",
         value="G,...",
@@ -106,7 +111,6 @@ what it gives:
         import orchestrate
 
         Files.from_options(self, "", fresh=True)  # before records are read
-        self.participation_by_sensor()
         if self.structure is None and self.set:
             raise InputError("--set: of a guess; expected --structure FILE.toml with it")
         guess = None if self.structure is None else self.read_structure()
@@ -169,24 +173,14 @@ what it gives:
         record = read_record(path, **self.given(InColumns, Reading))
         if "acceleration1" not in record and "acceleration2" not in record:
             taken = record.attrs.get("columns", "no columns")
-            text = "expected a face's beside the base's: --channels 0,1,2 or base=Table,face1=Beam"
+            text = "expected a face's too: name its column by --channels, as base=Table,face1=Beam"
             raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
         return record
 
     def participation_by_sensor(self) -> dict[str, float] | None:
-        """Parse ``--participation G,...`` into a dict by face; None if it is not given."""
-        if self.participation is None:
-            return None
-        from ..laboratory.sensors import PARTICIPATION
-
-        texts = self.participation.split(",")
+        """Return ``--participation G,...`` by face; None if it is not given."""
         faces = ("acceleration1", "acceleration2")
-        try:
-            factors = [PARTICIPATION.check(float(text)) for text in texts]
-            return dict(zip(faces[: len(texts)], factors, strict=True))
-        except ValueError:
-            expected = "expected -10 to 10 for face 1, or for both faces, such as 1.57 or 0.53,0.6"
-            raise InputError(f"--participation {self.participation}: {expected}") from None
+        return dict(zip(faces, self.participation, strict=False)) if self.participation else None
 
     def compute_verdicts(
         self,
@@ -216,18 +210,12 @@ what it gives:
 
     def origin_attributes(self, path: Path, record: xr.Dataset) -> dict[str, str]:
         """Return a verdict's attributes on its record, the guess's file and the command."""
-        words = {
-            "record_file": path.name,
-            "record_sha256": file_checksum(path),
-            "record_columns": record.attrs.get("columns", ""),
-            "record_unit": record.attrs.get("unit", ""),
-            "record_unit_note": unit_note(record.attrs),
-            "record_converted": record.attrs.get("converted", ""),
-            "record_time_base": record.attrs.get("time_base", ""),
-            "sensors": record.attrs.get("sensors", ""),
-            "guess_file": str(self.structure or ""),
-            "command": getattr(self, "command_line", ""),
-        }
+        told = ("columns", "unit", "converted", "time_base")
+        words = {f"record_{name}": record.attrs.get(name, "") for name in told}
+        words |= {"record_file": path.name, "record_sha256": file_checksum(path)}
+        words |= {"record_unit_note": unit_note(record.attrs), "command": self.command_line}
+        words |= {"sensors": record.attrs.get("sensors", "")}
+        words |= {"guess_file": str(self.structure or "")}
         return {name: text for name, text in words.items() if text}
 
     def write_files(self, stem: str, answers: Mapping[str, xr.Dataset]) -> None:
@@ -268,7 +256,9 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
     yield f"sweep {ends} {twice}, {seconds:.0f} s each, {rate:.0f} samples a s"
     if second == level:
         yield "the highest of the levels: a second, higher one in --g would be a further check"
-    if not data.counts:
+    if not data.counts and data.decides.any():
+        yield "both verdicts are right at lower levels only, not at all above: see the table"
+    elif not data.counts:
         yield "no verdict is right at these levels: raise --g, or lower the --noise"
     opens = float(data.opening_level)
     if opens > 0.0:
@@ -290,7 +280,7 @@ def plan_lines(data: xr.Dataset) -> Iterator[str]:
 PlanEnds = Annotated[Any, floats("FIRST:LAST in Hz, such as 30:60", "[:,]", (2,))]
 
 
-class Plan(OfStructure, Command, Results):
+class Plan(OfStructure, OfSensors, Command, Results):
     """Plan a test: rehearse it, and recommend the lowest level at which the verdict is right."""
 
     calls = "plan_test"
@@ -301,26 +291,22 @@ class Plan(OfStructure, Command, Results):
     g: Listed = option(
         "levels, peak acceleration in g (default: nine from 0.01 to 1)", value="VALUES"
     )
-    noise: float | None = option("density of the sensor's noise, (m/s2)/sqrt(Hz) (default: 1e-3)")
-    range: float | None = option("of the sensor, g (default: none)")
     examples = """
   {program} plan --structure beam.toml
-  {program} plan --structure beam.toml --hz 30:60 --g 0.05,0.1,0.2,0.5 --noise 3e-4
-  {program} plan --structure beam.toml --set clearance=-20um --range 50"""
+  {program} plan --structure beam.toml --hz 30:60 --g 0.05,0.1,0.2,0.5 --noise 30ug
+  {program} plan --structure beam.toml --set clearance=-20um --range 50
+  {program} plan --structure beam.toml --sensor 2000:5120 --noise 1e-3
+The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s2)/sqrt(Hz)."""
 
     def ask(self) -> tuple[Structure, Question]:
         structure = self.read_structure()
-        hz = self.hz
-        question: Question = {**self.keywords(), "frequencies": hz}
-        if self.noise is not None or self.range is not None:
-            from ..diagnosis.plan_test import USUAL_NOISE, usual_ends, usual_sensor
+        from ..diagnosis.plan_test import USUAL_NOISE, usual_ends, usual_sensor
 
-            question["sensor"] = usual_sensor(
-                (hz or usual_ends(structure))[-1],
-                USUAL_NOISE if self.noise is None else self.noise,
-                GRAVITY * (math.inf if self.range is None else self.range),
-            )
-        return structure, question
+        last = (self.hz or usual_ends(structure))[-1]
+        if self.sensor is not None and self.noise is None:
+            self.noise = USUAL_NOISE
+        sensor = self.read_sensor(partial(usual_sensor, last))
+        return structure, {**self.keywords(), "frequencies": self.hz, "sensor": sensor}
 
     def __call__(self) -> None:
         import orchestrate

@@ -15,6 +15,7 @@ from ..lazy import xr
 from ..units import Units, with_readable_lengths, with_units
 from .command import Command, Options, Question, option, option_names
 from .grammar import Positive, parse_changes, parse_ends, parse_number_or_ends, parse_rate
+from .notes import warn_of_voltage
 from .options import print_assumptions
 from .output import Files, digest
 
@@ -196,11 +197,12 @@ class OfRamp(Options):
     def parse_voltages(self, structure: Structure, drive: Drive) -> tuple[float, ...]:
         """Return one voltage or a ramp's first and last one, V; by default around the jumps."""
         self.one_of("eta0", "voltage")
-        if self.voltage:
-            return parse_number_or_ends("--voltage", self.voltage)
         volts = drive.volts(structure)
-        if self.eta0:
-            return tuple(volts * value for value in parse_number_or_ends("--eta0", self.eta0))
+        for name, unit in (("voltage", 1.0), ("eta0", volts)):
+            if text := getattr(self, name):
+                given = tuple(unit * one for one in parse_number_or_ends(f"--{name}", text))
+                warn_of_voltage(f"--{name} {text}", given, volts)
+                return given
         has_own_parameters = self.set or self.structure or self.rated_voltage is not None
         if self.drive in USUAL and not has_own_parameters:
             first, last = parse_ends("--eta0", USUAL[self.drive][0])

@@ -177,6 +177,7 @@ alone may miss one whose basin is small."""
         import orchestrate
 
         from ..model import Structure
+        from ..model.ranges import PUSHES
         from ..show.planes import draw_motions
 
         name = varied_parameter(data)
@@ -192,6 +193,7 @@ alone may miss one whose basin is small."""
         for state, n in zip(at.state.values, at.multiplicity.values, strict=True):
             periods = int(n) or 60  # that are drawn of an irregular attractor
             box: Question = {"frequency": float(at.frequency), "amplitude": float(at.amplitude)}
+            box |= {n: float(at[n] if n in at.coords else data.attrs.get(n, 0.0)) for n in PUSHES}
             motions.append(orchestrate.simulate(structure, **box, start=state, periods=periods))
         return draw_motions(at, [with_units(motion, units_of(data)) for motion in motions])
 
@@ -384,7 +386,8 @@ The excitation says where a first orbit is looked for; without it that is the lo
         if over == "frequency" and amplitude is None and not begun:
             raise InputError(f"--over {self.over}: expected --amplitude in m with it")
         if name is None and (begun or over in ("eta", "frequency")):
-            return {} if amplitude is None else {"amplitude": amplitude}
+            given = {} if amplitude is None else {"amplitude": amplitude}
+            return given | self.pushes()
         excitation = self.read_excitation(structure, one=True)
         needed = "frequency" if over in ("frequency", "amplitude") else over
         if over in ("eta", "frequency", "amplitude") and needed not in excitation:

@@ -32,7 +32,10 @@ MAPPING_ITEM = re.compile(r"'([^']*)': '([^']*)'")
 
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 
-OWN_UNITS = {"--g": "g", "--hz": "Hz", "--rpm": "rpm"}
+COMMA = re.compile(r"-?\d+,\d+ *[a-zA-Z%]*")  # a decimal comma, perhaps with a unit
+OF_ONE_MASS = {name: (f"{name}1",) for name in ("m", "k", "d", "f", "zeta")}  # before a stop
+SAID = {"gap": "clearance", "restitution": "e", "mass": "m1", "frequency": "f1", "damping": "zeta1"}
+OWN_UNITS = {"--g": "g", "--range": "g", "--hz": "Hz", "--rpm": "rpm"}
 
 # -- numbers --------------------------------------------------------------------------------------
 
@@ -67,7 +70,12 @@ def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]
     try:
         return reader(without_own_unit(option, text))
     except ValueError:
-        raise InputError(f"{option} {text}: expected {expected}") from None
+        raise InputError(f"{option} {text}: expected {expected}{with_point(text)}") from None
+
+
+def with_point(text: str) -> str:
+    """Return the words on a number that seems to have a decimal comma; nothing on others."""
+    return f" (with a decimal point, {text.replace(',', '.')})" if COMMA.fullmatch(text) else ""
 
 
 def read_float(option: str, text: str) -> float:
@@ -107,6 +115,8 @@ parse_ends = floats("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,))
 parse_number_or_ends = floats("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
 Ends = Annotated[tuple[float, ...] | None, parse_ends]
 parse_numbers = floats("a number, or a list such as 0.5,1,2")
+parse_sensor = floats("HZ or HZ:RATE, such as 10000:25600", ":", (1, 2))
+Bandwidth = Annotated[tuple[float, ...] | None, parse_sensor]
 parse_rates = floats("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
 
 
@@ -160,15 +170,44 @@ def positive_number(option: str, text: str) -> float:
     return reader(option, text)[0]
 
 
-def positive_length(option: str, text: str) -> float:
-    """Parse an option's text as one length > 0, in m or with a unit."""
-    expected = f"a length > 0 in m, or with its unit such as {option} 20um"
-    number = parse(option, text, expected, lambda given: float_with_unit("amplitude", given))
-    return positive_number(option, repr(number))
+def read_length(option: str, text: str) -> float:
+    """Parse an option's text as one length from 0 on, in m or with a unit."""
+
+    def split(text: str) -> float:
+        if not 0.0 <= (number := float_with_unit("amplitude", text)) < math.inf:
+            raise ValueError(text)
+        return number
+
+    return parse(option, text, f"a length in m, or with its unit such as {option} 20um", split)
+
+
+def read_acceleration(option: str, text: str) -> float:
+    """Parse an acceleration in m/s2, or in g with that behind it."""
+    number = text.removesuffix("g")
+    factor = 1.0 if number == text else GRAVITY
+    return factor * parse(option, number, "a number in m/s2, or in g such as -1g", plain_float)
 
 
 Positive = Annotated[float | None, positive_number]
-Length = Annotated[float | None, positive_length]
+Length = Annotated[float | None, read_length]
+Acceleration = Annotated[float | None, read_acceleration]
+
+
+def parse_noise(option: str, text: str) -> float:
+    """Parse a density of noise, in (m/s2)/sqrt(Hz), or of g as data sheets have it: ``30ug``."""
+
+    def split(text: str) -> float:
+        plain = text.replace("\u00b5", "u").removesuffix("/sqrt(Hz)").removesuffix("/sqrtHz")
+        number = plain.rstrip("ugm ")
+        factors = {"": 1.0, "g": GRAVITY, "mg": 1e-3 * GRAVITY, "ug": 1e-6 * GRAVITY}
+        if (unit := plain[len(number) :].strip()) not in factors:
+            raise ValueError(text)
+        return factors[unit] * plain_float(number)
+
+    return parse(option, text, "a number in (m/s2)/sqrt(Hz), or of g such as 30ug or 0.3mg", split)
+
+
+Noise = Annotated[float | None, parse_noise]
 
 
 def parse_rate(option: str, text: str) -> float:
@@ -250,7 +289,11 @@ def with_option_names(message: str, chosen: Any) -> str:
         name, joint = keyword["name"], keyword["joint"]
         if not (flag := option_of(name)) or (options.get(name) is None) != (joint == " = None"):
             return keyword[0]
-        return flag + {" = None": " is missing", " = ": " "}.get(joint, joint)
+        file = f" {options[name]}" if isinstance(options.get(name), Path) else ""
+        flag = flag if flag in type(chosen).flags() else ""  # else it has none
+        return flag + {" = None": " is missing", " = ": " "}.get(
+            joint, f"{file}{joint}".lstrip(" " * (not flag))
+        )
 
     def named(keyword: re.Match[str]) -> str:  # what to do
         value = MAPPING_ITEM.sub(r"\1=\2", keyword["value"]).strip("'{}")
@@ -325,8 +368,8 @@ def parse_single_number(option: str, text: str) -> float:
     values, _ = parse_values(option, text)
     if len(values) != 1:
         raise InputError(
-            f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2 (sweep and "
-            "resonance vary one parameter, map two)"
+            f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2 (sweep "
+            f"varies one parameter, map two, resonance also the level){with_point(text)}"
         )
     return values[0]
 
@@ -334,11 +377,14 @@ def parse_single_number(option: str, text: str) -> float:
 # -- names and values -----------------------------------------------------------------------------
 
 
-def parse_changes(texts: Iterable[str]) -> dict[str, float | bool]:
+def parse_changes(texts: Iterable[str], wall: bool = False) -> dict[str, float | bool]:
     """Parse the texts ``NAME=VALUE`` of ``--set`` into a dict from parameter to value."""
     changes: dict[str, float | bool] = {}
-    for name, text in read_pairs("--set", texts, "NAME=VALUE such as e=0.3").items():
-        names = SET_NAMES.get(name, (name,))
+    pairs = read_pairs("--set", texts, "NAME=VALUE such as e=0.3")
+    alone = wall or pairs.get("wall") == "true"
+    known = {**SET_NAMES, **(OF_ONE_MASS if alone else {})}
+    for name, text in pairs.items():
+        names = known.get(name, (name,))
         value = parse_changed_value(names[0], text)
         if name == "preload":  # as a length: in N it depends on the springs
             if text[-1:] != "m" or value < 0.0:
@@ -365,7 +411,7 @@ def parse_with_unit(option: str, name: str, value: str, other: str = "") -> floa
         check_name(name)  # before its unit
         known = " or ".join(known_units(name))
         words = f", with {known} if you like" if known else other
-        text = f"{value} is not a number; expected one{words}"
+        text = f"{value} is not a number; expected one{words}{with_point(value)}"
         raise InputError(f"{option}{value}: {text}") from None
 
 
@@ -376,4 +422,6 @@ def check_name(name: str) -> None:
 
     known = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)
     if name not in (*known, *DRIVE):
-        raise InputError(f"--set {name}: no parameter; {expected_one_of(name, known)}")
+        expected = expected_one_of(name, known).partition(" (did")[0] if name in SAID else ""
+        said = f"{expected} (did you mean {SAID[name]}?)" if expected else ""
+        raise InputError(f"--set {name}: no parameter; {said or expected_one_of(name, known)}")

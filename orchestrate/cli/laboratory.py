@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 import warnings
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -23,7 +24,7 @@ from .grammar import (
     read_earlier_result,
     read_pairs,
 )
-from .options import Beside, OfStructure
+from .options import Beside, OfSensors, OfStructure
 from .output import (
     Files,
     Formats,
@@ -160,7 +161,7 @@ class OfExcitation(Options):
         return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{chosen[0]}", text))
 
 
-class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
+class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, Stored, Results):
     """As in the laboratory: motion and impacts under sines, random, shock or a record."""
 
     calls = "shake"
@@ -174,17 +175,37 @@ class Shake(OfStructure, OfExcitation, Beside, Asked, Stored, Results):
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --shaker shaker_1kN
   {program} shake --structure beam --shock half-sine --length 0.011 --g 5
   {program} shake --structure beam --hammer 20:0.004 --half 2 --at 0.1 --duration 5
-  {program} shake --structure beam --record base.csv --unit g"""
+  {program} shake --structure beam --record base.csv --unit g
+  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --sensor 2000
+The last one also writes what accelerometers read, a record for diagnose, analyse and channels."""
 
     def ask(self) -> tuple[Structure, Question]:
         from .. import Shaker
+        from ..running.job import refuse_family
 
         structure, shaker = self.read_structure(), self.shaker
+        if self.read_sensor() is not None:  # before anything is computed
+            refuse_family("--sensor", structure)
+        excitation = self.read_excitation()
+        if (self.sample_rate or math.inf) < (needed := excitation.usual_rate) / 10.0:
+            text = f"--sample-rate {self.sample_rate:g}: too few samples to show the excitation"
+            warnings.warn(f"{text}; the default is {needed:g}", stacklevel=2)
         return structure, {
-            "excitation": self.read_excitation(),
+            "excitation": excitation,
             **self.keywords(),
             "shaker": None if shaker is None else Shaker.from_file(shaker),
         }
+
+    def write_more(self, files: Files, question: Question, data: xr.Dataset) -> None:
+        """Write what sensors read of the motion, as a record."""
+        from .. import measure, write_record
+
+        if (sensor := self.read_sensor()) is None:
+            return
+        path = files.beside(f"sensors_{digest(sensor.label, sensor.rate)}")
+        record = measure(data, sensor, excitation=None if self.shaker else question["excitation"])
+        for ending in dict.fromkeys(("nc", *(one for one in files.formats if one != "xlsx"))):
+            print(f"{write_record(record, path.with_suffix(f'.{ending}'))}: what the sensors read")
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         channels = "box_acceleration", "force1", "force2"
@@ -256,15 +277,6 @@ ANALYSES = {  # that --show names: the public function, and what it shows
 SHOWN = ", ".join(f"{name} ({text})" for name, (_, text) in ANALYSES.items())
 
 
-def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:
-    """Return what accelerometers of ``--sensor HZ[:RATE]`` would read of a simulated motion."""
-    from .. import Sensor, measure
-
-    reader = floats("HZ or HZ:RATE, such as 10000:25600", ":", (1, 2))
-    bandwidth, *rate = reader("--sensor", text)
-    return measure(history, Sensor(bandwidth=bandwidth, sample_rate=rate[0] if rate else None))
-
-
 def analyse(name: str, record: xr.Dataset, path: Path, settings: Mapping[str, Any]) -> xr.Dataset:
     """Call the public function of an analysis on a record; errors begin with the file's name."""
     import orchestrate
@@ -302,16 +314,13 @@ class AnalysedRecords(Options):
     beside: list[str] = option(
         "another record in the same picture; may be repeated", (), value="LABEL=FILE"
     )
-    sensor: str | None = option(
-        "of results of shake what accelerometers of this bandwidth read, with the impulses of "
-        "impacts; RATE: samples a second (default: accelerations between impacts)",
-        value="HZ[:RATE]",
-    )
     begin: float | None = option("time it begins at, s", name="--from")
     to: float | None = option("time it ends at, s")
 
 
-class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, InFolder, Command):
+class Analyse(
+    AnalysedRecords, OfSensors, InColumns, Reading, Settings, InUnits, Formats, InFolder, Command
+):
     """What an analyser shows of a record: responses, spectra, orders, shock spectra."""
 
     examples = """
@@ -338,7 +347,7 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
             if note := unit_note(record.attrs):
                 print(f"{paths[label]}: {note}")
         units = self.read_record_units()
-        reading: list[Any] = [self.begin, self.to, self.sensor]
+        reading: list[Any] = [self.begin, self.to, *self.given(OfSensors).values()]
         reading += self.given(InColumns, Reading).items()
         for name in names:
             results = {
@@ -404,8 +413,10 @@ class Analyse(AnalysedRecords, InColumns, Reading, Settings, InUnits, Formats, I
 
     def cut(self, record: xr.Dataset, path: Path) -> xr.Dataset:
         """Apply ``--sensor`` to a simulated record; cut it from ``--from`` to ``--to``."""
-        if self.sensor is not None and "impulse" in record:
-            record = apply_sensor(record, self.sensor)
+        from .. import measure
+
+        if (sensor := self.read_sensor()) is not None and "impulse" in record:
+            record = measure(record, sensor)
         begin, end = self.begin, self.to
         if "time" not in record.coords or begin is end is None:
             return record

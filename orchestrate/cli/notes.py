@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ..constants import TURN
+from ..constants import GRAVITY, TURN
 from ..lazy import xr
 from ..units import text_of
 
@@ -32,6 +32,11 @@ class NoteSettings:
     near: float = 0.1  # relative distance within which a frequency is one of the structure's own
     heavy: float = 20.0  # kg, of a half of a beam
     unfelt: float = 200.0  # threshold of contact over the level: a clearance is hardly meant
+    unlike: float = 3.0  # ratio of the halves' frequencies, where one is set and the other is not
+    travel: float = 0.05  # m, amplitude of the box: no shaker has it
+    violent: float = 100.0  # g, its acceleration
+    slow: float = 0.5  # no-load speed of a motor over omega, of all voltages: it stays below
+    fast: float = 5.0  # or above the resonance
 
 
 SETTINGS = NoteSettings()
@@ -62,6 +67,39 @@ def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -
         yield from clearance_notes(structure, question, shown)
 
 
+def warn_of_level(question: Question) -> None:
+    """Warn once if the box's amplitude or acceleration is beyond what shakers have."""
+    import numpy as np
+
+    frequency = np.ravel(question["frequency"])
+    if "level" in question:
+        level = np.max(question["level"])
+        amplitude = level / frequency.min() ** 2
+    elif "amplitude" in question:
+        amplitude = np.max(question["amplitude"])
+        level = np.max(question["amplitude"] * frequency**2)
+    else:
+        return
+    if amplitude > SETTINGS.travel or level > SETTINGS.violent * GRAVITY:
+        warnings.warn(
+            f"the box moves by up to {amplitude:.3g} m and {level / GRAVITY:.3g} g: beyond what "
+            "shakers do; is the amplitude in m (1 mm is 1e-3, or 1mm), the level in g?",
+            stacklevel=3,
+        )
+
+
+def warn_of_voltage(text: str, voltages: tuple[float, ...], volts: float) -> None:
+    """Warn if voltages are far from the one that turns the motor at omega, ``volts``."""
+    ratios = [abs(voltage) / volts for voltage in voltages]
+    if max(ratios) < SETTINGS.slow or min(ratios) > SETTINGS.fast:
+        eta0 = " to ".join(f"{ratio:.3g}" for ratio in ratios)
+        warnings.warn(
+            f"{text}: eta0 = {eta0}, far from the resonance: without a load the motor turns at "
+            f"omega with {volts:.4g} V (eta0 = 1)",
+            stacklevel=2,
+        )
+
+
 def print_frequency_notes(arguments: Any, structure: Structure, question: Question) -> None:
     """Print which structure is used by default; warn if frequencies are far from its own."""
     frequency = question.get("frequency")
@@ -75,6 +113,8 @@ def print_frequency_notes(arguments: Any, structure: Structure, question: Questi
         omega = f"omega = {structure.omega:.6g} rad/s, {own_frequency}"
         print(f"structure: the paper's, {omega} (--structure names another)")
     warn_of_other_unit(arguments, structure, values)
+    if not math.isclose(structure.omega, 1.0):
+        warn_of_level(question)
     low, high = (end(values) / structure.omega for end in (min, max))
     if high > SETTINGS.far or low < 1.0 / SETTINGS.far:
         ends = " to ".join(f"{ratio:.3g}" for ratio in dict.fromkeys((low, high)))

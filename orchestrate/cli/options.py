@@ -11,10 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..model.ranges import ADDED, STRUCTURE
+from ..model.ranges import ADDED, PUSHES, STRUCTURE
 from .command import Options, option, option_names
 from .grammar import (
+    Acceleration,
+    Bandwidth,
     Length,
+    Noise,
+    Positive,
     is_single_number,
     parse_changes,
     parse_ends,
@@ -22,9 +26,10 @@ from .grammar import (
     parse_one_or_more,
     positive_number,
 )
-from .notes import mass_note
+from .notes import SETTINGS, mass_note
 
 if TYPE_CHECKING:
+    from .. import Sensor
     from ..model import Structure
 
 SETS = Path(__file__).resolve().parents[1] / "model" / "sets"
@@ -64,6 +69,8 @@ QUANTITIES = f"""quantities:
   D1 = d1/(2 omega m1), D2 = d2/(2 omega m2); D sets both
   f1 f2, zeta1 zeta2    of each half alone: natural frequency Hz, damping ratio at it (0.007 is
                         0.7 %)
+  wall=true             one mass before a stop: f1, zeta1, e, clearance (from rest to the stop, at
+                        x1 = clearance), stroke (from there to another stop opposite)
   Omega = 2 pi Hz = 2 pi rpm/60 rad/s; the box moves by a sin(Omega t), T = 2 pi/Omega
   eta = Omega/omega     frequency ratio
   g                     a Omega^2 over 9.80665 m/s2: the box's peak acceleration
@@ -95,7 +102,8 @@ class OfStructure(Options):
     )
     set: list[str] = option(
         f"one of its parameters, SI ({' '.join(STRUCTURE)}), of each half (f1 f2 in Hz, zeta1 "
-        "zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
+        "zeta2) or the paper's (mu kappa D D1 D2 omega); wall=true: one mass before a stop; may be "
+        "repeated",
         (),
         value="NAME=VALUE",
     )
@@ -105,8 +113,9 @@ class OfStructure(Options):
         from ..model import Structure
         from ..model.toml_files import parse, resolve
 
-        changes = parse_changes(self.set)
-        structure = Structure.from_file(self.structure).replace(**changes)
+        structure = Structure.from_file(self.structure)
+        changes = parse_changes(self.set, structure.wall)
+        structure = structure.replace(**changes)
         print_assumptions(structure, self.structure, changes)
         file = {} if self.structure in SET_NAMES else parse(resolve(self.structure))
         if not structure.bonded and "e" not in {**file.get("structure", {"e": 0}), **changes}:
@@ -138,6 +147,17 @@ class OfBox(Options):
     eta: Any = option("the same as frequency ratio Omega/omega", value="VALUES")
     amplitude: Length = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
     g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
+    box_acceleration: Acceleration = option(
+        "constant acceleration of the box beside it, m/s2 or with g: -1g is gravity towards "
+        "positive x, as to a stop"
+    )
+    force1: float | None = option("amplitude of a force F sin(Omega t) on half 1, N")
+    force2: float | None = option("the same on half 2")
+
+    def pushes(self) -> dict[str, float]:
+        """Return the constant acceleration and the forces that are given, by name."""
+        given = {name: getattr(self, name) for name in PUSHES}
+        return {name: value for name, value in given.items() if value is not None}
 
     def read_excitation(
         self, structure: Structure, si: bool = False, one: bool = False
@@ -161,23 +181,22 @@ class OfBox(Options):
                     f"--eta {text}: omega is {structure.omega:g} rad/s; expected --amplitude in m "
                     "or --g with it (1/eta^2 m is the paper's, for omega = 1 rad/s)"
                 )
-            return {"eta": values}
+            return {"eta": values, **self.pushes()}
         if amplitude is None:
             raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
         omega = structure.omega
         frequencies = apply_to_each(
             TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values
         )
-        if self.g is None:
-            return {"frequency": frequencies, "amplitude": amplitude}
-        held = apply_to_each(lambda value: amplitude * GRAVITY / (value * value), frequencies)
-        return {"frequency": frequencies, "amplitude": held}
+        if self.g is not None:
+            level = amplitude * GRAVITY
+            amplitude = apply_to_each(lambda value: level / (value * value), frequencies)
+        return {"frequency": frequencies, "amplitude": amplitude, **self.pushes()}
 
     def excitation_from_file(self) -> dict[str, Any] | None:
         """Return keywords of the excitation in the structure's file, or None; set ``--phase``."""
         import orchestrate
 
-        from ..model.ranges import PUSHES
         from ..model.toml_files import read
 
         excitation: Any = read(self.structure).get("excitation")
@@ -185,8 +204,8 @@ class OfBox(Options):
             return None
         if getattr(self, "phase", None) == 0.0:
             self.phase = excitation.phase
-        values = {name: getattr(self, name, None) or getattr(excitation, name) for name in PUSHES}
-        pushes = {name: value for name, value in values.items() if value}
+        pushes = {name: getattr(excitation, name) for name in PUSHES if getattr(excitation, name)}
+        pushes |= self.pushes()
         called: str = getattr(self, "calls")  # noqa: B009 (of the command, which has this group)
         known = inspect.signature(getattr(orchestrate, called)).parameters
         if unknown := [name for name in pushes if name not in known]:
@@ -216,7 +235,8 @@ class OfBox(Options):
         plain = copy(self)
         plain.g, plain.amplitude = None, 1.0
         frequency = plain.read_excitation(structure, one=one)["frequency"]
-        return {"frequency": frequency, "level": apply_to_each(lambda peak: peak * GRAVITY, levels)}
+        level = apply_to_each(lambda peak: peak * GRAVITY, levels)
+        return {"frequency": frequency, "level": level, **self.pushes()}
 
 
 class Over(Options):
@@ -239,8 +259,8 @@ class Over(Options):
         """Return excitation and varied parameter as keywords, and whether a range was given."""
         if self.over is None and self.g is not None and not is_single_number(self.g):
             box = self.excitation_by_level(structure, one=True)
-            levels = {"over": "level", "values": box["level"]}
-            return {"frequency": box["frequency"], **levels}, ":" in self.g
+            levels = {"over": "level", "values": box.pop("level")}
+            return {**box, **levels}, ":" in self.g
         if (values := self.read_over()) is not None:
             self.check_over(self.over)
             fixed = self.read_excitation(structure, si, one=True)
@@ -262,6 +282,33 @@ class Over(Options):
             raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
 
 
+class OfSensors(Options):
+    """Options of accelerometers that read a simulated motion."""
+
+    heading = "sensors of a simulated test"
+    sensor: Bandwidth = option(
+        "what accelerometers of this bandwidth read, with the spikes of impacts; RATE: samples a "
+        "second (default: 2.56 times it)",
+        value="HZ[:RATE]",
+    )
+    noise: Noise = option("density of their noise, (m/s2)/sqrt(Hz), or 30ug of g/sqrt(Hz)")
+    range: Positive = option("of the sensors, g (default: none)")
+
+    def read_sensor(self, usual: Callable[..., Sensor] | None = None) -> Sensor | None:
+        """Return the sensor; without ``--sensor`` the ``usual`` one, None without any option."""
+        from .. import Sensor
+        from ..constants import GRAVITY
+
+        limits = {"noise": self.noise, "range": self.range and GRAVITY * self.range}
+        given: dict[str, Any] = {n: value for n, value in limits.items() if value is not None}
+        if self.sensor is not None:
+            bandwidth, *rate = self.sensor
+            return Sensor(bandwidth=bandwidth, sample_rate=rate[0] if rate else None, **given)
+        if given and usual is None:
+            raise InputError(f"{option_names(given)}: of sensors; expected --sensor HZ with it")
+        return usual(**given) if given and usual else None
+
+
 class Beside(Options):
     """The option of both structures."""
 
@@ -281,9 +328,16 @@ def print_assumptions(structure: Structure, source: str, changes: Mapping[str, A
     if source not in SET_NAMES or not changes.keys() & {"f1", "f2"}:
         return
     left = [name for name, others in ASSUMED.items() if not changes.keys() & {name, *others}]
+    left = [name for name in left if not (structure.wall and name.endswith("2"))]
+    for name in {"f1", "f2"} & {*left}:
+        (own,) = {"f1", "f2"} - {name}
+        if not 1.0 / SETTINGS.unlike < structure.get(name) / structure.get(own) < SETTINGS.unlike:
+            usual = f"{name} would be {structure.get(name):.4g} Hz, as in the set {source}"
+            text = f"expected --set {name}=HZ too, or --set wall=true for one mass before a stop"
+            raise InputError(f"--set {own}={changes[own]:g}: {usual}; {text}")
     texts = [f"{name} = {format_assumed(name, structure.get(name))}" for name in left]
     if texts:
-        masses = "; only the ratio of the masses acts" if {"m1", "m2"} & set(left) else ""
+        masses = "; only the ratio of the masses acts" if "m2" in left else ""
         print(f"assumed, as in the set {source}: {', '.join(texts)} (--set){masses}")
 
 

@@ -92,11 +92,6 @@ class InUnits(Options):
             words = ", ".join(sorted(kinds - {"1"}))
             print(f"--units {units}: these have no such numbers, only {words}")
 
-    def refuse_units(self, reason: str) -> None:
-        """Raise if ``--units`` is given to a command whose output has no units."""
-        if str(self.read_units()):
-            raise InputError(f"--units {self.units}: {reason}; expected the command without it")
-
 
 class Formats(Options):
     """Options of the files written with a result."""
@@ -143,17 +138,10 @@ class HowRun(Options):
 
     def running(self, store: Path | None = None) -> Running:
         """Return ``jobs``, ``cluster``, ``force``, ``fmu`` and ``store`` as keywords of the API."""
-        running: Running = {
-            "jobs": self.jobs,
-            "cluster": self.cluster,
-            "force": self.force,
-            "keep_stale": self.keep_stale,
-            "fmu": user_fmus(self.fmu) if isinstance(self.fmu, list) else self.fmu,
-            "build_folder": self.build_folder,
-        }
-        if store is not None:
-            running["store"] = store
-        return running
+        names = ("jobs", "cluster", "force", "keep_stale", "fmu", "build_folder")
+        running: Any = {name: getattr(self, name) for name in names}
+        running |= {"fmu": user_fmus(self.fmu)} if isinstance(self.fmu, list) else {}
+        return running if store is None else {**running, "store": store}
 
 
 class Results(InUnits, Formats, InFolder, HowRun):
@@ -236,6 +224,11 @@ def digest(*arguments: Any) -> str:
 
     text = json.dumps(arguments, sort_keys=True, default=other)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
+
+
+def file_checksum(path: Path) -> str:
+    """Return a file's SHA-256 in hexadecimal digits."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 # -- files ----------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..model import Structure
 
 
-class Build(InUnits, Command):
+class Build(Command):
     """Export the FMUs, each form with the same variables and numbers, and compile the master and
     the explorer's kernels.
     """
@@ -48,7 +48,6 @@ class Build(InUnits, Command):
   {program} build --sources-only"""
 
     def __call__(self) -> None:
-        self.refuse_units("FMUs are in SI")
         from ..fmu import FORMS, PLAIN_FORMS, build, build_libraries, build_web_kernels, sources_of
 
         if self.folder is not None:
@@ -181,7 +180,7 @@ def claim_lines(verdicts: Mapping[str, Any]) -> Iterator[str]:
         yield f"{where} {shares} largest {row['largest']}"
 
 
-class Paper(InUnits, InFolder, HowRun, Command):
+class Paper(InFolder, HowRun, Command):
     """The whole paper through the FMU: figures, claims, report."""
 
     figures: str | None = option(
@@ -203,7 +202,6 @@ class Paper(InUnits, InFolder, HowRun, Command):
 Repeat the command to resume an interrupted run. Finished data is left as it is."""
 
     def __call__(self) -> None:
-        self.refuse_units("figures and numbers are those of the paper, ratios")
         from ..paper.reproduce import reproduce
         from ..paper.resolution import FULL, QUICK
 

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 from ..errors import InputError
 from .command import Command, option
-from .grammar import floats
-from .output import InColumns, Reading
+from .grammar import floats, with_option_names
+from .output import InColumns, Reading, file_checksum
 from .text import table
 
 Pair = Annotated[Any, floats("H1,H2, two numbers such as 3,2", ",", (2,))]
@@ -36,14 +36,24 @@ and others; complete it by e and clearance."""
     def __call__(self) -> None:
         from .. import halves, read_record
 
-        if len(self.records) > 2 or len({*self.records}) < len(self.records):
+        if len(self.records) > 2:
             raise InputError(f"{self.records[-1]}: expected one record of each half")
         records = [read_record(path, **self.given(InColumns, Reading)) for path in self.records]
+        if len({*map(file_checksum, self.records)}) < len(records):
+            text = f"the same numbers as {self.records[0]}; expected one record of each half"
+            raise InputError(f"{self.records[-1]}: {text}")
         if len(records) == 2 and all("force1" in one and "force2" not in one for one in records):
             print(f"{self.records[1]}: taken for knocks on half 2, as the second record")
-            names = {name: str(name).replace("1", "2") for name in records[1] if "1" in str(name)}
-            records[1] = records[1].rename(names)
-        fits = halves(*records, **self.keywords())
+            names = {"force1": "force2", "acceleration1": "acceleration2"}
+            if "acceleration2" in records[1]:  # both faces are measured
+                del names["acceleration1"]
+            records[1] = records[1].rename({n: new for n, new in names.items() if n in records[1]})
+        try:
+            fits = halves(*records, **self.keywords())
+        except InputError as error:
+            name, _, text = str(error).partition(": ")
+            path = dict(zip(("record", "other"), self.records, strict=False)).get(name, name)
+            raise InputError(f"{path}: {text}" if text else name) from None
         columns = {"half": [str(half) for half in fits.knocked.values]}
         for name in ("mass", "frequency", "damping"):
             cells = zip(fits[name].values, fits[f"{name}_error"].values, strict=True)
@@ -56,11 +66,10 @@ and others; complete it by e and clearance."""
             print(self.output)
 
 
-class Channels(InColumns, Command):
+class Channels(InColumns, Reading, Command):
     """List the columns of a record, and as which channels they are read; write that as a file."""
 
     record: Path = option("as for analyse", position=True, needed=True)
-    sample_rate: float | None = option("Hz, where the file has no times")
     output: Path | None = option(
         "where to write how the columns are read, as TOML: to complete with units, sensitivities, "
         "delays and sensors, and to give as --channels",
@@ -68,20 +77,23 @@ class Channels(InColumns, Command):
     )
     examples = """
   {program} channels run.csv
-  {program} channels run.csv --channels base=Table,face1=3 --output setup.toml
-  {program} channels run.csv --channels setup.toml"""
+  {program} channels run.csv --channels base=Table,face1=3 --unit face1=g --output setup.toml
+  {program} channels run.csv --channels setup.toml
+diagnose, analyse and others take --channels setup.toml too. Where the channels cannot be read as
+they are, the last line says what is missing."""
 
     def __call__(self) -> None:
         from .. import channels
 
-        found = channels(
-            self.record, self.channels, sample_rate=self.sample_rate, output=self.output
-        )
+        reading = self.given(InColumns, Reading)
+        found = channels(self.record, **reading, output=self.output)
         names = ("role", "known", "quantity", "unit")
         rows = {name: found[name].values.tolist() for name in names}
         rms = ["" if value != value else f"{value:.4g}" for value in found.rms.values]
         print(*table({"column": found.column.values.tolist(), **rows, "rms": rms}), sep="\n")
         if rate := found.attrs["sample_rate"]:
             print(f"{rate:.6g} samples a second")
+        if refused := found.attrs["refused"]:
+            print(f"not to be read so: {with_option_names(refused, self)}")
         if self.output is not None:
             print(self.output)

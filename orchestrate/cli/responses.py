@@ -134,7 +134,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
             yield f"{middle}: the preload by itself holds them {ends} from it"
 
 
-HANGING = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor hangs at the resonance
+CAPTURED = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor is captured by the resonance
 
 
 def line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> str:
@@ -151,14 +151,14 @@ class Spectra(OfMotor, OfVoltage, OfBox, Asked, Stored, OfBoth):
 
     calls = "spectra"
     examples = """
-  {program} spectra                      Figure 3: quick, the motor hangs at the resonance
+  {program} spectra                      Figure 3: quick, the motor is captured by the resonance
   {program} spectra --drive beam --voltage 6.5
   {program} spectra --eta 0.4,1.047      shaken harmonically instead, at these frequency ratios
   {program} spectra --structure beam --hz 12.5 --g 0.02 --format nc,csv"""
 
     def __call__(self) -> None:
         of_motor = self.one_of("eta0", "voltage")
-        if not self.is_shaken():
+        if not (self.is_shaken() or self.pushes()):
             self.answer_motor_spectra()
             return
         if of_motor is not None:
@@ -183,7 +183,7 @@ class Spectra(OfMotor, OfVoltage, OfBox, Asked, Stored, OfBoth):
     def answer_motor_spectra(self) -> None:
         """Compute spectra of a motor-driven structure (Figure 3); print, store and draw them."""
         structure, drive = self.read_structure_and_drive()
-        eta0 = HANGING.get(self.drive) if self.eta0 is None else self.eta0
+        eta0 = CAPTURED.get(self.drive) if self.eta0 is None else self.eta0
         voltage = self.voltage
         if voltage is None and eta0 is not None:
             voltage = eta0 * drive.volts(structure)

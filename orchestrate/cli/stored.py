@@ -39,15 +39,13 @@ def read_structure_and_question(arguments: Any) -> tuple[Structure, dict[str, An
 def structure_of(option: str, path: Path, data: xr.Dataset) -> Structure:
     """Return the structure in a stored result's attributes; raise ``InputError`` if none is."""
     from ..model import Structure
+    from ..running.provenance import what_it_is
 
     try:
         return Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
     except READING:
-        kind = str(data.attrs.get("call", "")).partition("(")[0]
-        what = f"a result of {kind}, " if kind else ""
-        raise InputError(
-            f"{option} {path}: {what}without a structure; expected an orbit or a branch"
-        ) from None
+        text = f"{what_it_is(data)}, without a structure; expected an orbit or a branch"
+        raise InputError(f"{option} {path}: {text}") from None
 
 
 def print_difference(option: str, path: Path, stored: Structure, asked: Structure) -> None:

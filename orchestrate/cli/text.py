@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
@@ -100,11 +101,15 @@ def time_text(data: xr.Dataset, time: float, form: str = ".4g") -> str:
 def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
     """Yield all variables of a result at one parameter value as a table."""
     yield f"one value, {format_parameter(data, name, float(data[name][0]))}: a table and no picture"
-    for key, array in as_shown(data.isel({name: 0})).data_vars.items():
-        if not set(array.dims) - {"direction", "structure"}:
-            values = ", ".join(f"{float(value):.6g}" for value in array.values.ravel())
-            unit = str(array.attrs.get("units", "1")).removeprefix("1")
-            yield f"  {key:20} {values} {unit}".rstrip()
+    shown, order = as_shown(data.isel({name: 0})), {"structure", "direction"} & {*data.dims}
+    arrays = {key: one for key, one in shown.data_vars.items() if {*one.dims} <= order}
+    columns = {"": [str(key) for key in arrays]}
+    for case in itertools.product(*(data[dim].values.tolist() for dim in sorted(order)[::-1])):
+        at = dict(zip(sorted(order)[::-1], case, strict=True))
+        cells = [float(one.sel({dim: at[str(dim)] for dim in one.dims})) for one in arrays.values()]
+        columns[" ".join(case) or "value"] = [f"{cell:.6g}" for cell in cells]
+    units = (str(one.attrs.get("units", "1")).removeprefix("1") for one in arrays.values())
+    yield from table(columns | {"unit": [*units]}, len(arrays))
 
 
 def impact_lines(data: xr.Dataset) -> Iterator[str]:

@@ -46,7 +46,6 @@ class Findings:
     # response at an end of the sweep over the largest one, the larger of both ends
     end_response: float
     resonance: float  # frequency of that largest one, Hz
-    displacement: float  # of the sensor that moves most, relative to the base, m
     guessed: tuple[float, float]  # lower and higher frequency of the guess's halves, Hz
     settings: Settings = SETTINGS
 
@@ -134,9 +133,8 @@ class Beam:
         - "undecided" without a usable record: one whose channels are not saturated (`clipped`),
           whose sweep passes the resonance (`end_response`), which is the guess's (`guess_factor`).
         - "delaminated": in a usable record faces strike (:meth:`.impact_timing.Strikes.word`; with
-          one sensor its resonance is known by the guess, or by two levels, `doubled`, between which
-          the displacement `grows` and the resonance moves by `shift` at most); "undecided" if
-          another one, of no lower level (`same_level`), contradicts.
+          one sensor by a guess or two levels, `doubled`); "undecided" if another one, of no lower
+          level (`same_level`), contradicts.
         - "no opening seen": in all of them nothing is heard, order 2 and the difference of the
           faces are below their thresholds, and noise hides no order 2 of `hidden`.
         - "not described": the base strikes, or what is heard is not locked to the stroke, or kinks,
@@ -168,22 +166,18 @@ class Beam:
     @cached_property
     def words(self) -> dict[Findings, str]:
         """What strikes in each record, with what all records say of the stiffness."""
-        known = {} if self.grows is None else {"stiffness": 1.0 if self.grows else math.nan}
-        return {one: replace(one.strikes, **known).word() for one in self.records}
+        known = {"stiffness": 1.0} if self.has_two_levels else {}
+        every = ((one, one.strikes) for one in self.records)
+        return {
+            one: (replace(own, **known) if math.isnan(own.stiffness) else own).word()
+            for one, own in every
+        }
 
-    @cached_property
-    def grows(self) -> bool | None:
-        """Whether the response grows with the level at the same resonance; None of one level."""
-        usable = self.usable
-        if not usable or usable[0].high < usable[0].settings.doubled * usable[-1].high:
-            return None
-        high, low = usable[0], usable[-1]
-        settings, octaves = high.settings, math.log2(high.high / low.high)
-        moved = abs(math.log(high.resonance / low.resonance))
-        return (
-            high.displacement >= low.displacement * settings.grows**octaves
-            and moved <= settings.shift
-        )
+    @property
+    def has_two_levels(self) -> bool:
+        """Whether the usable records are of two levels, which stand for an unknown frequency."""
+        levels = [one.high for one in self.usable]
+        return bool(levels) and levels[0] >= self.usable[0].settings.doubled * levels[-1]
 
     @cached_property
     def opening_level(self) -> float:
@@ -214,9 +208,6 @@ class Beam:
     def reason(self) -> str:
         """Return sentences that say by which numbers the verdict was decided, or stopped."""
         sentences = [one.seen(self.words[one]) for one in self.records]
-        if self.grows is not None:
-            word = "grows" if self.grows else "does not grow"
-            sentences.append(f"The response {word} with the level at the same resonance.")
         if len(self.records) > 1 and self.verdict() == DELAMINATED:
             sentences.append(f"Faces strike from {self.opening_level:.3g} m/s\u00b2 on.")
         return " ".join(
@@ -228,7 +219,7 @@ class Beam:
         advice = [one.advice for one in self.broken_conditions() if one.advice]
         one_sensor = all(one.sensors == 1 for one in self.records)
         other = "an accelerometer on the other face" if one_sensor else "a slower sweep"
-        second = "" if self.grows is not None else ", or another sweep at twice the level"
+        second = "" if self.has_two_levels else ", or another sweep at twice the level"
         if self.may_be_a_stop and not one_sensor:
             return "Sensors nearer to where it may be open: faces between them strike both ways."
         if self.may_be_a_stop:

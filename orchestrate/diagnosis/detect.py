@@ -317,7 +317,6 @@ def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Fin
         clipped=max(clipped_share(row) for row in whole.channels.values),
         end_response=float(max(response[0], response[-1]) / response.max()),
         resonance=evidence.resonance,
-        displacement=evidence.displacement,
         guessed=(low, high),
         settings=data.settings,
     )

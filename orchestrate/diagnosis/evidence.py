@@ -27,6 +27,7 @@ from .order_windows import (
     RecordOrders,
     channel_orders,
     decimated,
+    integrated,
     record_orders,
 )
 from .settings import SETTINGS, Settings
@@ -138,10 +139,8 @@ class Evidence:
     def sliding(self) -> Floats:
         """Cubics of the sign of the measured velocity, relative to the base and smooth at zero."""
         channels = self.orders.channels
-        spectrum = np.fft.rfft((channels.values[self.orders.rows] - channels.box).mean(axis=0))
-        turns = TURN * np.fft.rfftfreq(self.samples, 1.0 / self.rate)
-        spectrum[turns < 0.5 * TURN * self.resonance] = 0.0  # drift
-        speed = np.fft.irfft(spectrum / (1j * np.maximum(turns, 1.0)), self.samples)
+        moved = (channels.values[self.orders.rows] - channels.box).mean(axis=0)
+        speed = integrated(moved, self.rate, 0.5 * TURN * self.resonance)
         slow = self.settings.slow * TURN * self.resonance * self.displacement
         sign = speed / np.hypot(speed, slow)
         return Sampled(acceleration=tuple(sign), sample_rate=self.rate).pieces().derivatives

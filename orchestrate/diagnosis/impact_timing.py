@@ -3,8 +3,9 @@
 In windows of some periods the samples are predicted from those before and after them: that removes
 the forced motion, ringing modes and noise that is not white, and leaves what just struck. Its power
 is binned over the phase of the sensor's own order 1, relative to the base: 0 is the top of the
-stroke. Faces that part and meet strike where the halves' motions bring them together, which moves
-with the stroke; a stop strikes where it stands.
+stroke. A stop pushes back near the top: the order 1 of its force, which stiffens the beam, is at
+least 3/4 of the order 2 that it makes. Faces that part and meet do not push a beam back: its
+stiffness stays that of the shut faces.
 """
 
 from __future__ import annotations
@@ -12,40 +13,56 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..constants import TURN
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, measured_phase
 from ..laboratory.pieces import Floats
+from .order_windows import integrated
 
 ORDERS = np.arange(1, 13)  # of what a window is projected on
 HIGH = slice(5, 12)  # orders 6 to 12
+MIN_QUIET = 8  # windows in which nothing strikes: of fewer those that move least are taken
+
+PRIOR = 1e-6  # weight of a participation of 1, over that of the windows
 
 
 @dataclass(frozen=True)
 class TimingSettings:
     """Thresholds of :meth:`Strikes.word`, and the lengths with which it is measured."""
 
-    memory: float = 0.006  # s of samples that predict one
+    memory: float = 0.27  # of a period: samples that predict one
     periods: float = 10.0  # of a window
     bins: int = 32  # of a period; half as many of slow records
     tail: float = 1e-4  # probability of a bin by noise, in a window
     loud: float = 0.3  # of the loudest window's power: windows that count
-    # loudest bin over the quietest third's mean, over the limit of noise: what may be a strike,
-    # and what is one
+    # loudest bin over the quietest third's mean, over the limit of noise: what may be a strike
+    # once a period, what may be one of a loose part, and what is one
     faint: float = 3.0
+    rattles: float = 5.0
     heard: float = 10.0
     base: float = 0.25  # of the sensor's ratio that the base may reach
-    locked: float = 0.9  # circular concentration of the peaks' phases
+    locked: float = 0.7  # circular concentration of the peaks' phases
     one_sided: float = 0.5  # first circular moment of a window's power
-    blow: float = 0.11  # median of orders 6 to 12 over order 2: rattling clamps make 0.095
-    opposite: float = -0.95  # correlation of both sensors' blows: clamps with torsion make -0.9
-    order2: float = 0.05  # over order 1: parts of a percent of the mass make 0.042
-    spread: float = 0.33  # of the place over the windows, over the amplitude: play makes 0.31
-    softer: float = 0.9  # resonance over that of the faces shut: what is looser is the clamp
-    stiffer: float = 1.06
+    blow: float = 0.17  # median of orders 6 to 12 over order 2: rattling clamps make 0.157
+    # correlation of both sensors' blows: clamps with torsion make -0.9, and above 0 it is one blow
+    opposite: float = -0.95
+    together: float = 0.0
+    order2: float = 0.045  # over order 1: parts of a percent of the mass make 0.042
+    # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.54 or less;
+    # halves that meet at the stroke's end -1, and a slow one that a moving one strikes up to 2
+    softens: float = -0.5
+    softens_end: float = -1.0
+    at_end: float = 0.9  # of the stroke
+    stiffens: float = 0.5
+    stiffens_moving: float = 2.0
+    spread: float = 0.35  # range of the place, over the stroke: play makes 0.31
+    known: float = 0.03  # error of a frequency that is known
+    stiffer: float = 1.06  # frequency while something strikes, over that of the faces shut
 
 
 TIMING = TimingSettings()
@@ -64,8 +81,10 @@ class Strikes:
     blow: float  # median of orders 6 to 12 over order 2
     opposite: float  # correlation of what both sensors hear in the loudest bin; NaN with one
     order2: float  # over order 1, the largest
-    spread: float  # range of its place over the windows, over the largest amplitude
-    stiffness: float  # resonance over that of the faces shut; NaN where that is not known
+    stiffens: float  # growth of the stiffness, over order 2: see `stiffness_growth`
+    place: float  # where it strikes, over the stroke: -1 or 1 at its ends
+    spread: float  # range of the place over the windows, over the largest stroke
+    stiffness: float  # frequency over that of the faces shut; NaN where that is not known
 
     def numbers(self) -> str:
         """Format the quantities of the rule."""
@@ -75,32 +94,36 @@ class Strikes:
     def word(self, settings: TimingSettings = TIMING) -> str:
         """Return what strikes.
 
-        - "nothing heard" up to `faint`, "base strikes" if the base has more than that and `base`
-          of it.
-        - "faces strike": the peaks' phases agree by `locked`, orders 6 to 12 are above `blow` of
-          order 2, and the blows of two sensors are `opposite`.
-        - "something faint" up to `heard`; "not locked" if the phases agree less, or the power is
+        - "nothing heard" up to `faint`, and up to `rattles` unless the peaks' phases agree by
+          `locked`; "base strikes" if the base has more than `faint` and `base` of it.
+        - "faces strike": the phases agree, orders 6 to 12 are above `blow` of order 2, and the
+          blows of two sensors are `opposite`.
+        - "something faint" up to `heard`; "not locked" if the phases do not agree, or the power is
           not on one side of the period by `one_sided`; "kinks" below `blow`; "something small
           strikes" with an order 2 below `order2`.
-        - "stop" if the place moves by less than `spread`.
-        - "faces strike" of one sensor with a resonance from `softer` to `stiffer`; else, and of two
-          sensors, "stop or softer face".
+        - "stop" if the stiffness grows with the stroke, over order 2, by more than `stiffens`
+          (`stiffens_moving` where the place moves by `spread`), other than to that of shut faces,
+          or falls by more than `softens` (`softens_end` where it strikes `at_end` of the stroke).
+        - "faces strike" with a known frequency, up to `stiffer`, unless two sensors hear blows that
+          are `together`; else "stop or softer face".
         """
-        if not self.heard > settings.faint:
+        is_blow, is_locked = self.blow > settings.blow, self.locked >= settings.locked
+        if not self.heard > (settings.faint if is_locked else settings.rattles):
             return NOTHING
         if self.base > max(settings.base * self.heard, settings.faint):
             return "base strikes"
-        is_blow, is_locked = self.blow > settings.blow, self.locked >= settings.locked
         if is_locked and is_blow and self.opposite < settings.opposite:
             return FACES
+        is_end, moves = abs(self.place) >= settings.at_end, self.spread >= settings.spread
+        softens = settings.softens_end if is_end else settings.softens
+        stiffens = settings.stiffens_moving if moves else settings.stiffens
         limits = {
             FAINT: self.heard > settings.heard,
             "not locked": is_locked and self.one_sided >= settings.one_sided,
             "kinks": is_blow,
             "something small strikes": self.order2 >= settings.order2,
-            STOP: self.spread >= settings.spread,
-            SOFTER: settings.softer <= self.stiffness <= settings.stiffer
-            and math.isnan(self.opposite),
+            STOP: softens <= self.stiffens <= stiffens,
+            SOFTER: self.stiffness <= settings.stiffer and not self.opposite > settings.together,
         }
         return next((word for word, holds in limits.items() if not holds), FACES)
 
@@ -119,12 +142,19 @@ def strikes_at(
 ) -> Strikes:
     """Measure what strikes at the first of these sensors, with the other one's blows."""
     columns = np.array(list(timed_windows(channels, rows, settings))).T
-    heard, base, power, peak, moment, blow, first, second, level, hertz, opposite = columns
+    heard, base, power, peak, moment, blow, second, opposite = columns[:-3].real
+    motion = columns[-3:]
     top = int(np.argmax(np.where(heard > 1.0, power, 0.0)))
     loud = (power >= settings.loud * power[top]) & (heard > 1.0)
     loud[top] = True
-    size = first / hertz**2
-    position, turned = size * np.cos(peak) / size.max(), np.exp(1j * peak[loud])
+    size, turned = abs(motion[2]), np.exp(1j * peak[loud])
+    shut *= 1.0 - settings.known
+    rest, stiffness = stiffnesses(motion, loud, heard <= 1.0)
+    grown = [
+        float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
+    ]
+    is_known = grown[0] > settings.stiffens and math.isfinite(shut)
+    position = (size * np.cos(peak))[loud] / size.max()
     return Strikes(
         heard=float(heard[loud].max()),
         base=float(np.median(base[loud])),
@@ -132,42 +162,74 @@ def strikes_at(
         one_sided=float(np.median(moment[loud])),
         blow=float(np.median(blow[loud])),
         opposite=float(np.median(opposite[loud])),
-        order2=float((second / first)[loud].max()),
-        spread=float(np.ptp(position[loud])),
-        stiffness=float(hertz[int(np.argmax(first / level))] / shut),
+        order2=float(second[loud].max()),
+        stiffens=grown[is_known],
+        place=float(np.median(turned.real)),
+        spread=float(np.ptp(position)),
+        stiffness=math.sqrt(max(np.median(stiffness[loud]), 0.0)) / shut * (1.0 - settings.known),
     )
+
+
+def stiffnesses(
+    motion: NDArray[Any], loud: NDArray[np.bool_], quiet: NDArray[np.bool_]
+) -> tuple[float, Floats]:
+    """Return the frequency of the beam at rest and the squared one in each window, in Hz.
+
+    ``motion`` has order 1 of the sensor's acceleration relative to the base, the base's, and the
+    displacement. By whatever force F the beam is held, ``a + p b + F = 0`` holds with the
+    participation p, which the windows in which nothing strikes tell with the stiffness at rest.
+    """
+    moved, base, stroke = motion
+    size = abs(stroke)
+    if quiet.sum() < MIN_QUIET:  # faces that touch strike at any stroke
+        quiet = size <= max(0.5 * size[loud].min(), np.sort(size)[len(size) // 3])
+    toward = stroke.conj() / size
+    scale = float(np.median(abs(moved) / size))
+    rows = np.array([scale * size, (base * toward).real])[:, quiet]
+    products, sums = rows @ rows.T, -rows @ (moved * toward).real[quiet]
+    # where windows do not tell the participation from the stiffness it is 1
+    weight = PRIOR * float(np.sum(abs(base[quiet]) ** 2))
+    rest, part = np.linalg.solve(products + np.diag([0.0, weight]), sums + [0.0, weight])
+    stiffness = -((moved + part * base) / stroke).real
+    return math.sqrt(max(scale * rest, 1e-9)) / TURN, stiffness / TURN**2
 
 
 def timed_windows(
     channels: Channels, rows: Sequence[int], settings: TimingSettings
-) -> Iterator[tuple[float, ...]]:
+) -> Iterator[tuple[complex, ...]]:
     """Yield the quantities of each window, in the order in which :func:`strikes_at` reads them."""
     phase = np.maximum.accumulate(measured_phase(channels))
     marks = np.arange(phase[0] / TURN + EDGE, phase[-1] / TURN - EDGE, settings.periods)
     edges = np.searchsorted(phase, TURN * marks)
-    order = max(4, round(settings.memory * channels.sample_rate))
+    moved = channels.values[rows[0]] - channels.box
+    turns = settings.periods * TURN * channels.sample_rate / np.diff(edges).max(initial=1)
+    stroke = integrated(moved, channels.sample_rate, 0.5 * turns, 2)
     for begin, end in zip(edges[:-1], edges[1:], strict=True):
+        samples = (end - begin) / settings.periods  # of a period
+        order = max(4, round(settings.memory * samples))
         if end - begin < 6 * order:
             continue
-        here, base = phase[begin:end], channels.box[begin:end]
-        hertz = settings.periods * channels.sample_rate / (end - begin)
+        here, base, part = phase[begin:end], channels.box[begin:end], slice(begin, end)
         waves = np.exp(-1j * np.outer(ORDERS, here))
-        moved = channels.values[rows[0], begin:end] - base
-        size = 2.0 / len(here) * np.einsum("ns,s", waves, moved - moved.mean())  # without threads
-        level = 2.0 / len(here) * abs(np.einsum("s,s", waves[0], base))
+        size = amplitudes(moved[part], waves)
         # a displacement is opposite to its acceleration: the top of the stroke is at 0
         own = here + np.angle(-size[0])
         at_base, *errors = (
             prediction_error(one, order)
-            for one in (base, *(channels.values[row, begin:end] for row in rows))
+            for one in (base, *(channels.values[row, part] for row in rows))
         )
         heard, power, peak, moment, opposite = timed_power(errors, own, settings)
         base_heard = timed_power([at_base], own, settings)[0]
-        high = np.abs(size[HIGH])[ORDERS[HIGH] * hertz < NYQUIST * channels.sample_rate]
+        high = np.abs(size[HIGH])[ORDERS[HIGH] < NYQUIST * samples]
         blow = float(np.median(high)) / abs(size[1]) if len(high) else math.nan
-        first, second = abs(size[0]), abs(size[1])
-        own_part = heard, base_heard, power, peak, moment, blow
-        yield *own_part, first, second, level, hertz, opposite
+        quantities = heard, base_heard, power, peak, moment, blow, abs(size[1] / size[0])
+        motion = size[0], amplitudes(base, waves[:1])[0], amplitudes(stroke[part], waves[:1])[0]
+        yield *quantities, opposite, *motion
+
+
+def amplitudes(signal: Floats, waves: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Return the complex amplitudes of a signal's orders, without threads."""
+    return np.asarray(2.0 / len(signal) * np.einsum("ns,s", waves, signal - signal.mean()))
 
 
 def timed_power(

@@ -135,7 +135,7 @@ def difference_step(search: Search, name: str) -> float:
     return STEPS[name] * (search.evidence.resonance if name in ("f", "common") else 1.0)
 
 
-def distinct_minima(solutions: Sequence[Solution]) -> list[Solution]:
+def with_distinct_misfits(solutions: Sequence[Solution]) -> list[Solution]:
     """Return the minima whose misfits differ, the best first."""
     found: list[Solution] = []
     for one in sorted(solutions, key=lambda solution: solution.misfit):

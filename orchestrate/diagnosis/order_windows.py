@@ -56,7 +56,7 @@ class OrderWindows:
     # each order n, NaN above 0.45 of the sampling rate. The phase is that of the base: its own
     # order 1 has theta = 0
     solutions: tuple[Complexes, ...]
-    sample_rate: float  # hz
+    sample_rate: float  # Hz
     samples: int  # of the record
 
     def __len__(self) -> int:
@@ -353,3 +353,10 @@ def rms_without_order_1(box: Floats, one: Window, amplitude: Complexes) -> float
     values = box[one.part] - np.average(box[one.part], weights=one.weights)
     power = np.average(values**2, weights=one.weights)
     return float(np.sqrt(max(power - 0.5 * abs(amplitude[0]) ** 2, 0.0)))
+
+
+def integrated(signal: Floats, rate: float, lowest: float, times: int = 1) -> Floats:
+    """Integrate a signal once or twice in time, without what is slower than ``lowest``, rad/s."""
+    spectrum, turns = np.fft.rfft(signal), TURN * np.fft.rfftfreq(len(signal), 1.0 / rate)
+    spectrum[turns < lowest] = 0.0  # drift
+    return np.fft.irfft(spectrum / (1j * np.maximum(turns, lowest)) ** times, len(signal))

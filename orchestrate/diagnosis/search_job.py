@@ -21,7 +21,7 @@ from .even_orders import EvenOrders, even_orders
 from .evidence import Evidence
 from .hypotheses import SOUND, Delaminated, DelaminatedWithClearance, Hypothesis, Onset
 from .misfit import misfit
-from .multistart import Search, Solution, difference_step, distinct_minima, without_neighbours
+from .multistart import Search, Solution, difference_step, with_distinct_misfits, without_neighbours
 from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
 from .settings import SETTINGS, Settings
 from .standard_errors import Estimate, estimate
@@ -271,7 +271,7 @@ class SearchJob(Job):
             covariance[: len(values), : len(values)] = known.covariance
         factors = participations_with_errors(search, values, motion, known)
         levels = np.full(MAX_MINIMA, np.nan)
-        different = distinct_minima(found)[:MAX_MINIMA]
+        different = with_distinct_misfits(found)[:MAX_MINIMA]
         levels[: len(different)] = [one.misfit for one in different]
         return {
             "end_values": numbers,

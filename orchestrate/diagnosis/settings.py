@@ -22,10 +22,7 @@ class Settings:
     """
 
     # -- the verdict: see `decision_rule.Beam.verdict`, and `impact_timing` for what strikes --
-    # of a displacement between two levels, L and 2 L, and the shift of the resonance's logarithm
-    grows: float = 1.35
-    shift: float = 0.03
-    doubled: float = 1.5  # a level over another from which both tell whether the response grows
+    doubled: float = 1.5  # a level over another from which both stand for a known frequency
     same_level: float = 0.9  # of a level: what another record reaches of it at the same one
     # by which the delaminated misfit has to be smaller than the best sound one for its numbers
     ratio: float = 1.5

@@ -84,6 +84,7 @@ class Family:
     setting: Setting
     sequence: ImpactSequence
     scale: Floats = field(default_factory=lambda: np.zeros(0))  # sizes of the unknowns
+    last: tuple[bytes, PeriodicOrbit] | None = None  # residual and Jacobian ask for the same
 
     @classmethod
     def from_nodes(cls, setting: Setting, sequence: ImpactSequence, nodes: Floats) -> Family:
@@ -107,8 +108,11 @@ class Family:
 
     def orbit(self, unknowns: Floats) -> PeriodicOrbit:
         """Return the periodic orbit contained in a vector of unknowns."""
-        nodes, values = unknowns[: self.size], unknowns[self.size :]
-        return PeriodicOrbit(self.sequence, self.setting.form(values), nodes.reshape(-1, 4))
+        key = unknowns.tobytes()
+        if self.last is None or self.last[0] != key:
+            nodes, form = unknowns[: self.size].copy(), self.setting.form(unknowns[self.size :])
+            self.last = key, PeriodicOrbit(self.sequence, form, nodes.reshape(-1, 4))
+        return self.last[1]
 
     def residual(self, unknowns: Floats) -> Floats:
         """Return the residual of the orbit's equations at a vector of unknowns."""
@@ -119,6 +123,19 @@ class Family:
         sides = enumerate(self.setting.limits, self.size)
         columns = [central_difference(self.residual, unknowns, i, *at)[:, None] for i, at in sides]
         return np.hstack([self.orbit(unknowns).jacobian().real, *columns])
+
+
+class HeldFamily(Family):
+    """The same equations for Newton's method that holds the parameters."""
+
+    def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
+        """Return the Jacobian; before the root the parameters' columns, which nothing asks for,
+        are zero.
+        """
+        if at_root:
+            return super().jacobian(unknowns)
+        columns = np.zeros((self.size, len(self.setting.limits)))
+        return np.hstack([self.orbit(unknowns).jacobian().real, columns])
 
 
 def central_difference(

@@ -1,4 +1,4 @@
-"""Base of jobs that run responses from given or swept states and evaluate their impacts."""
+"""Base of questions that drop a transient and evaluate the impacts of the periods after it."""
 
 from __future__ import annotations
 

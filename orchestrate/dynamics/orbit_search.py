@@ -12,7 +12,7 @@ from ..fmu import EventInstance, Impacts, begin
 from ..response.questions import Point
 from .closed_form import INNER, OUTER, ClosedForm, Floats
 from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
-from .families import Family, Setting
+from .families import Family, HeldFamily, Setting
 from .periodic_orbit import (
     CLOSING,
     ENDS,
@@ -121,8 +121,9 @@ def solve_orbit(
     family = Family.from_nodes(setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), values)
     across = unit_vector(len(unknowns), family.size)
+    held = HeldFamily(setting, sequence, family.scale)
     return family, newton_correct(
-        family, unknowns, across, max_iterations=max_iterations, max_distance=max_distance
+        held, unknowns, across, max_iterations=max_iterations, max_distance=max_distance
     )
 
 

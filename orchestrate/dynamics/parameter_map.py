@@ -62,7 +62,7 @@ class MapJob(Question):
 
     # parameters of the excitation and the structure; two of them are lists
     given: tuple[tuple[str, Numbers], ...]
-    replaced: ClassVar[tuple[str, ...]] = tuple(QUANTITIES)
+    replaced: ClassVar[tuple[str, ...]] = (*QUANTITIES, "over", "values")
     takes_family: ClassVar[bool] = True
     chunk_size: ClassVar[int] = 120
 
@@ -194,6 +194,8 @@ def map(
     start: ArrayLike | None = None,
     exponent: bool = False,
     periods: Count = 500,
+    over: str | None = None,
+    values: ArrayLike | None = None,
     **others: Any,
 ) -> xr.Dataset:
     """Compute responses over a grid of two parameters, each from the same start state.
@@ -223,6 +225,9 @@ def map(
         Whether to compute the largest Lyapunov exponents too.
     periods : int
         Further periods, over which an exponent is measured.
+    over, values
+        A parameter of the structure and its values, as in :func:`orchestrate.sweep`; the same as
+        a list by its name.
     **others
         Parameters of the structure by name, such as ``e=``, ``D=``, ``k2=``, as numbers or lists;
         and ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`. Of
@@ -262,6 +267,9 @@ def map(
             raise InputError(
                 f"{name}: no parameter; {expected_one_of(name, (*PARAMETERS, *known))}"
             )
+    if (over is None) != (values is None) or over in others:
+        raise InputError("over and values: expected both or none, and over= not by its name too")
+    others = others if over is None else {**others, over: values}
     box = {"eta": eta, "frequency": frequency, "amplitude": amplitude, "level": level}
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
     pushed = {name: value for name, value in pushes.items() if not np.array_equal(value, 0.0)}

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
+from ..running.provenance import what_it_is
 from .sweep_data import READING
 
 
@@ -19,8 +20,9 @@ def branch_json(found: xr.Dataset | None) -> dict[str, Any]:
     if found is None:
         return {"branches": [], "bifurcations": []}
     if found.attrs.get("over") != "eta":
-        over = found.attrs.get("over", "nothing")
-        raise InputError(f"branches over {over}: expected a result of orchestrate.branch over eta")
+        over = f" over {found.attrs['over']}" if "over" in found.attrs else ""
+        text = f"{what_it_is(found)}{over}; expected a result of orchestrate.branch over eta"
+        raise InputError(f"branches: {text}")
     try:
         drawn = {"branches": branch_lines(found), "bifurcations": bifurcation_points(found)}
         json.dumps(drawn, allow_nan=False)  # as the page reads it

@@ -21,8 +21,7 @@ from ..fmu.channel import StepAnswer
 from ..fmu.webassembly import WebKernel, loop_tables, numbers_in, web_kernel
 from ..lazy import xr
 from ..model import Drive, Structure
-from ..model.ranges import STRUCTURE
-from ..running.job import refuse_family
+from ..model.ranges import EXCITATION, PUSHES, STRUCTURE
 from ..units import Units, units_of
 from ..version import __version__
 from ..weak_drive.connection import FORCE, MOTOR
@@ -42,8 +41,8 @@ EXPONENT = {  # the usual rule of exponents; periods at first, periods and impac
     **{"blocks": BLOCKS, "batches": BATCHES, "sigmas": SIGMAS, "wander": WANDER},
     **{"periods": 400, "longest": 12_800, "most": 100_000},
 }
-# ranges too; a wall and a stroke are not on the page
-FLAGS = {"bonded": [0.0, 1.0], "wall": [0.0, 0.0], "stroke": [0.0, 0.0]}
+PAGES = STRUCTURE | {name: EXCITATION[name] for name in PUSHES}  # numbers of a page's structure
+FLAGS = {"bonded": [0.0, 1.0], "wall": [0.0, 1.0]}  # ranges too
 
 
 def explore(
@@ -60,7 +59,6 @@ def explore(
     A ``record``, as :func:`orchestrate.read_record` returns it, is drawn over the spectrum.
     """
     asked = units if isinstance(units, Units) else Units.from_text(units)
-    refuse_family("the explorer", data)
     if data is None or isinstance(data, Structure):
         chosen = first_diagram(data or Structure(), asked)
     else:
@@ -158,12 +156,12 @@ def policy_digest(content: str) -> str:
 def page_data(chosen: SweepData) -> dict[str, Any]:
     """Return the sweep, ranges of parameters and tour as JSON data for the page."""
     return {
-        "structure": structure_numbers(chosen.structure),
+        "structure": structure_numbers(chosen.structure) | chosen.pushes,
         "usual": structure_numbers(Structure()),
-        "ranges": {name: [q.minimum, q.maximum] for name, q in STRUCTURE.items()} | FLAGS,
+        "ranges": {name: [q.minimum, q.maximum] for name, q in PAGES.items()} | FLAGS,
         "units": {
             name: {"label": quantity.unit.replace(".", " "), **quantity.dimension}
-            for name, quantity in STRUCTURE.items()
+            for name, quantity in PAGES.items()
             if quantity.unit != "1"
         },
         "alike": AttractorSettings().alike,
@@ -213,8 +211,9 @@ def voltage_slider(low: float = 0.8, high: float = 2.0, first: float = 0.9) -> d
 
 
 def structure_numbers(structure: Structure) -> dict[str, float]:
-    """Return a structure's parameters by name as floats."""
-    return {name: float(value) for name, value in structure.parameters().items()}
+    """Return a structure's parameters by name as floats, and that nothing pushes."""
+    numbers = {name: float(value) for name, value in structure.parameters().items()}
+    return numbers | dict.fromkeys(PUSHES, 0.0)
 
 
 def compress(content: bytes) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,8 @@ from ..fmu.webassembly import kernel_digest
 from ..lazy import xr
 from ..model import Excitation, Structure
 from ..model.ranges import PUSHES
-from ..running.job import refuse_family, refuse_unknown
+from ..running.job import refuse_unknown
+from ..running.provenance import what_it_is
 from ..running.store import load
 from ..units import Units
 
@@ -48,6 +49,8 @@ class SweepData:
     # acceleration, `"mm"` as amplitude
     level: tuple[str, float]
     source: str  # what computed it
+    # loads other than the box's harmonic motion
+    pushes: dict[str, float] = field(default_factory=dict)
 
 
 def empty_sweep(structure: Structure, units: Units) -> SweepData:
@@ -72,9 +75,9 @@ def read_sweep(data: xr.Dataset) -> SweepData:
 def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     """Return a sweep dataset of a direction as ``SweepData``, after :func:`check_sweep`."""
     structure = Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
-    refuse_family("the explorer", structure)
     varied = {name: "varied" for name in PUSHES if name in data.coords}
-    refuse_unknown("the explorer", {name: data.attrs.get(name) for name in PUSHES} | varied)
+    still = {} if data.amplitude.min() > 0.0 else {"amplitude": "0 m, a box at rest,"}
+    refuse_unknown("the explorer", varied | still)
     directions = ("up", "down") if direction == "both" else (direction,)
     (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
     data = data.sortby(parameter)
@@ -100,6 +103,7 @@ def read_checked(data: xr.Dataset, direction: str) -> SweepData:
         low=float(data.eta.min()),
         high=float(data.eta.max()),
         level=excitation_level(data, structure),
+        pushes={name: float(data.attrs.get(name, 0.0)) for name in PUSHES},
         source=f"{data.attrs['source']}, {data.attrs['fmu_model']} {data.attrs['fmu_guid']}",
     )
 
@@ -160,7 +164,7 @@ def check_sweep(data: xr.Dataset) -> str:
     missing = needed - {str(name) for name in data.variables}
     direction = str(data.attrs.get("direction"))
     if missing or not {*SETTINGS, "start", "m1"} <= set(data.attrs):
-        raise InputError(f"{data.attrs.get('title', 'data')!r}: no sweep; {EXPECTED}")
+        raise InputError(f"result: {what_it_is(data)}; {EXPECTED}")
     if not set(SWEPT) & {str(name) for name in data.impacts_per_period.dims}:
         raise InputError(f"sweep over {data.impacts_per_period.dims[-1]}: {EXPECTED}")
     if direction not in ("up", "down", "both", "given"):

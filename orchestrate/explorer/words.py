@@ -63,6 +63,19 @@ WORDS = {
     "D": Term("damping D", "Damping ratio of each half: how fast it comes to rest by itself."),
     "mu": Term("mass ratio μ", "Mass of half 2 over that of half 1."),
     "kappa": Term("stiffness ratio κ", "Stiffness of the spring of half 2 over that of half 1."),
+    "wall": Term(
+        "wall",
+        "A rigid stop, fixed to the box, in place of half 2: one mass before it.",
+    ),
+    "play": Term(
+        "largest gap, a play",
+        "Where the halves are so far apart they strike again, at their other end; 0: no such end.",
+    ),
+    "push": Term(
+        "pushes",
+        "Forces on the halves, harmonic as the shaking and in step with it, and a constant "
+        "acceleration of the box, as gravity.",
+    ),
     "exponent": Term(
         "exponent",
         "The largest Lyapunov exponent: how fast two motions that begin almost alike come apart, "

@@ -39,7 +39,7 @@ from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_o
 from .impacts import STATE, Impacts
 from .instance import Instance, function_addresses
 from .models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
-from .oscillator import SET, Oscillator, library, sampled, stroboscopic_samples, traits
+from .oscillator import START_VALUES, Oscillator, library, sampled, stroboscopic_samples, traits
 from .play import PLAYED, Player
 from .webassembly import build_web_kernels
 
@@ -53,7 +53,7 @@ __all__ = [
     "PLAIN_FORMS",
     "PLAYED",
     "REST",
-    "SET",
+    "START_VALUES",
     "MOTOR_SHAKER",
     "STATE",
     "Channel",

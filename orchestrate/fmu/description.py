@@ -34,8 +34,8 @@ class Description:
     units: Mapping[str, Unit] = field(default_factory=dict)
     has_fixed_step: bool = False  # whether all communication steps have to be of one length
     internal_step: float = 0.0  # s, of which communication steps are multiples; 0: not stated
-    has_states: bool = False  # whether it can go back to a state, and give one as bytes
-    saves_states: bool = False
+    has_states: bool = False  # whether it can go back to a state (canGetAndSetFMUstate)
+    saves_states: bool = False  # and give one as bytes (canSerializeFMUstate)
     runs_here: bool = True  # whether it has a binary for this machine
     digest: str = ""  # of the file's bytes
 

@@ -1,6 +1,6 @@
-"""An oscillator FMU as the compiled loops have it: states at equal times, and starts.
+"""Calls of ``respond.c``, the compiled loop that drives an oscillator FMU without Python.
 
-The loops are in ``fmu_src/kernels/loops/respond.c``; they call the FMU's functions past Python.
+The loop is ``fmu_src/kernels/loops/respond.c``; this module has its structures for ctypes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .instance import Instance
 Floats = NDArray[np.float64]
 START_PARAMETERS = tuple(f"{name}_start" for name in STATE)
 SAMPLE_SERIES = tuple(f"{name}_sample" for name in STATE)
-READ = (
+READ_VARIABLES = (
     *("sample_count", "x_rel_max", "x_rel_max_on", "peaks_on"),
     *("impact_count", "contact_count", "in_contact"),
 )
@@ -33,15 +33,21 @@ TRAITS = (  # of a structure
     *("m1", "m2", "k1", "k2", "d1", "d2"),
     *("clearance", "bonded", "wall", "stroke"),
 )
-FOUND = ("gap_offset", "rest_1", "rest_2", "threshold", "must_impact")  # what follows from them
-TRAIT_NAMES = (*TRAITS, "omega", "frequency", "amplitude", "pushed", *FOUND)
+DERIVED_TRAITS = (
+    "gap_offset",
+    "rest_1",
+    "rest_2",
+    "threshold",
+    "must_impact",
+)  # what follows from them
+TRAIT_NAMES = (*TRAITS, "omega", "frequency", "amplitude", "pushed", *DERIVED_TRAITS)
 DEVIATING = (  # of deviations' growth
     *(*TRAITS[:6], "e", "gamma", "bonded"),
     *("wall", "clearance", "stroke", "e_slope"),
 )
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
 COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
-SET = {  # before each start, with first values
+START_VALUES = {  # before each start, with first values
     **Structure().parameters(),
     **dict.fromkeys(START_PARAMETERS, 0.0),
     **Excitation(frequency=1.0, amplitude=1.0).inputs(),
@@ -57,7 +63,7 @@ class OscillatorCalls(ctypes.Structure):
         *((name, POINTER(c_uint)) for name in ("reals", "booleans", "series", "peaks")),
         *((name, c_size_t) for name in ("real_count", "boolean_count", "start")),
         *((name, c_size_t) for name in ("series_count", "capacity")),
-        *((name, c_uint) for name in READ),
+        *((name, c_uint) for name in READ_VARIABLES),
         ("kept", c_void_p),
     ]
 
@@ -112,7 +118,7 @@ class Oscillator:
 
     def __init__(self, instance: Instance) -> None:
         self.instance = instance
-        kinds = {name: instance.variable(name).type for name in SET}
+        kinds = {name: instance.variable(name).type for name in START_VALUES}
         self.booleans = [name for name, kind in kinds.items() if kind == "Boolean"]
         self.reals = [name for name in kinds if name not in self.booleans]
         elements = [variable for name in SAMPLE_SERIES for variable, _ in instance.elements(name)]
@@ -129,7 +135,12 @@ class Oscillator:
                 len(self.booleans),
                 self.reals.index(START_PARAMETERS[0]),
             ),
-            *(len(elements), self.capacity, *references(instance, READ), self.kept.ctypes.data),
+            *(
+                len(elements),
+                self.capacity,
+                *references(instance, READ_VARIABLES),
+                self.kept.ctypes.data,
+            ),
         )
 
     @classmethod

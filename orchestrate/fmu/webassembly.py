@@ -18,15 +18,16 @@ from fmu_src.export.sources import model_sources
 
 from ..errors import InputError
 from ..files import made_once, open_folder, write_whole
+from ..model.ranges import PUSHES
 from . import event_loop
 from .exported import SHIPPED, default_folder
 from .models import OSCILLATOR
 from .oscillator import (
     COUNTS,
     DEVIATING,
-    READ,
+    READ_VARIABLES,
     SAMPLE_SERIES,
-    SET,
+    START_VALUES,
     TRAIT_NAMES,
     OscillatorCalls,
     ResponseProgress,
@@ -91,13 +92,14 @@ def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
 def loop_tables(*more: type[ctypes.Structure]) -> dict[str, Any]:
     """Return what a page needs to call the loops, as JSON: structures, names, and their order."""
     structures: tuple[type[ctypes.Structure], ...] = (*STRUCTURES, *more)
-    booleans = [name for name, value in SET.items() if isinstance(value, bool)]
+    booleans = [name for name, value in START_VALUES.items() if isinstance(value, bool)]
     return {
         "structures": {kind.__name__: layout(kind) for kind in structures},
-        "set": {name: float(value) for name, value in SET.items()},
+        "pushes": PUSHES,
+        "set": {name: float(value) for name, value in START_VALUES.items()},
         "booleans": booleans,
-        "reals": [name for name in SET if name not in booleans],
-        "read": READ,
+        "reals": [name for name in START_VALUES if name not in booleans],
+        "read": READ_VARIABLES,
         "series": SAMPLE_SERIES,
         "capacity": sources.array_sizes(MODELS[OSCILLATOR])[SAMPLE_SERIES[0]],
         "counts": COUNTS,

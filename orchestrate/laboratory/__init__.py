@@ -20,6 +20,7 @@ module                    idea
 :mod:`.record_checks`     saturated, dead and identical channels, lost samples
 :mod:`.record_of_run`     the run of a weak drive as a record
 :mod:`.columns`           which columns of a file are its channels, and their units
+:mod:`.missing_units`     what is missing to read columns, and the arguments that give it
 :mod:`.channel_setup`     how the channels of a file are read, as TOML or a mapping
 :mod:`.channel_table`     the columns of a file, and the setup that reads them
 :mod:`.conversion`        velocities, displacements and voltages made accelerations

@@ -4,17 +4,28 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..errors import InputError
 from ..files import write_whole
 from ..lazy import xr
 from ..response.labels import variable
 from .channel_setup import ACTING, SENSOR_WORDS, Channels, ChannelSetup
-from .columns import Assignment, Columns, assigned_columns, times_in_s, warn_of_left_out
-from .conversion import ACCELERATIONS, FORCES, LENGTHS, SPEEDS, VOLTAGES, plain_unit
+from .columns import Assignment, Columns, assigned_columns, converted_channels, times_in_s
+from .conversion import (
+    ACCELERATIONS,
+    FORCES,
+    LENGTHS,
+    SPEEDS,
+    VOLTAGES,
+    ByChannel,
+    by_channel,
+    plain_unit,
+)
 from .record import CHANNELS, SHORT_NAMES
 from .record_checks import ascends
 from .record_files import read_columns
@@ -33,7 +44,12 @@ def channels(
     path: str | os.PathLike[str],
     channels: Channels = None,
     *,
+    unit: ByChannel = None,
+    sensitivity: ByChannel = None,
     sample_rate: float | None = None,
+    scale: ByChannel = None,
+    delay: ByChannel = None,
+    resample: bool = False,
     output: str | os.PathLike[str] | None = None,
 ) -> xr.Dataset:
     r"""List a file's columns, and the channels that :func:`orchestrate.read_record` reads there.
@@ -44,8 +60,8 @@ def channels(
         As for :func:`orchestrate.read_record`.
     channels : path-like, mapping, sequence or str, optional
         As for :func:`orchestrate.read_record`.
-    sample_rate : float, optional
-        Hz; where there is no column of times.
+    unit, sensitivity, sample_rate, scale, delay, resample
+        As for :func:`orchestrate.read_record`.
     output : path-like, optional
         Where to write the setup as TOML: to complete by hand, and to give as ``channels`` to
         whatever reads such files.
@@ -55,8 +71,8 @@ def channels(
     xarray.Dataset
         Over ``column``, by the names in the file: ``role`` (time, base, face 1, ...; empty where
         it is not read), ``known`` (how that is known), ``quantity``, ``unit`` and ``rms`` (without
-        its mean, in that unit; NaN of times and texts). Attribute ``sample_rate``, Hz; 0 if
-        unknown.
+        its mean, in that unit; NaN of times and texts). Attributes ``sample_rate``, Hz, 0 if
+        unknown, and ``refused``: why the channels cannot be read so; empty if they can.
 
     Raises
     ------
@@ -75,8 +91,16 @@ def channels(
     rate = setup.sample_rate if sample_rate is None else sample_rate
     table = read_columns(Path(path)).at_rate(rate)
     assignment = assigned_columns(table, setup.columns)
-    warn_of_left_out(table)
+    given = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
+    stated = {name: setup.keyword(name, value) for name, value in given.items()}
+    used = [name for name in assignment.places if name != "time"]
+    words = {name: by_channel(name, value, used, ("time",)) for name, value in stated.items()}
+    setup = replace(setup, words={**setup.words, **words}, resample=resample or setup.resample)
     found = described_columns(table, assignment, setup)
+    try:
+        converted_channels(table, setup.columns, stated["unit"], stated["sensitivity"], setup.file)
+    except InputError as error:
+        found.attrs["refused"] = str(error)
     if output is not None:
         write_setup(found, setup, Path(output))
     return found
@@ -109,7 +133,8 @@ def described_columns(table: Columns, assignment: Assignment, setup: ChannelSetu
     rate = table.sample_rate
     if rate is None and "time" in assignment.places:
         rate = rate_of(table, assignment.places["time"], units)
-    words = {"title": f"Columns of {Path(table.path).name}", "sample_rate": rate or 0.0}
+    title = f"Columns of {Path(table.path).name}"
+    words = {"title": title, "sample_rate": rate or 0.0, "refused": ""}
     return xr.Dataset(made, {"column": names}, words)
 
 
@@ -138,6 +163,7 @@ def write_setup(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
     lines = [f"# {found.attrs['title']}: columns by name or number from 0, units as in the file"]
     if found.attrs["sample_rate"] and "time" not in found.role.values:
         lines.append(f"sample_rate = {float(found.attrs['sample_rate'])!r}  # Hz")
+    lines += ["resample = true"] if setup.resample else []
     for place, role in enumerate(found.role.values.tolist()):
         one = found.isel(column=place)
         rms = "" if np.isnan(one.rms.item()) else f", rms {one.rms.item():.4g}"

@@ -29,6 +29,7 @@ from .conversion import (
     text_by_channel,
     unit_factor,
 )
+from .missing_units import check_units, check_volts, option_of
 from .pieces import Floats
 from .record import CHANNELS, FORCES, SHORT_NAMES
 from .record_checks import ascends, first_hole, implausible_times
@@ -59,7 +60,8 @@ SENSOR = (
     "accélération|acelerometro|acelerómetro|accelerometro|geber|ch|channel|kanal)?"
 )
 BASE = (
-    "(?:base|basis|box|table|tisch|schwingtisch|shaker|shakertable|erreger|aufnahme|fixture|clamp|"
+    "(?:base|basis|box|table|tisch|schwingtisch|shaker|shakertable|shakerhead|armature|ref|control|"
+    "input|steuersensor|erreger|aufnahme|fixture|clamp|"
     "einspannung|fuß|fuss|socle|embase|mesa|tavola|slip|sliptable|excitation|reference|referenz)"
 )
 FACE = "(?:face|mass|masse|fläche)"
@@ -67,11 +69,13 @@ BEAM = (
     "(?:beam|balken|face|tip|spitze|response|antwort|poutre|viga|trave|specimen|probe|prüfling|"
     "laser|vibrometer|ldv)"
 )
-FORCE = "(?:force|kraft|fuerza|forza|load|hammer|impulshammer)(?:cell|sensor|geber)?"
+FORCE = (
+    "(?:impact|impulse?|modal)?(?:force|kraft|fuerza|forza|load|hammer)(?:cell|sensor|geber|input)?"
+)
 NUMBERED = f"(?:a|acc|accel|acceleration|beschleunigung|{SENSOR}{FACE})"
 NAMES = {
     "time": "time|t|zeit|temps|tiempo|tempo|timestamp|xvalue|zeitachse",
-    "box_acceleration": f"{SENSOR}{BASE}{SENSOR}[xyz]?",
+    "box_acceleration": rf"{SENSOR}\d*{BASE}{SENSOR}[xyz]?",
     "acceleration1": f"{NUMBERED}1{SENSOR}[xyz]?|{SENSOR}{BEAM}{SENSOR}[xyz]?",
     "acceleration2": f"{NUMBERED}2{SENSOR}[xyz]?",
     "force1": f"{FORCE}1?",  # that has no number is on the first half
@@ -80,7 +84,11 @@ NAMES = {
 MOTION = "(?:amplitude|acceleration|acc|a|face|mass|velocity|v|displacement|x)"
 RATIO = "(?:transmissibility|ratio|response|magnitude)"
 SWEPT = "f|hz|freq|frequenz|frequency"
+WORDS = r"[^\W\d_]{3,}.*|.*\w \w.*"  # in parentheses, hardly a unit: shaker head, SN 4711
 HEADING = re.compile(r"(?P<name>.*?)[\s_/]*[\[(](?P<unit>[^\[\]()]*)[\])]")
+SUFFIX = re.compile(  # as the last word: LDV mm/s, acc_base_g, time_ms
+    r"(?P<name>.*?\w)[\s_]+(?P<unit>g|m?s|[u\u00b5]s|[mu\u00b5]m|m?m/s(\^?2|\u00b2)?|(?<=_)(m?V|k?N)|mV|kN)"
+)
 QUOTIENT = re.compile(r"(?P<name>.+?)(?:\s*[/,]\s*|\s+in\s+)(?P<unit>.*\D.*|-)")
 TEXTS = {  # what a field is that is no number
     "a clock time": r"\d{1,2}:\d\d(:\d\d([.,]\d+)?)?",
@@ -144,6 +152,9 @@ def split_heading(heading: str) -> tuple[str, str]:
     """Split a column's heading; return its name and its unit, an empty string without one."""
     plain = heading.strip().strip('"').strip()[:LONG_HEADING]
     parts = HEADING.fullmatch(plain)
+    if parts and re.fullmatch(WORDS, parts["unit"]) and not is_unit(parts["unit"]):
+        return plain, ""  # a place or a sensor
+    parts = parts or SUFFIX.fullmatch(plain)
     if parts is None and (quotient := QUOTIENT.fullmatch(plain)) and is_unit(quotient["unit"]):
         parts = quotient
     return (plain, "") if parts is None else (parts["name"].strip(), parts["unit"].strip())
@@ -157,7 +168,8 @@ def describe_text(text: str) -> str:
 
 def is_unit(text: str) -> bool:
     """Return whether a text is a unit that columns of records or resonance curves may have."""
-    known = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, VOLTAGES, FREQUENCIES, ANGLES, RATIOS)
+    motions = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, VOLTAGES, FREQUENCIES, ANGLES)
+    known = (*motions, RATIOS, OF_FORCES[0])
     return any(plain_unit(text) in units for units in known)
 
 
@@ -190,7 +202,20 @@ class Assignment:
         texts += [f"not read: {', '.join(unread)}" if unread else ""]
         if text := "; ".join(filter(None, texts)):
             text = f"{table.path}: {text}; {option} says which column is which"
+            text += self.proposal(table) if unread else ""
             warnings.warn(text, UserWarning, stacklevel=5)
+
+    def proposal(self, table: Columns) -> str:
+        """Return the arguments that read the columns left as the faces, or the base, missing."""
+        missing = [name for name in list(CHANNELS)[:3] if name not in self.places]
+        new = dict(zip(missing, unread_columns(table, self.places), strict=False))
+        names = [column.name for column in table.columns]
+        unique = {i: name if names.count(name) == 1 else i for i, name in enumerate(names)}
+        places = {name: i for name, i in (self.places | new).items() if name != "time"}
+        columns = option_of([*places], {n: str(unique[i]) for n, i in places.items()})
+        bare = [name for name, i in places.items() if not table.columns[i].unit]
+        unit = f" with unit={option_of(bare, {})}" if bare else ""
+        return f", such as channels={columns}{unit}" if new else ""
 
 
 @dataclass(frozen=True)
@@ -226,7 +251,8 @@ def converted_channels(
     used = {name: table.columns[place] for name, place in places.items()}
     of_all = isinstance(sensitivity, str) and "=" not in sensitivity and {*units} - {"time"}
     # not all are in volts where some are
-    check_units(table, used, units, {} if of_all else stated, setup_file)
+    check_units(table.path, used, units, {} if of_all else stated, setup_file)
+    check_volts(table.path, used, units, stated)
     channels = {}
     for name, column in used.items():
         own = units.get(name, column.unit)
@@ -253,27 +279,6 @@ def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:
     if not (unit or column.unit) and (doubt := implausible_times(time)):
         warnings.warn(f"{label}: {doubt}", UserWarning, stacklevel=4)
     return time
-
-
-def check_units(
-    table: Columns,
-    used: Mapping[str, Column],
-    units: Mapping[str, str],
-    stated: Mapping[str, str],
-    setup_file: str,
-) -> None:
-    """Raise where columns have no unit, with the option that gives it to each."""
-    known = {n: units.get(n, one.unit) or stated.get(n, one.sensitivity) for n, one in used.items()}
-    if unknown := [name for name, text in known.items() if not text]:
-        labels = ", ".join(f'column "{used[n].name}" ({SHORT_NAMES[n]})' for n in unknown)
-        words = {n: SHORT_NAMES.get(n, n).replace(" ", "") for n in (*units, *unknown)}
-        order = (n for n in ("time", *used) if n in words)
-        option = ",".join(f"{words[n]}={units.get(n) or '...'}" for n in order)
-        usual = "N, kN, V" if {*unknown} <= {*FORCES} else "m/s2, g, mm/s, um, V"
-        text = f"{labels}: no unit; expected one such as {usual}: give it by unit="
-        sections = ", ".join(f"[{words[n]}]" for n in unknown)
-        there = f', or in {setup_file} write unit = "..." below {sections}' if setup_file else ""
-        raise InputError(f'{table.path}, {text}"{option}"{there}')
 
 
 def unit_attributes(
@@ -356,9 +361,10 @@ def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
         numbers = sorted({0, *numbers})  # a time that is a text is refused later
     else:
         numbers = [i for i in numbers if not ascends(table.columns[i].values)]
-    names = [table.columns[i].name.lower() for i in numbers]
+    names = (table.columns[i].name.lower() for i in numbers)
     stems = [name[:-1] for name in names if name.endswith(("x", "y", "z"))]
-    expected = "expected channels=, which of them are time and channels"
+    some = dict(zip(wanted, (one.name for one in table.columns), strict=False))
+    expected = f"expected channels=, such as channels={option_of(wanted[:3], some)}"
     if len(stems) > len(set(stems)):
         text = f"directions of one sensor among the columns {column_names(table)}"
         raise InputError(f"{table.path}: {text}; {expected}")

@@ -48,6 +48,7 @@ CALLED = {  # what options call the channels
     **dict.fromkeys(("face2", "acceleration2"), "acceleration2"),
     **{"force": "force1", "force1": "force1", "force2": "force2", "time": "time"},
 }
+ALL_OF = {"face": ("acceleration1", "acceleration2"), "force": ("force1", "force2")}
 ByChannel = str | float | Mapping[str, Any] | None  # as an argument: of all, or by channel
 
 
@@ -61,7 +62,8 @@ def by_channel(
 ) -> dict[str, Any]:
     """Return an argument by channel: of all, a mapping, or a text ``base=V,face=mm/s``.
 
-    Those in ``also`` have it only where they are named.
+    ``face`` and ``force`` are of all such channels that are not named themselves; those in
+    ``also`` have it only where they are named.
     """
     if argument is None:
         return {}
@@ -74,14 +76,20 @@ def by_channel(
         argument = {word: value for word, _, value in parts}
     if not isinstance(argument, Mapping):
         return dict.fromkeys(channels, argument)
-    values = {}
+    values: dict[str, Any] = {}
+    of_several: dict[str, Any] = {}
     for key, value in argument.items():
-        plain = CALLED.get(str(key).strip().lower().replace(" ", ""), "")
-        if plain not in (known := (*channels, *also)):
+        word = str(key).strip().lower().replace(" ", "")
+        plain, value = CALLED.get(word, ""), value.strip() if isinstance(value, str) else value
+        several = [one for one in ALL_OF.get(word, ()) if one in channels]
+        if plain not in (known := (*channels, *also)) and not several:
             text = f"expected {', '.join(word for word, one in CALLED.items() if one in known)}"
+            if plain not in ("", "time"):
+                text = f'no column is read as it; channels="{word}=COLUMN,..." names it, or {text}'
             raise InputError(f"{name}: no channel {key!r}; {text}")
-        values[plain] = value.strip() if isinstance(value, str) else value
-    return values
+        values |= {} if several else {plain: value}
+        of_several |= dict.fromkeys(several, value)
+    return of_several | values
 
 
 def text_by_channel(
@@ -129,8 +137,6 @@ def factor_of_voltage(label: str, unit: str, sensitivity: str, known: Tables) ->
     """Return the factor of a voltage by its sensitivity, such as ``100 mV/g``."""
     usual = "100 mV/g or 50 mV/(mm/s)" if known is OF_MOTIONS else "22 mV/N"
     expected = f"expected one such as {usual}, or base=... for one channel: give it by sensitivity="
-    if not sensitivity:
-        raise InputError(f"{label}: in {unit}, without a sensitivity; {expected}")
     parts = SENSITIVITY.fullmatch(sensitivity.strip())
     unit_below = plain_unit(parts["unit"]) if parts else ""
     derivatives = next((n for n, factors in known.items() if unit_below in factors), None)

@@ -19,11 +19,12 @@ def doubtful_channels(
     time: Floats, accelerations: Mapping[str, Floats], channels: Mapping[str, Floats]
 ) -> list[tuple[str, str, str]]:
     """Return what makes channels, the base first, doubtful: (channel, what it is, what to do)."""
-    doubts = []
+    doubts, knocked = [], any(name.startswith("force") for name in channels)
     for name, values in channels.items():
         other = next((one for key, one in channels.items() if key != name), values)
         force = name.startswith("force")  # of a hammer it is 0 most of the time
-        wrong_unit = "" if force else implausible_unit(accelerations[name])
+        # a half next to the one that is struck may hardly move
+        wrong_unit = "" if knocked else implausible_unit(accelerations[name])
         share = clipped_share(values)
         constant = None if force else constant_part(values, other)
         if wrong_unit:

@@ -65,9 +65,9 @@ def read_record(
         faces, in their order, with a warning; where no name is known, the first ones in that order.
         A time that is not named is in the column of that name, else in the first.
     unit : str or mapping of str to str, optional
-        Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face1=mm/s"``): of an
-        acceleration, velocity, displacement or voltage; before that of ``channels``, as are the
-        next ones. By default what stands in the file, which must be there. Of
+        Of all channels, or by channel (``{"face1": "mm/s"}``, ``"base=V,face=mm/s"``, of all
+        faces): of an acceleration, velocity, displacement or voltage; before that of ``channels``,
+        as are the next ones. By default what stands in the file, which must be there. Of
         ``time`` (``"time=us"``) too; without any, s.
     sensitivity : str or mapping of str to str, optional
         Of voltages, such as ``"100 mV/g"`` or ``"base=100 mV/g,face1=50 mV/(mm/s)"``.
@@ -196,7 +196,9 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
 
 def file_kind(path: Path) -> str:
     if path.suffix.lower() not in ENDINGS:
-        raise InputError(f"{path}: expected a file that ends in {', '.join(ENDINGS)}")
+        text = f"expected a file that ends in {', '.join(ENDINGS)}"
+        text += "; a structure= or channels= file is given so" * (path.suffix == ".toml")
+        raise InputError(f"{path}: {text}")
     return ENDINGS[path.suffix.lower()]
 
 
@@ -221,11 +223,15 @@ def read_netcdf(path: Path) -> Columns:
         check_size(path, stored_size(file))
         over_time = {n: one for n, one in file.variables.items() if one.dimensions == ("time",)}
         if "time" not in over_time:
-            raise InputError(f"{path}: no variable time over itself; expected a record")
+            kind = getattr(file, "question", "")
+            what = f"a result of {kind}" if kind else "no variable time over itself"
+            raise InputError(f"{path}: {what}; expected a record")
         names = dict(zip(over_time, over_time, strict=True))
         if "a1_abs" in file.variables:  # a result of shake
             if "impact" in file.dimensions and file.dimensions["impact"].size:
-                text = "expected what sensors read of it: orchestrate.measure, then write_record"
+                text = (
+                    "expected what sensors read of it: shake --sensor HZ, or measure, writes that"
+                )
                 raise InputError(f"{path}: simulated accelerations leave out the impacts; {text}")
             names = {"time": "time", **{stored: name for name, stored in ACCELERATIONS.items()}}
             names |= {name: name for name in FORCES}

@@ -120,7 +120,7 @@ def resonance_curve(
 class CurveColumns:
     """Hold the columns of a resonance curve before they are checked."""
 
-    frequency: Floats  # hz
+    frequency: Floats  # Hz
     level: ArrayLike  # m/s2
     amplitudes: Mapping[str, Floats]  # by `amplitude1` and `amplitude2`, shape (n,) or (orders, n)
     phases: Mapping[str, Floats] = field(default_factory=dict)  # of order 1, rad

@@ -109,7 +109,8 @@ class ShakeJob(Question):
     @property
     def beside(self) -> Excitation:
         pushes = {name: getattr(self, name) for name in PUSHES}
-        return Excitation(frequency=self.frequency, amplitude=0.0, **pushes)
+        frequency = self.frequency or self.structure.omega
+        return Excitation(frequency=frequency, amplitude=0.0, **pushes)
 
     @property
     def forced(self) -> bool:
@@ -254,10 +255,10 @@ def shake(
             f"sample_rate = {rate!r} Hz: expected at most {most:.3g} for that duration"
         )
     start = checked_state("start", start, checked_structure(structure))
-    beside = {"frequency": frequency or structure.omega, "amplitude": 0.0, **pushes}
-    check_forces(structure, Excitation(**beside), bool(frequency), excitation.drives)
+    beside = Excitation(frequency=frequency or structure.omega, amplitude=0.0, **pushes)
+    check_forces(structure, beside, bool(frequency), excitation.drives)
     name = f"shake_{type(excitation).__name__}_{structure.label()}"
-    return as_given(name=name, sample_rate=rate, start=start, frequency=beside["frequency"])
+    return as_given(name=name, sample_rate=rate, start=start)
 
 
 def check_forces(

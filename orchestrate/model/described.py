@@ -1,4 +1,4 @@
-"""Base class of what is described: gives it ``from_file`` for TOML files."""
+"""Base of classes that are read from their section of a TOML file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Kind = TypeVar("Kind", bound="Described")
 
 
 class Described:
-    """Base of classes read from TOML; the class name in lower case is the section's name."""
+    """Base of such classes; the section's name is the class name in lower case."""
 
     # read_section of the module files, which knows all the classes
     _reader: ClassVar[Callable[..., Any]]

@@ -133,7 +133,7 @@ DRIVE = quantities_of(
     ),
 )
 
-MOTOR_SHAKER = quantities_of(
+ELECTRODYNAMIC_SHAKER = quantities_of(
     electrodynamic_shaker.VARIABLES,
     (
         *("table_mass", "suspension_stiffness", "suspension_damping"),

@@ -15,10 +15,10 @@ from .excitation import Excitation
 from .ranges import (
     DATASHEET,
     DRIVE,
+    ELECTRODYNAMIC_SHAKER,
     EXCITATION,
     LARGEST,
     MECHANICS,
-    MOTOR_SHAKER,
     PUSHES,
     RATIO_QUANTITIES,
     SMALLEST,
@@ -40,6 +40,7 @@ COMMON_NUMBERS = tuple(name for name in STRUCTURE if name not in MECHANICS)
 COMMON_KEYS = (*COMMON_NUMBERS, *FLAGS)
 OMEGAS = tuple(f"omega_{unit}" for unit in TO_RAD_S)
 HALVES = ("f1_hz", "f2_hz", "zeta1", "zeta2")
+OF_ONE_MASS = {"m": "m1", "k": "k1", "d": "d1", "f_hz": "f1_hz", "zeta": "zeta1"}
 RATIOS = ("mu", "kappa", "D", "D1", "D2", *OMEGAS)
 FREQUENCIES = (*(f"frequency_{unit}" for unit in TO_RAD_S), "eta")
 AMPLITUDES = ("amplitude", "acceleration_g")
@@ -53,9 +54,9 @@ SPEEDS = tuple(f"no_load_speed_{unit}" for unit in TO_RAD_S)
 DATASHEET_KEYS = ("rated_voltage", "stall_torque", *SPEEDS, "mechanical_time_constant")
 MOTOR_NUMBERS, BOX_NUMBERS = ("beta", "epsilon", "b"), ("Omega_b", "D_b")
 SHAKER_COMMON = ("force_factor", "coil_resistance", "coil_inductance")
-SHAKER_SI = tuple(name for name in MOTOR_SHAKER if name not in SHAKER_COMMON)
+SHAKER_SI = tuple(name for name in ELECTRODYNAMIC_SHAKER if name not in SHAKER_COMMON)
 QUANTITIES = {
-    **{q.name: q for q in (*MOTOR_SHAKER.values(), *DATASHEET.values())},
+    **{q.name: q for q in (*ELECTRODYNAMIC_SHAKER.values(), *DATASHEET.values())},
     **{q.name: q for q in (*STRUCTURE.values(), *EXCITATION.values(), *DRIVE.values())},
     **RATIO_QUANTITIES,
     "preload": replace(STRUCTURE["clearance"], name="preload", minimum=0.0),
@@ -164,6 +165,9 @@ class Section:
 
 def read_structure(section: Section) -> Structure:
     """Return the ``Structure`` that a section ``[structure]`` describes, SI or non-dimensional."""
+    if section.values.get("wall") is True:  # one mass, as Structure.one_mass calls its numbers
+        own = {OF_ONE_MASS.get(key, key): value for key, value in section.values.items()}
+        section = dataclasses.replace(section, values=own)
     section.allow(*COMMON_KEYS, "preload", *MECHANICS, *HALVES, *RATIOS)
     values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
     if section.at_most_one(("clearance", "preload")) == "preload":
@@ -171,10 +175,14 @@ def read_structure(section: Section) -> Structure:
     values |= {name: section.flag(name) for name in FLAGS if name in section.values}
     if section.present(HALVES):
         section.uses_second_form(HALVES, (*MECHANICS[2:], *RATIOS))
-        section.need(("m1", "m2", *HALVES))
+        if wall := values.get("wall", False):
+            for key in section.present(("m2", "f2_hz", "zeta2")):
+                raise section.error(key, "mass 2 is a wall; expected it left out")
+        section.need(("f1_hz", "zeta1") if wall else ("m1", "m2", *HALVES))
         values |= section.numbers(("m1", "m2", *HALVES))
-        frequencies = {name: values.pop(f"{name}_hz") for name in ("f1", "f2")}
-        return section.make(lambda: Structure.from_halves(**frequencies, **values))
+        values = {key.removesuffix("_hz"): value for key, value in values.items()}
+        make = Structure().replace if wall else Structure.from_halves
+        return section.make(lambda: make(**values))
     if not section.uses_second_form(MECHANICS[1:], RATIOS):
         values |= section.numbers(MECHANICS)
         return section.make(lambda: Structure(**values))

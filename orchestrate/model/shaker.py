@@ -10,7 +10,7 @@ from os import PathLike
 from ..constants import TURN
 from ..errors import InputError
 from .described import Described
-from .ranges import DATASHEET, MOTOR_SHAKER, checked_flag
+from .ranges import DATASHEET, ELECTRODYNAMIC_SHAKER, checked_flag
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,14 +53,14 @@ class Shaker(Described):
     suspension_damping: float
     force_factor: float
     coil_resistance: float
-    coil_inductance: float = MOTOR_SHAKER["coil_inductance"].default
+    coil_inductance: float = ELECTRODYNAMIC_SHAKER["coil_inductance"].default
     current_control: bool = False
-    voltage_limit: float = MOTOR_SHAKER["voltage_limit"].default
-    current_limit: float = MOTOR_SHAKER["current_limit"].default
-    travel_limit: float = MOTOR_SHAKER["travel_limit"].default
+    voltage_limit: float = ELECTRODYNAMIC_SHAKER["voltage_limit"].default
+    current_limit: float = ELECTRODYNAMIC_SHAKER["current_limit"].default
+    travel_limit: float = ELECTRODYNAMIC_SHAKER["travel_limit"].default
 
     def __post_init__(self) -> None:
-        for name, quantity in MOTOR_SHAKER.items():
+        for name, quantity in ELECTRODYNAMIC_SHAKER.items():
             object.__setattr__(self, name, quantity.check(getattr(self, name)))
         flag = checked_flag("current_control", self.current_control)
         object.__setattr__(self, "current_control", flag)
@@ -132,8 +132,8 @@ class Shaker(Described):
             **{"travel": travel, "payload": payload, "damping_ratio": damping_ratio},
         }
         sheet = {name: DATASHEET[name].check(value) for name, value in given.items()}
-        factor = MOTOR_SHAKER["force_factor"].check(force_factor)
-        resistance = MOTOR_SHAKER["coil_resistance"].check(coil_resistance)
+        factor = ELECTRODYNAMIC_SHAKER["force_factor"].check(force_factor)
+        resistance = ELECTRODYNAMIC_SHAKER["coil_resistance"].check(coil_resistance)
         if factor == 0.0:
             raise InputError("force_factor = 0.0 N/A: expected a force factor > 0")
         current, rate = sheet["rated_force"] / factor, TURN * sheet["suspension_resonance"]

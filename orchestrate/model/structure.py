@@ -154,8 +154,10 @@ class Structure(StructureText, Described):
         cls,
         *,
         m: float = STRUCTURE["m1"].default,
-        k: float = STRUCTURE["k1"].default,
-        d: float = STRUCTURE["d1"].default,
+        k: float | None = None,
+        d: float | None = None,
+        f: float | None = None,
+        zeta: float | str | None = None,
         clearance: float = STRUCTURE["clearance"].default,
         stroke: float = 0.0,
         **added: Any,
@@ -164,8 +166,12 @@ class Structure(StructureText, Described):
 
         Parameters
         ----------
-        m, k, d : float
-            Mass, stiffness and damping, kg, N/m, N s/m.
+        m : float
+            Mass, kg. Without other forces than those of gravity and the box it has no effect.
+        k, d : float, optional
+            Stiffness and damping, N/m, N s/m; by default as mass 1 of :class:`Structure` has it.
+        f, zeta : float, optional
+            In their place, as of a half: natural frequency, Hz, and damping ratio, 0.01 or "1 %".
         clearance : float
             Distance to the wall at rest, m, which is where x1 = clearance; below zero the mass
             rests on the wall, pressed to it by ``-k clearance``.
@@ -180,10 +186,15 @@ class Structure(StructureText, Described):
         >>> mass = Structure.one_mass(m=2.0, k=50.0, d=0.1, e=0.8, clearance=-0.01)
         >>> mass.omega, mass.at_rest, mass.preload
         (5.0, (-0.01, 0.0), 0.5)
+        >>> Structure.one_mass(f=12.0, zeta="1 %", clearance=3e-4).f1
+        12.0
         """
-        check_names(added, "m", "k", "d")
-        alike: dict[str, Any] = {"m1": m, "m2": m, "k1": k, "k2": k, "d1": d, "d2": d}
-        return cls(**alike, clearance=clearance, stroke=stroke, wall=True, **added)
+        check_names(added, "m", "k", "d", "f", "zeta")
+        own = {"m1": m, "k1": k, "d1": d, "f1": f, "zeta1": zeta}
+        given = {name: value for name, value in own.items() if value is not None}
+        one = cls().replace(**given)
+        same: dict[str, Any] = {"m2": one.m1, "k2": one.k1, "d2": one.d1, "wall": True}
+        return dataclasses.replace(one, **same, clearance=clearance, stroke=stroke, **added)
 
     @classmethod
     def nondimensional(

@@ -5,9 +5,9 @@ section           keys
 ================  ================================================================================
 ``[structure]``   SI: ``m1 m2 k1 k2 d1 d2``; or the paper's numbers: ``mu kappa`` and ``D``, or
                   ``D1 D2``, which ``m1`` and one of ``omega_hz omega_rad_s omega_rpm`` scale;
-                  or each half's ``f1_hz f2_hz zeta1 zeta2`` with ``m1 m2``; with all: ``bonded``
-                  and the numbers of the contact, ``e gamma`` and the others of
-                  :class:`.Structure`
+                  or each half's ``f1_hz f2_hz zeta1 zeta2`` with ``m1 m2``, one mass before a
+                  stop: ``wall f1_hz zeta1``; with all: ``bonded`` and the numbers of the contact,
+                  ``e gamma`` and the others of :class:`.Structure`
 ``[excitation]``  one of ``frequency_hz frequency_rad_s frequency_rpm eta``; one of ``amplitude``
                   (m) and ``acceleration_g`` (peak, in 9.80665 m/s^2), which may be left out with
                   ``eta``: 1/eta^2 m; ``phase`` (rad); ``box_acceleration`` (m/s^2), ``force1``
@@ -32,6 +32,7 @@ What may be left out has the default of its class.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -42,8 +43,9 @@ from ..files import read_text, write_whole
 from .described import Described
 from .drive import Drive
 from .excitation import Excitation
-from .ranges import DRIVE, MOTOR_SHAKER, PUSHES, STRUCTURE, expected_one_of
+from .ranges import DRIVE, ELECTRODYNAMIC_SHAKER, PUSHES, STRUCTURE, expected_one_of, known_units
 from .sections import (
+    QUANTITIES,
     Section,
     check_masses,
     read_drive,
@@ -61,6 +63,11 @@ SHAKERS = {  # sets of shakers
     for name in ("shaker_10N", "shaker_100N", "shaker_1kN")
 }
 MAX_BYTES = 1 << 16  # of a file: some twenty numbers and as many remarks as they need
+# an assignment with a decimal comma or a unit
+NUMBER = (
+    r"\s*(?P<key>\w+)\s*=\s*(?P<number>[-+]?[\d.]+(e[-+]?\d+)?)(?P<comma>(,\d+)?) *"
+    r"(?P<unit>[^#,]*?)\s*(#.*)?"
+)
 SECTIONS = ("structure", "excitation", "motor", "box", "shaker")
 
 
@@ -127,18 +134,34 @@ def parse(path: Path) -> dict[str, Any]:
     """Return a TOML file's tables as nested dicts; syntax errors raise ``InputError``."""
     import tomllib
 
+    text = ""
     try:
-        return tomllib.loads(read_text(path, MAX_BYTES))
+        text = read_text(path, MAX_BYTES)
+        return tomllib.loads(text)
     except OSError as error:
         reason = error.strerror or str(error)
     except ValueError as error:  # of the syntax, or of the encoding
         reason = str(error).splitlines()[0]
+        if line := re.search(r"\(at line (\d+), column", reason):
+            reason = mistaken_number(text.splitlines()[int(line[1]) - 1]) or reason
     except RecursionError:
         reason = "nested too deeply"
     expected = "expected sections and key = value"
     if path.suffix.lower() != ".toml":
         expected += ", in a file that ends in .toml: this one looks like a record or a result"
     raise InputError(f"{path}: not readable as TOML ({reason}); {expected}")
+
+
+def mistaken_number(line: str) -> str:
+    """Return what is wrong with a number that TOML does not know; nothing where it is not that."""
+    pair = re.fullmatch(NUMBER, line)
+    if pair is None or not (pair["comma"] or pair["unit"]):
+        return ""
+    key, number = pair["key"], pair["number"] + pair["comma"].replace(",", ".")
+    quoted = pair["unit"] in known_units(key)
+    meant = f'"{number} {pair["unit"]}"' if quoted else number
+    own = f", in {QUANTITIES[key].unit}" if key in QUANTITIES and not quoted else ""
+    return f"{line.partition('#')[0].strip()}: write {key} = {meant}{own}"
 
 
 def write(
@@ -170,7 +193,7 @@ def write(
 
 def toml_table(name: str, values: Mapping[str, float | bool]) -> str:
     """Return one section as TOML text; each key has a comment with its meaning and unit."""
-    described = {**STRUCTURE, **DRIVE, **MOTOR_SHAKER}
+    described = {**STRUCTURE, **DRIVE, **ELECTRODYNAMIC_SHAKER}
     lines = [f"[{name}]"]
     for key, value in values.items():
         line = f"{key} = {str(value).lower() if isinstance(value, bool) else repr(value)}"

@@ -27,7 +27,7 @@ CURVES = (
 
 
 @dataclass(frozen=True)
-class Part:
+class Section:
     """A part of the report: a picture, its texts, and the results it shows."""
 
     # `method` says how it was computed
@@ -39,7 +39,7 @@ class Part:
     files: tuple[str, ...]  # their files' names
 
 
-def orbit_diagram_part(number: str, case: str) -> Part:
+def orbit_diagram_section(number: str, case: str) -> Section:
     structure = CASES[case]
     text = (
         f"Bifurcation diagram for e = {structure.e:g}, D = {structure.get('D'):g}: all "
@@ -48,12 +48,12 @@ def orbit_diagram_part(number: str, case: str) -> Part:
     )
     file = f"orbit_{structure.label()}_up"
     show: Any = lines.draw_sweep, lambda data: [data.up(case)], (file,)
-    return Part(f"Figure {number}", text, ORBIT, *show)
+    return Section(f"Figure {number}", text, ORBIT, *show)
 
 
-def curves_part(number: str, text: str, method: str, draw: Callable[..., Figure]) -> Part:
+def curves_section(number: str, text: str, method: str, draw: Callable[..., Figure]) -> Section:
     show: Any = draw, lambda data: [data.figure(number)], (f"figure{number}",)
-    return Part(f"Figure {number}", text, method, *show)
+    return Section(f"Figure {number}", text, method, *show)
 
 
 def draw_basin(data: Any) -> Figure:
@@ -62,7 +62,7 @@ def draw_basin(data: Any) -> Figure:
 
 
 PARTS = {
-    "5": curves_part(
+    "5": curves_section(
         "5",
         "Phase curves for eta = 0.4, e = 0.7, D = 0.005: (a) motion of both masses, (b) relative "
         "motion.",
@@ -70,8 +70,8 @@ PARTS = {
         "FMU and both sides of each impact.",
         planes.draw_states,
     ),
-    "6": orbit_diagram_part("6", ORBITS["6"]),
-    "7": curves_part(
+    "6": orbit_diagram_section("6", ORBITS["6"]),
+    "7": curves_section(
         "7",
         "Multiplicity of periodic responses at the relative resonance peaks of the windows T, 2T, "
         "3T and 4T; the excitation below.",
@@ -80,21 +80,21 @@ PARTS = {
         "window continues beyond eta = 8.0: the sweep is continued upwards to 9.0.",
         histories.draw_paper_histories,
     ),
-    "8": curves_part(
+    "8": curves_section(
         "8",
         "Typical phase curves in the first irregular region 0.43 < eta < 1.37; T, nT: periodic.",
         CURVES,
         planes.draw_phase_grid,
     ),
-    "9": curves_part(
+    "9": curves_section(
         "9",
         "Typical phase curves in the second irregular region 2.61 < eta < 3.77; T, nT: periodic.",
         CURVES,
         planes.draw_phase_grid,
     ),
-    "10": orbit_diagram_part("10", ORBITS["10"]),
-    "11": orbit_diagram_part("11", ORBITS["11"]),
-    "12": curves_part(
+    "10": orbit_diagram_section("10", ORBITS["10"]),
+    "11": orbit_diagram_section("11", ORBITS["11"]),
+    "12": curves_section(
         "12",
         "Phase curves of both masses at the main resonance peak: (a) close to elastic impact, low "
         "internal damping; (b) close to elastic impact, significant internal damping; (c) close to "
@@ -103,7 +103,7 @@ PARTS = {
         "more period.",
         planes.draw_masses,
     ),
-    "lyapunov": Part(
+    "lyapunov": Section(
         "Largest Lyapunov exponent",
         "Largest Lyapunov exponent per unit of tau along the up-sweeps (e, D) = (0.7, 0.005), "
         "(0.7, 0.05), (0.3, 0.005), bars of one standard error. Red: chaotic; blue: neutral, "
@@ -117,7 +117,7 @@ PARTS = {
         lambda data: [data.exponent(case) for case in CASES],
         tuple(f"exponent_{structure.label()}" for structure in CASES.values()),
     ),
-    "attractors": Part(
+    "attractors": Section(
         "Coexisting attractors",
         "Random starts, e = 0.7, D = 0.005. Above: largest xi_Rel of each attractor, in the colour "
         "of its multiplicity and impacts; grey lines connect what is one attractor. Middle: share "
@@ -134,7 +134,7 @@ PARTS = {
         lambda data: [data.attractors()],
         ("attractors",),
     ),
-    "basin": Part(
+    "basin": Section(
         "Basins of attraction",
         "Which attractor a start leads to: gap and gap velocity at phase 0, the means of both "
         "masses those of the two attractors; e = 0.7, D = 0.005. The frequency is the one of "
@@ -146,7 +146,7 @@ PARTS = {
         lambda data: [data.basin()],
         ("basin",),
     ),
-    "maps": Part(
+    "maps": Section(
         "Parameter maps",
         "Impacts per period, multiplicity, largest xi_Rel and largest impulse (over m_1 omega a "
         "eta^2) over frequency and restitution, damping, and detuning kappa = k_2/k_1; the other "
@@ -157,7 +157,7 @@ PARTS = {
         lambda data: [data.map(parameter) for parameter in MAPS],
         tuple(f"map_{parameter}" for parameter in MAPS),
     ),
-    "spectra": Part(
+    "spectra": Section(
         "Spectra (the paper's Figure 3)",
         "Amplitude spectra of the absolute acceleration of mass 1, bonded (left) and delaminated "
         "(right), at the resonance peak and at two other frequencies; e = 0.7, D = 0.005. Orange: "

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..fmu import SET, Instance, Oscillator, traits
+from ..fmu import START_VALUES, Instance, Oscillator, traits
 from ..fmu.fmi import BROKEN, PAUSED
 from ..fmu.oscillator import COUNTED, COUNTS, PEAKS, ResponseProgress, ResponseTask
 from .multiplicity import memory_size
@@ -133,7 +133,7 @@ class ResponseLoop:
         chosen = np.array([index[id(point)] for point in points])
         names = self.oscillator.reals, self.oscillator.booleans
         sets = [
-            {**SET, **point.structure.parameters(), **point.excitation.inputs()}
+            {**START_VALUES, **point.structure.parameters(), **point.excitation.inputs()}
             for point in different.values()
         ]
         tables = (

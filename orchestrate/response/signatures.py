@@ -38,7 +38,7 @@ def as_given(label: str = "", /, **changed: Any) -> Any:
 
 
 def question(kind: type[Question]) -> Callable[[Function], Function]:
-    """Make a function a public question whose job is of a kind, see above."""
+    """Decorate a public function: its keywords become fields of ``kind``, a call runs that job."""
 
     def decorate(function: Function) -> Function:
         signature = inspect.signature(function)

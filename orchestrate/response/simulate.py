@@ -21,7 +21,7 @@ from .questions import OneMotionQuestion, Point, checked_point, checked_state
 from .signatures import as_given, question
 
 OUTPUTS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force", "phase")
-AS_MEASURED = "as an accelerometer on it reads it between impacts"
+AS_MEASURED = "between impacts, as an accelerometer on it reads it"
 IN_TIME = {  # units, long name
     "x1": ("m", "displacement of mass 1 relative to the box"),
     "x2": ("m", "displacement of mass 2 relative to the box"),
@@ -29,8 +29,8 @@ IN_TIME = {  # units, long name
     "v2": ("m/s", "velocity of mass 2 relative to the box"),
     "a1": ("m/s2", "acceleration of mass 1 relative to the box between impacts"),
     "a2": ("m/s2", "acceleration of mass 2 relative to the box between impacts"),
-    "a1_abs": ("m/s2", f"absolute acceleration of mass 1, {AS_MEASURED}"),
-    "a2_abs": ("m/s2", f"absolute acceleration of mass 2, {AS_MEASURED}"),
+    "a1_abs": ("m/s2", f"absolute acceleration of mass 1 {AS_MEASURED}"),
+    "a2_abs": ("m/s2", f"absolute acceleration of mass 2 {AS_MEASURED}"),
     "box_acceleration": ("m/s2", "acceleration of the box"),
     "x_rel": ("m", "gap x2 - x1 + clearance"),
     "v_rel": ("m/s", "velocity of the gap"),

@@ -30,6 +30,13 @@ def with_provenance(
     return dataset.assign_attrs({**attributes, **dataset.attrs})
 
 
+def what_it_is(data: xr.Dataset) -> str:
+    """Return what a dataset holds, for messages: a result of attractors, or a dataset over time."""
+    if kind := data.attrs.get("question") or data.attrs.get("analysis"):
+        return f"a result of {kind}"
+    return f"a dataset over {', '.join(map(str, data.sizes)) or 'nothing'}"
+
+
 def fmu_attributes(fmus: Mapping[str, Fmu]) -> dict[str, str]:
     """Return dataset attributes with the name, GUID and FMI version of each FMU."""
     attributes: dict[str, str] = {}

@@ -86,10 +86,12 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
     axes.axhline(
         float(data.threshold), color=RED, linewidth=1.0, label="from here something strikes"
     )
-    for level, words in ((data.recommended_level, "recommended"), (data.second_level, "second")):
-        axes.axvline(float(level), color=GREY, linestyle="--", linewidth=1.0)
+    # of one level the first word stands
+    both = {float(data.second_level): "second", float(data.recommended_level): "recommended"}
+    for level, words in both.items():
+        axes.axvline(level, color=GREY, linestyle="--", linewidth=1.0)
         place: Any = {"xycoords": ("data", "axes fraction"), "fontsize": 7, "rotation": 90}
-        axes.annotate(f" {words}", (float(level), 0.02), **place)
+        axes.annotate(f" {words}", (level, 0.02), **place)
     axes.set(xscale="log", yscale="log", ylabel="strikes over the limit of noise")
     axes.set_xlabel(label_with_unit("level of the box", data.level))
     legend_below(figure, [axes], 4)

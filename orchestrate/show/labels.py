@@ -154,7 +154,7 @@ def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str,
         eta = known["eta"]
         words = format_frequency(data, eta * omega) if by_unit else format_parameters({"eta": eta})
         texts["eta"] = words
-    if "frequency" in known:
+    if known.get("frequency"):  # 0 where nothing is harmonic
         texts["frequency"] = format_frequency(data, known["frequency"])
     if "amplitude" in known and units.acceleration and "frequency" in known:
         texts["amplitude"] = format_level(data, known["amplitude"] * known["frequency"] ** 2)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import dataclass, fields
 from functools import partial
 from typing import Any, ClassVar, NamedTuple
@@ -41,7 +42,7 @@ from .capture_rule import (
 from .controllers import Controller
 from .couple import couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
-from .run import MotorRun, begin_run
+from .run import MotorJob, MotorRun, motor_runs
 from .schedule import Constant, check
 
 DRIVE_NAMES = tuple(field.name for field in fields(Drive))
@@ -80,22 +81,25 @@ class CaptureJob(Job):
     def work(self, fmus: Fmus, items: Sequence[System], previous: Any) -> Table:
         """Simulate starts at all voltages and bisect for the threshold voltage."""
         rows, borders = [], []
-        for system in items:
-            start = partial(self.run_from_rest, fmus, system)
-            outcomes = [start(voltage) for voltage in self.voltages]
-            rows.append(outcomes)
-            low, high = threshold_voltage(self.voltages, outcomes, start, self.tolerance)
-            borders.append([*low, *high])
+        with motor_runs(fmus) as begin:
+            for system in items:
+                start = partial(self.run_from_rest, begin, system)
+                outcomes = [start(voltage) for voltage in self.voltages]
+                rows.append(outcomes)
+                low, high = threshold_voltage(self.voltages, outcomes, start, self.tolerance)
+                borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
-    def run_from_rest(self, fmus: Fmus, system: System, voltage: float) -> CaptureOutcome:
+    def run_from_rest(
+        self, begin: Callable[[MotorJob], MotorRun], system: System, voltage: float
+    ) -> CaptureOutcome:
         """Simulate one start from rest at a voltage until the speed has settled."""
         test = settling_test(*system, self.stay, self.distance(system))
         if voltage <= system.drive.motor_constant * test.threshold:
             return CaptureOutcome(NO_LOAD)
         schedule = Constant(voltage, self.time_limit(system))
         job = couple_job(*system, schedule, self.scheme, 0.0, self.control)
-        with begin_run(job, fmus) as run:
+        with closing(begin(job)) as run:
             return run_until_settled(run, range(job.steps()), test.judge_record)
 
     def time_limit(self, system: System) -> float:

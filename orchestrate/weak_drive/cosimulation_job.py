@@ -63,8 +63,6 @@ Values = tuple[tuple[str, float | bool], ...]
 class Coupling(Run):
     """Both FMUs of a job, stepped together at its step or a part of it."""
 
-    inputs: Inputs
-
     def __init__(
         self,
         job: CosimulateJob,
@@ -201,7 +199,7 @@ class CosimulateJob(CoupledJob, Question):
                     if before:
                         coupling.set_state(before)
                     found = {**coupling.rows(steps), **coupling.get_state()}
-                    coupling.master.close()
+                    coupling.close()
                     warned |= drive.warnings
             table |= {f"{name} {parts}": values for name, values in found.items()}
         table["warned"] = np.array(["\n".join(warned)])

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import ClassVar, get_type_hints
 
 import numpy as np
 
 from ..errors import InputError
-from ..fmu.instance import Instance
-from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import unmasked
 from ..model.drive import Drive
@@ -26,12 +24,13 @@ from .hysteresis import LOST, UNDECIDED, HysteresisLoop, HysteresisSettings, Jum
 from .master import Scheme
 from .ramp_record import DONE, RampRecord, jump_labels, time_beyond, variables_shown
 from .revolutions import COLUMNS
-from .run import MotorJob, MotorRun
+from .run import MotorJob, motor_runs
 from .schedule import Constant, Ramp, Schedule, check
 
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 DIRECTIONS = ("up", "down")
 KINDS = ("bonded", "delaminated")  # of structures that runs compare
+VERDICT = np.dtype([("up", bool), ("jump", [*get_type_hints(Jump).items()])])
 MIRRORED = {  # where the motor turns backward
     *("jumps", "jump_low", "jump_high", "ramp_voltage", "jump_lag", "averaged_jumps"),
     *("jump_speed", "jump_speed_before", "jump_speed_after", "jump_rate"),
@@ -44,8 +43,6 @@ class CoupleJob(MotorJob):
 
     asked: ClassVar[str] = "couple"
     hysteresis: HysteresisSettings = field(default_factory=HysteresisSettings)
-
-    chunk_size: ClassVar[int] = 4_000
 
     def run_here(self, fmus: Fmus) -> Table:
         """Run all chunks one after the other in this process and join their tables."""
@@ -62,33 +59,26 @@ class CoupleJob(MotorJob):
         return "voltages held at jumps" if first == self.steps() else ""
 
     def conclude(self, fmus: Fmus, table: Table) -> Table:
-        """Hold voltages over each ramp; return its jumps, a row each: 1 for up, and its fields."""
+        """Hold voltages over each ramp; return the jumps of both directions."""
         if self.control is not None:
-            return {"jump_rows": np.empty((0, 1 + len(Jump._fields)))}
-        with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[MOTOR_SHAKER]) as shaker:
-
-            def start_run(schedule: Schedule) -> MotorRun:
-                """Reset both FMU instances and start a run with another voltage schedule."""
-                for instance in (oscillator, shaker):
-                    instance.reset()
-                return MotorRun(replace(self, schedule=schedule), oscillator, shaker)
-
+            return {"verdicts": np.array([], VERDICT)}
+        with motor_runs(fmus) as start:
             volts = RampRecord(self, table, True).sense * self.drive.volts(self.structure)
             units = self.scheme.h, self.structure.omega, volts, self.hold
-            loop = HysteresisLoop(start_run, self.schedule, *units, self.hysteresis, growth_rate)
+            loop = HysteresisLoop(
+                lambda schedule: start(replace(self, schedule=schedule)),
+                *(self.schedule, *units, self.hysteresis, growth_rate),
+            )
             loop.add_checkpoints(table, self.chunk_size, self.steps())
-            rows = [
-                (float(up), *jump)
-                for up in (True, False)
-                for jump in loop.decide(RampRecord(self, table, up))
-            ]
-        return {"jump_rows": np.array(rows).reshape(-1, 1 + len(Jump._fields))}
+            found = [(up, loop.decide(RampRecord(self, table, up))) for up in (True, False)]
+        jumps = [(up, tuple(jump)) for up, each in found for jump in each]
+        return {"verdicts": np.array(jumps, VERDICT)}
 
     def jumps(self, table: Table) -> list[list[Jump]]:
         """Return the jumps of both directions; the first sure one stands for all."""
-        rows = table["jump_rows"].tolist()
-        every = [[Jump(int(row[1]), *row[2:]) for row in rows if row[0] == up] for up in (1.0, 0.0)]
-        return [sorted(jumps, key=lambda jump: jump.outcome != LOST) for jumps in every]
+        found = table["verdicts"]
+        each = (found["jump"][found["up"] == up].tolist() for up in (True, False))
+        return [sorted(map(Jump._make, one), key=lambda jump: jump.outcome != LOST) for one in each]
 
     def dataset(self, table: Table) -> xr.Dataset:
         if not len(table["time"]):
@@ -215,6 +205,7 @@ def schedule_from_arguments(
     spin_up: float | None = None,
 ) -> Schedule:
     """Build the voltage schedule from the arguments of :func:`couple`."""
+    require_motor(drive)
     if isinstance(voltage, Schedule):
         return voltage
     unmasked("voltage", voltage)
@@ -272,17 +263,8 @@ def couple_job(
     """Check the arguments of a coupled run and build its job."""
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
-    if speed_start is None:
-        at_rest = control is not None
-        speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
-    check("speed_start", speed_start, "rad/s")
-    if hold is None:
-        hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
-    check("hold", hold, "s", low=0.0)
-    run = (structure, drive, schedule, scheme, float(speed_start), float(hold), control)
-    job = CoupleJob(f"couple_{structure.kind}", *run, hysteresis or HysteresisSettings())
     steps = schedule.duration / scheme.h
-    if steps <= MAX_STEPS and job.steps() < 1:
+    if math.ceil(steps - 1e-9) < 1:
         raise InputError(
             f"duration = {schedule.duration:g} s: expected one communication step or more, "
             f"duration >= {scheme.h:g}"
@@ -292,7 +274,15 @@ def couple_job(
             f"{steps:.2g} steps of {scheme.h:g} s in {schedule.duration:g} s: "
             f"expected at most {MAX_STEPS:g}"
         )
-    return job
+    if speed_start is None:
+        at_rest = control is not None
+        speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
+    check("speed_start", speed_start, "rad/s")
+    if hold is None:
+        hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
+    check("hold", hold, "s", low=0.0)
+    run = (structure, drive, schedule, scheme, float(speed_start), float(hold), control)
+    return CoupleJob(f"couple_{structure.kind}", *run, hysteresis or HysteresisSettings())
 
 
 def couple(
@@ -410,7 +400,6 @@ def couple(
     from ..fmu.exported import finder
     from ..running.runner import answer
 
-    require_motor(drive)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     settings = (duration, rate, settle, increment, back, spin_up)

@@ -84,7 +84,9 @@ class DriveBranchJob(Job):
         rows = []
         for structure in items:
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[MOTOR_SHAKER]) as shaker:
-                rows.append(self.trace_legs((oscillator, shaker), structure))
+                shooter = self.make_shooter((oscillator, shaker), structure)
+                rows.append(self.trace_legs(shooter))
+                shooter.close()
         columns = {
             "points": lambda leg: self.motion_table(leg.points),
             "events": lambda leg: self.motion_table([each.point for each in leg.bifurcations]),
@@ -104,14 +106,18 @@ class DriveBranchJob(Job):
         """Return the longest period that is traced, in revolutions."""
         return 1 if structure.bonded else self.period
 
-    def trace_legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
-        """Trace the branch from the lowest speed, and from the highest if needed."""
-        omega, drive = structure.omega, self.drive
-        low, high = (speed / omega for speed in self.speeds)
-        sizes = averaged.amplitude(structure, drive, np.linspace(low, high, 2001))
-        length = float(sizes.max()) * drive.length
+    def make_shooter(self, fmus: tuple[Instance, Instance], structure: Structure) -> Shooter:
+        """Return what shoots motions of a structure, whose unit is the largest amplitude."""
+        low, high = (speed / structure.omega for speed in self.speeds)
+        sizes = averaged.amplitude(structure, self.drive, np.linspace(low, high, 2001))
+        length = float(sizes.max()) * self.drive.length
         turns = self.max_turns(structure)
-        shooter = Shooter(fmus, structure, drive, turns, self.steps, length)
+        return Shooter(fmus, structure, self.drive, turns, self.steps, length)
+
+    def trace_legs(self, shooter: Shooter) -> list[Leg]:
+        """Trace the branch from the lowest speed, and from the highest if needed."""
+        low, high = (speed / shooter.structure.omega for speed in self.speeds)
+        turns = self.max_turns(shooter.structure)
         below = self.trace_leg(shooter, (low, high), up=True)
         passed = below.end == LIMIT and below.points[-1].coordinates[1] > 0.5 * (low + high)
         above = Leg(end=NOT_BEGUN) if passed else self.trace_leg(shooter, (low, high), up=False)

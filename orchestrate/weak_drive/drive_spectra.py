@@ -1,4 +1,4 @@
-"""Compute acceleration spectra while a motor of limited power hangs at the resonance.
+"""Compute acceleration spectra while a motor of limited power is captured by the resonance.
 
 The voltage is taken slowly to a value below the jump and held. Then the absolute displacement is
 sampled over whole revolutions, and its spectrum multiplied by the square of the frequency: an
@@ -91,8 +91,8 @@ class DriveSpectraJob(Job):
         box = found["box_position"]
         return np.array([found["x1"] - rest_1 + box, found["x2"] - rest_2 + box])
 
-    def hangs_at_resonance(self, fmus: Fmus) -> bool:
-        """Simulate, and return whether the delaminated structure still hangs at the resonance."""
+    def is_captured(self, fmus: Fmus) -> bool:
+        """Simulate, and return whether the delaminated structure's motor is still captured."""
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         threshold = own_resonance.dividing_speed(structure, self.drive) * structure.omega
         return short.record_displacements(fmus, structure)[1] < threshold
@@ -116,7 +116,7 @@ class DriveSpectraJob(Job):
 
 
 def voltage_at_resonance(structure: Structure, drive: Drive, share: float = 0.6) -> float:
-    """Return a voltage at which the motor hangs at the resonance, V."""
+    """Return a voltage at which the motor is captured by the resonance, V."""
     folds = averaged.folds(structure, drive)
     if not folds:
         raise InputError("voltage: expected one, in V; by the averaged theory there is no jump")
@@ -212,5 +212,5 @@ def drive_spectra(
     find_fmu = finder(running)
     if voltage is None:
         fmus = {model: find_fmu(model).path for model in DriveSpectraJob.models}
-        jobs = [next((job for job in jobs if job.hangs_at_resonance(fmus)), jobs[-1])]
+        jobs = [next((job for job in jobs if job.is_captured(fmus)), jobs[-1])]
     return answer(jobs[0], running, find_fmu)

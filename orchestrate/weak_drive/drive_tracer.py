@@ -62,7 +62,6 @@ def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins
             closing.append(float(shooter.fmus[0].get("impact_velocity")[0]))
         elif before.v2 < before.v1 and master.motion.v2 >= master.motion.v1:
             gaps.append(turning_gap(shooter.structure, before, master.motion, master.scheme.h))
-    master.close()
     length = float(shooter.units[0])
     return Margins(min(gaps) / length, min(closing) / length / shooter.structure.omega)
 

@@ -37,7 +37,7 @@ def growth_rate(run: MotorRun, voltage: float, speed: float) -> float:
     omega = structure.omega
     length = float(averaged.amplitude(structure, drive, speed / omega)) * drive.length
     shooter = Shooter((run.oscillator, run.drive), structure, drive, 1, STEPS, length)
-    shooter.used, shooter.angle = True, run.master["angle"] % TURN
+    shooter.angle = run.master["angle"] % TURN
     shooter.begin_together(structure.bonded or run.master.motion.x_rel == 0.0)
     ends = [voltage / shooter.volts, speed / omega]
     unknowns = np.append(shooter.scaled_state(run.master), ends)
@@ -51,6 +51,8 @@ def growth_rate(run: MotorRun, voltage: float, speed: float) -> float:
                 return math.log(largest_multiplier(shooter, unknowns)) * speed / (turns * TURN)
     except SOLVER_ERRORS:
         pass
+    finally:
+        shooter.close()
     return math.nan
 
 

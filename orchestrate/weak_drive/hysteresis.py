@@ -30,6 +30,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -89,8 +90,8 @@ class Jump(NamedTuple):
     after: float = math.nan
 
 
-class VoltageHolder:
-    """Restore states of a past ramp and hold voltages from there until speeds settle."""
+class HysteresisLoop:
+    """Decide where a course of held voltages loses its motion, from states of a past ramp."""
 
     def __init__(
         self,
@@ -120,14 +121,11 @@ class VoltageHolder:
         """Return the ramp's state before a step, from a checkpoint; None at the start."""
         if step not in self.checkpoints and step:
             last = max((known for known in self.checkpoints if known < step), default=0)
-            run = self.begin(self.schedule)
-            try:
+            with closing(self.begin(self.schedule)) as run:
                 if last:
                     run.set_state(self.checkpoints[last])
                 run.speeds(range(last, step))
                 self.checkpoints[step] = run.get_state()
-            finally:
-                run.master.close()
         return self.checkpoints.get(step)
 
     def hold_step(self, step: int) -> HeldPoint:
@@ -157,9 +155,8 @@ class VoltageHolder:
         piece = max(1, round(settings.piece / self.omega / self.step))
         times = (0.0, moves * self.step, count * self.step)
         volts = (self.volts * first, self.volts * voltage, self.volts * voltage)
-        run = self.begin(Course(times, volts))
         speeds, speed, error = np.zeros(0), math.nan, 0.0
-        try:
+        with closing(self.begin(Course(times, volts))) as run:
             if state is not None:
                 run.set_state(state)
             run.speeds(range(moves))
@@ -179,12 +176,8 @@ class VoltageHolder:
                         speed = ends[1]
                         break
             return HeldPoint(voltage, speed, error, run.get_state())
-        finally:
-            run.master.close()
 
-
-class HysteresisLoop(VoltageHolder):
-    """Decide where a course of held voltages loses its motion."""
+    # -- the rule --
 
     def decide(self, record: RampRecord) -> list[Jump]:
         """Return all jumps of a run in one direction, by their voltages."""
@@ -306,13 +299,10 @@ class HysteresisLoop(VoltageHolder):
         """Return the rate, 1/s, at which disturbances of a motion grow; NaN if it is unknown."""
         if self.growth is None:
             return math.nan
-        run = self.begin(self.schedule)
-        try:
+        with closing(self.begin(self.schedule)) as run:
             run.set_state(point.state)
             speed = math.copysign(point.speed, self.volts) * self.omega
             return self.growth(run, point.voltage * self.volts, speed)
-        finally:
-            run.master.close()
 
     def hold_again(self, point: HeldPoint) -> HeldPoint:
         """Hold a motion again and again; return its new point if it has left, else the point."""

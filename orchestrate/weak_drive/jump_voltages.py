@@ -24,6 +24,7 @@ from ..response.labels import variable
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
+from .capture import System, check_parameter_values
 from .couple import (
     DIRECTIONS,
     KINDS,
@@ -206,13 +207,9 @@ def jump_voltages(
     if not schedules:
         raise InputError("voltage: expected (first, last) in V, the ends of ramps")
     scheme = scheme_from_arguments(structure, step)
-    if (over is None) != (values is None):
-        raise InputError("over and values: expected both, or none of them")
     if over not in (None, *IGNORED):
         expected = f"expected {' or '.join(IGNORED)}, which the bonded structure ignores"
         raise InputError(f"over = {over!r}: {expected}")
-    varied = tuple(float(value) for value in values or ())
-    for value in varied:
-        structure.replace(**{str(over): value})  # raises where it is out of range
+    varied = check_parameter_values(over, values, System(structure, drive))
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme, over or "", varied)
     return answer(job, running, finder(running))

@@ -175,7 +175,7 @@ class Master:
         start_time: float = 0.0,
         inverse_mass: float = 0.0,
     ) -> None:
-        """Connect both instances and read their initial outputs.
+        """Connect both instances and begin a run.
 
         ``inverse_mass``: of the drive, 1/kg, if it takes a held force and gives no acceleration.
         """
@@ -184,13 +184,19 @@ class Master:
         self.connection = connection
         self.names = (*LEADING, *connection.outputs, *connection.inputs)
         self.inputs = slice(END + len(connection.outputs), len(self.names))
-        unknown = [math.nan] * len(connection.inputs)
+        self.pair, holds_force = self._described(), len(self.drive.forces) < len(FORCE)
+        self.inverse_mass = inverse_mass if holds_force else 0.0
+        self.begin(start_time)
+
+    def begin(self, start_time: float = 0.0) -> None:
+        """Begin a run of both instances as they have been initialised; read their outputs."""
+        unknown = [math.nan] * len(self.connection.inputs)
         step, motion = [start_time, *[0.0] * (MOTION - TIME - 1)], self.oscillator.get()
         self.drive.put((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())  # its acceleration follows it
         self.row = [*step, *motion, *self.drive.get(), *unknown]
-        self.pair = self._described()
-        if len(self.drive.forces) < len(FORCE):
-            self.pair.inverse_mass[:] = inverse_mass, inverse_mass
+        for name, count in MEMORY.items():
+            getattr(self.pair, name)[:] = [self.inverse_mass * (name == "inverse_mass")] * count
+        self.pair.point_count = 0
 
     @property
     def time(self) -> float:
@@ -297,6 +303,8 @@ class Master:
             (self.drive.channel, self.pair.drive.fmi),
         )
         for channel, side in sides:
+            if not (side.status or side.warned or channel.answer.terminate):
+                continue
             if side.warned:
                 channel.instance.check("the step", WARNING)
                 side.warned = 0

@@ -20,6 +20,7 @@ from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
+from ..response.spectra import amplitude_spectrum
 from ..running.job import Table
 from ..running.options import Running
 from ..running.runner import answer
@@ -54,7 +55,6 @@ class PassageJob(couple.CoupleJob):
     asked: ClassVar[str] = "passage"
     around: float | None = None  # time before and after each jump that is kept, s; else all
 
-    chunk_size: ClassVar[int] = 10_000
     item_columns: ClassVar[tuple[str, ...]] = tuple(KEPT + name for name in SAMPLES)
 
     def rows(self, run: MotorRun, steps: range) -> Table:
@@ -150,7 +150,6 @@ def passage(
     >>> found.x1.dims, found.sizes["time"], found.speed.attrs["units"]
     (('time',), 1000, 'rad/s')
     """
-    couple.require_motor(drive)
     if around is not None:
         check("around", around, "s", low=0.0, exclusive=True)
     if spin_up is None and speed_start is not None:
@@ -221,7 +220,7 @@ def waterfall(
     if not begins.size:
         turns = len(times) // points
         raise InputError(f"revolutions = {revolutions}: expected at most the {turns} there are")
-    lines = hann_spectrum(moved[begins[:, np.newaxis] + np.arange(length)])
+    _, lines = amplitude_spectrum(moved[begins[:, np.newaxis] + np.arange(length)], 1.0)
     order = np.arange(lines.shape[1]) / revolutions
     shown = order <= highest
     ends = begins + length - 1
@@ -240,13 +239,6 @@ def waterfall(
         "order": variable("order", order[shown], "1", "multiple of the motor's speed"),
     }
     return xr.Dataset(variables, coordinates, {"title": "Spectra over the motor's revolutions"})
-
-
-def hann_spectrum(pieces: np.ndarray) -> np.ndarray:
-    """Return the amplitude spectrum of each piece of a signal, with a Hann window."""
-    window = np.hanning(pieces.shape[1] + 1)[:-1]
-    centred = (pieces - pieces.mean(axis=1, keepdims=True)) * window
-    return np.asarray(np.abs(np.fft.rfft(centred, axis=1)) * 2.0 / window.sum())
 
 
 def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:

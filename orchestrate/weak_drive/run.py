@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -23,7 +23,7 @@ from ..model.drive import Drive
 from ..model.structure import Structure
 from ..running.job import Fmus, Job, Table
 from .controllers import Controller
-from .inputs import MotorVoltage, StepInputs
+from .inputs import Input, Inputs, Supply
 from .master import Master, Scheme
 from .revolutions import Revolutions
 from .schedule import Schedule
@@ -47,7 +47,7 @@ def state_rows(table: Table, rows: slice) -> Table:
 class Run:
     """Step both FMU instances of a master; save and restore all that goes on."""
 
-    def __init__(self, master: Master, inputs: StepInputs, **counted: Any) -> None:
+    def __init__(self, master: Master, inputs: Inputs, **counted: Any) -> None:
         # what is counted is read and set by `get_state` and `set_state`, as numbers
         self.master, self.inputs = master, inputs
         self.oscillator, self.drive = master.oscillator.instance, master.drive.instance
@@ -59,6 +59,10 @@ class Run:
     def record(self, steps: range) -> Record:
         """Run some communication steps; return their record."""
         return self.inputs.run(self.master, steps, self.master.scheme.h)
+
+    def close(self) -> None:
+        """Free what was saved of both FMUs to go back."""
+        self.master.close()
 
     def get_state(self) -> Table:
         states = {name + STATE: one.save_state() + END for name, one in self._saved.items()}
@@ -148,9 +152,12 @@ class MotorRun(Run):
     def __init__(self, job: MotorJob, oscillator: Instance, shaker: Instance) -> None:
         self.job, self.revolutions = job, Revolutions(job.structure)
         oscillator.initialize(**oscillator_start(job.structure))
-        voltage = job.schedule.voltage(0.0)
-        shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
-        inputs = MotorVoltage(job.schedule, job.control, job.speed_start)
+        voltage: Input = job.schedule.course
+        if job.control:
+            voltage = Supply(job.schedule.course, job.control, job.speed_start)
+        inputs = Inputs([("voltage", voltage)], shaker.description)
+        own = {"speed_start": job.speed_start, "voltage": job.schedule.voltage(0.0)}
+        shaker.initialize(**job.drive.parameters(), **own)
         master, balance = Master(oscillator, shaker, job.scheme), self.revolutions.balance
         super().__init__(master, inputs, balance=balance, revolution=self.revolutions)
 
@@ -171,14 +178,23 @@ class MotorRun(Run):
 
 
 @contextmanager
-def begin_run(job: MotorJob, fmus: Fmus) -> Iterator[MotorRun]:
-    """Create both FMU instances, start a run on them and free them at the end."""
+def motor_runs(fmus: Fmus) -> Iterator[Callable[[MotorJob], MotorRun]]:
+    """Create both FMU instances; give what resets them and starts a run, one after the other."""
     with (
         Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
         Instance(fmus[MOTOR_SHAKER], "shaker") as shaker,
     ):
-        run = MotorRun(job, oscillator, shaker)
-        try:
-            yield run
-        finally:
-            run.master.close()
+
+        def start(job: MotorJob) -> MotorRun:
+            oscillator.reset()
+            shaker.reset()
+            return MotorRun(job, oscillator, shaker)
+
+        yield start
+
+
+@contextmanager
+def begin_run(job: MotorJob, fmus: Fmus) -> Iterator[MotorRun]:
+    """Create both FMU instances, start a run on them and free them at the end."""
+    with motor_runs(fmus) as start, closing(start(job)) as run:
+        yield run

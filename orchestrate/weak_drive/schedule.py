@@ -7,6 +7,7 @@ import numbers
 from abc import ABC, abstractmethod
 from bisect import bisect_right
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from os import PathLike
 
@@ -38,20 +39,27 @@ def check(
 
 @dataclass(frozen=True)
 class Schedule(ABC):
-    """Define the interface of a voltage schedule over time."""
+    """Define the interface of a voltage schedule over time: a course, and where it rises."""
 
     @property
     @abstractmethod
+    def course(self) -> Course:
+        """Return the voltage over time, piecewise linear."""
+
+    @property
     def duration(self) -> float:
         """Return the duration of the whole run, s."""
+        return self.course.times[-1]
 
-    @abstractmethod
     def voltage(self, time: float) -> float:
         """Return the voltage at a time, V."""
+        return self.course.voltage(time)
 
-    @abstractmethod
     def trend(self, times: np.ndarray) -> np.ndarray:
         """Return at each time 1 if the voltage rises, -1 if it falls, 0 if constant."""
+        known, voltages = self.course.times, self.course.voltages
+        places = np.clip(np.searchsorted(known, times) - 1, 0, len(known) - 2)
+        return np.sign(np.diff(voltages))[places].astype(int)
 
 
 @dataclass(frozen=True)
@@ -69,11 +77,9 @@ class Constant(Schedule):
     def duration(self) -> float:
         return self.time
 
-    def voltage(self, time: float) -> float:
-        return self.value
-
-    def trend(self, times: np.ndarray) -> np.ndarray:
-        return np.zeros(np.shape(times), dtype=int)
+    @cached_property
+    def course(self) -> Course:
+        return Course((0.0, self.time), (self.value, self.value))
 
 
 @dataclass(frozen=True)
@@ -120,23 +126,25 @@ class Ramp(Schedule):
         """Return the time at which the ramp reaches the last voltage, s."""
         return self.begin + self.rise
 
-    @property
-    def duration(self) -> float:
-        return self.begin + self.rise * (2 if self.back else 1)
-
-    def voltage(self, time: float) -> float:
-        if time < self.spin_up:
-            return self.low + (self.first - self.low) * time / self.spin_up
-        ramp = min(max(time - self.begin, 0.0), self.duration - self.begin)
-        there = ramp <= self.rise
-        change = self.rate * (ramp if there else 2.0 * self.rise - ramp)
-        if self.increment:
-            count = change / self.increment
-            change = self.increment * (
-                math.floor(count + 1e-9) if there else math.ceil(count - 1e-9)
-            )
-        change = min(change, abs(self.last - self.first))
-        return self.first + math.copysign(change, self.last - self.first)
+    @cached_property
+    def course(self) -> Course:
+        height = abs(self.last - self.first)
+        count = math.floor(height / self.increment + 1e-9) if self.increment else 0
+        levels = np.minimum(self.increment * np.arange(count + 1), height) if count else [0.0]
+        nodes = [(self.begin, 0.0)]
+        for below, level in pairwise(levels):
+            nodes += [(self.begin + level / self.rate, each) for each in (below, level)]
+        nodes += [(self.turn, levels[-1] if self.increment else height)]
+        back = [height, *levels[::-1]] if self.back else []
+        nodes += [(self.turn, level) for level in back[:1]]
+        for level, below in pairwise(back):
+            time = self.turn + (height - below) / self.rate
+            nodes += [(time, level if self.increment else below), (time, below)]
+        sign = math.copysign(1.0, self.last - self.first)
+        times, changes = zip(*nodes, strict=True)
+        voltages = [self.first + sign * change for change in changes]
+        start = self.low if self.spin_up else self.first
+        return Course((0.0, self.spin_up, *times), (start, self.first, *voltages))
 
     def trend(self, times: np.ndarray) -> np.ndarray:
         times, there = np.asarray(times), 1 if self.last > self.first else -1
@@ -210,8 +218,9 @@ class Course(Schedule):
             raise InputError(f"{path}: {error}") from None
 
     @property
-    def duration(self) -> float:
-        return self.times[-1]
+    def course(self) -> Course:
+        """Return the course itself, as other schedules return theirs."""
+        return self
 
     def voltage(self, time: float) -> float:
         last = bisect_right(self.times, time)
@@ -220,15 +229,6 @@ class Course(Schedule):
         begin, end = self.times[last - 1], self.times[last]
         low, high = self.voltages[last - 1], self.voltages[last]
         return low + (high - low) * (time - begin) / (end - begin)
-
-    def at(self, times: np.ndarray) -> np.ndarray:
-        """Return the values at many times, as :meth:`voltage` does at one."""
-        known, values = np.array(self.times), np.array(self.voltages)
-        last = known.searchsorted(times, side="right").clip(max=len(known) - 1)
-        begin, low = known[last - 1], values[last - 1]
-        with np.errstate(invalid="ignore"):
-            inside = low + (values[last] - low) * (times - begin) / (known[last] - begin)
-        return np.where(times < known[-1], inside, values[-1])
 
     def over_steps(self, edges: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return values at both ends of steps between edges, means, and first moments about their
@@ -251,7 +251,3 @@ class Course(Schedule):
         moments = np.add.reduceat((above * arms + slope * spans**2 / 12.0) * spans, starts)
         half, ends = 0.5 * slope * spans, starts + counts - 1
         return (level - half)[starts], (level + half)[ends], means, moments
-
-    def trend(self, times: np.ndarray) -> np.ndarray:
-        places = np.clip(np.searchsorted(self.times, times) - 1, 0, len(self.times) - 2)
-        return np.sign(np.diff(self.voltages))[places].astype(int)

@@ -19,16 +19,16 @@ from ..errors import FmuError
 from ..fmu.instance import Instance
 from ..model.drive import Drive
 from ..model.structure import Structure
+from .connection import MOTOR
 from .extremes import range_of_mass
 from .master import Master, Scheme
 from .run import oscillator_start
-from .step_record import Record
+from .step_record import LEADING, Record
 
-STARTS = {  # start values of the shaker and of the structure by the outputs that they are
-    **{"box_position": "position_start", "box_velocity": "velocity_start", "speed": "speed_start"},
-    **{name: f"{name}_start" for name in ("x1", "v1", "x2", "v2")},
-    "motor_current": "current_start",
-}
+# start values of the structure and of the motor, in the order of the unknowns
+MASSES = ("x1_start", "v1_start", "x2_start", "v2_start")
+STARTS = ("position_start", "velocity_start", "speed_start", "current_start")
+COLUMNS = (*LEADING, *MOTOR.outputs)  # of a row of the master
 
 
 class Period(NamedTuple):
@@ -78,11 +78,17 @@ class Shooter:
         steps: int,
         length: float,
     ) -> None:
-        self.fmus, self.structure, self.drive = fmus, structure, drive
+        self.fmus, self.structure = fmus, structure
+        self.halves = oscillator_start(structure)
+        self.take_drive(drive)
         self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
-        self.used = False
+        self.master: Master | None = None  # of both FMUs, from the first start on
         self.volts, self.length = drive.volts(structure), length
         self.begin_together(structure.bonded)
+
+    def take_drive(self, drive: Drive) -> None:
+        """Set the drive; its parameters are wanted at each start."""
+        self.drive, self.parameters = drive, drive.parameters()
 
     def begin_together(self, together: bool) -> None:
         """Set whether a period begins with the masses in contact."""
@@ -91,6 +97,9 @@ class Shooter:
         omega = structure.omega
         masses = ("x1", "v1") if together else ("x1", "v1", "x2", "v2")
         self.names: tuple[str, ...] = (*masses, "box_position", "box_velocity", "speed")
+        rest = dict(zip(("x1", "x2"), structure.at_rest, strict=True))
+        # where the values stand in a row of the master, and what they are counted from
+        self.places = [(COLUMNS.index(name), rest.get(name, 0.0)) for name in self.names]
         units = {"x1": length, "x2": length, "box_position": length, "speed": omega}
         units["motor_current"] = drive.volts(structure) / drive.armature_resistance
         if drive.armature_inductance > 0.0:
@@ -121,21 +130,26 @@ class Shooter:
     def start_master(self, state: Floats, voltage: float, h: float) -> Master:
         """Initialise both FMUs in a state and return their master."""
         oscillator, shaker = self.fmus
-        if self.used:
-            oscillator.reset()
-            shaker.reset()
-        self.used = True
-        values = dict(zip(self.names, (state * self.units).tolist(), strict=True))
-        if self.together:
-            values |= {"x2": values["x1"], "v2": values["v1"]}
-        starts = {STARTS[name]: value for name, value in values.items()}
-        structure_starts = {
-            name: starts.pop(name) for name in ("x1_start", "v1_start", "x2_start", "v2_start")
-        }
-        oscillator.initialize(**oscillator_start(self.structure), **structure_starts)
+        oscillator.reset()
+        shaker.reset()
+        values = (state * self.units).tolist()
+        count = 2 if self.together else 4  # of the values that are the masses'
+        masses = values[:count] * (4 // count)
         more = {"angle_start": self.angle, "voltage": voltage}
-        shaker.initialize(**self.drive.parameters(), **starts, **more)
-        return Master(oscillator, shaker, Scheme(h))
+        oscillator.initialize(**self.halves, **dict(zip(MASSES, masses, strict=True)))
+        own = dict(zip(STARTS, values[count:], strict=False))
+        shaker.initialize(**self.parameters, **own, **more)
+        if self.master is None:
+            self.master = Master(oscillator, shaker, Scheme(h))
+        else:
+            self.master.scheme = Scheme(h)
+            self.master.begin()
+        return self.master
+
+    def close(self) -> None:
+        """Free what was saved of both FMUs."""
+        if self.master is not None:
+            self.master.close()
 
     def begin_period(self, unknowns: Floats) -> tuple[Master, float]:
         """Initialise both FMUs at a period's start; return master and voltage, V."""
@@ -145,12 +159,10 @@ class Shooter:
 
     def scaled_state(self, master: Master) -> Floats:
         """Return the present state of both FMUs, scaled by its units."""
-        values = dict(zip(master.names, master.row, strict=True))
-        for name, at_rest in zip(("x1", "x2"), self.structure.at_rest, strict=True):
-            values[name] -= at_rest
+        values = [master.row[place] - rest for place, rest in self.places]
         if "motor_current" in self.names:
-            values["motor_current"] = self.fmus[1].get("motor_current")[0]
-        return np.array([values[name] for name in self.names]) / self.units
+            values += self.fmus[1].get("motor_current")
+        return np.array(values) / self.units
 
     def settle(self, voltage: float, speed: float, time: float) -> Floats:
         """Simulate for a time at a nearly fixed speed (heavy rotor); return the state."""
@@ -158,7 +170,7 @@ class Shooter:
         longest = time + (self.turns + 1) * TURN / speed
         own_drive = self.drive
         # a rotor that keeps its speed
-        self.drive = own_drive.replace(rotor_inertia=1e6 * own_drive.rotor_inertia)
+        self.take_drive(own_drive.replace(rotor_inertia=1e6 * own_drive.rotor_inertia))
         state = np.zeros(self.size)
         state[self.names.index("speed")] = speed / self.structure.omega
         if "motor_current" in self.names:
@@ -166,19 +178,18 @@ class Shooter:
             state[-1] = current / self.units[-1]
         try:
             master = self.start_master(state, voltage, 0.1 / self.structure.omega)
+            master.run(np.full(max(0, round(time / master.scheme.h) - 1), voltage))
             while master.time < time or (self._touching(master) and master.time < longest):
                 master.step(voltage)
             if self.structure.preload > 0.0:  # once more round, to where a period is best begun
                 h = self.turns * TURN / speed / self.count
-                kept = master.run([voltage] * self.count, h=h).after
-                master.run([voltage] * (1 + self.best_start(kept)[0]), h=h)
+                kept = master.run(np.full(self.count, voltage), h=h).after
+                master.run(np.full(1 + self.best_start(kept)[0], voltage), h=h)
         finally:
-            self.drive = own_drive
+            self.take_drive(own_drive)
         self.angle = master["angle"] % TURN
         self.begin_together(self._touching(master) or self.structure.bonded)
-        state_at_end = self.scaled_state(master)
-        master.close()
-        return state_at_end
+        return self.scaled_state(master)
 
     def _touching(self, master: Master) -> bool:
         """Return whether the masses of a delaminated structure are in contact."""
@@ -188,27 +199,25 @@ class Shooter:
         """Simulate one period from given unknowns; return the final state and impacts."""
         try:
             master, voltage = self.begin_period(unknowns)
-            kept = master.run([voltage] * self.count).after
+            kept = master.run(np.full(self.count, voltage)).after
         except FmuError as error:
             raise NoConvergenceError(str(error)) from None
         turned = master["angle"] - self.angle - self.turns * TURN
         end = np.append(self.scaled_state(master), turned)
-        apart = self.together and master.motion.x_rel > 0.0
-        master.close()
-        if apart:
+        if self.together and master.motion.x_rel > 0.0:
             raise NoConvergenceError("the masses are apart at the end of a period")
         contact = bool((kept["x_rel"] == 0.0).any())
-        return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
+        return Shot(end, int(master["impacts"]), contact)
 
     def observe_period(self, unknowns: Floats) -> Period:
         """Simulate one period; return its amplitude, impacts and best start."""
         master, voltage = self.begin_period(unknowns)
-        record = master.run([voltage] * self.count)
-        master.close()
-        impacts = int(self.fmus[0].get("impact_count")[0])
+        record = master.run(np.full(self.count, voltage))
         reached = range_of_mass(self.structure, record)
         amplitude = 0.5 * float(reached.high.max() - reached.low.min())
-        return Period(amplitude, impacts, self.turns, *self.best_start(record.before))
+        return Period(
+            amplitude, int(master["impacts"]), self.turns, *self.best_start(record.before)
+        )
 
     def best_start(self, kept: Record) -> tuple[int, float, bool, bool]:
         """Find the step farthest from impacts; return a Period's clear, share, together, sticks."""
@@ -232,12 +241,10 @@ class Shooter:
     def begin_later(self, unknowns: Floats, steps: int, together: bool) -> Floats:
         """Shift the period's start by some steps; return the unknowns there."""
         master, voltage = self.begin_period(unknowns)
-        master.run([voltage] * steps)
+        master.run(np.full(steps, voltage))
         self.angle = master["angle"] % TURN
         self.begin_together(together)
-        shifted = np.append(self.scaled_state(master), unknowns[-2:])
-        master.close()
-        return shifted
+        return np.append(self.scaled_state(master), unknowns[-2:])
 
     # -- the equations --
 

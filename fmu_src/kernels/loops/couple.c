@@ -268,8 +268,8 @@ static bool put_force(Pair *p, const double *inputs, const Cubic force) {
     return put(&p->drive, values);
 }
 
-/* The drive's outputs under the force at a row's end, a time h after its inputs were set. */
-static bool look(Pair *p, double *row, const double *inputs, double h) {
+/* Reads the drive's outputs under the force at a row's end, a time h after its inputs were set. */
+static bool read_drive(Pair *p, double *row, const double *inputs, double h) {
     int known = p->motion.count;
     double force[4] = {row[FORCE]}, box[3], *later = p->scratch + p->drive.input_count, *read = row + POSITION + 3 - known;
     if (p->cubic >= 0 && h != 0.0) {
@@ -285,16 +285,16 @@ static bool look(Pair *p, double *row, const double *inputs, double h) {
     return true;
 }
 
-/* The same, and w under it: the force is tried with 1 N more first. */
-static bool feel(Pair *p, double *row, const double *inputs, double h, double *w) {
+/* Reads the drive, and w, its acceleration with 1 N more less that without. */
+static bool read_drive_and_mass(Pair *p, double *row, const double *inputs, double h, double *w) {
     double force = row[FORCE], more = 0.0;
     bool tries = is_held(p) && p->motion.places[p->motion.count - 1] == ACCELERATION - POSITION;
     if (tries) {
         row[FORCE] = force + 1.0;
-        if (!look(p, row, inputs, h)) return false;
+        if (!read_drive(p, row, inputs, h)) return false;
         row[FORCE] = force, more = row[ACCELERATION];
     }
-    if (!look(p, row, inputs, h)) return false;
+    if (!read_drive(p, row, inputs, h)) return false;
     if (tries) *w = more - row[ACCELERATION];
     return true;
 }
@@ -336,7 +336,7 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
             *refused = may_refuse && p->halves_discarded && p->drive.fmi.status == DISCARD;
             return *refused && discarded(p);
         }
-        if (!feel(p, next, inputs, h, w + 1)) return false;
+        if (!read_drive_and_mass(p, next, inputs, h, w + 1)) return false;
         acceleration_over(p, acceleration, now, next, h);
     }
     given = next[FORCE];
@@ -345,7 +345,7 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
         next[ACCELERATION] += w[1] * (next[FORCE] - given);
         acceleration_over(p, acceleration, now, next, h);
     }
-    if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h) || !look(p, next, inputs, h)) return false;
+    if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h) || !read_drive(p, next, inputs, h)) return false;
     exact_force(force, now, next, h);
     next[GIVEN] = work(force, now[VELOCITY], acceleration, h);
     *defect = p->tolerance != 0.0 ? relative_defect(now, next) : 0.0;
@@ -368,10 +368,10 @@ static bool interval(Pair *p, double *now, double **at, size_t width, const doub
     for (size_t i = first; i < width; i++) known = known && now[i] == inputs[i - first];
     for (size_t i = first; i < width; i++) now[i] = inputs[i - first];
     double before = now[ACCELERATION];
-    if (!known && !look(p, now, inputs, 0.0)) return false;
+    if (!known && !read_drive(p, now, inputs, 0.0)) return false;
     for (int i = 0; i < p->point_count && is_known(before); i++) p->points[2 * i + 1] += now[ACCELERATION] - before;  /* a jump of the inputs is none of the motion */
     if (now[H] == 0.0 && p->point_count == 0) {
-        if (!feel(p, now, inputs, 0.0, p->inverse_mass + 1)) return false;
+        if (!read_drive_and_mass(p, now, inputs, 0.0, p->inverse_mass + 1)) return false;
         p->inverse_mass[0] = p->inverse_mass[1];
         remember(p, now);
     }

@@ -93,12 +93,30 @@ EXPORT void to_rest(const double *state, const double *traits, double *start) {
     start[X2] = gap_between(state, traits[GAP_OFFSET]) == 0.0 ? start[X1] : state[X2] - traits[REST_2];
 }
 
+/* Faces at a gap: the second one is moved, but before a wall, which stays where it is, the first one. */
+static void set_gap(double *state, const double *traits, double gap) {
+    if (traits[WALL] != 0.0) state[X1] = traits[GAP_OFFSET] - gap;
+    else state[X2] = state[X1] + gap - traits[GAP_OFFSET];
+}
+
+/* Faces beyond an end, by rounding or of another clearance or stroke, at that end. */
+static void put_inside(double *state, const double *traits) {
+    double apart = gap_between(state, traits[GAP_OFFSET]), inside = apart < 0.0 ? 0.0 : apart;
+    if (traits[STROKE] != 0.0 && inside > traits[STROKE]) inside = traits[STROKE];
+    if (inside != apart) set_gap(state, traits, inside);
+}
+
 /* A state at one point as the like one at another: displacements from rest and velocities times a factor each; faces that touch go on touching, none overlap. */
 EXPORT void carry_state(const double *state, const double *from, const double *to, double length, double speed, double *like) {
+    double gap = gap_between(state, from[GAP_OFFSET]);
+    bool is_alike = from[GAP_OFFSET] == to[GAP_OFFSET] && from[STROKE] == to[STROKE] && from[WALL] == to[WALL];
     for (int j = 0; j < STATES; j++) like[j] = state[j];
-    if (!is_any(state) || (length == 1.0 && speed == 1.0 && from[GAP_OFFSET] == to[GAP_OFFSET])) return;
+    if (!is_any(state) || (length == 1.0 && speed == 1.0 && is_alike)) return;
     for (int j = 0; j < 2; j++) like[X1 + j] = to[REST_1 + j] + length * (state[X1 + j] - from[REST_1 + j]), like[V1 + j] = state[V1 + j] * speed;
-    if (gap_between(state, from[GAP_OFFSET]) == 0.0 || gap_between(like, to[GAP_OFFSET]) < 0.0) like[X2] = like[X1] - to[GAP_OFFSET];
+    if (to[WALL] != 0.0) like[X1] -= like[X2], like[V1] -= like[V2], like[X2] = like[V2] = 0.0;
+    if (gap == 0.0) set_gap(like, to, 0.0);
+    else if (to[STROKE] != 0.0 && __builtin_fabs(gap - from[STROKE]) <= TOUCHING * (__builtin_fabs(state[X1]) + __builtin_fabs(state[X2]) + gap)) set_gap(like, to, to[STROKE]);
+    else put_inside(like, to);
 }
 
 static double power_of_two(int exponent) {
@@ -193,15 +211,10 @@ static void start_of(const Task *task, size_t i, double *start) {
     double offset = task->traits[TRAITS * i + GAP_OFFSET], gap = i ? task->traits[TRAITS * (i - 1) + GAP_OFFSET] : task->gap;
     for (int j = 0; j < STATES; j++) start[j] = given[j];
     const double *traits = task->traits + TRAITS * i;
-    bool is_wall = traits[WALL] != 0.0;
     if (task->is_chain && (i || task->has_gap) && gap != offset && is_any(start)) for (int j = 0; j < STATES; j++) start[j] += j == X2 ? gap - offset : 0.0;
-    if (is_wall) start[X1] -= start[X2], start[X2] = 0.0;
+    if (traits[WALL] != 0.0) start[X1] -= start[X2], start[X2] = 0.0;
     if (!task->is_chain || !is_any(start)) return;
-    double apart = gap_between(start, offset), inside = apart < 0.0 ? 0.0 : apart;  /* by rounding, or of another stroke */
-    if (traits[STROKE] != 0.0 && inside > traits[STROKE]) inside = traits[STROKE];
-    if (inside == apart) return;
-    if (is_wall) start[X1] = offset - inside;
-    else start[X2] = start[X1] + inside - offset;
+    put_inside(start, traits);
 }
 
 /* Some periods of the transient, with the work that they are. The last step, which begins after half of it, ends where one over all would, to the last bit. */

@@ -2,6 +2,7 @@
 
 import { Picture } from "./picture.js";
 import { traitsOf } from "./model.js";
+import { secondOf } from "./motion_view.js";
 
 const FLASH = 0.04; // of a period
 
@@ -10,6 +11,8 @@ export class Animation {
   constructor(canvas) {
     /** @type {Motion | null} */
     this.motion = null;
+    /** @type {Point | null} */
+    this.point = null;
     this.turn = 0; // periods since the motion's beginning
     this.offset = 0; // m: the gap of unloaded springs
     this.speed = 2 ** -1.5; // periods a second
@@ -20,7 +23,7 @@ export class Animation {
 
   /** @param {Motion} motion @param {Point} point */
   load(motion, point) {
-    Object.assign(this, { motion, turn: 0, offset: traitsOf(point).gap_offset });
+    Object.assign(this, { motion, turn: 0, offset: traitsOf(point).gap_offset, point });
     this.largest = motion.states.reduce((most, value, i) => (i % 4 < 2 ? Math.max(most, Math.abs(value)) : most), 0);
     this.picture.redraw();
   }
@@ -73,8 +76,9 @@ export class Animation {
 
   /** @param {Pen} pen @param {Size} size @param {Theme} theme */
   draw(pen, { width, height }, theme) {
-    const { motion } = this;
-    if (!motion) return;
+    const { motion, point } = this;
+    if (!motion || !point) return;
+    const { wall, stroke } = point.structure;
     const half = Math.min(width * 0.42, 260);
     const shift = 18 * Math.sin(2 * Math.PI * this.turn);
     const middle = width / 2 + shift;
@@ -87,13 +91,19 @@ export class Animation {
     const [wide, high] = [half * 0.3, tall * 0.42];
     const level = top + tall / 2;
     spring(pen, middle - half, x1 - wide, level, theme.soft);
-    spring(pen, x2 + wide, middle + half, level, theme.soft);
+    if (!wall) spring(pen, x2 + wide, middle + half, level, theme.soft);
     pen.box(x1 - wide, level - high / 2, wide, high, { fill: theme.one });
-    pen.box(x2, level - high / 2, wide, high, { fill: theme.two });
+    if (wall) pen.box(x2, top, middle + half - x2, tall, { fill: theme.two });
+    else pen.box(x2, level - high / 2, wide, high, { fill: theme.two });
+    if (stroke && !point.structure.bonded) {
+      // the other end: a hook of half 2, or of the wall, that half 1 strikes with its back
+      const [back, over] = [x2 - scale * stroke - wide, level - high / 2 - 6];
+      pen.line([x2 + wide / 2, x2 + wide / 2, back - 3, back - 3], [level - high / 2, over, over, level], { stroke: theme.two, width: 5 });
+    }
     const flash = this.flash(motion);
     if (flash > 0) pen.dots([(x1 + x2) / 2], [level], 6 + 16 * flash, { fill: theme.hit, alpha: flash });
     pen.text(x1 - wide / 2, level, "half 1", { fill: theme.paper });
-    pen.text(x2 + wide / 2, level, "half 2", { fill: theme.paper });
+    pen.text(x2 + wide / 2, level, secondOf(point), { fill: theme.paper });
     pen.text(width / 2, height - 12, `period ${this.turn.toFixed(2)}`, { fill: theme.ink });
   }
 

@@ -18,6 +18,7 @@ export function startAt(point, plane, column, row) {
   const length = lengthOf(point);
   const gap = ((column + 0.5) / plane.side) * plane.gap * length - traitsOf(point).gap_offset;
   const speed = ((2 * (row + 0.5)) / plane.side - 1) * plane.speed * length * omegaOf(point.structure);
+  if (point.structure.wall) return [-gap, 0, -speed, 0];
   const [x, v] = plane.mean;
   return [x - gap / 2, x + gap / 2, v - speed / 2, v + speed / 2];
 }

@@ -3,6 +3,7 @@
 import { attractorOf, isOther, label } from "./basin.js";
 import { BasinView, coarseFirst } from "./basin_view.js";
 import { shares } from "./requests.js";
+import { lengthOf } from "./structure.js";
 
 const SIDE = 64; // cells
 const FEW = [6, 19, 32, 45, 58]; // columns and rows of the cells that are tried for every motion
@@ -156,7 +157,9 @@ function shownNow() {
 }
 
 /** The plane of starts around a response. @param {Point} point @param {import("./response.js").Response} response @returns {Plane} */
-function planeOf({ eta }, { peak, end }) {
+function planeOf(point, { peak, end }) {
+  const { eta, structure } = point;
   const reach = Math.max(peak, 1e-3) * 3;
-  return { side: SIDE, gap: reach, speed: reach * Math.max(eta, 1), mean: [(end[0] + end[1]) / 2, (end[2] + end[3]) / 2] };
+  const gap = structure.stroke ? Math.min(reach, structure.stroke / lengthOf(point)) : reach;
+  return { side: SIDE, gap, speed: reach * Math.max(eta, 1), mean: [(end[0] + end[1]) / 2, (end[2] + end[3]) / 2] };
 }

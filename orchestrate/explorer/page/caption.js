@@ -10,17 +10,30 @@ const LINE = 16; // px
 const LETTER = 6.2; // px, the mean width of one
 const LEFT = 10; // px
 
+/** @type {Record<string, (number: string) => string>} what is said where it is not 0 */
+const LOADS = {
+  stroke: (number) => `largest gap ${number} m`,
+  box_acceleration: (number) => `box accelerated by ${number} m/s²`,
+  force1: (number) => `force 1 of ${number} N`,
+  force2: (number) => `force 2 of ${number} N`,
+};
+
 /** A beam and how it is shaken, in the units of the page. @param {Point} point @param {Level} level */
 export function beamWords(point, level) {
   const { structure, eta } = point;
+  const kind = structure.wall ? "One mass before a wall" : "Delaminated beam";
+  const more = Object.entries(LOADS).map(([name, text]) => (numbersIn(structure)[name] ? `, ${text(shown(numbersIn(structure)[name]))}` : "")).join("");
   const { e, mu, kappa, D, xi0, f1, f2, mass1, mass2, zeta, gap } = numbersIn(structure);
   if (!inHertz(level)) {
-    return `Delaminated beam: e = ${shown(e)}, μ = ${shown(mu)}, κ = ${shown(kappa)}, D = ${shown(D)}, ξ₀ = ${shown(xi0)}; η = ${shown(eta, 7)}`;
+    const halves = structure.wall ? "" : `, μ = ${shown(mu)}, κ = ${shown(kappa)}`;
+    return `${kind}: e = ${shown(e)}${halves}, D = ${shown(D)}, ξ₀ = ${shown(xi0)}${more}; η = ${shown(eta, 7)}`;
   }
   const [turns, lengths] = [ownUnit("frequency"), ownUnit("length")];
-  const halves = `halves of ${shown(f1 / turns.size)} and ${shown(f2 / turns.size)} ${turns.name}, ${shown(mass1)} and ${shown(mass2)} kg`;
+  const halves = structure.wall
+    ? `${shown(f1 / turns.size)} ${turns.name}, ${shown(mass1)} kg`
+    : `halves of ${shown(f1 / turns.size)} and ${shown(f2 / turns.size)} ${turns.name}, ${shown(mass1)} and ${shown(mass2)} kg`;
   const shaken = `${frequencyText(scaleAt(point, level).line)}, ${levelShown(level).text}`;
-  return `Delaminated beam: ${halves}, damping ${shown(zeta)} %, gap ${shown(gap / lengths.size)} ${lengths.name}, e = ${shown(e)}; shaken at ${shaken}`;
+  return `${kind}: ${halves}, damping ${shown(zeta)} %, gap ${shown(gap / lengths.size)} ${lengths.name}, e = ${shown(e)}${more}; shaken at ${shaken}`;
 }
 
 /** @param {number} value of the axis */

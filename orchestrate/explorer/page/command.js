@@ -7,9 +7,14 @@ import { unitsOption } from "./units.js";
 const PROGRAM = "python -m orchestrate";
 const REST = [0, 0, 0, 0];
 
-/** `--set NAME=VALUE` for what is not usual. @param {Structure} structure @param {Structure} usual */
+const FLAGS = ["bonded", "wall"];
+const PUSHES = ["box_acceleration", "force1", "force2"]; // of the excitation
+
+/** `--set NAME=VALUE`, or an option of the excitation, for what is not usual. @param {Structure} structure @param {Structure} usual */
 function sets(structure, usual) {
-  return differences(structure, usual).map(([name, value]) => ` --set ${name}=${name === "bonded" ? value === 1 : value}`).join("");
+  /** @param {[string, number]} one */
+  const option = ([name, value]) => (PUSHES.includes(name) ? ` --${name.replace("_", "-")}=${value}` : ` --set ${name}=${FLAGS.includes(name) ? value === 1 : value}`);
+  return differences(structure, usual).map(option).join("");
 }
 
 /** @param {Structure} structure @param {Structure} usual @returns {[string, number][]} */
@@ -45,12 +50,14 @@ const isRest = (start) => start.every((value) => value === 0);
 
 /** An excitation that the command line cannot say, as a line of Python. @param {Diagram} diagram @param {string} direction @param {number[]} start @param {Structure} usual */
 function script({ structure, points, settings }, direction, start, usual) {
-  const numbers = differences(structure, usual).map(([name, value]) => `${name}=${name === "bonded" ? "True" : value}`);
+  const given = differences(structure, usual).map(([name, value]) => [name, `${name}=${FLAGS.includes(name) ? (value ? "True" : "False") : value}`]);
+  /** @param {boolean} pushes */
+  const some = (pushes) => given.flatMap(([name, text]) => (PUSHES.includes(name) === pushes ? [text] : [])).join(", ");
   /** @param {"frequency" | "amplitude"} name */
   const list = (name) => `${name}=[${points.map((point) => point[name]).join(", ")}]`;
   const words = `${list("frequency")}, ${list("amplitude")}, direction="${direction}", start=[${start.join(", ")}]`;
   const how = `transient=${settings.transient}, samples=${settings.samples}`;
-  const call = `orchestrate.sweep(orchestrate.Structure(${numbers.join(", ")}), ${words}, ${how})`;
+  const call = `orchestrate.sweep(orchestrate.Structure(${some(false)}), ${words}, ${[how, some(true)].filter(Boolean).join(", ")})`;
   return `python -c 'import orchestrate; ${call}.to_netcdf("sweep_${direction}.nc")'`;
 }
 

@@ -2,7 +2,7 @@
 
 import { inHertz } from "./excitation.js";
 import { onNumber, showNumber } from "./field.js";
-import { numbersIn, withNumber } from "./structure.js";
+import { numbersIn, withNumber, wrongIn } from "./structure.js";
 import { ownUnit } from "./units.js";
 
 /**
@@ -28,10 +28,20 @@ const OWN = [
   ["zeta", "damping, %", 0, 20, 0.01],
   ["gap", "gap at rest, mm", -0.5, 0.5, 0.005],
 ];
+/** @type {Entry[]} */
+const PAPER_LOADS = [
+  ["play", "largest gap ξ, 0: any", 0, 5, 0.01],
+  ["push1", "force on half 1", -2, 2, 0.01],
+  ["push2", "force on half 2", -2, 2, 0.01],
+  ["push", "constant push of the box", -2, 2, 0.01],
+];
+/** @type {Entry[]} */
+const OWN_LOADS = [["most", "largest gap, mm, 0: any", 0, 1e4]];
+const OF_HALF_2 = ["mu", "kappa", "f2", "mass2", "push2", "force2"]; // which a wall has not
 
 const DIGITS = 7;
 /** @type {Record<string, "frequency" | "length">} of numbers with a unit that is chosen */
-const KINDS = { f1: "frequency", f2: "frequency", gap: "length" };
+const KINDS = { f1: "frequency", f2: "frequency", gap: "length", most: "length" };
 
 /** How many Hz or mm the unit of a field is. @param {string} name */
 const sizeOf = (name) => (name in KINDS ? ownUnit(KINDS[name]).size : 1);
@@ -48,11 +58,11 @@ export class Controls {
   /**
    * @param {(id: string) => HTMLElement} at
    * @param {Structure} structure
-   * @param {{ranges: Record<string, [number, number]>, units: Units}} table
+   * @param {{ranges: Record<string, [number, number]>, units: Units, loops: Loops}} table
    *   of the SI numbers
    * @param {(structure: Structure) => void} changed
    */
-  constructor(at, structure, { ranges, units }, changed) {
+  constructor(at, structure, { ranges, units, loops }, changed) {
     this.at = at;
     this.changed = changed;
     this.ranges = ranges;
@@ -60,10 +70,13 @@ export class Controls {
     /** @type {Map<string, HTMLInputElement[]>} */
     this.inputs = new Map();
     at("sliders").append(this.row(RESTITUTION));
-    for (const [id, entries] of /** @type {const} */ ([["paper-sliders", PAPER], ["own-sliders", OWN.map(inOwnUnits)]])) {
-      at(id).append(...entries.map((entry) => this.row(entry)));
+    const parts = { "paper-sliders": PAPER, "own-sliders": OWN, "paper-loads": PAPER_LOADS, "own-loads": OWN_LOADS };
+    for (const [id, entries] of Object.entries(parts)) at(id).append(...entries.map((entry) => this.row(inOwnUnits(entry))));
+    for (const [name, { label }] of Object.entries(units)) {
+      at(name in loops.pushes ? "own-loads" : "si").append(this.row([name, `${name}, ${label}`.replace("_", " "), ...ranges[name]]));
     }
-    for (const [name, { label }] of Object.entries(units)) at("si").append(this.row([name, `${name}, ${label}`, ...ranges[name]]));
+    this.wall = /** @type {HTMLInputElement} */ (at("wall"));
+    this.wall.addEventListener("change", () => this.set("wall", Number(this.wall.checked), this.wall));
     at("si").append(this.row(["D1", "D₁", 0, 1e3]), this.row(["D2", "D₂", 0, 1e3]));
   }
 
@@ -95,6 +108,8 @@ export class Controls {
       const number = structure[/** @type {keyof Structure} */ (other)] ?? low;
       if (!(number >= low && number <= high)) return `makes ${other} ${number}; expected ${low} to ${high}`;
     }
+    const wrong = wrongIn(structure);
+    if (wrong) return wrong;
     this.structure = structure;
     this.changed(structure);
     this.fill(typed);
@@ -103,14 +118,16 @@ export class Controls {
   /** Show a structure's numbers, in the units of how it is shaken. @param {Structure} structure @param {Level} level */
   show(structure, level) {
     this.structure = structure;
-    this.at("paper-sliders").hidden = inHertz(level);
-    for (const id of ["own-sliders", "own-note"]) this.at(id).hidden = !inHertz(level);
+    for (const id of ["paper-sliders", "paper-loads"]) this.at(id).hidden = inHertz(level);
+    for (const id of ["own-sliders", "own-loads", "own-note"]) this.at(id).hidden = !inHertz(level);
     this.fill();
   }
 
   /** @param {HTMLInputElement} [typed] */
   fill(typed) {
     const values = numbersIn(this.structure);
+    this.wall.checked = this.structure.wall === 1;
+    for (const name of OF_HALF_2) /** @type {HTMLElement} */ (this.inputs.get(name)?.[0].parentElement).hidden = this.wall.checked;
     for (const [name, inputs] of this.inputs) {
       for (const input of inputs) if (input !== typed) showNumber(input, values[name] / sizeOf(name), DIGITS);
     }

@@ -83,6 +83,7 @@ export class Inspector {
 
   /** The same beam without its delamination, from rest. @param {Point} point */
   askUndamaged(point) {
+    if (point.structure.wall) return; // to which nothing can be glued
     const settings = { transient: 2000, samples: 1, tolerance: 1e-2 };
     const asked = { point: undamaged(point), start: [0, 0, 0, 0], settings, periods: this.periods, points: POINTS };
     this.ask("motion", asked, ([{ motion }]) => {

@@ -3,7 +3,7 @@
 import { omegaOf } from "./structure.js";
 
 /**
- * @typedef {{structures: Record<string, {size: number, fields: Record<string, [Kind, number]>}>, set: Record<string, number>,
+ * @typedef {{structures: Record<string, {size: number, fields: Record<string, [Kind, number]>}>, set: Record<string, number>, pushes: Record<string, string>,
  *   reals: string[], booleans: string[], read: string[], series: string[], counts: string[],
  *   capacity: number, traits: string[], deviating: string[], exponent: Record<string, number>}} Loops fields: kind and place; capacity: states that a step keeps
  * @typedef {{module: WebAssembly.Module, variables: Record<string, Record<string, number>>, loops: Loops}} Compiled variables: their references, by model
@@ -96,8 +96,9 @@ export class Rooms {
   /** A row of what a structure under an excitation is for the loops. @param {Point} point */
   traits({ structure, frequency, amplitude }) {
     const { loops, calls } = this.library;
+    const pushed = Number(pushesOf(structure, loops).some(([, value]) => value !== 0));
     /** @type {Record<string, number>} */
-    const known = { ...structure, omega: omegaOf(structure), frequency, amplitude };
+    const known = { ...structure, omega: omegaOf(structure), frequency, amplitude, pushed };
     const row = this.array("f64", loops.traits.map((name) => known[name] ?? 0));
     calls.describe_linear_response(row);
     return row;
@@ -107,6 +108,13 @@ export class Rooms {
     this.taken.forEach((address) => this.library.calls.free(address));
     this.taken = [];
   }
+}
+
+/** Loads other than the box's harmonic motion, by the FMU's inputs. @param {Structure} structure @param {Loops} loops @returns {[string, number][]} */
+function pushesOf(structure, { pushes }) {
+  /** @type {Record<string, number>} */
+  const known = { ...structure };
+  return Object.entries(pushes).map(([name, input]) => [input, known[name] ?? 0]);
 }
 
 /** An instance of `TwoMassImpactOscillator`, with the loops that run it; to be closed. */
@@ -142,10 +150,12 @@ export class Oscillator {
 
   /** What there is to compute: one response. @param {Rooms} rooms @param {Point} point @param {Iterable<number>} start @param {Record<string, number>} more */
   task(rooms, point, start, more) {
-    const { set, reals, booleans } = this.library.loops;
+    const { loops } = this.library;
+    const { set, reals, booleans } = loops;
     const { structure, frequency, amplitude } = point;
+    const pushes = Object.fromEntries(pushesOf(structure, loops));
     /** @type {Record<string, number>} */
-    const values = { ...set, ...structure, box_frequency: frequency, box_amplitude: amplitude };
+    const values = { ...set, ...structure, ...pushes, box_frequency: frequency, box_amplitude: amplitude };
     return rooms.structure("ResponseTask", {
       ...{ count: 1, piece: PIECE, traits: rooms.traits(point), starts: rooms.array("f64", Array.from(start)) },
       reals: rooms.array("f64", reals.map((name) => values[name])),
@@ -305,7 +315,7 @@ export class Oscillator {
     const rooms = new Rooms(this.library);
     /** @type {Record<string, number>} */
     const known = { ...point.structure };
-    const numbers = rooms.array("f64", [...loops.deviating.map((name) => known[name] ?? 0), point.amplitude, point.frequency, 0, 0, 0]);
+    const numbers = rooms.array("f64", [...loops.deviating.map((name) => known[name] ?? 0), point.amplitude, point.frequency, ...pushesOf(point.structure, loops).map(([, value]) => value)]);
     const rows = rooms.array("f64", impacts.flat());
     const [memory, found] = [calls.exponent_size(impacts.length), 2].map((size) => rooms.array("f64", size));
     calls.largest_exponent(numbers, rows, impacts.length, end, blocks, batches, memory, found);

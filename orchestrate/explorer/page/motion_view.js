@@ -72,6 +72,9 @@ function placeWords(point, level) {
   return traitsOf(point).gap_offset < 0 ? place.replace("displacement", "displacement from rest") : place;
 }
 
+/** What half 1 strikes. @param {Point} point */
+export const secondOf = ({ structure }) => (structure.wall ? "wall" : "half 2");
+
 /** Time histories with impacts and contact. @param {Motion} motion @param {Point} point @param {Level} level @returns {Chart} */
 export function historyChart(motion, point, level) {
   const { turns, x1, x2 } = columnsOf(motion, point, level);
@@ -85,7 +88,7 @@ export function historyChart(motion, point, level) {
     spans: contactSpans(motion, turns),
     series: [
       { x: turns, y: x1, colour: "one", label: "half 1" },
-      { x: turns, y: x2, colour: "two", label: "half 2" },
+      { x: turns, y: x2, colour: "two", label: secondOf(point) },
       { x: hits, y: motion.impactPlace.map((x) => (x - rest_1) / length), colour: "hit", dots: 2.5, label: "impact" },
     ],
   };
@@ -100,7 +103,7 @@ export function phaseChart(motion, point, level) {
     y: axisAround([v1, v2], words.speed),
     series: [
       { x: x1, y: v1, colour: "one", label: "half 1", width: 1 },
-      { x: x2, y: v2, colour: "two", label: "half 2", width: 1 },
+      { x: x2, y: v2, colour: "two", label: secondOf(point), width: 1 },
     ],
   };
 }
@@ -121,12 +124,12 @@ export function sectionChart(states, point, level) {
   return { ...axes, series: [{ x, y, colour: "ink", dots, alpha: 0.8 }] };
 }
 
-/** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @param {Measured | null} record @returns {Chart} */
+/** @param {{delaminated: Spectrum, bonded: Spectrum | null}} found @param {Point} point @param {Level} level @param {Measured | null} record @returns {Chart} */
 export function spectrumChart({ delaminated, bonded }, point, level, record) {
   const { line, acceleration } = scaleAt(point, level);
   const words = wordsOf(level);
   const measured = record && inHertz(level) ? seriesOf(record, hertzOf(point.eta, point.structure)) : null;
-  const heights = [delaminated.amplitude, bonded.amplitude, Float64Array.from(measured?.y ?? [])];
+  const heights = [delaminated.amplitude, bonded?.amplitude ?? new Float64Array(0), Float64Array.from(measured?.y ?? [])];
   const ends = heights.map((amplitude) => amplitude.reduce((most, value) => Math.max(most, value), 0));
   const high = Math.max(...ends) / acceleration || 1;
   const low = high * 1e-7;
@@ -135,9 +138,9 @@ export function spectrumChart({ delaminated, bonded }, point, level, record) {
   const x = delaminated.order.map((order) => order * line);
   /** @type {Series[]} */
   const series = [
-    { x, y: kept(heights[0]), colour: "one", label: "delaminated", width: 1 },
-    { x, y: kept(heights[1]), colour: "two", label: "undamaged" },
+    { x, y: kept(heights[0]), colour: "one", label: bonded ? "delaminated" : "half 1", width: 1 },
   ];
+  if (bonded) series.push({ x, y: kept(heights[1]), colour: "two", label: "undamaged" });
   if (measured) series.push({ x: measured.x.map((order) => order * line), y: kept(heights[2]), colour: "ink", label: "measured", dots: measured.dots });
   return {
     x: { low: 0, high: x[x.length - 1], label: words.line },

@@ -2,13 +2,16 @@
 
 /**
  * @typedef {{m1: number, m2: number, k1: number, k2: number, d1: number, d2: number,
- *   e: number, gamma: number, bonded: number, clearance: number}} Structure
+ *   e: number, gamma: number, bonded: number, clearance: number, stroke: number, wall: number,
+ *   box_acceleration: number, force1: number, force2: number}} Structure with what pushes it besides
  * @typedef {Record<string, {label: string, kg: number, m: number, s: number}>} Units names and exponents
  * @typedef {{omega: number, mu: number, kappa: number, D1: number, D2: number}} Ratios
  * @typedef {{structure: Structure, eta: number, frequency: number, amplitude: number}} Point
  */
 
 const TURN = 2 * Math.PI;
+/** @type {Record<string, keyof Structure>} what a slider of the paper's beam, without units, is called besides */
+const SAME = { xi0: "clearance", play: "stroke", push: "box_acceleration", push1: "force1", push2: "force2" };
 
 /** The unit of frequency, rad/s (2). @param {Structure} s */
 export function omegaOf(s) {
@@ -63,7 +66,9 @@ export function withNumber(s, name, value) {
   if (name === "mass2") return withHalves(s, { ...halves, m2: value });
   if (name === "zeta") return withHalves(s, { ...halves, zeta1: value / 100, zeta2: value / 100 });
   if (name === "gap") return { ...s, clearance: value / 1000 };
-  if (name === "xi0") return { ...s, clearance: value };
+  if (name === "most") return { ...s, stroke: value / 1000 };
+  if (name === "wall" && value) return { ...s, wall: value, force2: 0 };
+  if (name in SAME) return { ...s, [SAME[name]]: value };
   if (name === "mu") return { ...s, m2: value * s.m1, d2: 2 * D2 * omega * s.m1 * value };
   if (name === "kappa") return { ...s, k2: value * s.k1 };
   if (name === "D1") return { ...s, d1: 2 * value * omega * s.m1 };
@@ -72,11 +77,15 @@ export function withNumber(s, name, value) {
   return { ...s, [name]: value };
 }
 
+/** What contradicts itself in a structure, in words. @param {Structure} s */
+export const wrongIn = (s) => (s.stroke && s.stroke < s.clearance ? "expected a largest gap of 0, or not below that at rest" : "");
+
 /** All numbers that a field may show. @param {Structure} s @returns {Record<string, number>} */
 export function numbersIn(s) {
   const [ratios, halves] = [ratiosOf(s), halvesOf(s)];
-  const own = { mass1: s.m1, mass2: s.m2, zeta: 100 * halves.zeta1, gap: 1000 * s.clearance, xi0: s.clearance };
-  return { ...s, ...ratios, ...halves, ...own, D: ratios.D1 };
+  const own = { mass1: s.m1, mass2: s.m2, zeta: 100 * halves.zeta1, gap: 1000 * s.clearance, most: 1000 * s.stroke };
+  const paper = Object.fromEntries(Object.entries(SAME).map(([name, other]) => [name, s[other]]));
+  return { ...s, ...ratios, ...halves, ...own, ...paper, D: ratios.D1 };
 }
 
 /**

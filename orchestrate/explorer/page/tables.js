@@ -21,9 +21,11 @@ export function diagramCsv({ points, lanes, settings }) {
 /** The motion in time. @param {Motion} motion @param {Point} point */
 export function motionCsv(motion, point) {
   const { time, states, contact } = motion;
-  const accelerations = accelerationsOf(motion, point);
-  const rows = Array.from(time, (t, i) => [t, ...states.subarray(4 * i, 4 * i + 4), ...accelerations.subarray(2 * i, 2 * i + 2), contact[i]]);
-  return { head: ["time", "x1", "x2", "v1", "v2", "a1_abs", "a2_abs", "in_contact"], rows };
+  const { wall, stroke, force1, force2 } = point.structure;
+  // without accelerations where more than springs and contact of two halves makes them
+  const felt = wall || stroke || force1 || force2 ? null : accelerationsOf(motion, point);
+  const rows = Array.from(time, (t, i) => [t, ...states.subarray(4 * i, 4 * i + 4), ...(felt?.subarray(2 * i, 2 * i + 2) ?? []), contact[i]]);
+  return { head: ["time", "x1", "x2", "v1", "v2", ...(felt ? ["a1_abs", "a2_abs"] : []), "in_contact"], rows };
 }
 
 /** Its impacts. @param {Motion} motion */
@@ -41,10 +43,10 @@ export function sectionCsv(states) {
   return { head: ["x1", "x2", "v1", "v2"], rows };
 }
 
-/** @param {{delaminated: Spectrum, bonded: Spectrum}} found */
+/** @param {{delaminated: Spectrum, bonded: Spectrum | null}} found */
 export function spectrumCsv({ delaminated, bonded }) {
-  const rows = Array.from(delaminated.order, (order, i) => [order, delaminated.amplitude[i], bonded.amplitude[i]]);
-  return { head: ["order", "delaminated", "bonded"], rows };
+  const rows = Array.from(delaminated.order, (order, i) => [order, delaminated.amplitude[i], ...(bonded ? [bonded.amplitude[i]] : [])]);
+  return { head: ["order", "delaminated", ...(bonded ? ["bonded"] : [])], rows };
 }
 
 /** Revolutions of the motor. @param {Row[]} revolutions */

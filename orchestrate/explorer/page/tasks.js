@@ -91,10 +91,13 @@ function* section(instance, { point, start, periods }) {
 function* spectra(instance, { point, start }) {
   instance.begin(point, start);
   const delaminated = yield* instance.spectrum(point, 0, SPAN);
-  const glued = { ...point, structure: { ...point.structure, bonded: 1 } };
-  const settled = yield* respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 }, false);
-  const bonded = yield* instance.spectrum(glued, 2001, SPAN);
-  yield { delaminated, bonded, bondedState: settled.end };
+  if (point.structure.wall) yield { delaminated, bonded: null }; // nothing can be glued to it
+  else {
+    const glued = { ...point, structure: { ...point.structure, bonded: 1 } };
+    const settled = yield* respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 }, false);
+    const bonded = yield* instance.spectrum(glued, 2001, SPAN);
+    yield { delaminated, bonded, bondedState: settled.end };
+  }
   yield { exponent: yield* stopping(instance, (own) => own.exponent(point, start)) };
 }
 

@@ -59,12 +59,15 @@ export function numbersOf(response, point, level, exponent) {
     ...first,
     "impacts a period": periodsOf(response) === 1 ? count : `${count} on average`,
     "repeats after": repeatWords(response, exponent),
-    "stick together": !contact ? "no" : peak > 0 ? "for a while" : "always",
+    "stick together": !contact ? "no" : staysShut(response) ? "always" : "for a while",
   };
 }
 
 /** How much a mean is worth, of a motion that does not repeat. @param {number} periods of the mean */
 export const averageWords = (periods) => `averages over ${periods} periods; from another start they differ by some per cent`;
+
+/** Whether the halves stay together, at either end of a play. @param {Response} response */
+const staysShut = ({ peak, impacts, contact, gaps }) => peak === 0 || (contact && !impacts && gaps.every((gap) => peak - gap < 1e-9));
 
 /** So many impacts a period, or a revolution. @param {number} impacts @param {string} [each] */
 export function countOf(impacts, each = "a period") {
@@ -77,9 +80,9 @@ export const meanCountOf = (impacts, multiplicity) => `${multiplicity === 1 ? ""
 
 /** A response in a sentence. @param {Response} response @param {Exponent | null | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown @param {string} opening what is said of halves that stay closed */
 export function sentenceOf(response, exponent, seen, opening) {
-  const { impacts, contact, peak } = response;
+  const { impacts, contact } = response;
   const periods = periodsOf(response);
-  if (!impacts) return peak > 0 ? "The halves never touch." : `The halves stay closed: no impact.${opening}`;
+  if (!impacts) return staysShut(response) ? `The halves stay closed: no impact.${opening}` : "The halves never touch.";
   const count = meanCountOf(impacts, periods);
   if (periods) {
     const every = periods === 1 ? "every shaking period" : `after ${periods} shaking periods`;

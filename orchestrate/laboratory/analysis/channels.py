@@ -12,6 +12,7 @@ from ...errors import InputError
 from ...lazy import xr
 from ...model.arguments import checked_word
 from ...response.labels import Variable, variable
+from ...running.provenance import what_it_is
 from ..columns import column_taken
 from ..pieces import Floats
 
@@ -28,7 +29,7 @@ class Channels:
     """Acceleration channels of a record as one array."""
 
     time: Floats  # s
-    sample_rate: float  # hz
+    sample_rate: float  # Hz
     names: tuple[str, ...]  # of `CHANNELS`
     values: Floats  # m/s2
     title: str  # of the record
@@ -40,7 +41,9 @@ class Channels:
         """Check a record, or a result of :func:`orchestrate.shake`, and take its channels."""
         if not isinstance(record, xr.Dataset) or "time" not in record.coords:
             expected = "expected an xarray.Dataset over time with box_acceleration, acceleration1"
-            raise InputError(f"record: {type(record).__name__} without time; {expected}")
+            dataset = isinstance(record, xr.Dataset)
+            what = what_it_is(record) if dataset else type(record).__name__
+            raise InputError(f"record: {what}, without time; {expected}")
         variables = {name: channel_variable(record, name) for name in CHANNELS}
         present = {name: array for name, array in variables.items() if array is not None}
         missing = [name for name in needed if name not in present]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,8 +82,13 @@ def halves(
         given = "neither" if other is None else "both"
         raise InputError(f"{given} of a second record and thicknesses= given; expected one of them")
     checked_word("estimator", estimator, ESTIMATORS)
-    records = [record] if other is None else [record, other]
-    fits = sorted((fit_half(one, resolution, estimator) for one in records), key=lambda f: f.half)
+    fits = []
+    for name, one in (("record", record), ("other", other)):
+        try:
+            fits += [] if one is None else [fit_half(one, resolution, estimator)]
+        except InputError as error:
+            raise InputError(re.sub("^record", name, str(error))) from None
+    fits.sort(key=lambda fit: fit.half)
     if thicknesses is not None:
         mass, f, zeta = fits[0].values
         structure = Structure.from_bonded(mass=mass, f=f, zeta=zeta, thicknesses=thicknesses)
@@ -137,7 +143,7 @@ def fit_half(record: xr.Dataset, resolution: float | None, estimator: str) -> Ha
     fit = least_squares(residual, np.ones(3), method="lm", xtol=1e-12)
     misfit = float(np.sqrt(2.0 * fit.cost))
     if not misfit < MISFIT:
-        text = "expected softer knocks, after which the halves do not touch each other"
+        text = "expected softer knocks, or a wedge: the halves must not touch each other"
         raise InputError(f"record: one oscillator leaves {100 * misfit:.0f} % of {name}; {text}")
     covariance = np.linalg.pinv(fit.jac.T @ fit.jac) * 2.0 * fit.cost / (2.0 * len(s) - 3.0)
     errors = np.sqrt(np.diag(covariance)) * np.abs(start)

@@ -193,7 +193,7 @@ def one_impact_at_peaks(data: Datasets, claim: Claim) -> Measured:
     return Measured(", ".join(texts), parts)
 
 
-def one_impact_everywhere(data: Datasets, claim: Claim) -> Measured:
+def share_with_one_impact(data: Datasets, claim: Claim) -> Measured:
     """Measure the share of periodic responses above 1.37 that have one impact in their period."""
     settled, up = (
         reading.between(one, 1.37, 8.0) for one in (data.settled("elastic"), data.up("elastic"))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -138,6 +140,45 @@ def test_sensors_read_a_result_of_shake(ask, tmp_path):
     assert "rms" in read and read != between
 
 
+def test_what_sensors_read_of_a_simulated_test_is_a_record(ask, tmp_path):
+    shaken = "--structure beam --swept-sine 11:13 --duration 4 --acceleration 1 --plot none"
+    sensors = "--sensor 150:400 --noise 30ug --range 9g --format nc,csv"
+    out = ask("shake", *f"{shaken} {sensors}".split()).success().out
+    paths = re.findall("(.*): what the sensors read", out)
+    assert [path[-3:] for path in paths] == [".nc", "csv"]
+    sweep = orchestrate.SweptSine(first=11.0, last=13.0, duration=4.0, acceleration=1.0)
+    history = orchestrate.shake(orchestrate.Structure.from_file("beam"), sweep)
+    sensor = orchestrate.Sensor(
+        bandwidth=150.0, sample_rate=400.0, noise=30e-6 * 9.80665, range=9.0 * 9.80665
+    )
+    felt = orchestrate.measure(history, sensor, excitation=sweep)
+    for path in paths:
+        read = orchestrate.read_record(path).acceleration1.values
+        assert read == pytest.approx(felt.acceleration1.values, rel=1e-9, abs=1e-9)
+    assert "by its name" in ask("channels", paths[0], output=tmp_path / "setup.toml").out
+
+
+@pytest.mark.parametrize(("rate", "few"), [("19", 1), ("21", 0)])
+def test_a_rate_that_does_not_show_the_excitation_is_wondered_at(ask, rate, few):
+    options = "--structure beam --swept-sine 8:10 --duration 1 --g 0.02 --plot none --sample-rate"
+    done = ask("shake", *options.split(), rate)
+    assert len(done.complaints) == few and (not few or "default is 200" in done.complaints[0])
+
+
+SENSORS = """
+    --noise 1 : --noise: of sensors; expected --sensor HZ with it
+    --sensor 9 --noise 3ug/Hz : --noise 3ug/Hz: expected a number in (m/s2)/sqrt(Hz), or of g
+    --sensor 9 --set wall=true : wall = True: --sensor does not know it yet
+"""
+
+
+@pytest.mark.parametrize("line", SENSORS.strip().splitlines())
+def test_sensors_are_refused_before_anything_is_computed(ask, tmp_path, line):
+    options, _, words = line.strip().partition(" : ")
+    ask("shake", "--hammer", "20:0.004", *options.split()).complaint(words)
+    assert not list(tmp_path.rglob("*.nc"))
+
+
 def in_g(record, path):
     """An export of an analyser: g, a decimal comma, channels by the names of its inputs."""
     rows = zip(record.time.values, *(record[name].values / 9.80665 for name in record), strict=True)
@@ -183,6 +224,15 @@ def test_knocks_on_each_half_make_a_structure(ask, tmp_path):
     out = ask("halves", *paths, output=tmp_path / "beam.toml").success().out
     assert "half2.csv: taken for knocks on half 2, as the second record" in out
     assert "e = 0.7 and clearance = 0 m are assumed" in out
+    both = orchestrate.read_record(paths[1]).assign(acceleration2=lambda one: one.acceleration1)
+    orchestrate.write_record(both.assign(acceleration1=-both.acceleration1), tmp_path / "both.csv")
+    assert said(ask("halves", paths[0], tmp_path / "both.csv")) == said(ask("halves", *paths))
+    ask("halves", paths[0], paths[0]).complaint("half1.csv: the same numbers as", "each half")
+    hard = orchestrate.Hammer(peak=500.0, width=0.01, half=2, duration=8.0)
+    history = orchestrate.shake(beam.replace(clearance=0.0), hard, sample_rate=500.0)
+    sensor = orchestrate.Sensor(bandwidth=100.0, sample_rate=500.0)
+    orchestrate.write_record(orchestrate.measure(history, sensor), tmp_path / "hard.csv")
+    ask("halves", paths[0], tmp_path / "hard.csv").complaint("hard.csv: one oscillator leaves")
     fitted = orchestrate.Structure.from_file(tmp_path / "beam.toml")
     assert (fitted.f1, fitted.f2) == pytest.approx((beam.f1, beam.f2), rel=1e-3)
     assert (fitted.m1, fitted.m2) == pytest.approx((beam.m1, beam.m2), rel=0.04)

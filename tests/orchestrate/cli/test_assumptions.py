@@ -7,6 +7,7 @@ import pytest
 
 import orchestrate
 from orchestrate import Structure
+from orchestrate.cli import notes
 
 SETS = Path(orchestrate.__file__).parent / "model" / "sets"
 
@@ -38,9 +39,23 @@ def test_what_is_not_set_of_a_beam_is_said(ask):
     assert "assumed, as in the set paper" in out
     whole = (*HALVES, *MASSES, *ZETAS, "--set", "e=0.6")
     assert "assumed" not in said(ask, *whole)[0]
-    line = said(ask, "--set", "f1=42", *MASSES, *ZETAS)[0].splitlines()[0]
-    assert line.endswith("the set paper: f2 = 0.1592 Hz, e = 0.7 (--set)")
+    line = said(ask, "--set", "f1=42", "--set", "kappa=2", *MASSES, *ZETAS)[0].splitlines()[0]
+    assert line.endswith("the set paper: e = 0.7 (--set)")
     assert "m1 =" not in said(ask, *HALVES, "--set", "mu=0.8")[0]
+
+
+def test_one_mass_before_a_stop_is_said_by_half_1(ask, tmp_path):
+    stop = ("wall=true", "f1=12", "zeta1=1%", "clearance=0.3mm")
+    words = [word for one in stop for word in ("--set", one)]
+    out, complaints = said(ask, *words, shaken=("--hz", "11", "--g", "0.1"))
+    assert complaints == [] and re.search(r"[1-9]\d* impacts", out)
+    assert out.startswith("assumed, as in the set paper: m1 = 1 kg, e = 0.7 (--set)\n")
+    alike = ("f=12", "zeta=1%", "clearance=0.3mm", "wall=true")
+    same = said(ask, *(w for one in alike for w in ("--set", one)), shaken=("--hz", "11", "--g=.1"))
+    assert same[0].splitlines()[:-1] == out.splitlines()[:-1]
+    (tmp_path / "stop.toml").write_text("[structure]\nwall = true\nf_hz = 12\nzeta = 0.01\n")
+    options = ("--structure", tmp_path / "stop.toml", "--set", "zeta=2%", "--set", "e=0.5")
+    assert said(ask, *options, shaken=("--hz", "11", "--g", "0.1"))[1] == []
 
 
 def test_numbers_may_have_their_units(ask, tmp_path):
@@ -137,6 +152,38 @@ def test_a_level_below_the_threshold_is_said(ask):
         ask, *HALVES, *MASSES, "--set", "clearance=-2e-5", shaken=("--hz", "48", "--g", "3")
     )
     assert "is linear" not in loud[0] and "no impacts" not in loud[0]
+
+
+@pytest.mark.parametrize(("f1", "refused"), [("39", False), ("40", True), ("4.3", True)])
+def test_one_half_without_the_other_is_refused_where_they_are_unlike(ask, f1, refused):
+    asked = f"simulate --structure beam --hz 12 --g 0.02 --periods 2 --plot none --set f1={f1}"
+    done = ask(*asked.split())
+    assert done.code == (2 if refused else 0), done.err
+    if refused:
+        done.complaint(
+            f"--set f1={f1}: f2 would be 13.08 Hz, as in the set beam; expected --set f2"
+        )
+
+
+@pytest.mark.parametrize(
+    ("level", "warned"),
+    [("--amplitude 49mm --hz 12", 0), ("--amplitude 51mm --hz 12", 1), ("--g 99 --hz 40", 0)]
+    + [("--g 101 --hz 40", 1), ("--g 101,120 --hz 40", 1)],
+)
+def test_what_no_shaker_does_is_wondered_at_once(ask, level, warned):
+    asked = f"resonance --structure beam {level} --transient 2 --samples 4 --plot none"
+    done = ask(*asked.split())
+    words = "warning: the box moves by up to ", "beyond what shakers do"
+    assert done.code == 0 and sum(all(w in one for w in words) for one in done.complaints) == warned
+
+
+@pytest.mark.parametrize(
+    ("ratios", "far"), [((0.4, 0.49), 1), ((0.4, 0.51), 0), ((5.1, 9.0), 1), ((4.9, 9.0), 0)]
+)
+def test_voltages_far_from_the_resonance_are_wondered_at(recwarn, ratios, far):
+    notes.warn_of_voltage("--voltage x", tuple(6.5 * ratio for ratio in ratios), 6.5)
+    assert len(recwarn) == far
+    assert not far or "omega with 6.5 V (eta0 = 1)" in str(recwarn[0].message)
 
 
 @pytest.mark.parametrize(("mass", "note"), [("19.9", False), ("20.1", True), ("20.1kg", True)])

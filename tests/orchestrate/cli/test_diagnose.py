@@ -37,7 +37,7 @@ def sine(tmp_path):
 MISTAKES = """
     FILE --set e=0.4 : --set: of a guess | --structure FILE.toml
     lost.csv : lost.csv: no such file; expected a record
-    FILE GUESS --participation 99 : --participation 99: expected -10 to 10
+    FILE GUESS --participation 1,2,3 : --participation 1,2,3: expected a factor for face 1
     FILE --structure lost.toml : lost.toml
     FILE GUESS --channels 0 : channels = '0' | base=...,face1=
     FILE GUESS --columns 0,1 : no acceleration of a face in time | base | --channels

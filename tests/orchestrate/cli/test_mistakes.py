@@ -33,6 +33,8 @@ MISTAKES = {  # options of each command, then what its line says
         --over e --values 0.1,true --eta 1 : --over e --values true | not a number
         --set e : --set e | NAME=VALUE
         --set e=abc : --set e=abc | abc is not a number
+        --set gap=1mm : --set gap: no parameter | did you mean clearance?
+        --set m=1 : m: no parameter of a structure | did you mean m1?
         --set zeta=1% --set zeta2=0.1 : zeta2 is set already
         --set preload=-20um : preload=-20um: expected a length above 0
         --set e=0.1 --set e=0.2 : --set e=0.2 | each name once
@@ -44,6 +46,9 @@ MISTAKES = {  # options of each command, then what its line says
     """,
     "simulate": """
         : frequency: nothing given | --eta | --hz | --rpm | --frequency
+        --eta 1,2 : --eta 1,2 | 2 values | with a decimal point, 1.2
+        --hz 1 --g 0,5 : --g 0,5: expected a number > 0 | with a decimal point, 0.5
+        --set f1=46,5 --eta 1 : --set f1=46,5 | is not a number | with a decimal point, 46.5
         --eta 1 --frequency 2 : --eta and --frequency | one of them
         --frequency 2 : --frequency 2 | --amplitude | --g
         --structure beam --eta 1 : --eta 1 | 75 rad/s | --amplitude | --g
@@ -74,9 +79,14 @@ MISTAKES = {  # options of each command, then what its line says
         README.md --beside README=x.nc : a second record README
         README.md --damping 0.1 : --damping: expected only with --show shock
     """,
+    "plan": """
+        --sensor 9:8:7 : --sensor 9:8:7: expected HZ or HZ:RATE
+        --noise 3um : --noise 3um: expected a number
+        --range 0 : --range 0: expected a number > 0
+    """,
     "halves": """
         : RECORDS is missing
-        a.csv a.csv : a.csv: expected one record of each half
+        a.csv b.csv c.csv : c.csv: expected one record of each half
         a.csv --thicknesses 3 : --thicknesses 3: expected H1,H2
     """,
     "map": """
@@ -164,6 +174,14 @@ SYNTAX = """
     sweep --e 0.3 : --e: | did you mean --set e=0.3?
     analyse --shw=psd x.csv : --shw: | did you mean --show?
     spectra --eta0=1 --volt 1 : --volt: | did you mean --voltage?
+    resonance my.toml : my.toml: no option of resonance; did you mean --structure my.toml?
+    sweep --gravity 9.81 : --gravity: no option of sweep; did you mean --box-acceleration -1g?
+    shake --g-rms 1 : did you mean --g?
+    plan --levels 1 : did you mean --g?
+    simulate --duration 5 : did you mean --periods?
+    diagnose --guess a.toml : did you mean --structure?
+    couple --level 1 : --level: no option of couple
+    simulate beam : beam: no option of simulate; did you mean --structure beam?
 """
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 
@@ -12,9 +13,11 @@ import xarray as xr
 from matplotlib import image
 
 import orchestrate
-from orchestrate import Structure
+from orchestrate import InputError, Structure, cli
 from orchestrate.cli import responses
+from orchestrate.cli.diagnosis import plan_lines
 from orchestrate.cli.dynamics import is_on_curve
+from orchestrate.cli.options import OfBox
 from orchestrate.fmu import OSCILLATOR, find
 from orchestrate.version import __version__
 
@@ -62,6 +65,10 @@ def test_exponents_along_a_sweep(ask, folder):
 TRIVIAL = [
     (("simulate", "--eta", "1", "--set", "kappa=1"), "both oscillators are alike"),
     (("sweep", "--eta", "1.2", *SHORT), "one value, eta = 1.2: a table and no picture"),
+    (
+        ("resonance", "--eta", "1.2", *SHORT),
+        "bonded up  bonded down  delaminated up  delaminated down  unit\n  xi_rel_max",
+    ),
     (("sweep", "--eta", "2:2.1:0.05", "--direction", "both", "--samples", "8"), "gap nowhere"),
     (("resonance", "--eta", "0.3:0.4:0.05", *SHORT), "no peak in this range"),
     (
@@ -249,6 +256,46 @@ def test_a_record_is_played_again(ask, folder, tmp_path):
     assert done.code and "no column 'side'; expected one of t, top, base" in done.err
 
 
+OF_BOX = {name: kind for name, kind in cli.COMMANDS.items() if issubclass(kind, OfBox)}
+MORE = {
+    "map": "--over e --values 0.5,0.6 --over D --values 0.1,0.2",
+    "branch": "--over e --limits 0.5:0.9",
+}
+
+
+@pytest.mark.parametrize("name", OF_BOX)
+@pytest.mark.parametrize("shaken", ["--hz 12 --g 0.1", "--hz 12 --amplitude 0", "--eta 1.2"])
+def test_gravity_and_forces_reach_the_function(ask, monkeypatch, name, shaken):
+    asked, function = {}, getattr(orchestrate, OF_BOX[name].calls)
+
+    @functools.wraps(function)
+    def stop(_, **question):
+        asked.update(question)
+        raise InputError("stop")
+
+    monkeypatch.setattr(orchestrate, OF_BOX[name].calls, stop)
+    options = f"{shaken} --box-acceleration -1g --force1 2 {MORE.get(name, '')}"
+    assert ask(name, *options.split()).complaints[-1].startswith("error: stop")
+    assert (asked["box_acceleration"], asked["force1"]) == (-9.80665, 2.0)
+
+
+def test_the_picture_of_attractors_is_under_their_forces(ask, monkeypatch):
+    asked, simulate = [], orchestrate.simulate
+
+    def noted(structure, **question):
+        asked.append(question)
+        return simulate(structure, **question)
+
+    monkeypatch.setattr(orchestrate, "simulate", noted)
+    ask("attractors", "--eta", "1.2", "--force1", "0.1", "--starts", "4").success()
+    assert asked and all(question["force1"] == 0.1 for question in asked)
+
+
+def test_levels_do_not_know_forces(ask):
+    asked = ("resonance", "--structure", "beam", "--hz", "12", "--g", "0.1,0.2", "--force2", "1")
+    ask(*asked).complaint("--force2: resonance_levels does not know it yet")
+
+
 # -- branches over a picture -----------------------------------------------------------------------
 
 FEW = ("sweep", "--eta", "2.45:2.55:0.05", "--transient", "10", "--samples", "4")
@@ -346,6 +393,20 @@ def test_a_plan(ask, folder):
     assert "verdict on the guess" in done.out and "on its sound twin" in done.out
     assert "overload" in done.out and shows_something(next(folder.glob("plan_*.png")))
     ask("plan", "--structure", "beam", "--hz", "10").complaint("--hz 10", "FIRST:LAST")
+
+
+@pytest.mark.parametrize(("decides", "said"), [([1, 0], "lower levels only"), ([0, 0], "raise")])
+def test_a_plan_of_which_the_higher_levels_do_not_decide(decides, said):
+    """It said that no verdict was right, and to raise the level."""
+    names = ("recommended_level", "second_level", "recommended_first", "recommended_last")
+    numbers = dict.fromkeys((*names, "recommended_duration", "recommended_rate"), ((), 40.0))
+    rows = dict.fromkeys(("verdict", "sound_verdict"), ("level", ["undecided"] * 2))
+    made = {**numbers, **rows, "decides": ("level", decides), "overload": ("level", [0, 0])}
+    made |= {"counts": ((), 0), "opening_level": ((), 0.0)}
+    made |= {"opening": ("level", [0.0, 0.0], {"units": "m", "long_name": "opening"})}
+    level = ("level", [20.0, 40.0], {"units": "m/s2", "long_name": "level"})
+    data = xr.Dataset(made, {"level": level}, {"clearance": 1.0})
+    assert any(said in line for line in plan_lines(data))
 
 
 def test_forces_of_a_file_act_or_are_refused(ask, tmp_path):

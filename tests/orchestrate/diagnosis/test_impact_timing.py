@@ -6,8 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from orchestrate.constants import TURN
 from orchestrate.diagnosis import impact_timing
-from orchestrate.diagnosis.impact_timing import TIMING, Strikes, strikes, strikes_at, timed_power
+from orchestrate.diagnosis.impact_timing import (
+    TIMING,
+    Strikes,
+    stiffnesses,
+    strikes,
+    strikes_at,
+    timed_power,
+)
 from orchestrate.diagnosis.order_windows import checked_channels
 from tests.benches import recipe
 from tests.benches.strikers import STRIKERS
@@ -17,27 +25,39 @@ from ...sparing import ordinary
 KINDS = {**recipe.KINDS, **STRIKERS}
 FACES = Strikes(
     heard=60.0, base=1.2, locked=0.99, one_sided=0.85, blow=0.5, opposite=math.nan,
-    order2=0.2, spread=0.5, stiffness=1.0,
+    order2=0.2, stiffens=0.0, place=0.5, spread=0.2,
+    stiffness=1.0,
 )  # fmt: skip
 WORDS = {  # on both sides of each threshold
-    "nothing heard": [{"heard": 2.9}],
-    "something faint": [{"heard": 3.1}, {"heard": 9.9}],
+    "nothing heard": [{"heard": 2.9}, {"heard": 4.9, "locked": 0.69}],
+    "something faint": [{"heard": 3.1}, {"heard": 9.9}, {"heard": 5.1, "locked": 0.69}],
     "base strikes": [{"base": 16.0}],
-    "not locked": [{"locked": 0.89}, {"one_sided": 0.49}, {"locked": 0.8, "opposite": -0.99}],
-    "kinks": [{"blow": 0.1}, {"blow": 0.1, "opposite": -0.99}],
-    "something small strikes": [{"order2": 0.049}],
+    "not locked": [{"locked": 0.69}, {"one_sided": 0.49}, {"locked": 0.69, "opposite": -0.99}],
+    "kinks": [{"blow": 0.16}, {"blow": 0.16, "opposite": -0.99}],
+    "something small strikes": [{"order2": 0.044}],
     "stop": [
-        {"spread": 0.32},
-        {"spread": 0.1, "base": 14.9},
-        {"spread": 0.1, "stiffness": math.nan, "opposite": 0.9},
+        {"stiffens": 0.51, "spread": 0.34},
+        {"stiffens": 2.01, "spread": 0.36},
+        {"stiffens": -0.51},
+        {"stiffens": -0.51, "place": -0.89},
+        {"stiffens": -1.01, "place": -0.91},
+        {"stiffens": 0.8, "base": 14.9},
+        {"stiffens": 0.8, "stiffness": math.nan, "opposite": 0.9},
     ],
-    "stop or softer face": [{"stiffness": x} for x in (math.nan, 0.89, 1.07)]
-    + [{"opposite": -0.94}],
+    "stop or softer face": [
+        {"stiffness": math.nan},
+        {"stiffness": 1.07},
+        {"opposite": 0.01},
+        {"opposite": -0.94, "stiffness": math.nan},
+    ],
     "faces strike": [
-        {"heard": 10.1, "base": 2.9, "locked": 0.91, "one_sided": 0.51, "blow": 0.12},
-        {"order2": 0.051, "spread": 0.34, "stiffness": 1.05},
-        {"stiffness": 0.91},
-        {"heard": 3.5, "opposite": -0.96, "spread": 0.1, "order2": 0.01, "stiffness": math.nan},
+        {"heard": 10.1, "base": 2.9, "locked": 0.71, "one_sided": 0.51, "blow": 0.18},
+        {"order2": 0.046, "stiffens": 0.49, "stiffness": 1.05},
+        {"stiffens": -0.49, "stiffness": 0.7},
+        {"stiffens": -0.99, "place": -0.91},
+        {"stiffens": 1.99, "spread": 0.36},
+        {"opposite": -0.01},
+        {"heard": 3.5, "opposite": -0.96, "stiffens": 0.8, "order2": 0.01, "stiffness": math.nan},
     ],
 }
 
@@ -45,7 +65,7 @@ WORDS = {  # on both sides of each threshold
 @pytest.mark.parametrize(("power", "locked"), [(0.29, 1.0), (0.31, 0.53)])
 def test_windows_as_loud_as_a_part_of_the_loudest_count(monkeypatch, power, locked):
     """Two windows whose peaks are opposite: the second one counts from `loud` on."""
-    rest = 0.9, 0.5, 1.0, 0.1, 1.0, 40.0, math.nan
+    rest = 0.9, 0.5, 0.1, math.nan, 1.0, 1.0, -1.0
     rows = [(9.0, 1.0, size, at, *rest) for size, at in ((1.0, 0.0), (power, math.pi))]
     monkeypatch.setattr(impact_timing, "timed_windows", lambda *given: iter(rows))
     assert strikes_at(None, [0], 40.0, TIMING).locked == pytest.approx(locked, abs=0.01)
@@ -53,7 +73,7 @@ def test_windows_as_loud_as_a_part_of_the_loudest_count(monkeypatch, power, lock
 
 def test_a_window_in_which_noise_peaks_is_no_base_that_strikes(monkeypatch):
     """A rubbing sound beam, 14 samples in a period: the base's noise made 3.9 in one of many."""
-    rest = 1.0, 0.0, 0.9, 0.5, 1.0, 0.1, 1.0, 40.0, math.nan
+    rest = 1.0, 0.0, 0.9, 0.5, 0.1, math.nan, 1.0, 1.0, -1.0
     for base, expected in (((1.2, 3.9, 1.1), 1.2), ((3.9, 3.8, 1.1), 3.8)):
         rows = [(3.7, one, *rest) for one in base]
         monkeypatch.setattr(impact_timing, "timed_windows", lambda *given, rows=rows: iter(rows))
@@ -84,6 +104,58 @@ def timed(kind, seed, sensors=1):
     masses, turns = np.array([guess.m1, guess.m2]), np.array([truth.f1, truth.f2])
     shut = math.sqrt((masses * turns**2).sum() / masses.sum()) * rng.uniform(0.97, 1.03)
     return strikes(checked_channels(case.record), shut)
+
+
+def windows(part=0.5, growth=0.2, count=60):
+    """Order 1 of a mass whose stiffness has grown in ten windows about its resonance of 1 rad/s."""
+    turns, loud = np.linspace(0.5, 1.6, count), np.arange(count) // 10 == 2
+    stroke = -1.0 / (1.0 + growth * loud - turns**2 + 0.02j * turns)
+    return np.array([-part * turns**2 * stroke, np.ones(count), part * stroke]), loud
+
+
+@pytest.mark.parametrize("quiet", [0, 7, 8, 50])
+def test_a_stiffness_that_grows_is_told_from_a_participation(quiet):
+    """From where nothing strikes, or where little moves."""
+    motion, loud = windows()
+    still = np.flatnonzero(~loud)[:quiet] if quiet < 50 else ~loud
+    mask = np.zeros(60, bool)
+    mask[still] = True
+    rest, squares = stiffnesses(motion, loud, mask)
+    assert rest == pytest.approx(0.5 / math.pi, rel=0.015)
+    growth = (TURN * np.sqrt(squares)) ** 2 - 1.0
+    assert growth[loud] == pytest.approx(0.2, abs=0.03) and abs(growth[~loud]).max() < 0.03
+
+
+@pytest.mark.parametrize(
+    ("growth", "shut", "stiffens", "stiffness"),
+    [
+        (0.0, math.nan, 0.0, math.nan),
+        (0.2, math.nan, 1.0, math.nan),
+        (0.2, 1.1, 1.2 / (0.97 * 1.1) ** 2 - 1.0, math.sqrt(1.2) / 1.1),  # to shut faces'
+        (-0.2, 0.9, -1.0, math.sqrt(0.8) / 0.9),
+    ],
+)
+def test_a_growth_ends_at_the_stiffness_of_shut_faces(
+    monkeypatch, growth, shut, stiffens, stiffness
+):
+    """By an order 2 of a fifth; a half that lifts off another starts softer than both."""
+    motion, loud = windows(growth=growth)
+    rest = np.ones(60), 9.0 * loud, np.zeros(60), np.ones(60), np.ones(60), np.full(60, 0.2)
+    rows = zip(np.where(loud, 9.0, 0.5), *rest, np.full(60, math.nan), *motion, strict=True)
+    monkeypatch.setattr(impact_timing, "timed_windows", lambda *given: iter(rows))
+    found = strikes_at(None, [0], shut / TURN, TIMING)
+    expected = stiffens if math.isnan(shut) or growth < 0.0 else stiffens / 0.2
+    assert found.stiffens == pytest.approx(expected, abs=0.05)
+    assert found.stiffness == pytest.approx(stiffness, abs=0.01, nan_ok=True)
+
+
+def test_beams_of_other_frequencies_have_the_same_numbers():
+    """Six milliseconds were a fifteenth of a period at 12 Hz: blows were not told as opposite."""
+    channels = checked_channels(recipe.draw(np.random.default_rng(5), "delaminated").record)
+    slow = replace(channels, time=4.0 * channels.time, sample_rate=0.25 * channels.sample_rate)
+    expected, found = strikes(channels, 45.0), strikes(slow, 11.25)
+    assert expected.heard > 20.0
+    assert list(vars(found).values()) == pytest.approx([*vars(expected).values()], nan_ok=True)
 
 
 OTHERS = ["sound", "crack", "play", "fixture", "bearing", "washer"]

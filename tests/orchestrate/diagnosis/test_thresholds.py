@@ -42,24 +42,10 @@ def test_each_threshold_of_the_verdict(findings, name, inside, outside, verdict)
     assert [beam.verdict() for beam in beams] == [verdict, UNDECIDED]
 
 
-@pytest.mark.parametrize(
-    ("level", "displacement", "resonance", "verdict"),
-    [
-        (2.0, 1.36, 46.0, DELAMINATED),
-        (2.0, 1.34, 46.0, UNDECIDED),  # it grows less than 1.35 times
-        (2.0, 1.36, 46.0 * math.exp(0.029), DELAMINATED),
-        (4.0, 1.83, 46.0, DELAMINATED),  # the square over two octaves
-        (4.0, 1.81, 46.0, UNDECIDED),
-        (2.0, 1.36, 46.0 * math.exp(0.031), UNDECIDED),  # it moves by more than 3 %
-        (2.0, 1.36, 46.0 * math.exp(-0.031), UNDECIDED),
-        (1.51, 1.36, 46.0, DELAMINATED),
-        (1.49, 1.36, 46.0, UNDECIDED),  # one level, but for a half
-    ],
-)
-def test_each_threshold_of_two_levels(level, displacement, resonance, verdict):
-    moved = {"displacement": displacement * UNKNOWN.displacement, "resonance": resonance}
-    high = replace(UNKNOWN, high=level * UNKNOWN.high, **moved)
-    assert Beam((UNKNOWN, high)).verdict() == verdict
+@pytest.mark.parametrize(("level", "verdict"), [(1.51, DELAMINATED), (1.49, UNDECIDED)])
+def test_the_threshold_of_two_levels(level, verdict):
+    """One level, but for a half, does not stand for a known frequency."""
+    assert Beam((UNKNOWN, replace(UNKNOWN, high=level * UNKNOWN.high))).verdict() == verdict
 
 
 @pytest.mark.parametrize(("level", "verdict"), [(0.89, DELAMINATED), (0.91, UNDECIDED)])

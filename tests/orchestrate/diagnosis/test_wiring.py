@@ -206,7 +206,7 @@ def test_what_a_note_says_mends_the_record(tmp_path):
     )
     options = {}
     asked = '"Table" .base., column "Laser tip" .face 1.: no unit.*unit="base=...,face1=..."$'
-    for said in (asked, '"Table": in V, without a sens.*sensitivity="?'):
+    for said in (asked, '"Table" .base.: in V, without a sens.*sensitivity="?'):
         with pytest.raises(InputError, match=said):
             read_record(path, **options)
         if "unit" in options:

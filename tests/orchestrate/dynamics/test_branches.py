@@ -228,7 +228,10 @@ def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
         ({"over": "e", "limits": (0.1, 1.9), "eta": 1.5}, "e = 1.9"),
         ({"eta": 4.0, "limits": (1.0, 2.0)}, "eta = 4.0"),
         ({"start": 1.5, "limits": (1.0, 2.0)}, "start = 1.5"),
-        ({"start": xr.Dataset(), "limits": (1.0, 2.0)}, "start: without node_kind"),
+        (
+            {"start": xr.Dataset(), "limits": (1.0, 2.0)},
+            "start: a dataset over nothing; expected a dataset of orbit",
+        ),
     ],
 )
 def test_what_cannot_be_asked(question, words):

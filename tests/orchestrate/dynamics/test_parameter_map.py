@@ -85,6 +85,8 @@ def test_any_two_parameters_in_any_unit():
     one = own.replace(m2=1.0, k2=8000.0, D=0.02)
     swept = sweep(one, eta=1.4, transient=50, samples=10)
     assert float(found.xi_rel_max.sel(k2=8000.0, D=0.02)) == float(swept.xi_rel_max[0])
+    same = map(own, k2=[6000.0, 8000.0], over="D", values=found.D, eta=1.4, m2=1.0, **short)
+    assert same.equals(found) and same.attrs["identity"] == found.attrs["identity"]
     box = map(own, frequency=[90.0, 110.0], amplitude=[1e-3, 2e-3], **short)
     np.testing.assert_allclose(box.xi_rel_max[:, 0], box.xi_rel_max[:, 1], rtol=1e-6)
 
@@ -99,6 +101,8 @@ def test_any_two_parameters_in_any_unit():
         ({"eta": ETAS, "colour": ES}, "colour: no parameter; expected"),
         ({"eta": ETAS, "e": [0.5, 1.5]}, r"e = 1\.5: expected 0 <= e <= 1"),
         ({"eta": ETAS, "e": [0.5, 0.5]}, "e: a value twice"),
+        ({"eta": ETAS, "over": "e"}, "over and values: expected both or none"),
+        ({"eta": ETAS, "over": "e", "values": ES, "e": 0.5}, "over= not by its name too"),
     ],
 )
 def test_what_is_refused(asked, text):

@@ -100,7 +100,7 @@ def test_what_is_no_sweep_along_the_frequency_is_refused(tmp_path):
     damaged = xr.Dataset(attrs={"over": "eta"})
     with pytest.raises(InputError, match="branches: a part is missing .*stable.*; expected"):
         explore(output=tmp_path / "page.html", branches=damaged)
-    with pytest.raises(InputError, match="branches over nothing: expected"):
+    with pytest.raises(InputError, match="branches: a dataset over nothing; expected"):
         explore(output=tmp_path / "page.html", branches=xr.Dataset())
     assert not list(tmp_path.glob("*.html"))
 

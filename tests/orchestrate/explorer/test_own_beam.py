@@ -74,6 +74,9 @@ SHOWN = {  # states of the page: a link's words, and what is done then
     "other beam": ("#from=2.8&to=2.9&direction=down&e=0.55&k2=1.3&eta=2.85", ""),
     "bonded": ("#from=1&to=1.05&bonded=1&eta=1.02", ""),
     "tour": ("#tour=two-answers-other", ""),
+    "play and force": ("#from=1.1&to=1.11&clearance=0.3&stroke=1.5&force1=0.4&eta=1.1", ""),
+    "wall": ("#from=1.1&to=1.11&wall=1&clearance=-0.3&eta=1.1", ""),
+    "wall, pushed": ("#from=1.1&to=1.11&wall=1&stroke=2&box_acceleration=-0.1&eta=1.1", ""),
     "in mm": ("#from=1&to=1.05&mm=0.3&k1=9000&k2=10000&eta=1.01", ""),
 }
 
@@ -100,6 +103,41 @@ def test_every_command_that_the_page_shows_runs_when_it_is_pasted(browser, page,
             if one.attrs["direction"] in (way, "both")
         ]
         assert [one.xi_rel.values.tobytes() for one in theirs] == [mine]
+
+
+def test_a_wall_a_play_and_forces_are_chosen_by_hand(browser):
+    """The motion is Python's; what half 2 would be is gone, and back in the paper's it is as it
+    was; a play is not narrower than the gap at rest.
+    """
+    browser.run("explorer.open(1.2, 1.3); explorer.choose(1.25, true)")
+    browser.run("document.getElementById('loads').open = true")
+    browser.click("wall")
+    typed(browser, "xi0-number", "0.5")
+    typed(browser, "play-number", "0.4")
+    assert "not below that at rest" in browser.text("play-number-wrong")
+    typed(browser, "play-number", "1.25")
+    typed(browser, "push1-number", "0.3")
+    typed(browser, "push-number", "-0.1")
+    browser.until(READY)
+    hidden = "return document.getElementById('{}-number').checkVisibility()"
+    assert not any(browser.run(hidden.format(name)) for name in ("mu", "kappa", "push2"))
+    structure = orchestrate.Structure(wall=True, clearance=0.5, stroke=1.25)
+    choice = browser.run("return explorer.inspector.choice")
+    expected = orchestrate.sweep(
+        structure,
+        frequency=[choice["point"]["frequency"]],
+        amplitude=choice["point"]["amplitude"],
+        start=choice["start"],
+        **{"force1": 0.3, "box_acceleration": -0.1, "progress": False},
+    )
+    found = browser.numbers("explorer.inspector.found.response.gaps")
+    assert found.tobytes() == expected.xi_rel.values.tobytes()
+    assert float(expected.impacts_per_period[0]) > 0.0
+    own(browser)
+    assert float(browser.get("force1", "value")) != 0.3  # 1 g is another unit of length
+    assert browser.run("return explorer.inspector.found.response.impacts") == pytest.approx(
+        float(expected.impacts_per_period[0]), abs=0.05
+    )
 
 
 WRONG = {  # a field, what is typed, and what is said beside it

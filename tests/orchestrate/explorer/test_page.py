@@ -12,6 +12,7 @@ from orchestrate import cli
 from orchestrate.explorer.page import explore
 from orchestrate.fmu import OSCILLATOR, Instance, begin, find, sampled
 from orchestrate.model import Excitation
+from orchestrate.model.ranges import PUSHES
 from orchestrate.response.equations import absolute_accelerations
 from orchestrate.response.questions import Point
 from orchestrate.response.spectra import acceleration_spectrum
@@ -65,7 +66,9 @@ SETTINGS = {"transient": 500, "samples": 200, "tolerance": 1e-2}
 
 
 def random_structures(seed, count):
-    """Structures with a gap, a preload or neither, and a frequency ratio each."""
+    """Structures with a gap, a preload or neither, some of them before a wall, with a play or
+    under forces; a frequency ratio each, and what pushes them besides.
+    """
     random = np.random.default_rng(seed)
     for i in range(count):
         structure = orchestrate.Structure.nondimensional(
@@ -74,14 +77,23 @@ def random_structures(seed, count):
             D1=random.uniform(0.0005, 0.2),
             D2=random.uniform(0.0005, 0.2),
             e=random.uniform(0.05, 0.95),
-        ).replace(clearance=(0.0, random.uniform(-3.0, 3.0))[i % 2])
-        yield structure, float(random.uniform(0.3, 5.0))
+        ).replace(clearance=(0.0, random.uniform(-3.0, 3.0))[i % 2], wall=i % 4 == 3)
+        if i % 3 == 1:
+            least = max(structure.clearance, 0.0)
+            structure = structure.replace(stroke=least + random.uniform(0.1, 3.0))
+        pushes = {name: float(random.normal() * (i % 5 > 2)) for name in PUSHES}
+        pushes["force2"] *= not structure.wall
+        yield structure, float(random.uniform(0.3, 5.0)), pushes
+
+
+def numbers_of(structure, pushes):
+    """A structure as the page has it."""
+    return {name: float(value) for name, value in structure.parameters().items()} | pushes
 
 
 def asked_of_the_page(browser, pairs):
     """Responses of the page from rest."""
-    numbers = [[{k: float(v) for k, v in s.parameters().items()}, eta] for s, eta in pairs]
-    browser.run(ASK, numbers, SETTINGS)
+    browser.run(ASK, [[numbers_of(s, pushes), eta] for s, eta, pushes in pairs], SETTINGS)
     browser.until("return explorer.answers.every(Boolean)", seconds=300)
 
 
@@ -90,8 +102,8 @@ def test_the_numbers_are_those_of_python(shown, count):
     pairs = list(random_structures(11, count))
     asked_of_the_page(shown, pairs)
     found = [
-        orchestrate.sweep(structure, eta=[eta], progress=False, jobs=1, **SETTINGS)
-        for structure, eta in pairs
+        orchestrate.sweep(structure, eta=[eta], progress=False, jobs=1, **pushes, **SETTINGS)
+        for structure, eta, pushes in pairs
     ]
     names = {
         "peak": "xi_rel_max",
@@ -114,6 +126,7 @@ MOTIONS = {  # a structure and frequency ratio: chaos, regular, with contact, pr
     "regular": (orchestrate.Structure.nondimensional(mu=2.0, kappa=0.7, D=0.02, e=0.6), 1.2),
     "contact": (orchestrate.Structure.nondimensional(e=0.3, D=0.05), 0.6),
     "preload": (orchestrate.Structure.nondimensional(mu=1.5).replace(clearance=-0.5), 0.8),
+    "play": (orchestrate.Structure.nondimensional(D=0.05).replace(stroke=1.5, e=0.8), 0.7),
 }
 SPECTRA = """
 const [structure, eta, start] = arguments;
@@ -127,12 +140,13 @@ explorer.pool.ask("spectra", { point, start }, (parts) => explorer.parts.push(..
 @pytest.mark.parametrize("name", MOTIONS)
 def test_spectra_and_exponents_are_those_of_python(shown, name):
     structure, eta = MOTIONS[name]
-    swept = orchestrate.sweep(structure, eta=[eta], transient=400, samples=50, progress=False)
+    pushes = dict(zip(PUSHES, (0.1, 0.3, -0.2) if structure.stroke else (0.0,) * 3, strict=True))
+    asked = {"eta": [eta], "transient": 400, "samples": 50, "progress": False}
+    swept = orchestrate.sweep(structure, **asked, **pushes)
     start = swept.end_state.values[0].tolist()
-    numbers = {key: float(value) for key, value in structure.parameters().items()}
-    shown.run(SPECTRA, numbers, eta, start)
+    shown.run(SPECTRA, numbers_of(structure, pushes), eta, start)
     shown.until("return explorer.parts.length === 2")
-    point = Point(structure, Excitation.nondimensional(eta, structure))
+    point = Point(structure, Excitation.nondimensional(eta, structure, **pushes))
     with Instance(find(OSCILLATOR).path) as instance:
         begin(instance, *point, start)
         states = sampled(instance, 0.0, 64 * point.excitation.period, 65536)
@@ -140,13 +154,13 @@ def test_spectra_and_exponents_are_those_of_python(shown, name):
     amplitude = shown.numbers("explorer.parts[0].delaminated.amplitude")
     np.testing.assert_allclose(amplitude, expected, atol=1e-9 * expected.max())
     assert len(amplitude) == 1281 and amplitude.max() > 0.1
-    bonded = orchestrate.spectra(structure, eta=eta, transient=2001, highest=20.0, progress=False)
+    asked = {"eta": eta, "progress": False, **pushes}
+    bonded = orchestrate.spectra(structure, transient=2001, highest=20.0, **asked)
     bonded = bonded.acceleration.sel(kind="bonded", mass=1).values.ravel()
     mine = shown.numbers("explorer.parts[0].bonded.amplitude")
     np.testing.assert_allclose(mine, bonded, atol=1e-9 * bonded.max())
     found = shown.run("return explorer.parts[1].exponent")
-    asked = {"eta": eta, "start": start, "transient": 0, "progress": False}
-    expected = orchestrate.lyapunov(structure, periods=400, **asked)
+    expected = orchestrate.lyapunov(structure, periods=400, start=start, transient=0, **asked)
     assert found["verdict"] == int(expected.verdict[0]) == (1 if name == "chaos" else -1)
     assert found["value"] == pytest.approx(float(expected.exponent[0]), rel=1e-6)
     assert found["error"] == pytest.approx(float(expected.standard_error[0]), rel=1e-3)

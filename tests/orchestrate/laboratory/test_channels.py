@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from orchestrate import InputError, channels, read_record
+from orchestrate import InputError, channels, read_record, record
+from orchestrate.laboratory.columns import split_heading
 
 TIME = np.arange(400) / 1000.0
 WAVES = [np.sin(250.0 * TIME + i) * (i + 1.0) for i in range(4)]
@@ -54,6 +55,14 @@ def no_warning():
     return pytest.MonkeyPatch.context()
 
 
+def test_a_half_next_to_the_one_that_is_struck_may_hardly_move(recwarn):
+    quiet = 1e-3 * WAVES[1]
+    record(sample_rate=1000.0, force1=WAVES[0], acceleration1=WAVES[2], acceleration2=quiet)
+    assert not recwarn.list
+    with pytest.warns(UserWarning, match="are these numbers in g"):
+        record(sample_rate=1000.0, box_acceleration=WAVES[0], acceleration1=quiet)
+
+
 @pytest.mark.parametrize("rate", [0, -1.0, float("nan"), "x"])
 def test_a_rate_that_is_none_is_refused_by_all_that_read_a_file(tmp_path, rate):
     path, messages = written(tmp_path, "Zeit;Tisch;oben"), []
@@ -89,6 +98,60 @@ def test_a_setup_file_reads_as_it_says_and_again_the_same(tmp_path):
     again = tmp_path / "again.toml"
     channels(path, toml, output=again)
     assert read_record(path, again).identical(record)
+
+
+def half_known(tmp_path):
+    path = written(tmp_path, "Zeit;Tisch;CH3;CH4;PT")
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace("CH3 [m/s2]", "CH3 (tip)").replace("CH4 [m/s2]", "CH4"))
+    return path
+
+
+def test_what_is_left_is_said_with_the_arguments_that_read_it(tmp_path):
+    path = half_known(tmp_path)
+    columns = "base=Tisch,face1=CH3 (tip),face2=CH4"
+    with pytest.warns(UserWarning) as warned:
+        read_record(path)
+    said = str(warned[0].message)
+    assert said.endswith(f'such as channels="{columns}" with unit="face1=...,face2=..."')
+    wanted = r'"CH3 \(tip\)" \(face 1\), .*"CH4" \(face 2\): no unit; .*"face1=...,face2=..."$'
+    with pytest.raises(InputError, match=wanted):
+        read_record(path, columns)
+    record = read_record(path, columns, unit="face=g")  # of both
+    assert np.array_equal(record[FACE2].values, 9.80665 * WAVES[2])
+    assert np.array_equal(read_record(path, columns, unit="face=g,face2=m/s2")[FACE2], WAVES[2])
+
+
+@pytest.mark.parametrize(
+    ("heading", "expected"),
+    [
+        ("LDV mm/s", ("LDV", "mm/s")),
+        ("acc_base_g", ("acc_base", "g")),
+        ("time_ms", ("time", "ms")),
+        ("Tip m/s^2", ("Tip", "m/s^2")),
+        ("ch2_V", ("ch2", "V")),
+        ("Channel V", ("Channel V", "")),  # five
+        ("acc_G", ("acc_G", "")),
+        ("Input 1 (shaker head)", ("Input 1 (shaker head)", "")),
+        ("Force (N)", ("Force", "N")),
+        ("Kraft, N", ("Kraft", "N")),
+        ("a [m/s2/V]", ("a", "m/s2/V")),
+    ],
+)
+def test_a_heading_is_a_name_and_a_unit(heading, expected):
+    assert split_heading(heading) == expected
+
+
+def test_a_list_of_columns_says_what_is_missing_and_writes_what_completes_it(tmp_path):
+    path, setup = half_known(tmp_path), tmp_path / "setup.toml"
+    columns = "base=Tisch,face1=CH3 (tip),face2=CH4"
+    assert "no unit" in channels(path, columns).attrs["refused"]
+    assert "sensitivity" in channels(path, columns, unit="face=mV").attrs["refused"]
+    given = {"unit": "face=mV", "sensitivity": "face=100 mV/g", "scale": "face2=-1"}
+    found = channels(path, columns, **given, resample=True, output=setup)
+    assert found.attrs["refused"] == "" and "resample = true" in setup.read_text()
+    once = read_record(path, columns, **given, resample=True)
+    assert read_record(path, setup).drop_attrs().identical(once.drop_attrs())
 
 
 @pytest.mark.parametrize(

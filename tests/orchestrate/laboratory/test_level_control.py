@@ -11,7 +11,7 @@ from orchestrate.weak_drive import cosimulate
 
 HALVES = {"m1": 0.10, "m2": 0.08, "f1": 42.0, "f2": 55.0, "zeta1": 0.02, "zeta2": 0.02, "e": 0.6}
 BEAM = orchestrate.Structure.from_halves(**HALVES)
-MOTOR_SHAKER = orchestrate.Shaker.from_file("shaker_100N").replace(table_mass=0.4)
+SHAKER = orchestrate.Shaker.from_file("shaker_100N").replace(table_mass=0.4)
 LEVEL = 4.0
 STEPS = orchestrate.SteppedSine(
     frequencies=(40.0, 46.0), acceleration=LEVEL, settle_cycles=120, measured_cycles=40
@@ -42,7 +42,7 @@ def fundamental(run, name, window, sine):
 @pytest.fixture(scope="module")
 def runs(exported):
     structures = {"bonded": BEAM.as_bonded(), "delaminated": BEAM}
-    run = {"shaker": MOTOR_SHAKER, "progress": False}
+    run = {"shaker": SHAKER, "progress": False}
     return {name: orchestrate.shake(one, STEPS, **run) for name, one in structures.items()}
 
 
@@ -52,7 +52,7 @@ def test_the_level_is_held_and_the_current_is_that_of_the_linear_system(runs):
             fundamental(runs["bonded"], name, window, STEPS)
             for name in ("box_acceleration", "current", "voltage")
         )
-        expected = impedance(MOTOR_SHAKER, BEAM, frequency)
+        expected = impedance(SHAKER, BEAM, frequency)
         assert abs(table) == pytest.approx(LEVEL, rel=0.02)
         assert voltage / table == pytest.approx(expected[0], rel=2e-3)
         assert current / table == pytest.approx(expected[1], rel=2e-3)
@@ -73,7 +73,7 @@ def test_impacts_send_harmonics_into_the_table(runs):
 
 @pytest.mark.usefixtures("exported")
 def test_it_aborts_where_the_amplifier_cannot():
-    weak = MOTOR_SHAKER.replace(voltage_limit=0.05)
+    weak = SHAKER.replace(voltage_limit=0.05)
     run = orchestrate.shake(BEAM, STEPS, shaker=weak, progress=False)
     end = float(run.control_aborted)
     assert 100.0 < 40.0 * end < 125.0  # periods of `rise` and `patience`
@@ -83,7 +83,7 @@ def test_it_aborts_where_the_amplifier_cannot():
 
 def test_the_command_of_a_rigid_load_is_that_of_the_equations():
     rigid = BEAM.replace(k1=1e9, k2=1e9, d1=0.0, d2=0.0)
-    for shaker in (MOTOR_SHAKER, MOTOR_SHAKER.replace(current_control=True)):
+    for shaker in (SHAKER, SHAKER.replace(current_control=True)):
         voltage, current = impedance(shaker, rigid, 40.0)
         command = abs(current if shaker.current_control else voltage)
         assert shaker.command_for(2.0, 40.0, 0.18) == pytest.approx(2.0 * command, rel=1e-4)
@@ -94,9 +94,9 @@ def test_a_controlled_run_resumes_with_the_same_bits(monkeypatch):
     control = orchestrate.LevelControl(sine=STEPS, start=0.05)
     run = {"inputs": {"command": control}, "duration": 0.4, "step": 1e-3, "record": ["current"]}
     run |= {"progress": False}
-    whole = orchestrate.cosimulate(BEAM, MOTOR_SHAKER, **run)
+    whole = orchestrate.cosimulate(BEAM, SHAKER, **run)
     monkeypatch.setattr(cosimulate.CosimulateJob, "chunk_size", 57)
-    parts = orchestrate.cosimulate(BEAM, MOTOR_SHAKER, **run)
+    parts = orchestrate.cosimulate(BEAM, SHAKER, **run)
     for name in ("x1", "current", "box_acceleration", "coupling_error"):
         assert parts[name].values.tobytes() == whole[name].values.tobytes(), name
     assert float(abs(whole.box_acceleration).max()) > 0.1 * LEVEL
@@ -122,14 +122,14 @@ def test_mistakes(text):
 def test_what_cannot_be_controlled():
     shock = orchestrate.Shock(peak=10.0, length=0.011)
     with pytest.raises(InputError, match="on a shaker: expected a SweptSine"):
-        orchestrate.shake(BEAM, shock, shaker=MOTOR_SHAKER)
+        orchestrate.shake(BEAM, shock, shaker=SHAKER)
     with pytest.raises(InputError, match="shaker = 3: expected a Shaker"):
         orchestrate.shake(BEAM, STEPS, shaker=3)
     control = orchestrate.LevelControl(**SINE)
     names = {"box_velocity": "box_velocity", "box_force": "box_force"}
     run = {"inputs": {"command": control}, "duration": 0.4, "step": 1e-3}
     with pytest.raises(InputError, match="command is controlled; connect box_acceleration"):
-        orchestrate.cosimulate(BEAM, MOTOR_SHAKER, connect=names, **run)
+        orchestrate.cosimulate(BEAM, SHAKER, connect=names, **run)
 
 
 @pytest.mark.slow

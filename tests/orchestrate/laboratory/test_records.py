@@ -355,7 +355,7 @@ def test_a_record_says_which_unit_was_taken_in_place_of_the_file_s(tmp_path):
         (lines(r10="0.010,1,2,3"), "row 12: 4 columns; expected 3"),
         (lines(r10="0.0105,1,2"), "time, row 12: a step of 0.0015 s where others are 0.001 s"),
         (lines(r10="0.005,1,2"), "time, row 12: 0.005 s after 0.009 s; expected ascending"),
-        ("t [s],base [V]\n0,1\n1,2\n2,3\n3,1\n", 'column "base": in V, without a sensitivity'),
+        ("t [s],base [V]\n0,1\n1,2\n2,3\n3,1\n", 'column "base" (base): in V, without a'),
         ("t,base\n0,1\n1,2\n2,3\n3,1\n", 'column "base" (base): no unit; expected one such'),
         ("t [s],base [g]\n0,1\n1,2\n", "base_acceleration"),
         ("\0\1\2", "no text; expected columns of numbers"),
@@ -571,7 +571,7 @@ def test_a_sensitivity_of_all_columns_asks_for_the_units_that_are_missing(tmp_pa
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({}, 'column "base": in mV, without a sensitivity; expected one such as 100 mV/g'),
+        ({}, 'column "base" (base): in mV, without a sensitivity; expected one such as 100 mV/g'),
         ({"sensitivity": "100 g/V"}, "sensitivity '100 g/V'; expected one such as 100 mV/g"),
         ({"sensitivity": "tip=1 V/g"}, "sensitivity: no channel 'tip'; expected base, box"),
         ({"unit": "base=g", "sensitivity": "base=1 V/g"}, "expected volts: a sensitivity does not"),

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
 from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, Instance, find
-from orchestrate.model import Shaker, read, write
-from orchestrate.model.ranges import MOTOR_SHAKER
+from orchestrate.model import Shaker, ranges, read, write
 from orchestrate.model.toml_files import SHAKERS
 
 from .strategies import values_of
@@ -22,7 +21,7 @@ SHEET = {
 }
 RANDOM = st.builds(
     Shaker,
-    **{name: values_of(quantity) for name, quantity in MOTOR_SHAKER.items()},
+    **{name: values_of(quantity) for name, quantity in ranges.ELECTRODYNAMIC_SHAKER.items()},
     current_control=st.booleans(),
 )
 

@@ -190,6 +190,10 @@ WRONG = [
     ("structure = 3", ["structure = 3: expected a section [structure]"]),
     ("[[structure]]\ne = 0.7", ["structure = [{'e': 0.7}]: expected a section [structure]"]),
     ("[structure\ne = 1", ["not readable as TOML", "line 1"]),
+    (f"{S}m1 = 0.15 kg  # one", ['m1 = 0.15 kg: write m1 = "0.15 kg")']),
+    (f"{S}f1_hz = 46,5", ["f1_hz = 46,5: write f1_hz = 46.5, in Hz)"]),
+    (f"{S}f1_hz = 46,5 Hz", ['f1_hz = 46,5 Hz: write f1_hz = "46.5 Hz")']),
+    (f"{S}k1 = 1e3 N/m", ["k1 = 1e3 N/m: write k1 = 1e3, in N/m)"]),
     (f"{S}e = 0.7\ne = 0.3\n", ["not readable as TOML", "Cannot overwrite", "line 3"]),
     (f"{S}e = \nk1 = 1.0", ["not readable as TOML", "line 2"]),
     (f"{S}e = 0.7\n{S}gamma = 1e-4", ["not readable as TOML", "line 3"]),
@@ -238,6 +242,8 @@ WRONG = [
         ["motor.rated_voltage = 12.0", "given with motor_constant"],
     ),
     (HALVES.replace("f2_hz = 55.0", ""), ["structure.f2_hz", "missing", "m1, m2, f1_hz, f2_hz"]),
+    (f"{HALVES}wall = true", ["structure.m2 = 1.2: mass 2 is a wall; expected it left out"]),
+    (f"{S}wall = true\nf1_hz = 12", ["structure.zeta1: missing; expected all of f1_hz, zeta1"]),
     (HALVES.replace("f2_hz = 55.0", "k2 = 5.0"), ["structure.k2 = 5.0: given with f1_hz"]),
     (HALVES.replace("zeta2 = 0.01", "D2 = 0.01"), ["structure.D2 = 0.01: given with f1_hz"]),
 ]
@@ -257,6 +263,18 @@ def test_a_motor_by_its_datasheet(file, speed, rotor):
 def test_halves_by_frequency_and_damping_ratio(file):
     numbers = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": "1 %"}
     assert read(file(HALVES))["structure"] == Structure.from_halves(**numbers, e=0.6)
+
+
+def test_one_mass_before_a_stop(file):
+    text = 'wall = true\nf1_hz = 12\nzeta1 = "1 %"\nclearance = "0.3 mm"\nm1 = "150 g"'
+    stop = read(file(f"[structure]\n{text}"))["structure"]
+    own = text.replace("f1_hz", "f_hz").replace("zeta1", "zeta").replace("m1", "m")
+    assert read(file(f"[structure]\n{own}"))["structure"] == stop
+    same = Structure.one_mass(m=0.15, f=12.0, zeta="1 %", clearance=3e-4)
+    assert stop.wall and (stop.f1, stop.zeta1) == (12.0, 0.01)
+    assert [stop.get(one) for one in ("m1", "k1", "d1", "clearance")] == [
+        same.get(one) for one in ("m1", "k1", "d1", "clearance")
+    ]
 
 
 @pytest.mark.parametrize(("text", "words"), WRONG, ids=[repr(text) for text, _ in WRONG])

@@ -130,6 +130,10 @@ def test_one_mass_rests_at_its_clearance_from_the_wall():
     assert (mass.D1, mass.omega, mass.replace(D=0.1).D1) == (0.005, 5.0, 0.1)
     assert mass.replace(omega=3.0).k1 == 18.0 and mass.replace(f1=1.0).get("D") == mass.D1
     assert "wall" in mass.label() and "wall" in str(mass)
+    tuned = Structure.one_mass(m=2.0, k=50.0, zeta=0.1), Structure.one_mass(f=3.0, d=0.2)
+    assert (tuned[0].d1, tuned[1].f1, tuned[1].d1) == (pytest.approx(2.0), 3.0, 0.2)
+    with pytest.raises(InputError, match="f1 and k1: expected one of them"):
+        Structure.one_mass(f=3.0, k=50.0)
     assert Structure.from_attributes(mass.parameters()) == mass
 
 

@@ -27,7 +27,7 @@ SHORT = {"transient": 20, "samples": 8}
 BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.01)
 PRESSED = Structure.from_halves(m1=1.0, m2=1.0, f1=42.0, f2=55.0, clearance=-20e-6)
 SWEPT = orchestrate.SweptSine(first=40.0, last=56.0, duration=4.0, acceleration=4.0)
-MOTOR_SHAKER = orchestrate.Shaker.from_file("shaker_100N").replace(table_mass=5.0)
+SHAKER = orchestrate.Shaker.from_file("shaker_100N").replace(table_mass=5.0)
 CONTROL = orchestrate.LevelControl(
     sine=orchestrate.SweptSine(first=8.0, last=9.0, duration=1.0, acceleration=0.2),
     start=0.1,
@@ -105,7 +105,7 @@ QUESTIONS: Mapping[str, tuple[int, Ask]] = {  # with the items of a chunk
         40,
         asked(
             orchestrate.cosimulate,
-            *(BEAM, MOTOR_SHAKER),
+            *(BEAM, SHAKER),
             **{"inputs": {"command": CONTROL}, "duration": 0.3, "step": 2e-3},
         ),
     ),

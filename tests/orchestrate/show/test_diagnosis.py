@@ -57,7 +57,8 @@ def test_a_plan_shows_what_was_heard_and_the_recommended_levels():
     (axes,) = figure.axes
     marks = next(line for line in axes.lines if line.get_marker() == "o")
     np.testing.assert_array_equal(marks.get_xydata(), [[0.2, 20.0], [0.4, 60.0]])
-    assert sum(list(line.get_xdata()) == [0.4, 0.4] for line in axes.lines) == 2
+    assert sum(list(line.get_xdata()) == [0.4, 0.4] for line in axes.lines) == 1
+    assert [text.get_text() for text in axes.texts] == [" recommended"]  # once of one level
 
 
 def test_curves_below_an_axis_are_named():

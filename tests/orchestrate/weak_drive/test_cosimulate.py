@@ -218,9 +218,9 @@ def test_means_and_moments_of_a_course_are_exact(seed):
     edges = np.sort(np.append(0.0, rng.uniform(0.0, 1.3, 6)))
     first, last, means, moments = course.over_steps(edges)
     for i, (t0, t1) in enumerate(zip(edges, edges[1:], strict=False)):
-        fine = np.linspace(t0, t1, 200_001)
+        fine = np.linspace(t0, t1, 50_001)
         middles = 0.5 * (fine[1:] + fine[:-1])
-        values = course.at(middles)
+        values = np.array([course.voltage(time) for time in middles])
         assert means[i] == pytest.approx(values.mean(), abs=1e-4)
         moment = ((middles - 0.5 * (t0 + t1)) * values).mean() * (t1 - t0)
         assert moments[i] == pytest.approx(moment, abs=1e-5)

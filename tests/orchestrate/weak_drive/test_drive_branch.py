@@ -86,6 +86,10 @@ def test_an_orbit_and_its_multipliers_are_the_whole_systems():
         volts = float(averaged.no_load_speed(*QUICK, speed))
         state = shooter.settle(volts, speed, 600.0)
         motion = motion_near(shooter, np.append(state, [volts, speed]), up=True)
+        fresh = Shooter((one, other), *QUICK, revolutions=2, steps=48, length=20.0)
+        fresh.angle = shooter.angle
+        shots = [each.shoot(motion.root.unknowns).end for each in (shooter, fresh)]
+    assert np.array_equal(*shots)  # the master of many shots remembers none of them
     assert shooter.names == ("x1", "v1", "x2", "v2", "box_position", "box_velocity", "speed")
     x1, v1, x2, v2, y, v, w = motion.root.unknowns[:-2] * shooter.units
     start = np.array([x1, v1, x2, v2, y, v, shooter.angle, w, 0.0])

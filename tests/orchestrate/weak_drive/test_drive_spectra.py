@@ -61,7 +61,7 @@ def test_lines_are_those_of_the_whole_system(quick):
         run = MotorRun(job, oscillator, shaker)
         run.revolve(range(round((ramp.duration + SHORT["hold"]) / 0.1)))
         state = state_of(run.master)
-        run.master.close()
+        run.close()
     interval = 2.0 * np.pi / float(quick.speed.sel(kind="delaminated")) / points
     times = interval * np.arange(revolutions * points)
     states, impacts = Monolith(*QUICK, voltage).solve(state, times)

@@ -23,7 +23,6 @@ class Rotor:
     def __init__(self, schedule, slope, start, stiff=STIFF):
         self.schedule, self.slope, self.speed = schedule, slope, start
         self.stiff = stiff
-        self.master = SimpleNamespace(close=lambda: None)
 
     def speeds(self, steps):
         speeds = []
@@ -33,6 +32,9 @@ class Rotor:
             self.speed += 0.02 * H * (self.schedule.voltage((i + 0.5) * H) - needed)
             speeds.append(self.speed)
         return np.array(speeds)
+
+    def close(self):
+        pass
 
     def get_state(self):
         return {"speed": np.array([self.speed])}
@@ -330,7 +332,7 @@ def test_a_motion_is_held_for_a_time_unless_it_is_left(later, pieces):
         told.append(rows)
         return np.full(12 * bool(rows), 1.3 if len(told) < 4 else later)
 
-    run = SimpleNamespace(speeds=speeds, get_state=dict, master=SimpleNamespace(close=list))
+    run = SimpleNamespace(speeds=speeds, get_state=dict, close=list)
     loop = HysteresisLoop(lambda course: run, Ramp(1.4, 1.6, 1e-4), 1.0, 1.0, 1.0, 2e4)
     point = loop.hold(None, 1.5, 1.5, least=1500.0)  # of pieces of 50/omega
     assert point.speed == pytest.approx(later) and len([rows for rows in told if rows]) == pieces
@@ -377,7 +379,7 @@ def test_a_motion_nearer_to_the_one_before_is_held_on(monkeypatch, speed, again)
 def test_a_ramp_is_taken_up_in_the_middle_of_a_step_from_the_checkpoint_before(monkeypatch):
     asked = []
     run = SimpleNamespace(set_state=asked.append, speeds=asked.append, get_state=lambda: "there")
-    run.master = SimpleNamespace(close=list)
+    run.close = list
     loop = HysteresisLoop(lambda course: run, Ramp(1.4, 1.6, 1e-3), 2.0, 1.0, 1.0, 1.0)
     memories = (f"{name}_memory" for name in ("master", "balance", "revolution", "control"))
     table = dict.fromkeys(("oscillator_state", "shaker_state", *memories), np.arange(3))

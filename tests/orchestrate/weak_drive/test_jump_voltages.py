@@ -50,7 +50,8 @@ def test_over_a_parameter_the_bonded_structure_is_computed_once():
         ({"rates": [1e-4, -1e-4]}, ["rate = -0.0001", "> 0"]),
         ({"voltage": 1.4}, ["voltage = 1.4", "duration"]),
         ({"over": "m1", "values": [1.0]}, ["over = 'm1'", "expected clearance"]),
-        ({"over": "e"}, ["over and values", "both"]),
+        ({"over": "e"}, ["over = 'e' and values = None", "both"]),
+        ({"over": "e", "values": []}, ["values = []", "one number or more"]),
         ({"over": "e", "values": [2.0]}, ["e = 2.0"]),
     ],
 )

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from orchestrate import InputError, capture, couple, passage, waterfall
+from orchestrate import Course, InputError, capture, cosimulate, couple, passage, waterfall
 
-from .coupled import QUICK
+from .coupled import BEAM, QUICK
 
 FAST = {"voltage": (1.5, 1.7), "rate": 4e-4, "back": False, "settle": 50.0, "step": 0.1}
 FAST |= {"progress": False}
@@ -30,6 +30,20 @@ def test_it_is_the_run_that_couple_makes(whole):
         at = np.interp(run.time[-5:], whole.time, whole[name])
         assert run[name].values[-5:] == pytest.approx(at, rel=1e-3), name
     assert (whole.x2 - whole.x1).min() > -1e-9
+
+
+def test_a_course_acts_as_in_cosimulate():
+    """With a kink and a step within communication steps: the same bits of the speed."""
+    structure, drive = BEAM
+    unit, volts, h = 1.0 / structure.omega, drive.volts(structure), 0.1 / structure.omega
+    times, values = np.array([0.0, 20.3, 47.77, 47.77, 60.0]), [1.0, 1.3, 1.2, 1.6, 1.55]
+    course = Course(tuple(times * unit), tuple(np.array(values) * volts))
+    mine = passage(*BEAM, voltage=course, step=h, hold=0.0, progress=False)
+    how = {"duration": 60.0 * unit, "step": h, "estimate": False, "progress": False}
+    begun = {"speed_start": volts / drive.motor_constant}
+    other = cosimulate(*BEAM, parameters=begun, inputs={"voltage": course}, record="speed", **how)
+    assert (mine.speed.values == other.speed.values[1:]).all()
+    assert mine.x1.values == pytest.approx(other.x1.values[1:], abs=1e-14)
 
 
 def test_only_around_the_jump(whole):

@@ -52,7 +52,7 @@ def truth(system):
 
 
 BEAM = Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
-MOTOR_SHAKER = Shaker.from_file("shaker_1kN")
+SHAKER = Shaker.from_file("shaker_1kN")
 SYSTEMS = {
     **{"bonded": QUICK.as_bonded(), "delaminated": QUICK},
     "pressed": QUICK.with_structure(clearance=-1.0),
@@ -85,7 +85,7 @@ CASES = [("Shaker", tool) for tool in TOOLS] + [("theirs", tool) for tool in TOO
 @pytest.mark.parametrize(("kind", "tool"), ordinary(CASES, CASES[:3], several_names=True))
 def test_drives_of_others_in_tools(exported, tmp_path, kind, tool):
     """Started by a constant voltage. libcosimpy does not come back from an FMU by pythonfmu."""
-    command, drive, fine, connect = "command", MOTOR_SHAKER, OURS, None
+    command, drive, fine, connect = "command", SHAKER, OURS, None
     if kind == "theirs":
         drive, command = FmuBuilder.build_FMU(table.__file__, dest=tmp_path), "volts"
         connect = {"box_force": "specimen_force", "box_acceleration": "table_acc"}
@@ -165,7 +165,7 @@ def test_sign_and_unit_are_linear_transformations(tmp_path, version):
     """In place of the tool's conversion; the drive's velocity is shown, not connected."""
     connect = {"box_force": "-box_force[kN]", "box_acceleration": "-box_acceleration"}
     connect |= {"box_velocity": "box_velocity", "box_position": "box_position[mm]"}
-    path = write_ssp(tmp_path / "x.ssp", BEAM, MOTOR_SHAKER, connect=connect, version=version)
+    path = write_ssp(tmp_path / "x.ssp", BEAM, SHAKER, connect=connect, version=version)
     archive = zipfile.ZipFile(path)
     tree = etree.fromstring(archive.read("SystemStructure.ssd"))
     space = {"ssd": NAMESPACES["ssd"], "ssc": NAMESPACES["ssc"], "ssv": NAMESPACES["ssv"]}
@@ -217,7 +217,7 @@ def test_mistakes(tmp_path):
         write_ssp(tmp_path / "x.ssp", *QUICK, voltage=float("nan"))
     for connect in ({"box_force": "box_force", "box_velocity": "box_velocity"}, OURS):
         with pytest.raises(InputError, match="expected box_force and box_acceleration, with or"):
-            write_ssp(tmp_path / "x.ssp", BEAM, MOTOR_SHAKER, connect=connect)
+            write_ssp(tmp_path / "x.ssp", BEAM, SHAKER, connect=connect)
     with pytest.raises(InputError, match="version = '3.0': expected '1.0' or '2.0'"):
         write_ssp(tmp_path / "x.ssp", *QUICK, voltage=1.0, version="3.0")
     with pytest.raises(InputError, match="voltage: expected with a motor"):

@@ -117,7 +117,6 @@ def branch_of(system, most=120, range_=(0.95, 1.15)):
     speeds = tuple(share * resonance * omega for share in range_)
     asked = {"longest": 0.1, "most": most, "period": 2, "steps": 48, "settle": 600.0 / omega}
     job = DriveBranchJob("branch", *system, speeds, **asked)
-    grid = np.linspace(*(speed / omega for speed in speeds), 2001)
-    length = float(averaged.amplitude(*system.as_bonded(), grid).max()) * system.drive.length
     with Instance(find(OSCILLATOR).path) as one, Instance(find(MOTOR_SHAKER).path) as other:
-        return job.trace_legs((one, other), system.structure), length
+        shooter = job.make_shooter((one, other), system.structure)
+        return job.trace_legs(shooter), shooter.length
