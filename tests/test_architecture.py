@@ -480,9 +480,6 @@ def test_described_parameters_are_the_arguments():
     expect_none(wrong)
 
 
-EXCITATIONS = {"SweptSine", "SteppedSine", "Random", "Shock", "Sampled", "Hammer"}  # public names
-
-
 PACKAGES = sorted(
     file
     for file in FILES

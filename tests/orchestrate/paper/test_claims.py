@@ -160,18 +160,9 @@ def test_not_everything_is_borne_out_where_all_responses_are_of_one_kind(row):
     assert {verdict(row, world) for world in (one_kind(1, 5), one_kind(0, 3))} != {YES}
 
 
-# -- section 1 -------------------------------------------------------------------------------------
-
-
 # -- section 2 -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["scale", "free_part", "momentum", "period"])
 def test_an_equation_holds_as_corrected_only(name):
     assert verdict(name, known()) == NO  # undecided where the corrected form does not hold either
-
-
-# -- section 3 -------------------------------------------------------------------------------------
-
-
-# -- sections 3.2 to 5 -----------------------------------------------------------------------------

@@ -77,20 +77,6 @@ def curves(si: bool) -> xr.Dataset:
     return xr.Dataset(found | told, {**along(count, si), **names}, about)
 
 
-def moving(si: bool, impacts: int = 8) -> xr.Dataset:
-    """A motion over eight periods."""
-    turns = np.linspace(0.0, 8.0, 801)
-    time = turns * (0.08 if si else 6.0)
-    wave = 1e-3 * np.sin(2.0 * np.pi * turns)
-    names = ("x1", "x2", "v1", "v2", "x_rel", "v_rel")
-    found = dict.fromkeys(names, ("time", wave))
-    found |= {"v_rel": ("time", wave), "contact_force": ("time", 0.0 * wave)}
-    at = time[1] + np.arange(impacts) * (time[-1] / 9.0)
-    found |= {"impact_time": ("impact", at), "impact_velocity": ("impact", 0.0 * at + 2.0)}
-    found["sticks"] = ("impact", np.arange(impacts) % 2)
-    return xr.Dataset(found, {"time": time, "periods_done": ("time", turns)}, known(si))
-
-
 def mapped(si: bool) -> xr.Dataset:
     """A map with frequencies without impacts."""
     values = RANDOM.uniform(0.5, 20.0, (5, 6))

@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 from orchestrate.errors import StoreError
-from orchestrate.show import colours, histories, lines, resonance, scales
+from orchestrate.show import lines, scales
 from orchestrate.show.figure_files import save
 from orchestrate.show.style import XI_REL, make_panels
 
@@ -86,35 +86,6 @@ def test_a_structure_in_si_is_told_in_hertz_and_metres():
     assert axis[-1] == pytest.approx(1.3 * 75.0 / (2.0 * np.pi))
 
 
-def test_resonance_has_all_curves_and_their_peaks():
-    data = made.curves(True)
-    figure = resonance.draw_resonance(data)
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        *(
-            f"{structure}, {way}"
-            for structure in ("delaminated", "bonded")
-            for way in ("up", "down")
-        ),
-        *("jump up", "jump down"),
-    ]
-    first, *_, gap = figure.axes
-    told = [text.get_text() for text in first.texts]
-    assert [words.partition(":")[0] for words in told] == ["delaminated", "bonded"]
-    assert told[0] == f"delaminated: {float(data.x1_max[0].max()):.4g} m at 12.523 Hz"
-    assert len([line for line in first.lines if line.get_marker() == "v"]) == 2
-    assert gap.get_title("left") == "jump up at 11.937 Hz; jump down at 12.732 Hz"  # 75, 80 rad/s
-    assert [line.get_color() for line in gap.lines].count(colours.BLUE) == 1  # glued: no gap
-    labelled = [bool(plane.get_xlabel()) for plane in figure.axes]
-    assert labelled == [False, False, True, True, True]  # two widths, each with its numbers
-    assert all(plane.xaxis.get_tick_params()["labelbottom"] for plane in figure.axes[2:])
-    noisy = resonance.draw_resonance(
-        data.assign(peak_irregular=("peak", [1, 0]))
-    )  # chance has no triangle
-    assert len([line for line in noisy.axes[0].lines if line.get_marker() == "v"]) == 1
-    alone = made.curves(True).sel(structure="delaminated", direction="up", drop=True)
-    assert len(resonance.draw_resonance(alone).axes[0].texts) == 1
-
-
 def test_an_attractor_is_drawn_as_far_as_it_exists():
     """One attractor, T and then 2T, that ends; another one that appears beside it."""
     nan = np.nan
@@ -139,19 +110,3 @@ def test_an_attractor_is_drawn_as_far_as_it_exists():
 
 
 # -- time histories and spectra -------------------------------------------------------------------
-
-
-def test_a_motion():
-    figure = histories.draw_motion(made.moving(True))
-    named = {axes.get_ylabel(): axes for axes in figure.axes}
-    gap, rate = named["gap velocity in mm/s"].lines[0].get_data()
-    at_impacts = sorted(rate[(gap == 0.0) & (np.abs(rate) > 1.0)])
-    assert at_impacts == pytest.approx([-2e3] * 8 + [1.4e3] * 4)  # every second sticks
-    words = [text.get_text() for axes in figure.axes for text in axes.texts]
-    assert words == ["no permanent contact"]
-    beside = histories.draw_motion(made.moving(True), bonded=made.moving(True, impacts=0)).axes
-    assert [len(axes.lines) for axes in beside] == [3, 3, 2, 1, 0, 0]
-    assert len(beside[-1].collections) == 3  # stems of both masses and of the bonded structure
-    quiet = histories.draw_motion(made.moving(True, impacts=0))
-    legends = [axes.get_legend() for axes in quiet.axes if axes.get_legend()]
-    assert "no impacts" in [text.get_text() for legend in legends for text in legend.get_texts()]

@@ -96,6 +96,27 @@ def test_random_drives_against_one_system(tmp_path, seed):
 
 
 @pytest.mark.usefixtures("exported")
+def test_a_jump_of_the_command_that_is_felt_at_once_is_none_of_the_motion(tmp_path):
+    """A drive whose acceleration has the command in it, which jumps: errors fall as without."""
+    plain = draw(0)
+    felt = np.array([plain.d[0], 0.2])
+    b = plain.b.copy()
+    b[1] = felt
+    drive = replace(plain, b=b, d=felt)
+    steps = np.arange(0.0, DURATION, 0.1)
+    levels = 20.0 * np.sin(26.0 * steps)
+    course = np.repeat(steps, 2)[1:], np.repeat(levels, 2)[:-1]
+    command = lambda t: levels[min(int(t / 0.1 + 1e-9), len(levels) - 1)]  # noqa: E731
+    expected, impacts = together(drive, STRUCTURE, command, TIMES)
+    run = {**RUN, "inputs": {drive.names[1]: course}, "parameters": drive.parameters}
+    run, path = run | {"connect": drive.connect}, drive.write(tmp_path)
+    coarse, fine = (orchestrate.cosimulate(STRUCTURE, path, step=h, **run) for h in (5e-3, 2.5e-3))
+    one, other = error(coarse, expected), error(fine, expected)
+    assert other < 0.01 * np.abs(expected).max() and one / other > 3.0
+    assert coarse.sizes["impact"] == fine.sizes["impact"] == impacts > 10
+
+
+@pytest.mark.usefixtures("exported")
 def test_the_stated_error_is_that_of_the_run(drive, truth):
     run = {**RUN, "connect": CONNECT, "estimate": True, "record": ["table_pos", "amperes"]}
     found = orchestrate.cosimulate(STRUCTURE, drive, step=0.01, **run)

@@ -1,12 +1,9 @@
 """Random sets against the monolithic solution; all of them are marked slow."""
 
-import numpy as np
 import pytest
 
-from orchestrate.dynamics.bifurcations import Kind
-
 from ...sparing import ordinary
-from .validation import WIDE, bifurcations, random_sets, trajectory_error
+from .validation import WIDE, random_sets, trajectory_error
 
 SETS = random_sets(5)
 
@@ -23,18 +20,8 @@ def test_a_trajectory_of_a_set_as_users_may_enter(system):
         assert trajectory_error(one, 20.0)[0] < 1e-5
 
 
-def test_a_fold():
-    """Located on the branch, and by shooting on the monolithic solution."""
-    ((kind, _, voltage, truth),) = bifurcations(SETS[1].as_bonded(), (1.003, 1.012))
-    assert kind == Kind.FOLD and voltage == pytest.approx(truth, abs=1e-6)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("system", SETS, ids=range(5))
 def test_a_set(system):
     for one in (system.as_bonded(), system):
         assert trajectory_error(one)[0] < 1e-6
-        found = bifurcations(one)
-        errors = np.array([voltage - truth for _, _, voltage, truth in found])
-        assert (np.abs(errors[np.isfinite(errors)]) < 1e-4).all(), found
-        assert np.isfinite(errors[0])

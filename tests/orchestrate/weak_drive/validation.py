@@ -1,9 +1,8 @@
-"""Random sets against :class:`.monolithic.Monolith`: trajectories, folds, Neimark-Sacker points."""
+"""Random sets against :class:`.monolithic.Monolith`."""
 
 import numpy as np
 
 from orchestrate import Drive, Structure
-from orchestrate.dynamics.bifurcations import Kind
 from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_from_arguments
@@ -90,7 +89,7 @@ def trajectory_error(system, time=40.0):
 
 
 class Whole:
-    """Shooting on the monolithic solution, at a given length of the period."""
+    """The whole state from the unknowns of shooting, over units."""
 
     def __init__(self, system, turns, angle, length):
         self.system, self.turns, self.angle = system, turns, angle
@@ -101,11 +100,6 @@ class Whole:
         current = self.volts / system.drive.armature_resistance
         self.units = np.array([length, length * omega] * 3 + [1.0, omega, current])
 
-    def after(self, state, voltage, period):
-        """The whole state over its units a period later."""
-        whole = Monolith(*self.system, voltage * self.volts)
-        return whole.solve(state * self.units, np.array([0.0, period]))[0][-1] / self.units
-
     def full(self, unknowns):
         """The whole state from those that are free."""
         state = np.zeros(9)
@@ -114,67 +108,6 @@ class Whole:
         if self.system.structure.bonded:
             state[2:4] = state[:2]
         return state
-
-    def residual(self, unknowns, period):
-        """What a period changes."""
-        state = self.full(unknowns)
-        change = self.after(state, unknowns[-1], period) - state
-        change[6] -= 2.0 * np.pi * self.turns
-        return change[[*self.places, 6]]
-
-    def jacobian(self, unknowns, period, change=1e-6):
-        """By the unknowns, and by the period's relative length."""
-        columns = []
-        for i in range(len(unknowns)):
-            moved = np.eye(len(unknowns))[i] * change
-            ends = [self.residual(unknowns + sign * moved, period) for sign in (1.0, -1.0)]
-            columns.append((ends[0] - ends[1]) / (2.0 * change))
-        ends = [self.residual(unknowns, period * (1.0 + sign * change)) for sign in (1.0, -1.0)]
-        return np.stack([*columns, (ends[0] - ends[1]) / (2.0 * change)], axis=1)
-
-    def orbit(self, unknowns, period):
-        """Unknowns of the motion with this period, and the Jacobian there."""
-        matrix = self.jacobian(unknowns, period)
-        for _ in range(20):
-            left = self.residual(unknowns, period)
-            if np.abs(left).max() < 1e-9:
-                return unknowns, self.jacobian(unknowns, period)
-            unknowns = unknowns - np.linalg.solve(matrix[:, :-1], left)
-        raise ArithmeticError(f"no orbit: {np.abs(left).max()}")
-
-    def multipliers(self, matrix):
-        """Of the map from the angle to itself."""
-        count = len(self.places)
-        flow = matrix[:, :count] + np.eye(count + 1, count)
-        section = flow[:count] - np.outer(matrix[:count, -1], flow[count]) / matrix[count, -1]
-        return np.linalg.eigvals(section)
-
-    def test(self, kind, unknowns, period):
-        """What is 0 at a bifurcation, and the motion there."""
-        found, matrix = self.orbit(unknowns, period)
-        if kind == Kind.FOLD:
-            slope = np.linalg.solve(matrix[:, :-1], -matrix[:, -1])
-            return float(slope[-1]), found
-        values = self.multipliers(matrix)
-        if kind == Kind.FLIP:
-            return float(values.real.min() + 1.0), found
-        pairs = np.abs(values[np.abs(values.imag) > 1e-6])
-        return float(pairs[np.argmin(np.abs(pairs - 1.0))] - 1.0), found
-
-    def locate(self, kind, unknowns, period):
-        """The voltage over K omega at a bifurcation near a motion, by secants."""
-        places, values = [period, period * (1.0 + 1e-5)], []
-        for place in places:
-            value, unknowns = self.test(kind, unknowns, place)
-            values.append(value)
-        for _ in range(6):
-            slope = (values[-1] - values[-2]) / (places[-1] - places[-2])
-            places.append(places[-1] - values[-1] / slope)
-            value, unknowns = self.test(kind, unknowns, places[-1])
-            values.append(value)
-            if abs(places[-1] - places[-2]) < 1e-7 * period:
-                break
-        return float(unknowns[-1])
 
 
 def branch_of(system, most=120, range_=(0.95, 1.15)):
@@ -187,23 +120,3 @@ def branch_of(system, most=120, range_=(0.95, 1.15)):
     with Instance(find(OSCILLATOR).path) as one, Instance(find(MOTOR_SHAKER).path) as other:
         shooter = job.make_shooter((one, other), system.structure)
         return job.trace_legs(shooter), shooter.length
-
-
-def bifurcations(system, range_=(0.95, 1.15)):
-    """Kind, speed over omega, voltage over K omega by the branch and by the whole system."""
-    legs, length = branch_of(system, range_=range_)
-    found = []
-    for leg in legs:
-        for event in leg.bifurcations:
-            unknowns, turns = event.point.root.unknowns, event.point.period.revolutions
-            whole = Whole(system, turns, event.point.angle, length)
-            period = turns * 2.0 * np.pi / (unknowns[-1] * system.structure.omega)
-            try:
-                truth = whole.locate(event.kind, unknowns[:-1], period)
-            except (ArithmeticError, np.linalg.LinAlgError):
-                truth = np.nan
-            found.append((event.kind, float(unknowns[-1]), float(unknowns[-2]), truth))
-    return found
-
-
-# -- jumps -----------------------------------------------------------------------------------------
