@@ -12,6 +12,7 @@ from orchestrate.weak_drive.master import (
     FORCE_PLACE,
     MOTION,
     PAST,
+    PUSH_MEMORY,
     TIME,
     Master,
 )
@@ -162,7 +163,8 @@ class PythonMaster(Master):
     def get_state(self):
         pairs = [x for point in zip(*self.points, strict=True) for x in point]
         missing = [math.nan] * (2 * PAST - len(pairs))
-        return [*self.row, *self.weights, self.held, *self.owed, *pairs, *missing]
+        pushes = [0.0] * sum(PUSH_MEMORY.values())
+        return [*self.row, *self.weights, self.held, *self.owed, *pushes, *pairs, *missing]
 
     def set_state(self, numbers):
         super().set_state(numbers)
