@@ -78,7 +78,8 @@ class OfDrive(Options):
     drive: Path = option("FMI 2.0 or 3.0", value="FMU", needed=True)
     listed: bool = option("show its variables, propose connections, and end", name="--list")
     connect: list[str] = option(
-        "box_acceleration (or box_velocity, box_position) and box_force, by names of the drive; a "
+        "box_acceleration (or box_velocity, box_position) and box_force, by names of the drive, or "
+        "force1, force2, its forces on the halves; a "
         "minus before a name turns its sign, a unit after it in brackets states it: pos[mm]",
         (),
         value="OURS=THEIRS",

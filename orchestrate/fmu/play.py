@@ -42,7 +42,8 @@ class Player(EventInstance):
         derivatives: NDArray[np.float64],
         samples: NDArray[np.float64],
         outputs: Sequence[str] = PLAYED,
-        drives: str = BOX,
+        drives: Sequence[str] = (BOX,),
     ) -> Played:
         """Simulate under consecutive cubics of what drives; return samples and impacts."""
-        return self.event_loop(CUBICS[drives], tuple(outputs)).run(nodes, derivatives, samples)
+        inputs = (*(name for drive in drives for name in CUBICS[drive]),)
+        return self.event_loop(inputs, tuple(outputs)).run(nodes, derivatives, samples)

@@ -20,15 +20,18 @@ from ..fmu.unit_names import unit_by_name
 
 MOTION = ("box_acceleration", "box_velocity", "box_position")  # outputs of a drive
 FORCE = ("box_force", "box_force_1", "box_force_2", "box_force_3")  # inputs: with its derivatives
+PUSHES = ("force1", "force2")  # outputs of a drive: forces on the halves
 UNITS = {  # exponents of SI units
     "box_acceleration": {"m": 1, "s": -2},
     "box_velocity": {"m": 1, "s": -1},
     "box_position": {"m": 1},
     **{name: {"kg": 1, "m": 1, "s": -2 - order} for order, name in enumerate(FORCE)},
+    **{name: {"kg": 1, "m": 1, "s": -2} for name in PUSHES},
 }
-IN_WORDS = dict(zip(UNITS, ("m/s2", "m/s", "m", "N", "N/s", "N/s2", "N/s3"), strict=True))
+WORDS = ("m/s2", "m/s", "m", "N", "N/s", "N/s2", "N/s3", "N", "N")
+IN_WORDS = dict(zip(UNITS, WORDS, strict=True))
 OURS = dict(zip((*MOTION, *FORCE), (*MOTION, *FORCE), strict=True))  # of the package's own drives
-EXPECTED = f"expected some of {', '.join(MOTION)}, and box_force"
+EXPECTED = f"expected some of {', '.join(MOTION)}, and box_force; or {' or '.join(PUSHES)}"
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,11 @@ class Connection:
     outputs: tuple[str, ...] = ()
     recorded: tuple[str, ...] = ()  # what is read at the end of each interval
     cubic: int = -1  # place among its inputs from which on they are cubics; -1: all are held
+
+    @property
+    def pushes(self) -> tuple[str, ...]:
+        """Return on which halves a force of the drive acts."""
+        return tuple(name for name in PUSHES if name in self.links)
 
 
 ENERGIES = ("box_force_work", "motor_energy", "box_damper_energy", "stored_energy")
@@ -74,8 +82,12 @@ def checked_links(
             raise InputError(f"connect: {name} is no name of ours{near(name, UNITS)}; {EXPECTED}")
     if alone and set(connect) & set(FORCE):
         raise InputError("connect: box_force has no structure that exerts it; leave it out")
-    if not (alone or "box_force" in connect) or not set(connect) & set(MOTION):
-        missing = "box_force" if set(connect) & set(MOTION) else "a motion of the box"
+    pushes, moves = set(connect) & set(PUSHES), set(connect) & set(MOTION)
+    if alone and pushes:
+        raise InputError(f"connect: {min(pushes)} has no structure that it acts on; leave it out")
+    whole = moves and (alone or "box_force" in connect)
+    if not whole and (not pushes or moves or set(connect) & set(FORCE)):
+        missing = "box_force" if moves else "a motion of the box"
         likely = ", ".join(f"{ours}={theirs}" for ours, theirs in proposals(drive).items())
         hint = f"; by unit and name likely: {likely}" if likely else ""
         raise InputError(f"connect: {missing} is missing; {EXPECTED}{hint}")
@@ -171,6 +183,8 @@ def proposals(drive: Description) -> dict[str, str]:
     """
     found: dict[str, str] = {}
     for ours, powers in UNITS.items():
+        if ours in PUSHES:
+            continue
         ranks = {}
         for name, variable in drive.variables.items():
             unit = drive.units.get(variable.unit or "")

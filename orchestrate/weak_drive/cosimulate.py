@@ -75,8 +75,9 @@ def cosimulate(
         the force of springs and dampers on the box, positive as the box's motion. A name with a
         minus before it, as ``"-force"``, counts with the other sign; other units of the same kind
         are converted, and ``"pos[mm]"`` states one as ``units`` does. A drive that takes
-        derivatives of the force has them as ``box_force_1`` to ``box_force_3``. By default the
-        names of the package's own drives.
+        derivatives of the force has them as ``box_force_1`` to ``box_force_3``. Outputs ``force1``
+        and ``force2`` (N) act on the halves, with or without a box that moves. By default the names
+        of the package's own drives.
     units : mapping of str to str, optional
         Units of connected variables, by the drive's names, in place of those that it states: m/s2,
         mm, kN and others. Units that it defines by no base units are taken by their names; none
@@ -109,13 +110,13 @@ def cosimulate(
     xarray.Dataset
         Over ``time`` in s, the communication points: ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``,
         ``v_rel``, ``contact_force``, ``in_contact``, ``box_force``, ``impact_energy``,
-        ``box_acceleration``, what is recorded of the drive by its names, with its estimated error
-        as ``NAME_error``, ``box_work`` where a velocity is connected, ``coupling_error``, the
-        larger error of ``x1`` and ``x2`` in m, and
+        ``box_acceleration``, ``force1`` and ``force2`` where connected, what is recorded of the
+        drive by its names, with its estimated error as ``NAME_error``, ``box_work`` where a
+        velocity is connected, ``coupling_error``, the larger error of ``x1`` and ``x2`` in m, and
         of a control the time ``control_aborted``. Attributes: ``ended``, when and why the drive
         ended the simulation before the duration, with what was reached until then, and
-        ``drive_warnings``, what it warned of; both are given as warnings too.
-        Over ``impact``: ``impact_time``, ``impact_velocity``, ``impulse`` and ``sticks``.
+        ``drive_warnings``, what it warned of; both are given as warnings too. Over ``impact``:
+        ``impact_time``, ``impact_velocity``, ``impulse`` and ``sticks``.
 
     Raises
     ------
@@ -187,7 +188,8 @@ def cosimulate(
     check_inputs(job.inputs, links)
     found = answer(job, running, finder(running), job.drive_sha256 if foreign else "")
     warn_of_drive(found)
-    missing = [name for name in MOTION if name not in links]
+    moves = set(MOTION) & set(links)
+    missing = [name for name in MOTION if name not in links and moves]
     if missing:
         warn_of_step(found, missing)
     if estimate:

@@ -21,6 +21,7 @@ from ..fmu.begin import REST, begin
 from ..fmu.description import Description, describe
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR
+from ..fmu.play import BOX as BOX_ACCELERATION
 from ..fmu.play import PLAYED, Player
 from ..lazy import xr
 from ..model import Excitation
@@ -31,6 +32,7 @@ from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Chunk, Fmus, Table, brief, plain
 from .connection import (
     MOTION,
+    PUSHES,
     Connection,
     Link,
     checked_links,
@@ -47,6 +49,7 @@ IN_TIME_TOO = {
     "box_force": ("N", "force of springs and dampers on the box"),
     "impact_energy": ("J", "energy lost in impacts since the start"),
     "box_acceleration": ("m/s2", "acceleration of the box, as the oscillator has it"),
+    **{name: ("N", f"force of the drive on half {name[-1]}") for name in PUSHES},
     "box_work": ("J", "work of that force on the drive since the start"),
     "coupling_error": ("m", "estimated error of x1 and x2 by the coupling, the larger one"),
 }
@@ -98,7 +101,7 @@ class Coupling(Run):
         self.check_forces(record["time"], record["box_force"])
         nodes = record["time"].copy()
         nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 :][: len(record.ends)]
-        table = {"nodes": nodes[1:], "cubics": np.transpose(record.after.acceleration())}
+        table = {"nodes": nodes[1:], "cubics": np.transpose(record.after.cubics())}
         table |= {"work": record.after["given"], "ended": np.array([self.master.ended])}
         if self.master.connection.recorded:
             rows = record.recorded[self.parts - 1 :: self.parts]
@@ -113,6 +116,8 @@ class Coupling(Run):
             links = self.master.connection.links
             motion = " and ".join(links[name].theirs for name in MOTION if name in links)
             text = f"the coupling diverges at t = {time:.3g} s (box_force = {force:.2g} N)"
+            if "box_force" not in links:
+                raise FmuError(text) from None
             text += f": look at the unit of {motion} and the sign of box_force"
             raise FmuError(f"{text}, connect {turned(links)}; or reduce the step") from None
 
@@ -153,7 +158,7 @@ class CosimulateJob(CoupledJob, Question):
     @property
     def alone(self) -> bool:
         """Return whether the drive runs without a structure."""
-        return "box_force" not in dict(self.connect)
+        return not {"box_force", *PUSHES} & set(dict(self.connect))
 
     def call_text(self) -> str:
         values: dict[str, Any] = {"connect": dict(self.connect), "units": dict(self.units)}
@@ -221,7 +226,7 @@ class CosimulateJob(CoupledJob, Question):
         At once is what a connected acceleration says, else the motion in a short step.
         """
         seen: list[Any] = []
-        if self.alone:
+        if "box_force" not in dict(self.connect):
             return np.array([0.0, math.nan])
         for force in (0.0, 1.0):
             with suppress(FmuError), Instance(self.drive, "drive") as drive:
@@ -277,7 +282,9 @@ class CosimulateJob(CoupledJob, Question):
                 one |= {name: one[name][done] for name in IN_STEPS}
                 player.start(self.structure, self.start)
                 nodes = np.append(0.0, one["nodes"])
-                motions.append(player.play(nodes, one["cubics"], times, OUTPUTS))
+                pushes = (name for name in PUSHES if name in dict(self.connect))
+                drives = (BOX_ACCELERATION, *pushes)
+                motions.append(player.play(nodes, one["cubics"], times, OUTPUTS, drives))
         rows, touching, impacts = motions[0]
         columns = dict(zip(OUTPUTS, rows.T, strict=True)) | {"time": times, "in_contact": touching}
         if self.estimate:
@@ -285,7 +292,9 @@ class CosimulateJob(CoupledJob, Question):
             columns["coupling_error"] = TO_HALF * away.max(axis=1)
         nodes, cubics = np.append(0.0, run["nodes"]), run["cubics"]
         inside = (nodes.searchsorted(times, side="right") - 1).clip(max=len(cubics) - 1)
-        columns["box_acceleration"] = end_value(tuple(cubics[inside].T), times - nodes[inside])
+        for i, name in enumerate(drives):
+            cubic = tuple(cubics[inside, 4 * i : 4 * i + 4].T)
+            columns[name] = end_value(cubic, times - nodes[inside])
         columns["step_time"] = times[:: self.points]
         work = np.append(0.0, np.cumsum(run["work"]))
         columns["box_work"] = work[nodes.searchsorted(columns["step_time"])]

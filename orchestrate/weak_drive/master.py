@@ -23,7 +23,8 @@ from ..fmu.c_library import loaded_loop
 from ..fmu.channel import Channel, SimulationEnded, StepAnswer
 from ..fmu.fmi import NOT_FINITE, Fmi, references
 from ..fmu.instance import REAL_TYPES, WARNING, Instance, function_addresses
-from .connection import FORCE, MOTOR, Connection, Link
+from ..fmu.play import CUBICS
+from .connection import FORCE, MOTOR, PUSHES, Connection, Link
 from .step_record import BOX, LEADING, PLACE, OscillatorOutputs, Record
 
 CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
@@ -33,6 +34,8 @@ END = DRIVE + len(BOX)
 FORCE_PLACE = OscillatorOutputs._fields.index("box_force")
 PAST = 4  # points that are remembered where acceleration and velocity are not both connected
 MEMORY = {"inverse_mass": 2, "held": 1, "owed": 2}  # of the force, between steps
+PUSH_MEMORY = {"push_count": 1, "push_points": (PAST - 1) * (1 + len(PUSHES))}
+MEMORY |= PUSH_MEMORY  # of the drive's forces on the halves
 NOT_WHOLE = -2  # a status that FMI does not have
 
 
@@ -114,7 +117,7 @@ class Pair(ctypes.Structure):
         *((name, Side) for name in ("oscillator", "drive")),
         *((name, c_double) for name in ("tolerance", "easy")),
         *((name, c_int) for name in ("halvings", "first_passes", "halves_discarded")),
-        *((name, Links) for name in ("force", "motion")),
+        *((name, Links) for name in ("force", "motion", "pushes")),
         ("cubic", c_int),
         ("recorded", POINTER(c_uint)),
         ("recorded_count", c_size_t),
@@ -144,23 +147,32 @@ class DriveSide:
         links, self.instance = connection.links, instance
         self.forces = [(i, links[name]) for i, name in enumerate(FORCE) if name in links]
         self.motions = [(i, links[name]) for i, name in enumerate(BOX) if name in links]
+        self.pushes = [(i, links[name]) for i, name in enumerate(PUSHES) if name in links]
+        forces = (*self.motions, *self.pushes)
         self.channel = Channel(
             instance,
             (*(link.theirs for _, link in self.forces), *connection.inputs),
-            (*(link.theirs for _, link in self.motions), *connection.outputs),
+            (*(link.theirs for _, link in forces), *connection.outputs),
         )
+
+    @property
+    def links(self) -> tuple[list[tuple[int, Link]], ...]:
+        """Return what is connected: the force on the box, its motion, and forces on halves."""
+        return self.forces, self.motions, self.pushes
 
     def put(self, force: Sequence[float], inputs: Sequence[float]) -> None:
         """Set the force, with the derivatives that are connected, and the other inputs."""
         self.channel.put(*(force[i] / link.scale for i, link in self.forces), *inputs)
 
     def get(self) -> list[float]:
-        """Return the box's motion, NaN for what is not connected, and the other outputs."""
+        """Return the box's motion, NaN for what is not connected, forces, and other outputs."""
         values = self.channel.get()
         box = [math.nan] * len(BOX)
         for (i, link), value in zip(self.motions, values, strict=False):
             box[i] = link.scale * value
-        return [*box, *values[len(self.motions) :]]
+        rest = values[len(self.motions) :]
+        forces = [link.scale * x for (_, link), x in zip(self.pushes, rest, strict=False)]
+        return [*box, *forces, *rest[len(forces) :]]
 
 
 class Master:
@@ -179,11 +191,14 @@ class Master:
 
         ``inverse_mass``: of the drive, 1/kg, if it takes a held force and gives no acceleration.
         """
-        self.oscillator = Channel(oscillator, CUBIC, OscillatorOutputs._fields)
+        pushes = connection.pushes
+        cubics = (*(name for push in pushes for name in CUBICS[push]),)
+        self.oscillator = Channel(oscillator, (*CUBIC, *cubics), OscillatorOutputs._fields)
         self.drive, self.scheme = DriveSide(drive, connection), scheme
         self.connection = connection
-        self.names = (*LEADING, *connection.outputs, *connection.inputs)
-        self.inputs = slice(END + len(connection.outputs), len(self.names))
+        then = (*(f"{name}_then" for name in cubics),)
+        self.names = (*LEADING, *pushes, *connection.outputs, *then, *connection.inputs)
+        self.inputs = slice(len(self.names) - len(connection.inputs), len(self.names))
         self.pair, holds_force = self._described(), len(self.drive.forces) < len(FORCE)
         self.inverse_mass = inverse_mass if holds_force else 0.0
         self.begin(start_time)
@@ -193,7 +208,8 @@ class Master:
         unknown = [math.nan] * len(self.connection.inputs)
         step, motion = [start_time, *[0.0] * (MOTION - TIME - 1)], self.oscillator.get()
         self.drive.put((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())  # its acceleration follows it
-        self.row = [*step, *motion, *self.drive.get(), *unknown]
+        then = [0.0] * (4 * len(self.connection.pushes))
+        self.row = [*step, *motion, *self.drive.get(), *then, *unknown]
         for name, count in MEMORY.items():
             getattr(self.pair, name)[:] = [self.inverse_mass * (name == "inverse_mass")] * count
         self.pair.point_count = 0
@@ -289,7 +305,8 @@ class Master:
         goes_back = drive.instance.description.has_states
         pair.first_passes = self.scheme.first_passes if goes_back else 1
         pair.halves_discarded = self.scheme.halves_discarded and goes_back
-        pair.force, pair.motion = Links.of(drive.forces), Links.of(drive.motions)
+        for name, links in zip(("force", "motion", "pushes"), drive.links, strict=True):
+            setattr(pair, name, Links.of(links))
         names = () if self._reads_itself else connection.recorded
         pair.cubic, pair.recorded = connection.cubic, references(drive.instance, names)
         pair.recorded_count, pair.stride = len(names), self.width

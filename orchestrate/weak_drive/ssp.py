@@ -31,7 +31,7 @@ from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
 from ..model.drive import Drive
 from ..model.shaker import Shaker
 from ..model.structure import Structure
-from .connection import FORCE, MOTION, Link, checked_links, checked_units
+from .connection import FORCE, MOTION, PUSHES, Link, checked_links, checked_units
 from .cosimulate import checked_parameters
 from .run import oscillator_start
 from .schedule import check
@@ -234,10 +234,10 @@ def write_ssp(
     voltage : float
         Of a motor, V.
     connect, units : mapping of str to str, optional
-        The drive's names by ``box_acceleration`` and ``box_force``, and units, as for
-        :func:`orchestrate.cosimulate`. Another sign or unit is a linear transformation of the
-        connection, which FMPy and others do not apply. Velocity and position are shown, not
-        connected.
+        The drive's names by ``box_acceleration`` and ``box_force``, or ``force1`` and ``force2`` of
+        the halves, and units, as for :func:`orchestrate.cosimulate`. Another sign or unit is a
+        linear transformation of the connection, which FMPy and others do not apply. Velocity and
+        position are shown, not connected.
     parameters : mapping of str to float, optional
         Start values of other drives, of their inputs too.
     speed_start : float, optional
@@ -339,17 +339,18 @@ def drive_component(
         path, values = fmu or fmu_path(ELECTRODYNAMIC_SHAKER), {**drive.parameters(), **values}
     else:
         path = Path(drive)
-    description, needed = describe(path), ("box_force", "box_acceleration")
+    description, exchanged = describe(path), ("box_force", "box_acceleration")
     if connect is None and isinstance(drive, Shaker):
-        connect = {name: name for name in needed}
+        connect = {name: name for name in exchanged}
     links = checked_links(connect or {}, description, checked_units(units, description))
     taken = [name for name in links if name in FORCE[1:]]
-    if taken or "box_acceleration" not in links:
+    if taken or ("box_force" in links and "box_acceleration" not in links):
         raise InputError(
             f"connect: {', '.join(links)}; expected box_force and box_acceleration, with or "
-            "without velocity and position: what tools exchange is these two"
+            "without velocity and position: what tools exchange is these two, and force1, force2"
         )
     start = dict(checked_parameters(values, description))
-    shown = tuple(link.theirs for name, link in links.items() if name in MOTION)
-    component = Component(path.resolve(), description, (links["box_force"].theirs,), shown, start)
-    return component, {name: links[name] for name in needed}
+    shown = tuple(link.theirs for name, link in links.items() if name in (*MOTION, *PUSHES))
+    taken = [link.theirs for name, link in links.items() if name in FORCE]
+    component = Component(path.resolve(), description, (*taken,), shown, start)
+    return component, {name: links[name] for name in (*exchanged, *PUSHES) if name in links}

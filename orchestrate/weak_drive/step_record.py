@@ -80,6 +80,11 @@ class Record:
         first = PLACE["x1"]
         return OscillatorOutputs._make(self.columns[first : first + len(OscillatorOutputs._fields)])
 
+    def cubics(self) -> Cubic:
+        """Return the same, followed by the forces on the halves."""
+        pushes = (name for name in self.names[len(LEADING) :] if name.endswith("_then"))
+        return *self.acceleration(), *map(self.__getitem__, pushes)
+
     def acceleration(self) -> Cubic:
         """Return the box acceleration over the steps that end here, as cubics."""
         first = PLACE["acceleration_then"]

@@ -12,6 +12,7 @@
  * - Acceleration and velocity give the ends and the mean of the rest (all of the acceleration where w is 0), the position its first moment, or it is a parabola.
  *   Otherwise it is the polynomial through the last points of acceleration, velocity or position. Where nothing is known to extrapolate, at the start, both do
  *   the step `first_passes` times, if the drive can go back.
+ * - A force of the drive on a half is extrapolated as the acceleration is, and then the polynomial through its last points.
  * - With a `tolerance` a step is halved, for both, where the energy defect is a larger part of the work exchanged in it; one with less than `easy` of that is
  *   followed by one twice as long.
  * - A step that the drive discards is halved too, to the end of its interval, where the drive can go back (`halves_discarded`).
@@ -27,6 +28,7 @@ enum {  /* places in a row; after the motion of the box the drive's other output
     MOTION, FORCE = MOTION + 4, IMPULSE, MOMENT,
     POSITION = MOTION + 10, VELOCITY, ACCELERATION, WORK, ENERGY,
     ANGLE = WORK + 4, SPEED,
+    PUSHES = 2,  /* halves that a force may act on */
     PAST = 4,  /* communication points that are remembered where acceleration and velocity are not both connected */
     DISCARD = 2, NOT_WHOLE = -2,  /* statuses, of FMI and our own */
     LAST_TIME = 2, TERMINATED = 3  /* kinds of fmi2GetRealStatus and fmi2GetBooleanStatus */
@@ -64,7 +66,7 @@ typedef struct {
     Side oscillator, drive;
     double tolerance, easy;
     int halvings, first_passes, halves_discarded;
-    Links force, motion;
+    Links force, motion, pushes;  /* pushes: forces on the halves, among the drive's outputs after the motion */
     int cubic;  /* place among the drive's other inputs from which on they are cubics, four of each, or -1 */
     const unsigned *recorded;
     size_t recorded_count;
@@ -75,6 +77,7 @@ typedef struct {
     int point_count;
     double inverse_mass[2];  /* w at a step's beginning and end; 0 for a drive that takes the force's derivatives */
     double held, owed[2];  /* force in the last step; impulse and first moment about now, N s and N s^2, that the drive lacks */
+    double push_count, push_points[PAST - 1][1 + PUSHES];  /* last times, and forces on the halves then */
 } Pair;
 
 EXPORT const unsigned sizes_of_couple[] = {sizeof(Pair), MOTION, POSITION, ANGLE};  /* Python has to have the same */
@@ -217,9 +220,46 @@ static void rest_of_points(const Pair *p, Cubic f, const double *now, const doub
     derivatives(ages, values, known + 1, order, f);
 }
 
+/* Where a row has the forces on the halves, in SI, */
+static double *pushes_of(double *row) { return row + ACCELERATION + 1; }
+
+/* and their cubics over the step that ends there. */
+static double *cubics_of(const Pair *p, double *row) { return pushes_of(row) + p->drive.output_count - p->motion.count; }
+
+/* The forces over the coming step: extrapolated, */
+static void push_on(const Pair *p, double *now, double *next) {
+    for (int k = 0; k < p->pushes.count; k++) {
+        double *cubic = cubics_of(p, next) + 4 * k;
+        set_cubic(cubic, 0.0, 0.0, 0.0, 0.0);
+        if (now[H] != 0.0) end_derivatives(cubic, cubics_of(p, now) + 4 * k, now[H]);
+        cubic[0] = pushes_of(now)[k];
+    }
+}
+
+/* and then the polynomials through their last points and the one at its end. */
+static void pushes_over(const Pair *p, const double *now, double *next, double h) {
+    int known = (int)p->push_count;
+    for (int k = 0; k < p->pushes.count; k++) {
+        double ages[PAST], values[PAST];
+        for (int i = 0; i < known; i++) ages[i] = p->push_points[i][0] - now[TIME], values[i] = p->push_points[i][1 + k];
+        ages[known] = h, values[known] = pushes_of(next)[k];
+        derivatives(ages, values, known + 1, 0, cubics_of(p, next) + 4 * k);
+    }
+}
+
+static void remember_pushes(Pair *p, double *row) {
+    int count = (int)p->push_count;
+    if (!p->pushes.count) return;
+    for (; count == PAST - 1; count--)
+        for (int i = 0; i + 1 < count; i++) for (int k = 0; k <= PUSHES; k++) p->push_points[i][k] = p->push_points[i + 1][k];
+    p->push_points[count][0] = row[TIME];
+    for (int k = 0; k < p->pushes.count; k++) p->push_points[count][1 + k] = pushes_of(row)[k];
+    p->push_count = count + 1;
+}
+
 /* Keep the last points, as though w times the forces held since then had not acted. */
 static void remember(Pair *p, const double *row) {
-    if (knows_ends_and_mean(row)) return;
+    if (knows_ends_and_mean(row) || !p->motion.count) return;
     for (int i = 0; i < p->point_count && row[H] != 0.0; i++)
         p->points[2 * i + 1] += p->inverse_mass[1] * moved_by(p->held, order_of(row), row[H], p->points[2 * i] - row[TIME]);
     if (p->point_count == PAST) {
@@ -243,6 +283,8 @@ static void rest_of_ends(const Pair *p, Cubic f, const double *now, const double
 static void acceleration_over(const Pair *p, Cubic f, const double *now, const double *next, double h) {
     double w = p->inverse_mass[0], rise = (p->inverse_mass[1] - w) / h;
     Cubic force;
+    set_cubic(f, 0.0, 0.0, 0.0, 0.0);
+    if (!p->motion.count) return;
     if (knows_ends_and_mean(now)) rest_of_ends(p, f, now, next, h);
     else rest_of_points(p, f, now, next, h);
     if (w == 0.0 && rise == 0.0) return;
@@ -282,13 +324,14 @@ static bool read_drive(Pair *p, double *row, const double *inputs, double h) {
     for (int i = 0; i < known; i++) box[i] = read[i];
     for (int i = 0; i < 3; i++) row[POSITION + i] = __builtin_nan("");
     for (int i = 0; i < known; i++) row[POSITION + p->motion.places[i]] = p->motion.scales[i] * box[i];
+    for (int k = 0; k < p->pushes.count; k++) pushes_of(row)[k] *= p->pushes.scales[k];
     return true;
 }
 
 /* Reads the drive, and w, its acceleration with 1 N more less that without. */
 static bool read_drive_and_mass(Pair *p, double *row, const double *inputs, double h, double *w) {
     double force = row[FORCE], more = 0.0;
-    bool tries = is_held(p) && p->motion.places[p->motion.count - 1] == ACCELERATION - POSITION;
+    bool tries = is_held(p) && p->motion.count && p->motion.places[p->motion.count - 1] == ACCELERATION - POSITION;
     if (tries) {
         row[FORCE] = force + 1.0;
         if (!read_drive(p, row, inputs, h)) return false;
@@ -299,10 +342,13 @@ static bool read_drive_and_mass(Pair *p, double *row, const double *inputs, doub
     return true;
 }
 
-static size_t inputs_at(const Pair *p) { return ACCELERATION + 1 + p->drive.output_count - p->motion.count; }
+static size_t inputs_at(const Pair *p) { return ACCELERATION + 1 + p->drive.output_count - p->motion.count + 4 * p->pushes.count; }
 
 static bool oscillate(Pair *p, const double *now, double *next, const Cubic acceleration, double h) {
-    return put(&p->oscillator, acceleration) && advance(&p->oscillator, now[TIME], h) && get(&p->oscillator, next + MOTION);
+    double values[4 * (1 + PUSHES)];
+    for (int i = 0; i < 4; i++) values[i] = acceleration[i];
+    for (int i = 0; i < 4 * p->pushes.count; i++) values[4 + i] = cubics_of(p, next)[i];
+    return put(&p->oscillator, values) && advance(&p->oscillator, now[TIME], h) && get(&p->oscillator, next + MOTION);
 }
 
 static bool restore_both(Pair *p) { return restore(&p->oscillator) && restore(&p->drive); }
@@ -320,13 +366,14 @@ static double relative_defect(const double *now, const double *next) {
 }
 
 /* A step from `now` to `next`; where it is refused for its defect, both sides have gone back. */
-static bool attempt(Pair *p, const double *now, double *next, double h, bool may_refuse, double *defect, bool *refused) {
+static bool attempt(Pair *p, double *now, double *next, double h, bool may_refuse, double *defect, bool *refused) {
     int passes = now[H] == 0.0 ? p->first_passes : 1;
     const double *inputs = now + inputs_at(p);
     double *w = p->inverse_mass, given;
     Cubic acceleration, force;
     if (!save(&p->oscillator) || ((may_refuse || passes > 1) && !save(&p->drive))) return false;
     run_on(acceleration, now);
+    push_on(p, now, next);
     for (int i = 0; i < passes; i++) {
         if (i && !restore_both(p)) return false;
         if (!oscillate(p, now, next, acceleration, h)) return false;
@@ -338,6 +385,7 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
         }
         if (!read_drive_and_mass(p, next, inputs, h, w + 1)) return false;
         acceleration_over(p, acceleration, now, next, h);
+        pushes_over(p, now, next, h);
     }
     given = next[FORCE];
     if (w[0] != 0.0 || w[1] != 0.0) {  /* w times the force of the motion that is nearly the last one */
@@ -355,6 +403,7 @@ static bool attempt(Pair *p, const double *now, double *next, double h, bool may
     for (int i = 0; i < 4; i++) next[THEN + i] = acceleration[i];
     if (is_held(p)) settle(p, next, h);
     remember(p, next);
+    remember_pushes(p, next);
     w[0] = w[1];
     return count_impacts(&p->oscillator, next + IMPACTS);
 }
@@ -367,13 +416,17 @@ static bool interval(Pair *p, double *now, double **at, size_t width, const doub
     bool known = p->cubic < 0, refused;
     for (size_t i = first; i < width; i++) known = known && now[i] == inputs[i - first];
     for (size_t i = first; i < width; i++) now[i] = inputs[i - first];
-    double before = now[ACCELERATION];
+    double before = now[ACCELERATION], pushed[PUSHES] = {0.0};
+    for (int k = 0; k < p->pushes.count; k++) pushed[k] = pushes_of(now)[k];
     if (!known && !read_drive(p, now, inputs, 0.0)) return false;
     for (int i = 0; i < p->point_count && is_known(before); i++) p->points[2 * i + 1] += now[ACCELERATION] - before;  /* a jump of the inputs is none of the motion */
+    for (int i = 0; i < (int)p->push_count; i++) for (int k = 0; k < p->pushes.count; k++) p->push_points[i][1 + k] += pushes_of(now)[k] - pushed[k];
     if (now[H] == 0.0 && p->point_count == 0) {
         if (!read_drive_and_mass(p, now, inputs, 0.0, p->inverse_mass + 1)) return false;
         p->inverse_mass[0] = p->inverse_mass[1];
         remember(p, now);
+        p->push_count = 0.0;
+        remember_pushes(p, now);
     }
     while (done < 1 << halvings) {
         int size = (1 << halvings) >> level;
