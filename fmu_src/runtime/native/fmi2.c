@@ -1,7 +1,5 @@
 /* FMI 2.0 for co-simulation onto core.h. */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "core.h"
 #include "fmi2Functions.h"
@@ -27,12 +25,6 @@ static void report(Instance *instance, Status status, const char *text) {
 
 static fmi2Status refuse2(Instance *instance, const char *call, const char *text) {
     return (fmi2Status)refuse(instance, call, text);
-}
-
-static bool missing(Instance *instance, const char *call, size_t count, const void *a, const void *b) {
-    if (count == 0 || (a && b)) return false;
-    refuse(instance, call, "a null pointer for an array that is not empty");
-    return true;
 }
 
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
@@ -133,56 +125,29 @@ fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference refs[], size_
 }
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *to) {
-    Instance *instance = c;
-    if (!instance) return fmi2Error;
-    if (!to) return refuse2(instance, "fmi2GetFMUstate", "a null pointer");
-    if (!*to) *to = malloc(sizeof(State));
-    if (!*to) return refuse2(instance, "fmi2GetFMUstate", "out of memory");
-    memcpy(*to, &instance->state, sizeof(State));
-    return fmi2OK;
+    return c ? (fmi2Status)save_state(c, "fmi2GetFMUstate", to) : fmi2Error;
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate from) {
-    Instance *instance = c;
-    if (!instance) return fmi2Error;
-    if (!from) return refuse2(instance, "fmi2SetFMUstate", "a null pointer");
-    memcpy(&instance->state, from, sizeof(State));
-    return fmi2OK;
+    return c ? (fmi2Status)restore_state(c, "fmi2SetFMUstate", from) : fmi2Error;
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
     if (!c) return fmi2Error;
-    if (!state) return fmi2OK;
-    free(*state);
-    *state = NULL;
+    free_state(state);
     return fmi2OK;
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
-    if (!c) return fmi2Error;
-    if (!state || !size) return refuse2(c, "fmi2SerializedFMUstateSize", "a null pointer");
-    *size = STATE_BYTES;
-    return fmi2OK;
+    return c ? (fmi2Status)state_size(c, "fmi2SerializedFMUstateSize", state, size) : fmi2Error;
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    if (!c) return fmi2Error;
-    if (!state || !bytes) return refuse2(c, "fmi2SerializeFMUstate", "a null pointer");
-    if (size < STATE_BYTES) return refuse2(c, "fmi2SerializeFMUstate", "size: expected what fmi2SerializedFMUstateSize gives");
-    state_to_bytes(state, bytes);
-    return fmi2OK;
+    return c ? (fmi2Status)serialize_state(c, "fmi2SerializeFMUstate", state, bytes, size) : fmi2Error;
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *to) {
-    if (!c) return fmi2Error;
-    if (!bytes || !to) return refuse2(c, "fmi2DeSerializeFMUstate", "a null pointer");
-    State read;
-    if (state_from_bytes(c, "fmi2DeSerializeFMUstate", &read, bytes, size) != OK) return fmi2Error;
-    if (!*to) *to = malloc(sizeof(State));
-    if (!*to) return refuse2(c, "fmi2DeSerializeFMUstate", "out of memory");
-    if (read.phase == EVENT) read.phase = STEPPING;  /* saved by an FMI 3.0 FMU: there is no event mode here */
-    memcpy(*to, &read, sizeof read);
-    return fmi2OK;
+    return c ? (fmi2Status)deserialize_state(c, "fmi2DeSerializeFMUstate", bytes, size, to) : fmi2Error;
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[], size_t unknown_count, const fmi2ValueReference knowns[],
