@@ -3,7 +3,6 @@
 #include "core.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,18 +50,6 @@ static void append_value(char *text, const Variable *variable, double value) {
     else append_number(text, value);
 }
 
-/* Append a text: %s is another one, %g a number, %v the value of a variable, both of which follow. */
-static void append_filled(char *text, const char *format, va_list values) {
-    for (; *format; format++) {
-        char piece[2] = {*format, 0};
-        if (*format != '%') { append(text, piece); continue; }
-        format++;
-        if (*format == 's') append(text, va_arg(values, const char *));
-        else if (*format == 'g') append_number(text, va_arg(values, double));
-        else { const Variable *variable = va_arg(values, const Variable *); append_value(text, variable, va_arg(values, double)); }
-    }
-}
-
 /* Report why a call is not done. */
 static Status complain(Instance *instance, Status status, const char *call, const char *reason) {
     char text[TEXT] = "";
@@ -73,14 +60,25 @@ static Status complain(Instance *instance, Status status, const char *call, cons
     return status;
 }
 
-Status refuse(Instance *instance, const char *call, const char *format, ...) {
-    char text[TEXT] = "";
-    va_list values;
-    va_start(values, format);
-    append_filled(text, format, values);
-    va_end(values);
-    return complain(instance, FAILED, call, text);
+Status refuse(Instance *instance, const char *call, const char *reason) {
+    return complain(instance, FAILED, call, reason);
 }
+
+/* Refuse with a message in which %g stands for the next of the numbers, %v for that as the variable's value, %s for the next of the texts. */
+static Status refuse_with(Instance *instance, const char *call, const char *format, const Variable *variable, const double *numbers,
+                          const char *const *texts) {
+    char text[TEXT] = "";
+    for (; *format; format++) {
+        char piece[2] = {*format, 0};
+        if (*format != '%') append(text, piece);
+        else if (*++format == 'g') append_number(text, *numbers++);
+        else if (*format == 'v') append_value(text, variable, *numbers++);
+        else append(text, *texts++);
+    }
+    return refuse(instance, call, text);
+}
+#define NUMBERS(...) (const double[]){__VA_ARGS__}
+#define TEXTS(...) (const char *const[]){__VA_ARGS__}
 
 bool in_phase(Instance *instance, const char *call, int phases) {
     static const char *const names[] = {"instantiated", "initialization mode", "step mode", "event mode", "stopped after an error", "terminated"};
@@ -90,7 +88,7 @@ bool in_phase(Instance *instance, const char *call, int phases) {
     append(text, ": expected when ");
     const char *separator = "";
     for (int i = 0; i < 6; i++) if (phases & 1 << i) { append(text, separator); append(text, names[i]); separator = ", "; }
-    refuse(instance, call, "%s", text);
+    refuse(instance, call, text);
     return false;
 }
 
@@ -112,7 +110,7 @@ Status check_categories(Instance *instance, const char *call, size_t count, cons
     for (size_t i = 0; i < count; i++) {
         bool known = false;
         for (unsigned k = 0; categories[i] && k < CATEGORY_COUNT; k++) known = known || strcmp(categories[i], CATEGORIES[k]) == 0;
-        if (!known) return refuse(instance, call, "log category %s: expected " CATEGORY_NAMES, categories[i] ? categories[i] : "NULL");
+        if (!known) return refuse_with(instance, call, "log category %s: expected " CATEGORY_NAMES, NULL, NULL, TEXTS(categories[i] ? categories[i] : "NULL"));
     }
     return OK;
 }
@@ -126,7 +124,7 @@ Instance *instance_new(const char *call, const char *name, const char *token_nam
     instance->name = copy(name ? name : "");
     if (!instance->name) { free(instance); return NULL; }
     if (!token || strcmp(token, MODEL_TOKEN) != 0) {
-        refuse(instance, call, "%s: expected that of this FMU, " MODEL_TOKEN ", not %s", token_name, token ? token : "a null pointer");
+        refuse_with(instance, call, "%s: expected that of this FMU, " MODEL_TOKEN ", not %s", NULL, NULL, TEXTS(token_name, token ? token : "a null pointer"));
         instance_free(instance);
         return NULL;
     }
@@ -189,7 +187,7 @@ static Status computed(Instance *instance, const char *call, int code) {
     if (!code) return OK;
     char text[TEXT];
     explain(text, instance->state.memory, code);
-    return refuse(instance, call, "%s", text);
+    return refuse(instance, call, text);
 }
 
 static Status start(Instance *instance, const char *call) {
@@ -208,9 +206,9 @@ Status refresh(Instance *instance) {
 
 Status set_experiment(Instance *instance, const char *call, double start_time, double stop_time) {
     if (!in_phase(instance, call, INSTANTIATED)) return FAILED;
-    if (!isfinite(start_time)) return refuse(instance, call, "startTime = %g s: expected every finite number", start_time);
+    if (!isfinite(start_time)) return refuse_with(instance, call, "startTime = %g s: expected every finite number", NULL, &start_time, NULL);
     if (!(stop_time >= start_time))
-        return refuse(instance, call, "startTime = %g s with stopTime = %g s: expected stopTime >= startTime", start_time, stop_time);
+        return refuse_with(instance, call, "startTime = %g s with stopTime = %g s: expected stopTime >= startTime", NULL, NUMBERS(start_time, stop_time), NULL);
     instance->state.start_time = start_time;
     instance->stop_time = stop_time;
     return OK;
@@ -232,11 +230,12 @@ Status exit_initialization(Instance *instance, const char *call) {
 /* Why a step cannot be tried. */
 static Status refuse_step(Instance *instance, const char *call, double current, double size) {
     double reached = instance->state.memory[TIME_SLOT];
-    if (!(size >= 0) || isinf(size)) return refuse(instance, call, "communicationStepSize = %g s: expected every finite number >= 0", size);
+    if (!(size >= 0) || isinf(size)) return refuse_with(instance, call, "communicationStepSize = %g s: expected every finite number >= 0", NULL, &size, NULL);
     if (!(fabs(current - reached) <= 1e-9 * (fabs(reached) + size)))
-        return refuse(instance, call, "currentCommunicationPoint = %g s: expected %g s, where the last step ended", current, reached);
-    if (isinf(current + size)) return refuse(instance, call, "communicationStepSize = %g s: expected a step that ends at a finite time", size);
-    return refuse(instance, call, "the step to time = %g s: expected none past stopTime = %g s", current + size, instance->stop_time);
+        return refuse_with(instance, call, "currentCommunicationPoint = %g s: expected %g s, where the last step ended", NULL, NUMBERS(current, reached), NULL);
+    if (isinf(current + size)) return refuse_with(instance, call, "communicationStepSize = %g s: expected a step that ends at a finite time", NULL, &size, NULL);
+    const double *ends = NUMBERS(current + size, instance->stop_time);
+    return refuse_with(instance, call, "the step to time = %g s: expected none past stopTime = %g s", NULL, ends, NULL);
 }
 
 /* Report once that a step is so short that the time stays the same; it is done all the same. */
@@ -288,12 +287,12 @@ Status step(Instance *instance, const char *call, double current, double size) {
 
 Status may_get(Instance *instance, const char *call, const Variable *variable) {
     if (!variable->calculated || instance->state.phase != INSTANTIATED) return OK;
-    return refuse(instance, call, "%s is calculated: expected when initialization mode has been entered", variable->name);
+    return refuse_with(instance, call, "%s is calculated: expected when initialization mode has been entered", NULL, NULL, &variable->name);
 }
 
 bool has_rate(Instance *instance, const char *call, const Variable *variable, int order) {
     if (order == 1 && variable->rate >= 0) return true;
-    refuse(instance, call, "%s: expected order 1 of a continuous output", variable->name);
+    refuse_with(instance, call, "%s: expected order 1 of a continuous output", NULL, NULL, &variable->name);
     return false;
 }
 
@@ -317,7 +316,7 @@ const Variable *find(Instance *instance, const char *call, unsigned reference, T
     append(text, "expected one of the ");
     append(text, TYPE_NAMES[type]);
     append(text, " variables in modelDescription.xml");
-    refuse(instance, call, "%s", text);
+    refuse(instance, call, text);
     return NULL;
 }
 
@@ -331,9 +330,10 @@ Status may_set(Instance *instance, const char *call, const Variable *variable, d
     else if (variable->fixed && !(instance->state.phase & (INSTANTIATED | INITIALIZING)))
         reason = ": a fixed parameter, to be set before the end of initialisation";
     else if (in_range(variable, value)) return OK;
-    if (reason) return refuse(instance, call, "%s = %v%s", variable->name, variable, value, reason);
+    if (reason) return refuse_with(instance, call, "%s = %v%s", variable, &value, TEXTS(variable->name, reason));
     bool has_unit = variable->unit[0] && strcmp(variable->unit, "1") != 0;
-    return refuse(instance, call, "%s = %v%s%s: expected %s", variable->name, variable, value, has_unit ? " " : "", has_unit ? variable->unit : "", variable->range);
+    const char *const *texts = TEXTS(variable->name, has_unit ? " " : "", has_unit ? variable->unit : "", variable->range);
+    return refuse_with(instance, call, "%s = %v%s%s: expected %s", variable, &value, texts);
 }
 
 void set(Instance *instance, unsigned reference, double value) {
@@ -399,7 +399,7 @@ static Status restored(Instance *instance, const char *call, State *state) {
     for (unsigned i = 0; i < VARIABLE_COUNT; i++) {
         const Variable *variable = &VARIABLES[i];
         if (!is_value(variable, state->memory[i]))
-            return refuse(instance, call, NEVER "%s = %v: expected %s", variable->name, variable, state->memory[i], variable->range);
+            return refuse_with(instance, call, NEVER "%s = %v: expected %s", variable, &state->memory[i], TEXTS(variable->name, variable->range));
     }
     if (state->phase & (INSTANTIATED | INITIALIZING)) {  /* nothing is calculated yet, or it is once more */
         for (unsigned i = 0; i < MEMORY_SIZE; i++) if (i >= VARIABLE_COUNT || VARIABLES[i].calculated) state->memory[i] = 0;
@@ -410,13 +410,13 @@ static Status restored(Instance *instance, const char *call, State *state) {
         if (is_hidden_value(i, state->memory[i])) continue;
         char slot[16];
         snprintf(slot, sizeof slot, "%u", i);
-        return refuse(instance, call, NEVER "%g in slot %s", state->memory[i], slot);
+        return refuse_with(instance, call, NEVER "%g in slot %s", NULL, &state->memory[i], TEXTS(slot));
     }
     int code = kernel_restore(state->memory, state->start_time);
     if (!code) return OK;
     char problem[TEXT];
     explain(problem, state->memory, code);
-    return refuse(instance, call, NEVER "%s", problem);
+    return refuse_with(instance, call, NEVER "%s", NULL, NULL, TEXTS(problem));
 }
 
 static Status keep(Instance *instance, const char *call, void **to, const State *state) {

@@ -61,8 +61,8 @@ Instance *instance_new(const char *call, const char *name, const char *token_nam
 void instance_free(Instance *);
 void instance_reset(Instance *);
 
-/* Fail with a message: of a text %s, of a number %g, of a variable and its value %v. */
-Status refuse(Instance *, const char *call, const char *format, ...);
+/* Fail with a message, which is no format. */
+Status refuse(Instance *, const char *call, const char *reason);
 bool in_phase(Instance *, const char *call, int phases);
 bool missing(Instance *, const char *call, size_t count, const void *a, const void *b);  /* an array that is not empty */
 
