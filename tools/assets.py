@@ -7,7 +7,6 @@ plotting library.
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
 from collections.abc import Sequence
@@ -17,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from orchestrate.fmu import Instance, describe, find
+from orchestrate.fmu import describe, find
 from orchestrate.show import figure_files
 
 from .pictures import electrodynamic_shaker, icon, oscillator, shaker
@@ -28,6 +27,7 @@ from .references import (
     REFERENCES,
     Reference,
     reference_rows,
+    rows_of_run,
     write_reference,
 )
 
@@ -63,42 +63,29 @@ def replace_table(page: str, reference: Reference, table: str) -> str:
     return f"{head}{begin}\n{table}{end}{tail}"
 
 
-def simulate_example(
-    fmu: str | PathLike[str],
-    eta: float = 0.4,
-    transient: int = 500,
-    periods: int = 2,
-    points: int = 600,
-) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def simulate_example(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Simulate two settled periods of the paper's Figure 5; return times and values by name."""
-    names = ("x1", "x2", "x_rel", "in_contact")
+    names, eta = ("x1", "x2", "x_rel", "in_contact"), 0.4
     period = 2.0 * math.pi / eta
-    times = [0.0, *(transient * period + np.linspace(0.0, periods * period, points))]
-    rows = []
-    with Instance(fmu) as instance:
-        instance.initialize(0.0, box_amplitude=1.0 / eta**2, box_frequency=eta)
-        for time, target in itertools.pairwise(times):
-            instance.step(time, target)
-            rows.append([float(value) for value in instance.get(*names)])
-    return np.array(times[1:]), dict(zip(names, np.array(rows).T, strict=True))
+    times = [0.0, *(500 * period + np.linspace(0.0, 2 * period, 600))]
+    box = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
+    return columns_of(rows_of_run(fmu, times, names, lambda _: {}, **box), names)
 
 
-def simulate_limits(
-    fmu: str | PathLike[str], points: int = 800
-) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def simulate_limits(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Simulate a growing sine of voltage until both limits act; return times and values."""
-    names, frequency = ("voltage", "current", "box_position", "limited"), 40.0
-    times = np.linspace(0.0, 1.5, points + 1)
-    rows = []
-    with Instance(fmu) as instance:
-        instance.initialize(
-            0.0, coil_inductance=0.02, voltage_limit=5.0, current_limit=1.0, **growing_sine(0.0)
-        )
-        for time, target in itertools.pairwise(times):
-            instance.set(**growing_sine(time, frequency))
-            instance.step(time, target)
-            rows.append([float(value) for value in instance.get(*names)])
-    return times[1:], dict(zip(names, np.array(rows).T, strict=True))
+    names = ("voltage", "current", "box_position", "limited")
+    coil = {"coil_inductance": 0.02, "voltage_limit": 5.0, "current_limit": 1.0}
+    times = np.linspace(0.0, 1.5, 801).tolist()
+    return columns_of(rows_of_run(fmu, times, names, growing_sine, **coil), names)
+
+
+def columns_of(
+    rows: Sequence[Sequence[float]], names: Sequence[str]
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Return the times and the values by name of a run's rows, without the first."""
+    times, *values = np.array(rows, dtype=float)[1:].T
+    return times, dict(zip(names, values, strict=True))
 
 
 def growing_sine(time: float, frequency: float = 40.0) -> dict[str, float]:

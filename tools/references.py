@@ -77,21 +77,31 @@ COIL = Reference(
 REFERENCES = (OSCILLATOR, MOTOR_SHAKER, COIL)
 
 
+def rows_of_run(
+    fmu: str | PathLike[str],
+    times: Sequence[float],
+    outputs: Sequence[str],
+    inputs: Callable[[float], dict[str, float]],
+    **start: float,
+) -> list[list[float]]:
+    """Run an FMU under inputs set before each step; return rows of time and outputs."""
+    with Instance(fmu) as instance:
+        instance.initialize(times[0], **start, **inputs(times[0]))
+        rows = [[times[0], *instance.get(*outputs)]]
+        for time, target in itertools.pairwise(times):
+            instance.set(**inputs(time))
+            instance.step(time, target)
+            rows.append([target, *instance.get(*outputs)])
+    return rows
+
+
 def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:
     """Run the reference through an FMU; return rows of time and outputs."""
-    times = reference.times()
 
     def inputs(time: float) -> dict[str, float]:
         return dict(zip(reference.inputs, reference.input_at(time), strict=True))
 
-    with Instance(fmu) as instance:
-        instance.initialize(0.0, **inputs(0.0))
-        rows = [[times[0], *instance.get(*reference.outputs)]]
-        for time, target in itertools.pairwise(times):
-            instance.set(**inputs(time))
-            instance.step(time, target)
-            rows.append([target, *instance.get(*reference.outputs)])
-    return rows
+    return rows_of_run(fmu, reference.times(), reference.outputs, inputs)
 
 
 def write_reference(reference: Reference, rows: Sequence[Sequence[float]]) -> None:

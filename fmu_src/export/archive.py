@@ -28,14 +28,7 @@ def guid_of(files: Mapping[str, bytes]) -> str:
 
 
 def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
-    """Write an FMU, whole or not at all.
-
-    Parameters
-    ----------
-    path : Path
-    files : mapping of str to bytes
-        ``modelDescription.xml`` comes first, the rest in alphabetical order.
-    """
+    """Write an FMU of contents by name, whole or not at all: the model description comes first."""
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
     temporary = Path(name)
@@ -60,9 +53,7 @@ def archive_entry(name: str) -> zipfile.ZipInfo:
 
 
 def read_folder(folder: Path, prefix: str = "") -> dict[str, bytes]:
-    """Return all files below a folder, without caches and editors' copies, as a dict of name to
-    bytes.
-    """
+    """Return contents by name below a folder, without caches and editors' copies."""
     return {
         prefix + path.relative_to(folder).as_posix(): path.read_bytes()
         for path in sorted(folder.rglob("*"))

@@ -36,13 +36,7 @@ KERNELS = {  # headers that a source may include, translated from Python
 
 
 def guid(source: Path) -> str:
-    """Return the token that a library of the present source bears, in braces.
-
-    Parameters
-    ----------
-    source : Path
-        The C file.
-    """
+    """Return the token, in braces, that a library of the present C file bears."""
     return guid_of({**import_closure("export/c_library.py"), **loop_files(source)})
 
 
@@ -63,26 +57,14 @@ def compiled_files(source: Path) -> Files:
 
 
 def export(source: Path, platform: str) -> bytes:
-    """Compile a C source for a platform.
-
-    Raises
-    ------
-    CannotExport
-        Where there is no compiler for it.
-    """
+    """Compile a C source for a platform; raise ``CannotExport`` without a compiler for it."""
     kept = "__declspec(dllexport)" if platform.endswith("-windows") else VISIBLE
     token = f'{kept} const char token[] = "{guid(source)}";\n'.encode()
     return link(platform, source.stem, {**compiled_files(source), "token.c": token})
 
 
 def file_name(source: Path, platform: str) -> str:
-    """Return the library's file name, with its platform as the folder.
-
-    Raises
-    ------
-    CannotExport
-        Where the platform is unknown.
-    """
+    """Return the library's file name, with its platform as the folder; raise for unknown ones."""
     if platform not in PLATFORMS:
         raise CannotExport(f"platform {platform}: expected one of {', '.join(PLATFORMS)}")
     return f"{platform}/{source.stem}{PLATFORMS[platform].suffix}"

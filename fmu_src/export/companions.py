@@ -29,12 +29,7 @@ RELATED = (  # file, type, role, description
 
 
 def companions(model: Model) -> Files:
-    """Return these files by name, except the icon.
-
-    Parameters
-    ----------
-    model : Model
-    """
+    """Return these files of a model by name, except the icon."""
     licence = (ROOT / "models" / "license.txt").read_bytes()
     return {
         "terminalsAndIcons/terminalsAndIcons.xml": terminals_xml(model),
@@ -49,9 +44,7 @@ def icon_path(version: str) -> str:
 
 
 def terminals_xml(model: Model) -> bytes:
-    """Return ``terminalsAndIcons.xml``: variables to be connected together, by their names within
-    the terminal.
-    """
+    """Return ``terminalsAndIcons.xml``: variables to be connected, by names within terminals."""
     root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     if model.terminals:
         parent = ET.SubElement(root, "Terminals")

@@ -51,12 +51,7 @@ def warn_once(line: str) -> None:
 
 
 def ziglang(*arguments: str) -> list[str]:
-    """Return the command of a program of ziglang's, where that is installed.
-
-    Raises
-    ------
-    CannotExport
-    """
+    """Return the command of a program of ziglang's; raise ``CannotExport`` without ziglang."""
     require("ziglang", "compiles the kernel")
     return [sys.executable, "-m", "ziglang", *arguments]
 
@@ -75,20 +70,7 @@ def own_compiler(name: str) -> list[str]:
 
 
 def run(command: Iterable[str], folder: str | Path, what: str) -> None:
-    """Run a compiler in a folder.
-
-    Parameters
-    ----------
-    command : iterable of str
-    folder : path-like
-    what : str
-        What it compiles for, for the message.
-
-    Raises
-    ------
-    CannotExport
-        With the compiler's first error.
-    """
+    """Run a compiler in a folder, for ``what``; raise ``CannotExport`` with its first error."""
     done = subprocess.run([*command], cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
         told = done.stderr.splitlines()
@@ -103,22 +85,14 @@ def zig_target(name: str) -> list[str]:
 
 
 def compile_command(name: str) -> list[str]:
-    """Return the command that compiles a C file for a platform to an object file.
-
-    Raises
-    ------
-    CannotExport
-        Where there is no compiler.
-    """
+    """Return the command that compiles a C file for a platform to an object file."""
     is_windows = name.endswith("-windows")
     compiler = own_compiler(name) or [*ziglang("cc"), *zig_target(name), *CLANG_FLAGS]
     return [*compiler, *FLAGS, *(WINDOWS_FLAGS if is_windows else ["-fPIC"]), "-c"]
 
 
 def link_command(name: str, title: str, objects: Iterable[str]) -> list[str]:
-    """Return the command that links object files to a shared library, named as its platform has
-    it.
-    """
+    """Return the command that links object files to a library, named as its platform has it."""
     target = f"{title}{PLATFORMS[name].suffix}"
     own = own_compiler(name)
     if own:
@@ -135,19 +109,7 @@ def link_command(name: str, title: str, objects: Iterable[str]) -> list[str]:
 
 
 def kernel_object(name: str, source: bytes) -> bytes:
-    """Compile a C file that includes nothing of ours to an object file, once in a process.
-
-    Parameters
-    ----------
-    name : str
-        Platform.
-    source : bytes
-
-    Raises
-    ------
-    CannotExport
-        Where there is no compiler, or it fails.
-    """
+    """Compile a C file that includes nothing of ours to an object file, once in a process."""
     return compile_object((*compile_command(name), "kernel.c", "-o", "kernel.o"), source, name)
 
 
@@ -161,21 +123,9 @@ def compile_object(command: tuple[str, ...], source: bytes, what: str) -> bytes:
 
 
 def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
-    """Compile and link a shared library and return its bytes.
+    """Compile and link sources, headers and object files, by name; return the library's bytes.
 
-    Parameters
-    ----------
-    name : str
-        Platform.
-    title : str
-        The library's own name, which dylibs and DLLs bear inside.
-    files : mapping of str to bytes
-        Sources, headers and object files by file name.
-
-    Raises
-    ------
-    CannotExport
-        Where there is no compiler, or it fails.
+    ``title`` is the library's own name, which dylibs and DLLs bear inside.
     """
     files = {**files, **(windows_sources() if name.endswith("-windows") else {})}
     objects = [file for file in files if file.endswith(".o")]
@@ -191,9 +141,7 @@ def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
 
 
 def windows_sources() -> dict[str, bytes]:
-    """Return the files of mingw-w64, which comes with ziglang, that the Windows libraries
-    contain.
-    """
+    """Return the files of mingw-w64, which comes with ziglang, that Windows libraries contain."""
     require("ziglang", "brings the C library of Windows")
     spec = importlib.util.find_spec("ziglang")
     assert spec is not None and spec.origin is not None
@@ -204,29 +152,10 @@ def windows_sources() -> dict[str, bytes]:
 def link_all(
     names: Iterable[str], title: str, kernel: bytes, files: Mapping[str, bytes]
 ) -> dict[str, bytes]:
-    """Link the same library for every platform this machine can make it for; warn about what is
-    left out.
+    """Link the same library for every platform this machine can make it for, by platform.
 
-    Parameters
-    ----------
-    names : iterable of str
-        Platforms.
-    title : str
-        The library's own name.
-    kernel : bytes
-        C that includes nothing of ours, shared with other libraries.
-    files : mapping of str to bytes
-        Further sources and headers.
-
-    Returns
-    -------
-    dict of str to bytes
-        Library by platform.
-
-    Raises
-    ------
-    CannotExport
-        Where there is no library at all.
+    ``kernel`` is C that includes nothing of ours, shared with other libraries. A warning says what
+    is left out; ``CannotExport`` is raised where that is all.
     """
 
     def library(name: str) -> bytes | CannotExport:

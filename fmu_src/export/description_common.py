@@ -88,14 +88,7 @@ def float_text(value: float) -> str:
 
 
 def root_element(model: Model, **attributes: str) -> ET.Element:
-    """Create the root element.
-
-    Parameters
-    ----------
-    model : Model
-    **attributes : str
-        Those that the FMI versions do not share.
-    """
+    """Create the root element, with the attributes that the FMI versions do not share."""
     shared = {
         "modelName": model.name,
         "description": model.description,
@@ -109,9 +102,7 @@ def root_element(model: Model, **attributes: str) -> ET.Element:
 
 
 def add_shared_elements(parent: ET.Element, model: Model) -> ET.Element:
-    """Add units, log categories and the default experiment; return the element for the
-    variables.
-    """
+    """Add units, log categories and the default experiment; return the variables' element."""
     add_units(parent, model)
     categories = ET.SubElement(parent, "LogCategories")
     for name, explanation in LOG_CATEGORIES.items():

@@ -32,14 +32,8 @@ def fmi2_xml(
 ) -> bytes:
     """Return the model description, as bytes that depend on nothing but the arguments.
 
-    Parameters
-    ----------
-    model : Model
-    guid : str
-    capabilities : dict of str to str
-        Of the co-simulation.
-    sources : sequence of str
-        Names of the C files in ``sources/`` that make its library.
+    ``capabilities`` are those of the co-simulation, ``sources`` the names of the C files in
+    ``sources/`` that make its library.
     """
     root = common.root_element(model, fmiVersion="2.0", guid=guid, numberOfEventIndicators="0")
     attributes = {"modelIdentifier": model.name, **capabilities}
@@ -62,9 +56,7 @@ def add_variable(parent: ET.Element, variable: Variable) -> None:
 
 
 def add_structure(root: ET.Element, model: Model) -> None:
-    """Add the dependencies: outputs belong to the last communication point, so few depend on an
-    input.
-    """
+    """Add dependencies: outputs belong to the last communication point, few depend on inputs."""
     structure = ET.SubElement(root, "ModelStructure")
     index = {variable.name: str(i + 1) for i, variable in enumerate(model.variables)}
     outputs = ET.SubElement(structure, "Outputs")

@@ -20,14 +20,7 @@ EVENT_MODE = {"hasEventMode": "true"}  # of models with a clock
 
 
 def fmi3_xml(model: Model, token: str) -> bytes:
-    """Return the model description, as bytes that depend on nothing but the arguments.
-
-    Parameters
-    ----------
-    model : Model
-    token : str
-        Instantiation token.
-    """
+    """Return the model description, as bytes that depend on nothing but the arguments."""
     root = common.root_element(model, fmiVersion="3.0", instantiationToken=token)
     capabilities = {**CAPABILITIES, **(EVENT_MODE if model.clock else {})}
     ET.SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **capabilities})
@@ -87,9 +80,7 @@ def add_clock(parent: ET.Element, model: Model) -> None:
 
 
 def add_structure(root: ET.Element, model: Model) -> None:
-    """Add the dependencies: outputs belong to the last communication point, so few depend on an
-    input.
-    """
+    """Add dependencies: outputs belong to the last communication point, few depend on inputs."""
     structure = ET.SubElement(root, "ModelStructure")
     calculated: list[tuple[int, tuple[Variable, ...]]]
     calculated = [(v.slot, (v,)) for v in model.variables if v.causality == "output"]

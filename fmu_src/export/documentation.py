@@ -13,21 +13,9 @@ def documentation_files(
 ) -> Files:
     """Return the files of ``documentation/``, the icon, and what other standards ask for.
 
-    Parameters
-    ----------
-    folder : str
-        The model's, below ``fmu_src/models``, with ``documentation/index.html.in`` and its
-        pictures, ``model.png`` and ``reference/``.
-    digest : str
-        Fingerprint of the sources, printed on the page.
-    form : str
-        Of :mod:`.forms`: the page tells each form's own truth.
-    variables : tuple of Variable
-        As the form's model description has them.
-
-    Returns
-    -------
-    dict of str to bytes
+    The model's folder has ``documentation/index.html.in`` and its pictures, ``model.png`` and
+    ``reference/``. The page shows the fingerprint of the sources, tells each form's own truth, and
+    has the variables of the form's model description.
     """
     place = ROOT / "models" / folder
     files = read_folder(place / "documentation", "documentation/")

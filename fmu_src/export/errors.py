@@ -12,18 +12,6 @@ class CannotExport(Exception):
 
 
 def require(package: str, what: str) -> None:
-    """Raise an error unless a package is installed.
-
-    Parameters
-    ----------
-    package : str
-        Of the extra ``build``.
-    what : str
-        What it is needed for, in a few words.
-
-    Raises
-    ------
-    CannotExport
-    """
+    """Raise ``CannotExport`` unless a package of the extra ``build``, which ``what``, is there."""
     if importlib.util.find_spec(package) is None:
         raise CannotExport(f"{package}, which {what}, is not installed: expected {EXTRA}")

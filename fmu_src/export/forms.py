@@ -27,30 +27,10 @@ MODELS = {  # the folder of each model below fmu_src/models
 
 
 def export(name: str, form: str, build: Path, platforms: tuple[str, ...] | None = None) -> Path:
-    """Write ``build/FORM/NAME.fmu``, whole or not at all.
+    """Write ``build/FORM/NAME.fmu``, whole or not at all; return its path.
 
-    Parameters
-    ----------
-    name : str
-        Of :data:`MODELS`.
-    form : str
-        Of :data:`ALL_FORMS`.
-    build : Path
-        The build folder; made where it is missing.
-    platforms : tuple of str, optional
-        Of :data:`.platforms.PLATFORMS`, for the native forms; :func:`.platforms.usual` by default.
-
-    Returns
-    -------
-    Path
-        The FMU.
-
-    Raises
-    ------
-    CannotExport
-        Where a package or a compiler is missing, as one line.
-    OSError
-        Where the folder cannot be written.
+    ``platforms``, of the native forms, are by default :func:`.platforms.usual`. ``CannotExport``
+    says, as one line, which package or compiler is missing.
     """
     from . import native_form, pythonfmu_form
 
@@ -62,17 +42,7 @@ def export(name: str, form: str, build: Path, platforms: tuple[str, ...] | None 
 def guid(name: str, form: str) -> str:
     """Return the GUID (FMI 3.0: instantiation token) that an FMU of the present sources bears.
 
-    Parameters
-    ----------
-    name : str
-        Of :data:`MODELS`.
-    form : str
-        Of :data:`ALL_FORMS`.
-
-    Returns
-    -------
-    str
-        In braces. It needs neither a compiler nor pythonfmu.
+    In braces; it needs neither a compiler nor pythonfmu.
     """
     from . import native_form, pythonfmu_form
 

@@ -88,15 +88,8 @@ def shim_definitions(model: Model, slots: dict[str, int], real_outputs: bool) ->
 def model_header(model: Model, token: str, digest: str, real_outputs: bool = False) -> bytes:
     """Return the file ``model.h``.
 
-    Parameters
-    ----------
-    model : Model
-    token : str
-        GUID or instantiation token.
-    digest : str
-        Fingerprint of the model: saved states bear it.
-    real_outputs : bool
-        Outputs of other types can be read as Real too.
+    The digest is the model's fingerprint, which saved states bear; with ``real_outputs`` outputs of
+    other types can be read as Real too.
     """
     slots = {variable.name: variable.slot for variable in model.variables}
     known = {

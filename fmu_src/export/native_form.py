@@ -50,9 +50,7 @@ SHIM = {
 
 
 def model_description(model: Model, token: str, version: str, sources: Files) -> bytes:
-    """Return ``modelDescription.xml``; FMI 2.0's names the sources, FMI 3.0 has a file of its own
-    for them.
-    """
+    """Return ``modelDescription.xml``; FMI 2.0's names the sources, FMI 3.0 has a file of them."""
     if version == "fmi2":
         return fmi2_xml(model, token, sources=compiled_files(sources))
     return fmi3_xml(model, token)
@@ -71,18 +69,14 @@ def fmi_headers(version: str) -> Files:
 
 
 def with_prefix(header: bytes) -> bytes:
-    """Return FMI 2.0's header with the standard's prefix of functions, which FMPy's copy may
-    lack.
-    """
+    """Return FMI 2.0's header with the standard's prefix, which FMPy's copy may lack."""
     if b"defined(FMI2_FUNCTION_PREFIX)" in header:
         return header
     return header.replace(NO_PREFIX, STANDARD_PREFIX)
 
 
 def guid(folder: str, form: str) -> str:
-    """Return the GUID: a hash of the sources, the texts, and the exporters that make the FMU from
-    them.
-    """
+    """Return the GUID: a hash of sources and texts, and of the exporters that make the FMU."""
     kind = form.replace("-", " ")
     model = {"sources": model_digest(folder).encode(), "version": kind.encode()}
     return guid_of({**exporter_files("export/native_form.py"), **text_files(folder), **model})
@@ -119,29 +113,11 @@ def export(
     target: Path,
     platforms: tuple[str, ...] | None = None,
 ) -> Path:
-    """Write ``target/NAME.fmu``.
+    """Write ``target/NAME.fmu`` of the model in a folder; return its path.
 
-    Parameters
-    ----------
-    folder : str
-        The model's, below ``fmu_src/models``.
-    form : str
-        ``"fmi2"`` or ``"fmi3"``; with ``"-plain"`` see :func:`plain_model`, and with
-        ``"-sources"`` at its end it has no binaries, for targets that compile the sources
-        themselves.
-    target : Path
-    platforms : tuple of str, optional
-        :func:`.platforms.usual` by default.
-
-    Returns
-    -------
-    Path
-        The FMU.
-
-    Raises
-    ------
-    CannotExport
-        Where no binary can be made, or a source was edited meanwhile.
+    Of forms with ``-plain`` see :func:`plain_model`; with ``-sources`` at its end one has no
+    binaries, for targets that compile the sources themselves. ``CannotExport`` is raised where no
+    binary can be made, or a source was edited meanwhile.
     """
     model, digest = load_model(folder), model_digest(folder)
     version, token = form[:4], guid(folder, form)

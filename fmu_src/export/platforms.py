@@ -13,24 +13,12 @@ from .errors import CannotExport
 
 @dataclass(frozen=True)
 class Platform:
-    """A platform with binaries.
+    """A platform with binaries."""
 
-    Attributes
-    ----------
-    zig_target : str
-        Zig's name of it, with the oldest C library it is to run on.
-    cpu : str
-        Zig's name of the oldest processor it is to run on.
-    suffix : str
-        Of a shared library.
-    folders : dict of str to str
-        Folder below ``binaries/`` by FMI version.
-    """
-
-    zig_target: str
-    cpu: str
-    suffix: str
-    folders: dict[str, str]
+    zig_target: str  # zig's name of it, with the oldest C library it is to run on
+    cpu: str  # zig's name of the oldest processor it is to run on
+    suffix: str  # of a shared library
+    folders: dict[str, str]  # below `binaries/`, by FMI version
 
 
 PLATFORMS = {
@@ -85,19 +73,14 @@ def this_machine() -> str:
 
 
 def usual() -> tuple[str, ...]:
-    """Return the platforms that are built by default: PCs with Linux and Windows, and this
-    machine.
-    """
+    """Return the platforms built by default: PCs with Linux and Windows, and this machine."""
     return tuple(name for name in ALL if name in ("x86_64-linux", "x86_64-windows", this_machine()))
 
 
 def chosen(wanted: Iterable[str]) -> tuple[str, ...]:
-    """Return platforms by name, in the table's order; ``all`` and ``this`` stand for what they say.
+    """Return platforms by name, in the table's order; raise ``CannotExport`` for unknown ones.
 
-    Raises
-    ------
-    CannotExport
-        Where a name is unknown.
+    ``all`` and ``this`` stand for what they say.
     """
     names: set[str] = set()
     for name in wanted:
@@ -121,19 +104,10 @@ def universal_binary(slices: Iterable[bytes]) -> bytes:
 
 
 def binary_files(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the files of ``binaries/``.
+    """Return the files of ``binaries/``, of libraries by platform.
 
     FMI 2.0 names ``darwin64``, from before there were other processors: tools on both load what
     lies there, so it serves both.
-
-    Parameters
-    ----------
-    version : str
-        ``"fmi2"`` or ``"fmi3"``.
-    name : str
-        Of the model.
-    made : mapping of str to bytes
-        Library by platform.
     """
     files = {}
     for platform, library in made.items():

@@ -68,24 +68,7 @@ def check_pythonfmu() -> None:
 
 
 def export(folder: str, target: Path) -> Path:
-    """Write ``target/NAME.fmu``.
-
-    Parameters
-    ----------
-    folder : str
-        The model's, below ``fmu_src/models``.
-    target : Path
-
-    Returns
-    -------
-    Path
-        The FMU.
-
-    Raises
-    ------
-    CannotExport
-        Where pythonfmu is missing, or is another version, or a source was edited meanwhile.
-    """
+    """Write ``target/NAME.fmu`` of the model in a folder; return its path."""
     check_pythonfmu()
     model, digest = load_model(folder), source_digest(folder)
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
@@ -117,9 +100,7 @@ def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
 
 
 def libraries(folder: str, model: Model) -> Files:
-    """Compile the kernel for each platform and return the libraries by file name; without a
-    compiler warn and return none.
-    """
+    """Return compiled kernels by file name; without a compiler warn and return none."""
     optional = {"REFRESH": model.refresh, "COAST": model.coast}
     known = "".join(f"#define {name}\n" for name, entry in optional.items() if entry).encode()
     entry = known + (ROOT / "runtime" / "native" / "library.c").read_bytes()
@@ -137,10 +118,6 @@ def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
     """Check that a kernel by the machine's own compiler has the model's bits.
 
     The native forms' libraries see to it themselves, when they are instantiated.
-
-    Raises
-    ------
-    CannotExport
     """
     name = this_machine()
     if name not in made or not own_compiler(name):

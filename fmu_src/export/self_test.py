@@ -37,9 +37,7 @@ def expected_sum(model: Model) -> int:
 
 
 def has_right_bits(model: Model, path: Path) -> bool:
-    """Return whether a kernel, as a library of its own for this machine, has the bits of its
-    Python.
-    """
+    """Return whether a kernel, as a library for this machine, has the bits of its Python."""
     library = ctypes.CDLL(str(path))
     for entry in (library.initialize, library.advance):
         entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
@@ -48,21 +46,10 @@ def has_right_bits(model: Model, path: Path) -> bool:
 
 
 def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> int:
-    """Return the fingerprint of all variables over a short run from the start values; for its
-    second half all real inputs are moved.
+    """Return the fingerprint of all variables over a short run from the start values.
 
-    Parameters
-    ----------
-    model : Model
-    memory : list or ctypes array
-        Of zeros.
-    initialize, advance : callable
-        Of the kernel in one of its forms.
-
-    Raises
-    ------
-    RuntimeError
-        Where the model cannot be run so.
+    For its second half all real inputs are moved. The memory, a list or a ctypes array, is all
+    zeros; the entry points are the kernel's in one of its forms.
     """
     total = 0
     for variable in model.variables:

@@ -1,6 +1,4 @@
-"""The C sources inside a native FMU: for targets it has no binary for, and for those who read
-them.
-"""
+"""The C sources inside a native FMU: for targets without a binary, and for those who read them."""
 
 from __future__ import annotations
 
@@ -35,18 +33,7 @@ endif()
 
 @functools.cache
 def kernel_source(folder: str) -> bytes:
-    """Return the kernel of a model in C, of which all compiled forms are made.
-
-    Parameters
-    ----------
-    folder : str
-        The model's, below ``fmu_src/models``.
-
-    Raises
-    ------
-    CannotExport
-        Where a line of it cannot be translated.
-    """
+    """Return the kernel of a model in C, of which all compiled forms are made."""
     return translate(load_model(folder).entries).encode()
 
 
@@ -56,17 +43,7 @@ def compiled_files(files: Files) -> list[str]:
 
 
 def source_files(name: str, version: str, files: Files) -> Files:
-    """Return the files of an FMU's ``sources/``, by path in the FMU.
-
-    Parameters
-    ----------
-    name : str
-        The model's.
-    version : str
-        ``"fmi2"`` or ``"fmi3"``.
-    files : dict of str to bytes
-        C files and headers.
-    """
+    """Return the files of an FMU's ``sources/``, by path, from C files and headers."""
     cmake = CMAKE.format(name=name, units=" ".join(compiled_files(files)), options=OPTIONS)
     inside = {**files, "CMakeLists.txt": cmake.encode()}
     if version == "fmi3":

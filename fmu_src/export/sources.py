@@ -32,18 +32,7 @@ def read_sources(*names: str) -> Files:
 
 
 def import_closure(*names: str) -> Files:
-    """Return modules and all that they import from ``fmu_src``, with the packages they lie in.
-
-    Parameters
-    ----------
-    *names : str
-        Files below ``fmu_src``.
-
-    Returns
-    -------
-    dict of str to bytes
-        Contents by file below ``fmu_src``.
-    """
+    """Return modules and all that they import from ``fmu_src``, with the packages they lie in."""
     found: Files = {}
     waiting = list(names)
     while waiting:
@@ -56,9 +45,7 @@ def import_closure(*names: str) -> Files:
 
 @functools.cache
 def imported_files(name: str, source: bytes) -> tuple[str, ...]:
-    """Return the files below ``fmu_src`` that run when a module is imported or its functions are
-    called.
-    """
+    """Return the files below ``fmu_src`` that run when a module is imported, or called."""
     package = name.split("/")[:-1]
     found = ["/".join([*package[:depth], "__init__.py"]) for depth in range(len(package) + 1)]
     with parsing:
@@ -85,9 +72,7 @@ def statements(tree: ast.AST) -> Iterator[ast.AST]:
 
 @functools.cache
 def module_file(*parts: str) -> str:
-    """Return the file of a module or package below ``fmu_src``; an empty string if there is
-    none.
-    """
+    """Return the file of a module or package below ``fmu_src``; empty if there is none."""
     for name in ("/".join(parts) + ".py", "/".join([*parts, "__init__.py"])):
         if (ROOT / name).is_file():
             return name
@@ -100,16 +85,12 @@ def model_sources(folder: str) -> Files:
 
 
 def model_digest(folder: str) -> str:
-    """Return the fingerprint of a model; states saved by one native form can be read by the
-    other.
-    """
+    """Return the fingerprint of a model, by which native forms know each other's saved states."""
     return fingerprint(model_sources(folder))
 
 
 def text_files(folder: str) -> Files:
-    """Return the files of a model's FMU that people read: page, pictures, reference results,
-    licence.
-    """
+    """Return what people read in a model's FMU: page, pictures, reference results, licence."""
     shared = ROOT / "models"
     names = [path.name for path in sorted(shared.iterdir()) if path.suffix in (".in", ".txt")]
     found = read_folder(shared / folder, f"models/{folder}/")
@@ -118,15 +99,10 @@ def text_files(folder: str) -> Files:
 
 
 def check_unedited() -> None:
-    """Raise an error if a source was edited since this process began.
+    """Raise ``CannotExport`` if a source was edited since this process began.
 
     Modules and compiled kernels stay in memory, files are read when they are needed: after an edit
     an FMU would be made of both, under a GUID of the later ones.
-
-    Raises
-    ------
-    CannotExport
-        Names a file.
     """
     now = read_folder(ROOT)
     edited = sorted(name for name in {*AT_IMPORT, *now} if AT_IMPORT.get(name) != now.get(name))

@@ -62,18 +62,7 @@ def sources(folder: str) -> Files:
 
 
 def export() -> bytes:
-    """Compile the models and the loops.
-
-    Returns
-    -------
-    bytes
-        The WebAssembly module, its GUID in a custom section.
-
-    Raises
-    ------
-    CannotExport
-        Where ziglang is missing or fails, or a source was edited meanwhile.
-    """
+    """Compile models and loops to a WebAssembly module, its GUID in a custom section."""
     compiler = [*ziglang("cc"), *TARGET]
     names = [*OF_LOOPS, *(f"{model}_{name}" for model in MODELS for name in OF_MODELS)]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:

@@ -23,21 +23,10 @@ loaded: dict[
 
 
 def load_compiled(folder: str, key: str, names: Sequence[str]) -> list[Any] | None:
-    """Return the entry points of the library in ``folder``, or None.
+    """Return the entry points of the library in a folder, or None.
 
-    Parameters
-    ----------
-    folder : str
-        Where the library would lie.
-    key : str
-        Name for its contents: a library loaded before under this name serves, wherever it lay.
-    names : sequence of str
-        The entry points wanted.
-
-    Returns
-    -------
-    list of ctypes functions, or None
-        Each takes an array of c_double and a time, and returns a code.
+    Each takes an array of c_double and a time, and returns a code. The key names the library's
+    contents: one loaded before under this name serves, wherever it lay.
     """
     machine = (sys.platform, platform.machine().lower())
     path = os.path.join(folder, LIBRARIES.get(machine, ("", "none"))[1])

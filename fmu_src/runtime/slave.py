@@ -110,14 +110,7 @@ def state_problem(variable: Variable, value: float) -> str:
 
 
 class Slave:
-    """FMI 2.0 calls by pythonfmu's names, mixed into its ``Fmi2Slave``.
-
-    Attributes
-    ----------
-    model : Model
-    fingerprint : str
-        Of the sources; both are set by the subclass.
-    """
+    """FMI 2.0 calls by pythonfmu's names, mixed into its ``Fmi2Slave``."""
 
     model: Model
     fingerprint = ""
@@ -260,13 +253,7 @@ class Slave:
         self._phase = TERMINATED
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Do one communication step.
-
-        Returns
-        -------
-        bool
-            False, with a logged message, where it cannot be done: the instance stays where it was.
-        """
+        """Do one communication step; where it cannot be done, log why and return False."""
         try:
             problem = self.step_problem(current_time, step_size)
             problem = problem or self.step(current_time + step_size)
@@ -376,9 +363,7 @@ class Slave:
         self._stale = True
 
     def write_problem(self, variable: Variable, value: float) -> str:
-        """Say why a variable cannot be set now, or not to that value; return an empty string if it
-        can.
-        """
+        """Say why a variable cannot be set now, or not to that value; empty if it can."""
         given = f"{variable.name} = {variable.text(value)}"
         if variable.calculated:
             return f"{given}: an output cannot be set, expected a parameter or an input"

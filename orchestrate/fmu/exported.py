@@ -39,9 +39,7 @@ def build(
     names: Iterable[str] = MODELS,
     platforms: Iterable[str] = (),
 ) -> list[Path]:
-    """Export FMUs of the given models, forms (FMI versions) and platforms; return the files'
-    paths.
-    """
+    """Export FMUs of models, in forms (FMI versions), for platforms; return the files' paths."""
     forms = tuple(forms)
     pairs = [(form, name) for name in names for form in forms]
     try:
@@ -71,9 +69,7 @@ def export_all(
 def export(
     name: str, form: str, folder: Path, platforms: tuple[str, ...] = (), level: int = logging.INFO
 ) -> Path:
-    """Export one model in one form to ``folder/FORM/NAME.fmu`` atomically; return the file's
-    path.
-    """
+    """Export one model in one form to ``folder/FORM/NAME.fmu`` atomically; return the path."""
     check(name, form)
     open_folder(folder)
     announce(folder, level)

@@ -79,9 +79,7 @@ def read_module(path: Path, guid: str) -> bytes:
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
-    """Compile the explorer's models and loops to a WebAssembly file in a folder; return its path,
-    or nothing where it cannot be made.
-    """
+    """Compile models and loops to a WebAssembly file; return its path, or none if it cannot be."""
     try:
         return [compile_module(default_folder() if folder is None else Path(folder))]
     except CannotExport as reason:

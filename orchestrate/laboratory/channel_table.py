@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping
 from dataclasses import replace
@@ -175,7 +176,7 @@ def write_setup(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
         lines += [f"\n[{role.replace(' ', '')}]  # {one.known.item()}; {label}"]
         repeated = found.column.values.tolist().count(one.column.item()) > 1
         column = place if repeated else one.column.item()
-        lines.append(f"column = {toml_value(column)}")
+        lines.append(f"column = {json.dumps(column, ensure_ascii=False)}")
         keys = ("unit",) if name == "time" else (*ACTING, *SENSOR_WORDS)
         for key in keys:
             value = setup.words.get(key, {}).get(name, one.unit.item() if key == "unit" else "")
@@ -183,13 +184,6 @@ def write_setup(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
             if value != "" or lacking or key in ("unit", *SENSOR_WORDS):
                 usual = "s or ms" if name == "time" else "g, m/s2, mm/s, um, N, V"
                 remark = f"  # write it: {usual}" if (key, value) == ("unit", "") else ""
-                lines.append(f"{key} = {toml_value(value)}{remark}")
+                lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}{remark}")
     text = "\n".join(lines) + "\n"
     return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
-
-
-def toml_value(value: Any) -> str:
-    if not isinstance(value, str):
-        return repr(value)
-    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{escaped}"'

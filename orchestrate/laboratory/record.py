@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..lazy import xr
@@ -183,13 +183,18 @@ class Reading:
         return {name: text for name, text in words.items() if text}
 
 
-def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
-    """Return a list as an array of floats; raise with the row where one is not finite."""
+def plain_numbers(name: str, given: Any, kind: type = float) -> NDArray[Any]:
+    """Return an argument as an array; raise unless it has only numbers."""
     unmasked(name, given)
     try:
-        values = np.array(given, dtype=float)
+        return np.array(given, dtype=kind)
     except (TypeError, ValueError):
         raise InputError(f"{name}: expected a list of numbers") from None
+
+
+def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
+    """Return a list as an array of floats; raise with the row where one is not finite."""
+    values = plain_numbers(name, given)
     if values.ndim != 1 or len(values) < FEWEST:
         shape = "x".join(map(str, values.shape)) or "one"
         raise InputError(f"{name}: {shape} values; expected a list of {FEWEST} numbers or more")

@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..lazy import xr
-from ..model.arguments import unmasked
 from ..response.labels import variable
 from .columns import RATIOS
 from .conversion import ACCELERATIONS, LENGTHS, SPEEDS, plain_unit
 from .pieces import Floats
+from .record import plain_numbers
 
 FACES = ("acceleration1", "acceleration2")
 CURVE_ORDERS = (1.0, 2.0, 3.0)
@@ -212,15 +212,6 @@ def curve_coordinates(faces: list[str], frequency: Floats) -> dict[str, Any]:
 
 
 # -- checks ---------------------------------------------------------------------------------------
-
-
-def plain_numbers(name: str, given: Any, kind: type = float) -> NDArray[Any]:
-    """Return an argument as an array; raise unless it has only numbers."""
-    unmasked(name, given)
-    try:
-        return np.array(given, dtype=kind)
-    except (TypeError, ValueError):
-        raise InputError(f"{name}: expected a list of numbers") from None
 
 
 def rows_with_numbers(columns: CurveColumns) -> NDArray[np.bool_]:

@@ -140,9 +140,12 @@ class Sine(ExcitationSignal):
     def phase(self, time: ArrayLike) -> Floats:
         """Return the phase at a time, rad."""
 
-    @abstractmethod
     def level(self, time: ArrayLike) -> Floats:
         """Return the peak acceleration at a time, m/s2."""
+        if isinstance(self.acceleration, float):
+            return np.full(np.shape(time), self.acceleration)
+        low, high = self.acceleration[0][0], self.acceleration[-1][0]
+        return along_profile(self.acceleration, np.clip(self.frequency(time), low, high))
 
     def __call__(self, time: ArrayLike) -> Floats:
         """Return the acceleration at a time, m/s2."""

@@ -13,7 +13,7 @@ from ..constants import TURN
 from ..errors import InputError
 from ..model.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, phase_step, subdivided
-from .signals import HERTZ, Profile, Sine, along_profile, checked, checked_level
+from .signals import HERTZ, Profile, Sine, checked, checked_level
 
 CYCLES = Quantity("cycles", "", "", 0.0, 1e6)
 MOST_FREQUENCIES = 100_000
@@ -98,11 +98,6 @@ class SteppedSine(Sine):
         times, phases = self._changes()
         step = self._step_at(t)
         return np.asarray(phases[step] + TURN * self.frequency(t) * (t - times[step]))
-
-    def level(self, time: ArrayLike) -> Floats:
-        if isinstance(self.acceleration, float):
-            return np.full(np.shape(time), self.acceleration)
-        return along_profile(self.acceleration, np.array(self.frequencies))[self._step_at(time)]
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
         """Return pieces of equal phase at each frequency."""

@@ -120,12 +120,6 @@ class SweptSine(signals.Sine):
             return np.asarray(2.0 * turns / (self.first + root))
         return np.asarray(np.log1p(growth * turns / self.first) / growth)
 
-    def level(self, time: ArrayLike) -> Floats:
-        if isinstance(self.acceleration, float):
-            return np.full(np.shape(time), self.acceleration)
-        low, high = self.acceleration[0][0], self.acceleration[-1][0]
-        return signals.along_profile(self.acceleration, np.clip(self.frequency(time), low, high))
-
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
         """Return pieces of equal phase, shorter where the frequency changes within them."""
         end = float(self.phase(self.duration))

@@ -108,9 +108,7 @@ MARKS = {"up": MarkStyle(BLUE, 2.0, filled=False), "down": MarkStyle(RED)}  # do
 
 @draws("sweep", beside=BRANCHES)
 @styled
-def draw_sweep(
-    data: xr.Dataset, title: str = "", decades: int = 6, overlay: Sequence[xr.Dataset] = ()
-) -> Figure:
+def draw_sweep(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
     """Draw an orbit diagram with all samples (Figures 6, 10, 11), and the impacts below it."""
     figure, (top, bottom) = make_panels(2, 1, (9.6, 6.4), sharex=True, height_ratios=(3, 1))
     parameter = varied_dimension(data.impacts_per_period)
@@ -120,7 +118,7 @@ def draw_sweep(
     low, high = float(x.min()), float(x.max())
     bottom.set_xlim((low, high) if high > low else (low - 0.5, high + 0.5))
     lines = [branch.gaps(factor).ravel() for branch in branches]
-    set_gap_scale(top, np.concatenate([shown.values.ravel(), *lines]), decades)
+    set_gap_scale(top, np.concatenate([shown.values.ravel(), *lines]))
     both = "direction" in data.dims
     usual = MarkStyle(GREY if branches else BLACK)
     for direction in map(str, data.direction.values) if both else ("",):
@@ -208,16 +206,14 @@ def draw_branch(*branches: xr.Dataset, title: str = "") -> Figure:
 
 @draws("lyapunov", beside=MORE)
 @styled
-def draw_lyapunov(
-    *cases: xr.Dataset, title: str = "", titles: tuple[str, ...] = (), lowest: float = -0.1
-) -> Figure:
+def draw_lyapunov(*cases: xr.Dataset, title: str = "") -> Figure:
     """Draw exponents with standard errors, one panel per dataset; return the figure."""
     size = (9.6, 0.6 + 2.2 * len(cases))
     figure, axes = make_panels(len(cases), 1, size, sharex=True, sharey=True)
     minimum = min(float(data.exponent.min()) for data in cases)
-    lowest = min(max(1.2 * minimum, lowest), -0.01)
+    lowest = min(max(1.2 * minimum, -0.1), -0.01)
     axes[0].set_ylim(lowest, max(0.05, *(1.2 * float(data.exponent.max()) for data in cases)))
-    names = titles or (*([title] if title else map(title_from_attributes, cases)),)
+    names = (*([title] if title else map(title_from_attributes, cases)),)
     for plane, data, words in zip(axes, cases, names, strict=True):
         draw_exponents(plane, data, lowest)
         plane.axhline(0.0, color="0.5", linewidth=0.8)

@@ -10,7 +10,7 @@ import ast
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from types import FunctionType, ModuleType
-from typing import Any
+from typing import Any, Protocol
 
 from ..errors import CannotExport
 from .subset import origin, resolve_name, writes_memory
@@ -68,21 +68,24 @@ volatile while finite isinf isnan signbit larger smaller floored
 TAKEN = frozenset(WORDS.split())
 
 
+class Names(Protocol):
+    """What the translation of an expression asks the translation of the kernel for."""
+
+    def constant(self, module: ModuleType, name: str) -> str:
+        """Return the name in C of a module's number."""
+
+    def c_type(self, kind: Type) -> str:
+        """Return the name in C of a type."""
+
+
 class Expressions(ABC):
-    """Translator of the expressions in one module's functions.
+    """Translator of the expressions in one module's functions."""
 
-    Attributes
-    ----------
-    module : module
-    types : dict of str to Type
-        Of the variables known so far.
-    may_keep : bool
-        Whether values can be kept in variables before the present statement: not where C evaluates
-        an expression only if another one is true, or again.
-    """
-
+    kernel: Names
     module: ModuleType
-    types: dict[str, Type]
+    types: dict[str, Type]  # of the variables known so far
+    # whether values can be kept in variables before the present statement: not where C evaluates an
+    # expression only if another one is true, or again
     may_keep: bool
 
     @abstractmethod
@@ -91,25 +94,13 @@ class Expressions(ABC):
 
     @abstractmethod
     def keep(self, value: Value) -> Value:
-        """Assign a value to a variable of its own, before the present statement, and return
-        that.
-        """
-
-    @abstractmethod
-    def constant(self, module: ModuleType, name: str) -> str:
-        """Return the name in C of a module's number."""
+        """Return a variable that the value is assigned to before the present statement."""
 
     @abstractmethod
     def function(
         self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
     ) -> tuple[str, Type]:
-        """Return the name in C of a function for arguments of these types, and its result's
-        type.
-        """
-
-    @abstractmethod
-    def c_type(self, kind: Type) -> str:
-        """Return the name in C of a type."""
+        """Return a function's name in C for arguments of these types, and its result's type."""
 
     def expression(self, node: ast.expr) -> Value:
         known: Mapping[type, Callable[[Any], Value]] = {
@@ -146,7 +137,7 @@ class Expressions(ABC):
         thing, module, name = self.resolved(node)
         if isinstance(thing, bool) or not isinstance(thing, (int, float)):
             raise self.refuse(node, ast.unparse(node), "a number")
-        return Value(self.constant(module, name), WHOLE if isinstance(thing, int) else REAL)
+        return Value(self.kernel.constant(module, name), WHOLE if isinstance(thing, int) else REAL)
 
     def resolved(self, node: ast.expr) -> tuple[object, ModuleType, str]:
         """Return what a name stands for, and the module and name that it was defined under."""
@@ -161,9 +152,7 @@ class Expressions(ABC):
         return thing, *origin(self.module, name)
 
     def subscript(self, node: ast.Subscript) -> Value:
-        """Translate a slot of the memory, one or several parts of a tuple, or an entry of a
-        table.
-        """
+        """Translate a slot of the memory, parts of a tuple, or an entry of a table."""
         if self.is_table(node.value):
             numbers, module, name = self.resolved(node.value)
             assert isinstance(numbers, tuple)
@@ -171,7 +160,7 @@ class Expressions(ABC):
             if place.type != WHOLE:
                 raise self.refuse(node, ast.unparse(node), "a whole number as the index")
             kind = WHOLE if all(isinstance(n, int) for n in numbers) else REAL
-            return Value(f"{self.constant(module, name)}[{place.text}]", kind)
+            return Value(f"{self.kernel.constant(module, name)}[{place.text}]", kind)
         whole = self.expression(node.value)
         if whole.type == MEMORY:
             place = self.expression(node.slice)
@@ -264,9 +253,7 @@ class Expressions(ABC):
     def conditional(
         self, nodes: Sequence[ast.expr], read: Callable[[ast.expr], Value]
     ) -> list[Value]:
-        """Translate expressions that are evaluated only where a test says so: nothing may be kept
-        before.
-        """
+        """Translate what is evaluated only where a test says so: nothing may be kept before."""
         before, self.may_keep = self.may_keep, False
         values = [read(node) for node in nodes]
         self.may_keep = before
@@ -274,7 +261,9 @@ class Expressions(ABC):
 
     def grouped(self, parts: Sequence[Value]) -> Value:
         kind = tuple(part.type for part in parts)
-        return Value(f"({self.c_type(kind)}){{{', '.join(part.text for part in parts)}}}", kind)
+        return Value(
+            f"({self.kernel.c_type(kind)}){{{', '.join(part.text for part in parts)}}}", kind
+        )
 
     def call(self, node: ast.Call) -> Value:
         """Translate a call of a kernel's function, or of one that C has."""

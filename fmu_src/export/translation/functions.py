@@ -10,11 +10,11 @@ import sys
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from types import FunctionType, ModuleType
+from types import FunctionType
 from typing import Any, Protocol
 
 from ..errors import CannotExport
-from .expressions import OPERATORS, Expressions, in_c, is_simple
+from .expressions import OPERATORS, Expressions, Names, in_c, is_simple
 from .subset import (
     Block,
     assigned_in,
@@ -37,34 +37,19 @@ INLINE = "inline"  # the comment on a def: it is to be inlined
 
 @dataclass
 class Unit:
-    """One function with the types of its arguments.
-
-    Attributes
-    ----------
-    function : function
-    kinds : tuple of Type
-        Of its arguments.
-    name : str
-        In C.
-    result : Type
-    text : str
-        Its definition in C.
-    is_inline : bool
-        Whether it is to be inlined wherever it is called.
-    often : set of str
-        Names of the functions that it calls, but for those behind a test that is rarely true.
-    """
+    """One function with the types of its arguments."""
 
     function: FunctionType
-    kinds: tuple[Type, ...]
-    name: str
+    kinds: tuple[Type, ...]  # of its arguments
+    name: str  # in C
     result: Type = NOTHING
-    text: str = ""
-    is_inline: bool = False
+    text: str = ""  # its definition in C
+    is_inline: bool = False  # wherever it is called
+    # names of the functions that it calls, but for those behind a test that is rarely true
     often: set[str] = field(default_factory=set)
 
 
-class Kernel(Protocol):
+class Kernel(Names, Protocol):
     """What the translation of a function needs from the translation of the kernel."""
 
     begun: set[FunctionType]
@@ -72,22 +57,11 @@ class Kernel(Protocol):
     def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
         """Return another function, translated."""
 
-    def constant(self, module: ModuleType, name: str) -> str:
-        """Return the name in C of a module's number."""
-
-    def c_type(self, kind: Type) -> str:
-        """Return the name in C of a type."""
-
 
 class Body(Expressions):
-    """Translator of one function.
+    """Translator of one function: gives its unit a result and a text."""
 
-    Parameters
-    ----------
-    kernel : Kernel
-    unit : Unit
-        Gets its result and its text from :meth:`translate`.
-    """
+    kernel: Kernel
 
     def __init__(self, kernel: Kernel, unit: Unit) -> None:
         self.kernel, self.unit = kernel, unit
@@ -130,11 +104,10 @@ class Body(Expressions):
         """Return the docstring's summary as a comment, and the function's declaration."""
         summary = " ".join((ast.get_docstring(self.tree) or "").partition("\n\n")[0].split())
         comment = f"/* {summary.replace('``', '').replace(':func:', '').replace('`', '')} */"
-        parameters = [f"{self.c_type(self.types[name])} {in_c(name)}" for name in self.parameters]
+        c_type = self.kernel.c_type
+        parameters = [f"{c_type(self.types[name])} {in_c(name)}" for name in self.parameters]
         self.unit.is_inline = self.hints.get(self.tree.lineno) == INLINE
-        line = (
-            f"{STORAGE} {self.c_type(self.unit.result)} {self.unit.name}({', '.join(parameters)})"
-        )
+        line = f"{STORAGE} {c_type(self.unit.result)} {self.unit.name}({', '.join(parameters)})"
         return [*wrapped(comment, "", "   "), *wrapped(line, "", INDENT)]
 
     # -- what expressions ask for --
@@ -145,20 +118,14 @@ class Body(Expressions):
         return CannotExport(f"{self.module.__file__}, line {line}: {what}; expected {expected}")
 
     def keep(self, value: Value) -> Value:
-        """Assign a value to a variable of its own, before the present statement, and return
-        that.
-        """
+        """Return a variable that the value is assigned to before the present statement."""
         if not self.may_keep:
             instead = "it in a statement of its own before"
             raise self.refuse(self.tree, f"{value.text} would be evaluated too early", instead)
         self.count_of_kept += 1
         name = f"part_{self.count_of_kept}"
-        self.line(f"{self.c_type(value.type)} {name} = {value.text};")
+        self.line(f"{self.kernel.c_type(value.type)} {name} = {value.text};")
         return Value(name, value.type)
-
-    def constant(self, module: ModuleType, name: str) -> str:
-        """Return the name in C of a module's number."""
-        return self.kernel.constant(module, name)
 
     def function(
         self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
@@ -170,9 +137,6 @@ class Body(Expressions):
         if not self.is_rare:
             self.unit.often.add(unit.name)
         return unit.name, unit.result
-
-    def c_type(self, kind: Type) -> str:
-        return self.kernel.c_type(kind)
 
     # -- lines --
 
@@ -208,7 +172,9 @@ class Body(Expressions):
                 several.setdefault(self.types[name], []).append(name)
         for kind, names in several.items():
             zero = "{0}" if isinstance(kind, tuple) else "0.0" if kind == REAL else "0"
-            self.line(f"{self.c_type(kind)} {', '.join(f'{in_c(n)} = {zero}' for n in names)};")
+            self.line(
+                f"{self.kernel.c_type(kind)} {', '.join(f'{in_c(n)} = {zero}' for n in names)};"
+            )
 
     # -- statements --
 
@@ -270,7 +236,7 @@ class Body(Expressions):
         if before == MEMORY or isinstance(before, tuple) != isinstance(value.type, tuple):
             raise self.refuse(target, f"{name} with another type", "a name of its own")
         kind = self.types[name] = common_type([before, value.type])
-        declaration = "" if name in self.declared else f"{self.c_type(kind)} "
+        declaration = "" if name in self.declared else f"{self.kernel.c_type(kind)} "
         self.declared.add(name)
         self.line(f"{declaration}{in_c(name)} = {value.converted(kind).text};")
 

@@ -101,32 +101,19 @@ static inline double floored(double value)
 
 @dataclass
 class Translation:
-    """Functions, constants, structures and names that have been translated so far.
+    """Functions, constants, structures and names that have been translated so far."""
 
-    Attributes
-    ----------
-    units : dict
-        By function and types of the arguments; those come first that others call.
-    constants : dict of str to float or tuple of float
-        Those used, by their names in C: numbers and tables.
-    structures : dict of Type to str
-        Names in C of the tuples used.
-    names : dict of str to object
-        What each name in C stands for.
-    begun : set of function
-        Those whose bodies are being read: a call of one of them is recursion.
-    """
-
+    # by function and types of the arguments; those come first that others call
     units: dict[tuple[FunctionType, tuple[Type, ...]], Unit] = field(default_factory=dict)
+    # numbers and tables that are used, by their names in C
     constants: dict[str, float | tuple[float, ...]] = field(default_factory=dict)
-    structures: dict[Type, str] = field(default_factory=dict)
-    names: dict[str, object] = field(default_factory=dict)
+    structures: dict[Type, str] = field(default_factory=dict)  # names in C of the tuples used
+    names: dict[str, object] = field(default_factory=dict)  # what each name in C stands for
+    # functions whose bodies are being read: a call of one of them is recursion
     begun: set[FunctionType] = field(default_factory=set)
 
     def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
-        """Return a function for arguments of these types, and translate it if that was not done
-        yet.
-        """
+        """Return a function for arguments of these types, translated at the first call."""
         key = function, kinds
         if key not in self.units:
             unit = Unit(function, kinds, self.own_name(function.__name__, key, function.__module__))
@@ -137,9 +124,7 @@ class Translation:
         return self.units[key]
 
     def own_name(self, name: str, thing: object, module: str) -> str:
-        """Return a name that only one thing has: with its module's before it, where another one has
-        it.
-        """
+        """Return a name that one thing has: its module's before it, where another has it too."""
         place = module.rpartition(".")[2]
         longer = f"{place.upper() if name.isupper() else place}_{name}"
         for known in (name, longer, *(f"{longer}_{number}" for number in range(2, 100))):
@@ -166,9 +151,7 @@ class Translation:
         return self.structures[kind]
 
     def declarations(self) -> list[str]:
-        """Return the declarations of slots and other whole numbers, of real constants, and of
-        structures.
-        """
+        """Return the declarations of whole numbers (slots), real constants, and structures."""
         whole = sorted((n, name) for name, n in self.constants.items() if isinstance(n, int))
         real = [(name, n) for name, n in self.constants.items() if isinstance(n, float)]
         tables = [(name, n) for name, n in self.constants.items() if isinstance(n, tuple)]
@@ -200,14 +183,7 @@ def literal(number: float) -> str:
 
 
 def stored(units: Iterable[Unit], often: set[str]) -> Iterator[str]:
-    """Yield the functions' texts; those that are called in rare cases only are not inlined.
-
-    Parameters
-    ----------
-    units : iterable of Unit
-    often : set of str
-        Names of functions that are called often.
-    """
+    """Yield the functions' texts; those that are called in rare cases only are not inlined."""
     known = {unit.name: unit for unit in units}
     reached, ahead = set(often), list(often)
     while ahead:
@@ -220,23 +196,11 @@ def stored(units: Iterable[Unit], often: set[str]) -> Iterator[str]:
 
 
 def translate(entries: Mapping[str, Callable[[Any, float], int]]) -> str:
-    """Translate a kernel.
+    """Translate a kernel's entry points, given by name, to a C99 file of its own.
 
-    Parameters
-    ----------
-    entries : mapping of str to function
-        The entry points by name: each takes the flat memory and a time, and returns a code.
-
-    Returns
-    -------
-    str
-        A C99 file of its own with a function ``kernel_NAME`` for each entry point; of the C library
-        it needs ``sqrt`` and ``fabs``.
-
-    Raises
-    ------
-    CannotExport
-        Where a line is outside the subset.
+    Each takes the flat memory and a time, returns a code, and becomes a function ``kernel_NAME``.
+    Of the C library it needs ``sqrt`` and ``fabs``. ``CannotExport`` names a line outside the
+    subset.
     """
     done = Translation()
     exits, often = [], set()

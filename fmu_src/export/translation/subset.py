@@ -112,9 +112,7 @@ def inner_blocks(statement: ast.stmt) -> list[Block]:
 
 
 def owner_blocks(body: Block) -> dict[str, Block]:
-    """Return the innermost block that holds all uses of each variable that is assigned
-    somewhere.
-    """
+    """Return the innermost block that holds all uses, of each variable that is assigned."""
     paths: dict[str, list[list[Block]]] = {}
     assigned: set[str] = set()
 

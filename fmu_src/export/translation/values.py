@@ -25,22 +25,12 @@ ATOM, UNARY, PRODUCT, SUM, RELATION, EQUALITY, BITS, AND, OR, CHOICE = range(16,
 
 @dataclass(frozen=True)
 class Value:
-    """An expression in C.
-
-    Attributes
-    ----------
-    text : str
-    type : Type
-    rank : int
-        How closely its outermost operator binds.
-    real : str
-        The same number as a real one, where it is one before it is made whole.
-    """
+    """An expression in C."""
 
     text: str
     type: Type
-    rank: int = ATOM
-    real: str = ""
+    rank: int = ATOM  # how closely its outermost operator binds
+    real: str = ""  # the same number as a real one, where it is one before it is made whole
 
     def within(self, rank: int) -> str:
         """Return its text as an operand of an operator that binds so closely."""
@@ -54,9 +44,7 @@ class Value:
         return [self.item(place) for place in range(len(self.type))]
 
     def converted(self, kind: Type) -> Value:
-        """Return the value as another type; only what C would convert with a loss is written
-        out.
-        """
+        """Return the value as another type; only what C converts with a loss is written out."""
         if self.real and kind == REAL:
             return Value(self.real, REAL)
         if self.type == LONG and kind == REAL:
@@ -65,13 +53,7 @@ class Value:
 
 
 def common_type(kinds: Sequence[Type]) -> Type:
-    """Return the type that can hold values of all types.
-
-    Raises
-    ------
-    CannotExport
-        Where there is none.
-    """
+    """Return the type that can hold values of all types; raise ``CannotExport`` without one."""
     if all(kind == kinds[0] for kind in kinds):
         return kinds[0]
     numbers = [kind for kind in kinds if isinstance(kind, str) and kind in NUMBERS]

@@ -10,7 +10,7 @@
 
 
 /* The shortest decimal that reads back as the same number. */
-void number(char *text, double value) {
+static void number(char *text, double value) {
     if (isnan(value)) { strcpy(text, "nan"); return; }
     if (isinf(value)) { strcpy(text, value > 0 ? "inf" : "-inf"); return; }
     for (int digits = 15; digits <= 17; digits++) {
@@ -64,6 +64,22 @@ Status refuse(Instance *instance, const char *call, const char *reason) {
     return complain(instance, FAILED, call, reason);
 }
 
+/* Refuse with a message in which %g stands for the next of the numbers, %v for that as the variable's value, %s for the next of the texts. */
+static Status refuse_with(Instance *instance, const char *call, const char *format, const Variable *variable, const double *numbers,
+                          const char *const *texts) {
+    char text[TEXT] = "";
+    for (; *format; format++) {
+        char piece[2] = {*format, 0};
+        if (*format != '%') append(text, piece);
+        else if (*++format == 'g') append_number(text, *numbers++);
+        else if (*format == 'v') append_value(text, variable, *numbers++);
+        else append(text, *texts++);
+    }
+    return refuse(instance, call, text);
+}
+#define NUMBERS(...) (const double[]){__VA_ARGS__}
+#define TEXTS(...) (const char *const[]){__VA_ARGS__}
+
 bool in_phase(Instance *instance, const char *call, int phases) {
     static const char *const names[] = {"instantiated", "initialization mode", "step mode", "event mode", "stopped after an error", "terminated"};
     if (instance->state.phase & phases) return true;
@@ -76,6 +92,12 @@ bool in_phase(Instance *instance, const char *call, int phases) {
     return false;
 }
 
+bool missing(Instance *instance, const char *call, size_t count, const void *a, const void *b) {
+    if (count == 0 || (a && b)) return false;
+    refuse(instance, call, "a null pointer for an array that is not empty");
+    return true;
+}
+
 static char *copy(const char *text) {
     size_t size = strlen(text) + 1;
     char *made = malloc(size);
@@ -84,15 +106,11 @@ static char *copy(const char *text) {
 }
 
 Status check_categories(Instance *instance, const char *call, size_t count, const char *const categories[]) {
-    if (count && !categories) return refuse(instance, call, "a null pointer for an array that is not empty");
+    if (missing(instance, call, count, categories, categories)) return FAILED;
     for (size_t i = 0; i < count; i++) {
         bool known = false;
         for (unsigned k = 0; categories[i] && k < CATEGORY_COUNT; k++) known = known || strcmp(categories[i], CATEGORIES[k]) == 0;
-        if (known) continue;
-        char text[TEXT] = "log category ";
-        append(text, categories[i] ? categories[i] : "NULL");
-        append(text, ": expected " CATEGORY_NAMES);
-        return refuse(instance, call, text);
+        if (!known) return refuse_with(instance, call, "log category %s: expected " CATEGORY_NAMES, NULL, NULL, TEXTS(categories[i] ? categories[i] : "NULL"));
     }
     return OK;
 }
@@ -106,11 +124,7 @@ Instance *instance_new(const char *call, const char *name, const char *token_nam
     instance->name = copy(name ? name : "");
     if (!instance->name) { free(instance); return NULL; }
     if (!token || strcmp(token, MODEL_TOKEN) != 0) {
-        char text[TEXT] = "";
-        append(text, token_name);
-        append(text, ": expected that of this FMU, " MODEL_TOKEN ", not ");
-        append(text, token ? token : "a null pointer");
-        refuse(instance, call, text);
+        refuse_with(instance, call, "%s: expected that of this FMU, " MODEL_TOKEN ", not %s", NULL, NULL, TEXTS(token_name, token ? token : "a null pointer"));
         instance_free(instance);
         return NULL;
     }
@@ -167,49 +181,34 @@ static void explain(char *text, const double *memory, int code) {
     }
 }
 
+/* What a kernel's answer is for the call: with code 0 the outputs belong to the values set. */
+static Status computed(Instance *instance, const char *call, int code) {
+    instance->state.stale = code != 0;
+    if (!code) return OK;
+    char text[TEXT];
+    explain(text, instance->state.memory, code);
+    return refuse(instance, call, text);
+}
+
 static Status start(Instance *instance, const char *call) {
     State *state = &instance->state;
-    if (!state->stale) return OK;
-    int code = kernel_initialize(state->memory, state->start_time);
-    if (code) {
-        char text[TEXT];
-        explain(text, state->memory, code);
-        return refuse(instance, call, text);
-    }
-    state->stale = false;
-    return OK;
+    return state->stale ? computed(instance, call, kernel_initialize(state->memory, state->start_time)) : OK;
 }
 
 Status refresh(Instance *instance) {
     State *state = &instance->state;
     if (state->phase == INITIALIZING) return start(instance, "get");
 #if REFRESH
-    if (!state->stale || !(state->phase & (STEPPING | EVENT))) return OK;
-    int code = kernel_refresh(state->memory, state->memory[TIME_SLOT]);
-    if (code) {
-        char text[TEXT];
-        explain(text, state->memory, code);
-        return refuse(instance, "get", text);
-    }
-    state->stale = false;
+    if (state->stale && state->phase & (STEPPING | EVENT)) return computed(instance, "get", kernel_refresh(state->memory, state->memory[TIME_SLOT]));
 #endif
     return OK;
 }
 
 Status set_experiment(Instance *instance, const char *call, double start_time, double stop_time) {
     if (!in_phase(instance, call, INSTANTIATED)) return FAILED;
-    char text[TEXT] = "startTime = ";
-    append_number(text, start_time);
-    if (!isfinite(start_time)) {
-        append(text, " s: expected every finite number");
-        return refuse(instance, call, text);
-    }
-    if (!(stop_time >= start_time)) {
-        append(text, " s with stopTime = ");
-        append_number(text, stop_time);
-        append(text, " s: expected stopTime >= startTime");
-        return refuse(instance, call, text);
-    }
+    if (!isfinite(start_time)) return refuse_with(instance, call, "startTime = %g s: expected every finite number", NULL, &start_time, NULL);
+    if (!(stop_time >= start_time))
+        return refuse_with(instance, call, "startTime = %g s with stopTime = %g s: expected stopTime >= startTime", NULL, NUMBERS(start_time, stop_time), NULL);
     instance->state.start_time = start_time;
     instance->stop_time = stop_time;
     return OK;
@@ -231,29 +230,12 @@ Status exit_initialization(Instance *instance, const char *call) {
 /* Why a step cannot be tried. */
 static Status refuse_step(Instance *instance, const char *call, double current, double size) {
     double reached = instance->state.memory[TIME_SLOT];
-    char text[TEXT] = "";
-    if (!(size >= 0) || isinf(size)) {
-        append(text, "communicationStepSize = ");
-        append_number(text, size);
-        append(text, " s: expected every finite number >= 0");
-    } else if (!(fabs(current - reached) <= 1e-9 * (fabs(reached) + size))) {
-        append(text, "currentCommunicationPoint = ");
-        append_number(text, current);
-        append(text, " s: expected ");
-        append_number(text, reached);
-        append(text, " s, where the last step ended");
-    } else if (isinf(current + size)) {
-        append(text, "communicationStepSize = ");
-        append_number(text, size);
-        append(text, " s: expected a step that ends at a finite time");
-    } else {
-        append(text, "the step to time = ");
-        append_number(text, current + size);
-        append(text, " s: expected none past stopTime = ");
-        append_number(text, instance->stop_time);
-        append(text, " s");
-    }
-    return refuse(instance, call, text);
+    if (!(size >= 0) || isinf(size)) return refuse_with(instance, call, "communicationStepSize = %g s: expected every finite number >= 0", NULL, &size, NULL);
+    if (!(fabs(current - reached) <= 1e-9 * (fabs(reached) + size)))
+        return refuse_with(instance, call, "currentCommunicationPoint = %g s: expected %g s, where the last step ended", NULL, NUMBERS(current, reached), NULL);
+    if (isinf(current + size)) return refuse_with(instance, call, "communicationStepSize = %g s: expected a step that ends at a finite time", NULL, &size, NULL);
+    const double *ends = NUMBERS(current + size, instance->stop_time);
+    return refuse_with(instance, call, "the step to time = %g s: expected none past stopTime = %g s", NULL, ends, NULL);
 }
 
 /* Report once that a step is so short that the time stays the same; it is done all the same. */
@@ -305,18 +287,12 @@ Status step(Instance *instance, const char *call, double current, double size) {
 
 Status may_get(Instance *instance, const char *call, const Variable *variable) {
     if (!variable->calculated || instance->state.phase != INSTANTIATED) return OK;
-    char text[TEXT] = "";
-    append(text, variable->name);
-    append(text, " is calculated: expected when initialization mode has been entered");
-    return refuse(instance, call, text);
+    return refuse_with(instance, call, "%s is calculated: expected when initialization mode has been entered", NULL, NULL, &variable->name);
 }
 
 bool has_rate(Instance *instance, const char *call, const Variable *variable, int order) {
     if (order == 1 && variable->rate >= 0) return true;
-    char text[TEXT] = "";
-    append(text, variable->name);
-    append(text, ": expected order 1 of a continuous output");
-    refuse(instance, call, text);
+    refuse_with(instance, call, "%s: expected order 1 of a continuous output", NULL, NULL, &variable->name);
     return false;
 }
 
@@ -354,18 +330,10 @@ Status may_set(Instance *instance, const char *call, const Variable *variable, d
     else if (variable->fixed && !(instance->state.phase & (INSTANTIATED | INITIALIZING)))
         reason = ": a fixed parameter, to be set before the end of initialisation";
     else if (in_range(variable, value)) return OK;
-    char text[TEXT] = "";
-    append(text, variable->name);
-    append(text, " = ");
-    append_value(text, variable, value);
-    if (reason) {
-        append(text, reason);
-        return refuse(instance, call, text);
-    }
-    if (variable->unit[0] && strcmp(variable->unit, "1") != 0) { append(text, " "); append(text, variable->unit); }
-    append(text, ": expected ");
-    append(text, variable->range);
-    return refuse(instance, call, text);
+    if (reason) return refuse_with(instance, call, "%s = %v%s", variable, &value, TEXTS(variable->name, reason));
+    bool has_unit = variable->unit[0] && strcmp(variable->unit, "1") != 0;
+    const char *const *texts = TEXTS(variable->name, has_unit ? " " : "", has_unit ? variable->unit : "", variable->range);
+    return refuse_with(instance, call, "%s = %v%s%s: expected %s", variable, &value, texts);
 }
 
 void set(Instance *instance, unsigned reference, double value) {
@@ -382,7 +350,7 @@ static uint64_t checksum(const char *bytes) {
     return hash;
 }
 
-void state_to_bytes(const State *state, char *bytes) {
+static void state_to_bytes(const State *state, char *bytes) {
     double head[3] = {state->phase, state->start_time, state->stale + 2 * state->clock};
     memset(bytes, 0, STATE_HEADER);
     strcpy(bytes, STATE_MAGIC);
@@ -425,16 +393,13 @@ static bool is_hidden_value(unsigned slot, double value) {
     return isfinite(value);
 }
 
+#define NEVER "a saved state that this FMU never had: "
+
 static Status restored(Instance *instance, const char *call, State *state) {
-    char text[TEXT] = "a saved state that this FMU never had: ";
     for (unsigned i = 0; i < VARIABLE_COUNT; i++) {
-        if (is_value(&VARIABLES[i], state->memory[i])) continue;
-        append(text, VARIABLES[i].name);
-        append(text, " = ");
-        append_value(text, &VARIABLES[i], state->memory[i]);
-        append(text, ": expected ");
-        append(text, VARIABLES[i].range);
-        return refuse(instance, call, text);
+        const Variable *variable = &VARIABLES[i];
+        if (!is_value(variable, state->memory[i]))
+            return refuse_with(instance, call, NEVER "%s = %v: expected %s", variable, &state->memory[i], TEXTS(variable->name, variable->range));
     }
     if (state->phase & (INSTANTIATED | INITIALIZING)) {  /* nothing is calculated yet, or it is once more */
         for (unsigned i = 0; i < MEMORY_SIZE; i++) if (i >= VARIABLE_COUNT || VARIABLES[i].calculated) state->memory[i] = 0;
@@ -443,20 +408,61 @@ static Status restored(Instance *instance, const char *call, State *state) {
     }
     for (unsigned i = VARIABLE_COUNT; i < MEMORY_SIZE; i++) {
         if (is_hidden_value(i, state->memory[i])) continue;
-        append_number(text, state->memory[i]);
-        append(text, " in slot ");
-        append_whole(text, i);
-        return refuse(instance, call, text);
+        char slot[16];
+        snprintf(slot, sizeof slot, "%u", i);
+        return refuse_with(instance, call, NEVER "%g in slot %s", NULL, &state->memory[i], TEXTS(slot));
     }
     int code = kernel_restore(state->memory, state->start_time);
     if (!code) return OK;
     char problem[TEXT];
     explain(problem, state->memory, code);
-    append(text, problem);
-    return refuse(instance, call, text);
+    return refuse_with(instance, call, NEVER "%s", NULL, NULL, TEXTS(problem));
 }
 
-Status state_from_bytes(Instance *instance, const char *call, State *state, const char *bytes, size_t size) {
-    if (!unpack(state, bytes, size)) return refuse(instance, call, "expected a state saved by this FMU (" STATE_MAGIC "), and undamaged");
-    return restored(instance, call, state);
+static Status keep(Instance *instance, const char *call, void **to, const State *state) {
+    if (!*to) *to = malloc(sizeof(State));
+    if (!*to) return refuse(instance, call, "out of memory");
+    memcpy(*to, state, sizeof(State));
+    return OK;
+}
+
+Status save_state(Instance *instance, const char *call, void **to) {
+    return to ? keep(instance, call, to, &instance->state) : refuse(instance, call, "a null pointer");
+}
+
+Status restore_state(Instance *instance, const char *call, const void *from) {
+    if (!from) return refuse(instance, call, "a null pointer");
+    memcpy(&instance->state, from, sizeof(State));
+    if (!instance->event_mode) {  /* saved by an instance that has event mode: here the event is done with */
+        if (instance->state.phase == EVENT) instance->state.phase = STEPPING;
+        instance->state.clock = false;
+    }
+    return OK;
+}
+
+void free_state(void **state) {
+    if (!state) return;
+    free(*state);
+    *state = NULL;
+}
+
+Status state_size(Instance *instance, const char *call, const void *state, size_t *size) {
+    if (!state || !size) return refuse(instance, call, "a null pointer");
+    *size = STATE_BYTES;
+    return OK;
+}
+
+Status serialize_state(Instance *instance, const char *call, const void *state, void *bytes, size_t size) {
+    if (!state || !bytes) return refuse(instance, call, "a null pointer");
+    if (size < STATE_BYTES) return refuse(instance, call, "size: expected at least the serialized state's size");
+    state_to_bytes(state, bytes);
+    return OK;
+}
+
+Status deserialize_state(Instance *instance, const char *call, const void *bytes, size_t size, void **to) {
+    if (!bytes || !to) return refuse(instance, call, "a null pointer");
+    State state;
+    if (!unpack(&state, bytes, size)) return refuse(instance, call, "expected a state saved by this FMU (" STATE_MAGIC "), and undamaged");
+    Status status = restored(instance, call, &state);
+    return status == OK ? keep(instance, call, to, &state) : status;
 }

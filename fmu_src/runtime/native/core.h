@@ -61,9 +61,10 @@ Instance *instance_new(const char *call, const char *name, const char *token_nam
 void instance_free(Instance *);
 void instance_reset(Instance *);
 
-/* Fail with a message; %s only, and numbers through `number`. */
-Status refuse(Instance *, const char *call, const char *text);
+/* Fail with a message, which is no format. */
+Status refuse(Instance *, const char *call, const char *reason);
 bool in_phase(Instance *, const char *call, int phases);
+bool missing(Instance *, const char *call, size_t count, const void *a, const void *b);  /* an array that is not empty */
 
 /* Whether all categories are those of modelDescription.xml. */
 Status check_categories(Instance *, const char *call, size_t count, const char *const categories[]);
@@ -92,14 +93,16 @@ bool has_rate(Instance *, const char *call, const Variable *, int order);
 /* A copy of the memory with all rates of change in their slots: reading them changes no state. */
 void differentiate(const Instance *, double memory[MEMORY_SIZE]);
 
-void number(char *text, double value);
-
 #define STATE_BYTES (STATE_HEADER + sizeof(double) * (MEMORY_SIZE + 3) + 8)  /* header, head, memory, checksum */
 #define STATE_HEADER 64
-void state_to_bytes(const State *, char *bytes);
 
-/* Read a state whose checksum fits, and check what indexes, counts or bounds a loop; FAILED after a refusal. */
-Status state_from_bytes(Instance *, const char *call, State *, const char *bytes, size_t size);
+/* An instance's state, kept at a handle, and as bytes, of which the checksum and what indexes, counts or bounds a loop are checked. */
+Status save_state(Instance *, const char *call, void **to);
+Status restore_state(Instance *, const char *call, const void *from);
+void free_state(void **state);
+Status state_size(Instance *, const char *call, const void *state, size_t *size);
+Status serialize_state(Instance *, const char *call, const void *state, void *bytes, size_t size);
+Status deserialize_state(Instance *, const char *call, const void *bytes, size_t size, void **to);
 
 #if defined(__GNUC__) && !defined(_WIN32)
 #pragma GCC visibility pop

@@ -1,7 +1,5 @@
 /* FMI 2.0 for co-simulation onto core.h. */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "core.h"
 #include "fmi2Functions.h"
@@ -27,12 +25,6 @@ static void report(Instance *instance, Status status, const char *text) {
 
 static fmi2Status refuse2(Instance *instance, const char *call, const char *text) {
     return (fmi2Status)refuse(instance, call, text);
-}
-
-static bool missing(Instance *instance, const char *call, size_t count, const void *a, const void *b) {
-    if (count == 0 || (a && b)) return false;
-    refuse(instance, call, "a null pointer for an array that is not empty");
-    return true;
 }
 
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
@@ -133,67 +125,29 @@ fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference refs[], size_
 }
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *to) {
-    Instance *instance = c;
-    if (!instance) return fmi2Error;
-    if (!to) return refuse2(instance, "fmi2GetFMUstate", "a null pointer");
-    if (!*to) *to = malloc(sizeof(State));
-    if (!*to) return refuse2(instance, "fmi2GetFMUstate", "out of memory");
-    memcpy(*to, &instance->state, sizeof(State));
-    return fmi2OK;
+    return c ? (fmi2Status)save_state(c, "fmi2GetFMUstate", to) : fmi2Error;
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate from) {
-    Instance *instance = c;
-    if (!instance) return fmi2Error;
-    if (!from) return refuse2(instance, "fmi2SetFMUstate", "a null pointer");
-    memcpy(&instance->state, from, sizeof(State));
-    return fmi2OK;
+    return c ? (fmi2Status)restore_state(c, "fmi2SetFMUstate", from) : fmi2Error;
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
     if (!c) return fmi2Error;
-    if (!state) return fmi2OK;
-    free(*state);
-    *state = NULL;
+    free_state(state);
     return fmi2OK;
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
-    if (!c) return fmi2Error;
-    if (!state || !size) return refuse2(c, "fmi2SerializedFMUstateSize", "a null pointer");
-    *size = STATE_BYTES;
-    return fmi2OK;
+    return c ? (fmi2Status)state_size(c, "fmi2SerializedFMUstateSize", state, size) : fmi2Error;
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    if (!c) return fmi2Error;
-    if (!state || !bytes) return refuse2(c, "fmi2SerializeFMUstate", "a null pointer");
-    if (size < STATE_BYTES) return refuse2(c, "fmi2SerializeFMUstate", "size: expected what fmi2SerializedFMUstateSize gives");
-    state_to_bytes(state, bytes);
-    return fmi2OK;
+    return c ? (fmi2Status)serialize_state(c, "fmi2SerializeFMUstate", state, bytes, size) : fmi2Error;
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *to) {
-    if (!c) return fmi2Error;
-    if (!bytes || !to) return refuse2(c, "fmi2DeSerializeFMUstate", "a null pointer");
-    State read;
-    if (state_from_bytes(c, "fmi2DeSerializeFMUstate", &read, bytes, size) != OK) return fmi2Error;
-    if (!*to) *to = malloc(sizeof(State));
-    if (!*to) return refuse2(c, "fmi2DeSerializeFMUstate", "out of memory");
-    if (read.phase == EVENT) read.phase = STEPPING;  /* saved by an FMI 3.0 FMU: there is no event mode here */
-    memcpy(*to, &read, sizeof read);
-    return fmi2OK;
-}
-
-fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[], size_t unknown_count, const fmi2ValueReference knowns[],
-                                        size_t known_count, const fmi2Real seed[], fmi2Real sensitivity[]) {
-    (void)unknowns;
-    (void)unknown_count;
-    (void)knowns;
-    (void)known_count;
-    (void)seed;
-    (void)sensitivity;
-    return c ? refuse2(c, "fmi2GetDirectionalDerivative", "not provided, as modelDescription.xml says") : fmi2Error;
+    return c ? (fmi2Status)deserialize_state(c, "fmi2DeSerializeFMUstate", bytes, size, to) : fmi2Error;
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference refs[], size_t count, const fmi2Integer orders[], const fmi2Real values[]) {
@@ -239,50 +193,12 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real current, fmi2Real size, fmi2Bool
     return c ? (fmi2Status)step(c, "fmi2DoStep", current, size) : fmi2Error;
 }
 
-/* Functions of model exchange: some importers look for all that the header has. */
-static fmi2Status co_simulation(fmi2Component c, const char *call) {
-    return c ? refuse2(c, call, "this is co-simulation") : fmi2Error;
-}
-#if defined(__GNUC__)
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#elif defined(_MSC_VER)
-#pragma warning(disable : 4100)
-#endif
-#define ABSENT(NAME, ...) \
-    fmi2Status NAME(fmi2Component c, __VA_ARGS__) { return co_simulation(c, #NAME); }
-ABSENT(fmi2NewDiscreteStates, fmi2EventInfo *info)
-ABSENT(fmi2CompletedIntegratorStep, fmi2Boolean no_set_state_prior, fmi2Boolean *enter_event_mode, fmi2Boolean *terminate)
-ABSENT(fmi2SetTime, fmi2Real time)
-ABSENT(fmi2SetContinuousStates, const fmi2Real states[], size_t count)
-ABSENT(fmi2GetDerivatives, fmi2Real derivatives[], size_t count)
-ABSENT(fmi2GetEventIndicators, fmi2Real indicators[], size_t count)
-ABSENT(fmi2GetContinuousStates, fmi2Real states[], size_t count)
-ABSENT(fmi2GetNominalsOfContinuousStates, fmi2Real nominals[], size_t count)
-fmi2Status fmi2EnterEventMode(fmi2Component c) { return co_simulation(c, "fmi2EnterEventMode"); }
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return co_simulation(c, "fmi2EnterContinuousTimeMode"); }
-
-fmi2Status fmi2CancelStep(fmi2Component c) {
-    return c ? refuse2(c, "fmi2CancelStep", "steps are never pending") : fmi2Error;
-}
-
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value) {
-    (void)kind;
-    (void)value;
-    return c ? refuse2(c, "fmi2GetStatus", "steps are never pending") : fmi2Error;
-}
-
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
     Instance *instance = c;
     if (!instance) return fmi2Error;
     if (kind != fmi2LastSuccessfulTime || !value) return refuse2(instance, "fmi2GetRealStatus", "expected fmi2LastSuccessfulTime");
     *value = instance->state.memory[TIME_SLOT];
     return fmi2OK;
-}
-
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value) {
-    (void)kind;
-    (void)value;
-    return c ? refuse2(c, "fmi2GetIntegerStatus", "there is no such status") : fmi2Error;
 }
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value) {
@@ -292,8 +208,31 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
     return fmi2OK;
 }
 
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String *value) {
-    (void)kind;
-    (void)value;
-    return c ? refuse2(c, "fmi2GetStringStatus", "steps are never pending") : fmi2Error;
+/* Functions that have nothing to do here: some importers look for all that the header has. */
+static fmi2Status absent(fmi2Component c, const char *call, const char *text) {
+    return c ? refuse2(c, call, text) : fmi2Error;
 }
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#elif defined(_MSC_VER)
+#pragma warning(disable : 4100)
+#endif
+#define ABSENT(TEXT, NAME, ...) \
+    fmi2Status NAME(fmi2Component c, __VA_ARGS__) { return absent(c, #NAME, TEXT); }
+#define NOT_HERE "this is co-simulation"
+ABSENT(NOT_HERE, fmi2NewDiscreteStates, fmi2EventInfo *info)
+ABSENT(NOT_HERE, fmi2CompletedIntegratorStep, fmi2Boolean no_set_state_prior, fmi2Boolean *enter_event_mode, fmi2Boolean *terminate)
+ABSENT(NOT_HERE, fmi2SetTime, fmi2Real time)
+ABSENT(NOT_HERE, fmi2SetContinuousStates, const fmi2Real states[], size_t count)
+ABSENT(NOT_HERE, fmi2GetDerivatives, fmi2Real derivatives[], size_t count)
+ABSENT(NOT_HERE, fmi2GetEventIndicators, fmi2Real indicators[], size_t count)
+ABSENT(NOT_HERE, fmi2GetContinuousStates, fmi2Real states[], size_t count)
+ABSENT(NOT_HERE, fmi2GetNominalsOfContinuousStates, fmi2Real nominals[], size_t count)
+ABSENT("steps are never pending", fmi2GetStatus, const fmi2StatusKind kind, fmi2Status *value)
+ABSENT("steps are never pending", fmi2GetStringStatus, const fmi2StatusKind kind, fmi2String *value)
+ABSENT("there is no such status", fmi2GetIntegerStatus, const fmi2StatusKind kind, fmi2Integer *value)
+ABSENT("not provided, as modelDescription.xml says", fmi2GetDirectionalDerivative, const fmi2ValueReference unknowns[], size_t unknown_count,
+       const fmi2ValueReference knowns[], size_t known_count, const fmi2Real seed[], fmi2Real sensitivity[])
+fmi2Status fmi2EnterEventMode(fmi2Component c) { return absent(c, "fmi2EnterEventMode", NOT_HERE); }
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return absent(c, "fmi2EnterContinuousTimeMode", NOT_HERE); }
+fmi2Status fmi2CancelStep(fmi2Component c) { return absent(c, "fmi2CancelStep", "steps are never pending"); }

@@ -1,6 +1,5 @@
 /* FMI 3.0 for co-simulation onto core.h: arrays, event mode, and a clock that ticks at each impact. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core.h"
@@ -18,12 +17,6 @@ static void report(Instance *instance, Status status, const char *text) {
 
 static fmi3Status refuse3(Instance *instance, const char *call, const char *text) {
     return instance ? (fmi3Status)refuse(instance, call, text) : fmi3Error;
-}
-
-static bool missing(Instance *instance, const char *call, size_t count, const void *a, const void *b) {
-    if (count == 0 || (a && b)) return false;
-    refuse(instance, call, "a null pointer for an array that is not empty");
-    return true;
 }
 
 const char *fmi3GetVersion(void) { return fmi3Version; }
@@ -196,54 +189,29 @@ fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) {
 }
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *to) {
-    Instance *instance = c;
-    if (!instance || !to) return refuse3(instance, "fmi3GetFMUState", "a null pointer");
-    if (!*to) *to = malloc(sizeof(State));
-    if (!*to) return refuse3(instance, "fmi3GetFMUState", "out of memory");
-    memcpy(*to, &instance->state, sizeof(State));
-    return fmi3OK;
+    return c ? (fmi3Status)save_state(c, "fmi3GetFMUState", to) : fmi3Error;
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState from) {
-    Instance *instance = c;
-    if (!instance || !from) return refuse3(instance, "fmi3SetFMUState", "a null pointer");
-    memcpy(&instance->state, from, sizeof(State));
-    if (!instance->event_mode) {  /* saved by an instance that has event mode: here the event is done with */
-        if (instance->state.phase == EVENT) instance->state.phase = STEPPING;
-        instance->state.clock = false;
-    }
-    return fmi3OK;
+    return c ? (fmi3Status)restore_state(c, "fmi3SetFMUState", from) : fmi3Error;
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state) {
     if (!c) return fmi3Error;
-    if (!state) return fmi3OK;
-    free(*state);
-    *state = NULL;
+    free_state(state);
     return fmi3OK;
 }
 
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size) {
-    if (!c || !state || !size) return refuse3(c, "fmi3SerializedFMUStateSize", "a null pointer");
-    *size = STATE_BYTES;
-    return fmi3OK;
+    return c ? (fmi3Status)state_size(c, "fmi3SerializedFMUStateSize", state, size) : fmi3Error;
 }
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
-    if (!c || !state || !bytes) return refuse3(c, "fmi3SerializeFMUState", "a null pointer");
-    if (size < STATE_BYTES) return refuse3(c, "fmi3SerializeFMUState", "size: expected what fmi3SerializedFMUStateSize gives");
-    state_to_bytes(state, (char *)bytes);
-    return fmi3OK;
+    return c ? (fmi3Status)serialize_state(c, "fmi3SerializeFMUState", state, bytes, size) : fmi3Error;
 }
 
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *to) {
-    if (!c || !bytes || !to) return refuse3(c, "fmi3DeserializeFMUState", "a null pointer");
-    State read;
-    if (state_from_bytes(c, "fmi3DeserializeFMUState", &read, (const char *)bytes, size) != OK) return fmi3Error;
-    if (!*to) *to = malloc(sizeof(State));
-    if (!*to) return refuse3(c, "fmi3DeserializeFMUState", "out of memory");
-    memcpy(*to, &read, sizeof read);
-    return fmi3OK;
+    return c ? (fmi3Status)deserialize_state(c, "fmi3DeserializeFMUState", bytes, size, to) : fmi3Error;
 }
 
 /* An order for each reference; the derivatives of an array's elements follow one another. */

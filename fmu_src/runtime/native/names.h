@@ -45,9 +45,13 @@
 #define may_get OWN(may_get)
 #define has_rate OWN(has_rate)
 #define differentiate OWN(differentiate)
-#define number OWN(number)
-#define state_to_bytes OWN(state_to_bytes)
-#define state_from_bytes OWN(state_from_bytes)
+#define missing OWN(missing)
+#define save_state OWN(save_state)
+#define restore_state OWN(restore_state)
+#define free_state OWN(free_state)
+#define state_size OWN(state_size)
+#define serialize_state OWN(serialize_state)
+#define deserialize_state OWN(deserialize_state)
 #endif
 
 #endif

@@ -200,11 +200,12 @@ class Averaging:
         return count / (1.0 + 2.0 * total)
 
 
-def segment_length(channels: Channels, resolution: float | None) -> int:
-    """Return the samples of a segment whose lines have a distance in Hz; 0 if none is given."""
+def segment_length(channels: Channels, resolution: float | None, longest: int = 0) -> int:
+    """Return the samples of a segment by the distance of its lines, Hz; the longest without one."""
     if resolution is None:
-        return 0
-    finest, coarsest = (channels.sample_rate / n for n in (len(channels.time), FEWEST_LINES))
+        return longest
+    ends = longest or len(channels.time), FEWEST_LINES
+    finest, coarsest = (channels.sample_rate / n for n in ends)
     checked = checked_number("resolution", resolution, finest, coarsest, "Hz")
     return round(channels.sample_rate / checked)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import InputError
 from ..pieces import Floats
-from .channels import FEWEST_LINES, Channels, checked_number
+from .channels import Channels, segment_length
 
 
 @dataclass(frozen=True)
@@ -69,11 +69,7 @@ class Knocks:
         first = np.diff(begins, prepend=-len(force)) > bounce
         single = first & (gaps > bounce) & (knocks > 0)
         name_left_out(channels.time[begins[first & ~single]], first.sum())
-        length = int(gaps[single].min())
-        if resolution is not None:
-            finest, coarsest = (channels.sample_rate / n for n in (length, FEWEST_LINES))
-            checked = checked_number("resolution", resolution, finest, coarsest, "Hz")
-            length = round(channels.sample_rate / checked)
+        length = segment_length(channels, resolution, int(gaps[single].min()))
         starts = tuple(int(begin) for begin in begins[single])
         return cls(starts, length, width, channels.sample_rate, settings)
 
