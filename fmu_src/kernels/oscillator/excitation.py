@@ -19,13 +19,14 @@ def inputs_changed(m):
     for i in range(3):
         if m[at.CUBIC + 6 * i + at.ON] != 0.0 and m[at.CUBIC_SET + i] != 0.0:
             return True
+    changed = False
     for i in range(6):
         if m[at.SEGMENT_INPUTS + i] != m[at.BOX_AMPLITUDE + i]:
-            return True
+            changed = True
     for i in range(10):
         if m[at.SEGMENT_INPUTS + 6 + i] != m[at.FORCE1_AMPLITUDE + i]:
-            return True
-    return False
+            changed = True
+    return changed
 
 
 def begin_segment(m):

@@ -166,7 +166,7 @@ def beside_wall(m, x):
 
 def side_number(m):
     """Return 1 in the system itself, 2 in the mirrored one."""
-    return 1.0 if m[at.SIDE] > 0.0 else 2.0
+    return 1.5 - 0.5 * m[at.SIDE]
 
 
 def common_position(m, x1, x2):
@@ -246,6 +246,13 @@ def begin_state(m, x1, v1, x2, v2, gap, lowest):
         begin_flight(m, x1, v1, x2, v2, gap)
         return
     x = common_position(m, x1, x2) if x2 < x1 else beside_wall(m, x1)
+    begin_touching_state(m, x, v1, v2, lowest)
+
+
+def begin_touching_state(m, x, v1, v2, lowest):
+    """Begin the state that follows where the masses touch, at ``x`` from where they rest together,
+    with ``lowest`` as in :func:`begin_state`.
+    """
     if v1 > v2:
         v1, v2 = collide(m, x, v1, v2)
     if v2 > v1:  # usually
@@ -253,7 +260,8 @@ def begin_state(m, x1, v1, x2, v2, gap, lowest):
         return
     order, value = first_nonzero_derivative(m, x, v1, lowest)
     if value > 0.0:
-        begin_touching_flight(m, x, v1, v1)
+        x1, x2 = faces_together(m, x)
+        begin_flight(m, x1, v1, x2, v1, 0.0)
         leave_boundary(m, order + 2, value)
         return
     if m[at.MODE] == at.FLIGHT:
@@ -281,17 +289,30 @@ def gap_acceleration_at_start(m, x, v):  # inline
     return gap_acceleration(m, x, v, m[at.COSINE], m[at.SINE], 0.0)
 
 
-def begin_touching_flight(m, x, v1, v2):
-    """Begin a flight from no gap, at displacement ``x`` of both masses from where they rest
+def faces_together(m, x):
+    """Return both displacements from the unloaded positions, ``x`` from where the masses rest
     together.
     """
-    x1, x2 = x, x
     if m[at.GAP_OFFSET] != 0.0:  # rarely
-        x1, x2 = x + m[at.REST_1], x + m[at.REST_2]
-    begin_flight(m, x1, v1, x2, v2, 0.0)
+        return x + m[at.REST_1], x + m[at.REST_2]
+    return x, x
 
 
 def begin_flight(m, x1, v1, x2, v2, gap):
+    """Begin a flight, and set the event function's values at its start."""
+    open_flight(m, x1, v1, x2, v2, gap)
+    slope = v2 - v1
+    m[at.LEFT_VALUES] = gap
+    m[at.LEFT_VALUES + 1] = slope
+    x = x1 if m[at.GAP_OFFSET] == 0.0 else x1 - m[at.REST_1]
+    m[at.LEFT_VALUES + 2] = (
+        gap_acceleration_at_start(m, x, v1)
+        - 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
+        - m[at.OSCILLATOR_2 + at.OMEGA_SQUARED] * gap
+    )
+
+
+def open_flight(m, x1, v1, x2, v2, gap):
     """Begin a flight from initial conditions that count from the unloaded positions; its event
     function is the gap.
     """
@@ -307,15 +328,6 @@ def begin_flight(m, x1, v1, x2, v2, gap):
         m[at.NARROW] = 1.0
     open_state(m, x1, v1, x2, v2, gap)
     begin_nodes(m)
-    slope = v2 - v1
-    m[at.LEFT_VALUES] = gap
-    m[at.LEFT_VALUES + 1] = slope
-    x = x1 if m[at.GAP_OFFSET] == 0.0 else x1 - m[at.REST_1]
-    m[at.LEFT_VALUES + 2] = (
-        gap_acceleration_at_start(m, x, v1)
-        - 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
-        - m[at.OSCILLATOR_2 + at.OMEGA_SQUARED] * gap
-    )
     if is_constant(m):  # rarely
         m[at.CLEAR] = INFINITE
 
@@ -370,7 +382,8 @@ def begin_after_impact(m, x, v1, v2):
             m[at.END] = duration
             m[at.END_KIND] = at.END_EVENT
             return
-    begin_touching_flight(m, x, v1, v2)
+    x1, x2 = faces_together(m, x)
+    open_flight(m, x1, v1, x2, v2, 0.0)
     if not skip_clear_start(m, slope, curvature):  # rarely
         set_series(m, x, v1, slope, 8)
         certified_first_step(m, slope, curvature, m[at.SERIES_GAP + 6], m[at.SERIES_GAP + 8])
@@ -449,20 +462,20 @@ def end_state(m):
     """Carry out the end of the present state and begin the next one."""
     m[at.WORK] += 1.0
     x1, v1, x2, v2 = state_at_end(m)
-    event, other = m[at.END_KIND] == at.END_EVENT, m[at.END_KIND] == at.END_OTHER
+    event = m[at.END_KIND] != at.END_RENEWAL
     gap = gap_between(m, m[at.END], x1, x2)
     flight = m[at.MODE] == at.FLIGHT
-    if other:  # rarely
+    if m[at.END_KIND] == at.END_OTHER:  # rarely
         mirror(m)
         x1, v1, x2, v2 = -x1, -v1, -x2, -v2
-        event = True
     if has_died_away(m, x1, v1, x2, v2):  # rarely
         x1 = v1 = x2 = v2 = 0.0
         gap = max(m[at.GAP_OFFSET], 0.0)
     elif event and flight:  # usually
         x1, x2 = from_rest_together(m, x1, x2)
-        x1 = x2 = common_position(m, x1, x2)
-        gap = 0.0
+        move_origin_to_end(m)
+        begin_touching_state(m, beside_wall(m, common_position(m, x1, x2)), v1, v2, 0)
+        return
     elif gap <= 0.0:
         x1, x2 = from_rest_together(m, x1, x2)
     move_origin_to_end(m)
