@@ -1,4 +1,4 @@
-"""Published numbers on a mass at a wall: facts with their source, by the public functions."""
+"""A mass at a wall, by the public functions: published facts with their source, or by hand."""
 
 import math
 
@@ -9,8 +9,11 @@ from orchestrate import Structure, simulate
 
 # Luck and Mehta, Bouncing ball with a finite restitution: chattering, locking, and chaos, Phys.
 # Rev. E 48 (1993) 3988: the peak acceleration over gravity at which a ball on a vibrating table,
-# with e = 0.5, has its orbit of one impact a period, and at which that doubles its period
+# with e = 0.5, has its orbit of one impact a period, and at which that doubles its period; by hand
+# pi (1 - e)/(1 + e), and the root of that squared and 4 (1 + e^2)^2/(1 + e)^4
 SADDLE_NODE, PERIOD_DOUBLING = 1.0471976, 1.5268237
+assert abs(SADDLE_NODE - math.pi / 3.0) < 5e-8
+assert abs(PERIOD_DOUBLING - math.hypot(math.pi / 3.0, 2.0 * 1.25 / 2.25)) < 5e-8
 
 
 def closing_speeds(acceleration, periods, e=0.5):
