@@ -6,7 +6,7 @@ import logging
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 from ..errors import InputError
 from ..lazy import xr
@@ -98,8 +98,8 @@ what it needs:
   table, the clamp; in Python and in files of this package box_acceleration) and of one face of
   the beam, or of both faces (acceleration1, acceleration2); and better with a guess of the beam
   in a file, within some 10 %: masses and natural frequencies of both halves, see 'quantities'.
-  Several records are of several beams; several sweeps in a file give a verdict each, and the
-  signs compare their levels.
+  Several records are of several beams, those of --other of the same one; several sweeps in a file
+  give a verdict each, and the signs compare their levels.
 what it gives:
   delaminated      the faces part and strike each other
   no opening seen  up to the level and over the frequencies of the record; never "intact"
@@ -291,12 +291,14 @@ class Plan(OfStructure, OfSensors, Command, Results):
     g: Listed = option(
         "levels, peak acceleration in g (default: nine from 0.01 to 1)", value="VALUES"
     )
+    faces: Literal["1", "2", "both"] | None = option("faces with a sensor (default: both)")
     examples = """
   {program} plan --structure beam.toml
   {program} plan --structure beam.toml --hz 30:60 --g 0.05,0.1,0.2,0.5 --noise 30ug
   {program} plan --structure beam.toml --set clearance=-20um --range 50
-  {program} plan --structure beam.toml --sensor 2000:5120 --noise 1e-3
-The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s2)/sqrt(Hz)."""
+  {program} plan --structure beam.toml --faces 1 --noise 1e-3
+The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s2)/sqrt(Hz); a wider
+bandwidth (--sensor) takes as many times longer."""
 
     def ask(self) -> tuple[Structure, Question]:
         structure = self.read_structure()
@@ -305,7 +307,9 @@ The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s
         last = (self.hz or usual_ends(structure))[-1]
         if self.sensor is not None and self.noise is None:
             self.noise = USUAL_NOISE
-        sensor = self.read_sensor(partial(usual_sensor, last))
+        sensor: Any = self.read_sensor(partial(usual_sensor, last))
+        if self.faces in ("1", "2"):
+            sensor = {f"acceleration{self.faces}": sensor or usual_sensor(last)}
         return structure, {**self.keywords(), "frequencies": self.hz, "sensor": sensor}
 
     def __call__(self) -> None:

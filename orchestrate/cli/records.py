@@ -30,8 +30,8 @@ class Halves(InColumns, Reading, Command):
   {program} halves sound.uff --thicknesses 3,2 --output beam.toml
   {program} halves half1.csv half2.csv --channels knocks.toml
 A record has a column of force, in N, and the acceleration of the half that is struck. Knock so
-softly that the halves do not strike each other. The file is a guess: --structure of diagnose, plan
-and others; complete it by e and clearance."""
+softly that the halves do not strike each other: 2/pi x peak x width below 2 pi f m x gap. The file
+is a guess: --structure of diagnose, plan and others; complete it by e and clearance."""
 
     def __call__(self) -> None:
         from .. import halves, read_record

@@ -288,7 +288,7 @@ def checked_structure(structure: object) -> Structure:
 def require_bonded_twin(structure: Structure) -> None:
     """Raise ``InputError`` for a mass against a wall: nothing can be bonded to it."""
     if structure.wall:
-        text = "there is no bonded structure to compare with; expected sweep or simulate"
+        text = "nothing can be bonded to it; expected sweep (it has a1_max) or simulate"
         raise InputError(f"wall = True: mass 2 is a wall, {text}")
 
 

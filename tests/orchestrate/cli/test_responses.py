@@ -386,13 +386,24 @@ def test_levels_have_both_structures_and_where_they_open(ask, folder):
     ask("resonance", *beam, "--g", "0.02", "--size", "wide").complaint("--size wide", "16:9")
 
 
-def test_a_plan(ask, folder):
+def test_a_plan(ask, folder, monkeypatch):
     test = ("--set", "zeta=5%", "--g", "0.002,0.02,0.2", "--noise", "1e-3", "--range", "1")
     done = ask("plan", "--structure", "beam", *test).success()
     assert done.out.startswith("sweep ") and "preload=20um" in done.out
     assert "verdict on the guess" in done.out and "on its sound twin" in done.out
     assert "overload" in done.out and shows_something(next(folder.glob("plan_*.png")))
     ask("plan", "--structure", "beam", "--hz", "10").complaint("--hz 10", "FIRST:LAST")
+    asked = {}
+
+    def plan(_, **question):
+        asked.update(question)
+        raise InputError("stop")
+
+    monkeypatch.setattr(orchestrate, "plan_test", plan)
+    ask("plan", "--structure", "beam", "--faces", "2", "--noise", "1")
+    assert (
+        list(asked["sensor"]) == ["acceleration2"] and asked["sensor"]["acceleration2"].noise == 1
+    )
 
 
 @pytest.mark.parametrize(("decides", "said"), [([1, 0], "lower levels only"), ([0, 0], "raise")])

@@ -311,7 +311,7 @@ def test_what_has_no_formula_is_refused_by_name():
     with pytest.raises(InputError, match="force2: mass 2 is a wall"):
         orchestrate.simulate(WALL, **BOX, force2=1.0)
     for question in (orchestrate.resonance, orchestrate.spectra):
-        with pytest.raises(InputError, match="wall = True: .* no bonded structure to compare with"):
+        with pytest.raises(InputError, match="wall = True: .* nothing can be bonded"):
             question(WALL, eta=[1.0, 1.1])
     for function in (orchestrate.resonance, orchestrate.spectra):
         with pytest.raises(InputError, match="mass 2 is a wall"):
