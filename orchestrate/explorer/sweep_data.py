@@ -75,7 +75,8 @@ def read_sweep(data: xr.Dataset) -> SweepData:
 def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     """Return a sweep dataset of a direction as ``SweepData``, after :func:`check_sweep`."""
     structure = Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
-    varied = {name: "varied" for name in PUSHES if name in data.coords}
+    pushes = {name: data.attrs.get(name, 0.0) for name in PUSHES}
+    varied = {name: text for name, text in pushes.items() if isinstance(text, str)}
     still = {} if data.amplitude.min() > 0.0 else {"amplitude": "0 m, a box at rest,"}
     refuse_unknown("the explorer", varied | still)
     directions = ("up", "down") if direction == "both" else (direction,)
@@ -103,7 +104,7 @@ def read_checked(data: xr.Dataset, direction: str) -> SweepData:
         low=float(data.eta.min()),
         high=float(data.eta.max()),
         level=excitation_level(data, structure),
-        pushes={name: float(data.attrs.get(name, 0.0)) for name in PUSHES},
+        pushes={name: float(value) for name, value in pushes.items()},
         source=f"{data.attrs['source']}, {data.attrs['fmu_model']} {data.attrs['fmu_guid']}",
     )
 

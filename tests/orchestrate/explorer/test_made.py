@@ -105,6 +105,20 @@ def test_what_is_no_sweep_along_the_frequency_is_refused(tmp_path):
     assert not list(tmp_path.glob("*.html"))
 
 
+def test_a_sweep_before_a_wall_under_forces_is_read_with_them(exported):
+    """Held along the frequency: one that changes is refused, and so is a box at rest."""
+    structure = orchestrate.Structure(wall=True, clearance=0.2, stroke=0.5)
+    pushes = {"box_acceleration": 0.1, "force1": 0.3}
+    asked = {"frequency": [1.1, 1.2], "transient": 2, "samples": 3, "progress": False}
+    found = read_sweep(orchestrate.sweep(structure, amplitude=0.5, **asked, **pushes))
+    assert (found.structure, found.pushes) == (structure, {**pushes, "force2": 0.0})
+    assert found.level == ("mm", 500.0)
+    for wrong in ({"amplitude": 0.5, "force1": [0.3, 0.4]}, {"amplitude": 0.0, "force1": 0.3}):
+        name = "force1" if wrong["amplitude"] else "amplitude"
+        with pytest.raises(InputError, match=f"{name} = .*: the explorer does not know it yet"):
+            read_sweep(orchestrate.sweep(structure, **asked, **wrong))
+
+
 def test_a_page_is_replaced_and_no_other_file(tmp_path):
     path = tmp_path / "notes.html"
     path.write_text("<title>Notes</title>")

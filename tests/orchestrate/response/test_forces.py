@@ -10,7 +10,6 @@ import pytest
 import orchestrate
 from orchestrate import Excitation, InputError, Structure
 from orchestrate.dynamics.attractors import random_starts
-from orchestrate.explorer.page import explore
 from orchestrate.model import write
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import traits_of
@@ -271,7 +270,6 @@ REFUSING = {
     "drive_spectra": lambda s: orchestrate.drive_spectra(s, DRIVE),
     "drive_branch": lambda s: orchestrate.drive_branch(s, DRIVE),
     "plan_test": lambda s: orchestrate.plan_test(s),
-    "explorer": lambda s: explore(s, output="/nowhere/a.html"),
 }
 
 
