@@ -25,6 +25,7 @@ KINDS = {
     **{HARMONIC: {"box_acceleration": -0.3}, "two masses": {}},
     **{"wall": WALL, "play": PLAY, "wall and play": {**WALL, **PLAY}},
 }
+FEW = 20  # seeds of the ordinary run
 SIZES = (1.0, 0.1, 0.02, 0.003)  # of a cubic's value and derivatives
 FORCES = {
     **{"force1_amplitude": 0.4, "force2_amplitude": -0.3, "force1": 0.1, "force1_1": -0.02},
@@ -61,7 +62,7 @@ def exact(kind, seed, periods):
         values["stroke"] = max(gap, values["clearance"]) + float(rng.choice([0.1, 0.3, 1.0]))
     stop = periods * 2.0 * np.pi / values["box_frequency"]
     motion, changes = Motion(values), []
-    motion.longest *= 0.5 if periods < 10 else 0.1  # no graze is stepped over
+    motion.longest *= 0.5 if seed < FEW else 0.1  # no graze is stepped over
     for time in stop * np.sort(rng.uniform(0.05, 0.95, 0 if kind == HARMONIC else 3)):
         inputs = drawn_forces(rng, int(rng.integers(1, 3)))
         if rng.random() < 0.3:
@@ -105,7 +106,7 @@ def check(path, kind, seeds, periods):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_random_motions_are_those_of_an_independent_solver(kind):
-    regular, impacts, releases = check(FMUS["fmi3"], kind, range(20), 3)
+    regular, impacts, releases = check(FMUS["fmi3"], kind, range(FEW), 3)
     assert regular >= 10 and impacts > 50 and releases > 3
 
 

@@ -85,7 +85,9 @@ def test_a_file_without_a_structure_is_refused(ask, tmp_path):
     path = tmp_path / "other.nc"
     xr.Dataset({"x": ("t", [1.0])}, attrs={"call": "analyse(...)"}).to_netcdf(path)
     done = ask("branch", "--start", path, *HERTZ)
-    done.complaint(f"--start {path}", "a result of analyse", "expected an orbit or a branch")
+    done.complaint(
+        f"--start {path}", "a dataset over t, without a structure", "expected an orbit or"
+    )
 
 
 def test_the_explorer_draws_branches_over_the_diagram_of_their_structure(

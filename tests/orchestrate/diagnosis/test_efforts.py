@@ -8,7 +8,7 @@ import pytest
 
 from orchestrate.diagnosis import multistart
 from orchestrate.diagnosis.hypotheses import Bonded
-from orchestrate.diagnosis.misfit import soft_squares
+from orchestrate.diagnosis.linear import soft_squares
 from orchestrate.diagnosis.multistart import Search, Solution
 from orchestrate.diagnosis.settings import SETTINGS
 from orchestrate.diagnosis.standard_errors import estimate_with_covariances

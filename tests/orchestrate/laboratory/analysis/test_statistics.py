@@ -132,7 +132,7 @@ REPEATED = np.arange(200) / 100.0 - 0.02 * (np.arange(200) == 70)
 @pytest.mark.parametrize(
     ("record", "words"),
     [
-        (3.0, "record: float without time; expected an xarray.Dataset"),
+        (3.0, "record: float, without time; expected an xarray.Dataset"),
         (damaged().drop_vars(["acceleration1", "box_acceleration"]), "record: no box_acceleration"),
         (damaged().isel(time=slice(5)), "record: 5 samples; expected at least 16"),
         (damaged(acceleration1=WITH_NAN), "acceleration1[42] = nan at 0.42 s: expected finite"),
