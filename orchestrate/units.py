@@ -12,6 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .constants import GRAVITY, TURN
 from .errors import InputError
 
@@ -127,19 +129,38 @@ def omega_of(data: xr.Dataset | Mapping[str, float]) -> float:
 
 
 def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
-    """Return a eta^2 in m; None where omega changes or the box's motion is not known.
+    """Return the unit in m that the paper's displacements xi are over, as an excitation has it.
 
-    The paper's displacements xi are over this length.
+    It is a eta^2, without box motion the largest static displacement by what pushes; None where
+    omega changes or the excitation is not known.
     """
-    names = ("level", "amplitude", "frequency")
-    known: dict[str, Any] = {name: data[name] for name in names if name in data.coords}
-    told = {name: data.attrs[name] for name in names if is_finite_number(data.attrs.get(name))}
-    known = {**told, **known}
-    if {"m1", "k1", "omega"} & set(map(str, data.coords)):
+    if {"eta", "frequency"} <= set(data.coords):
+        omega: Any = data.frequency / data.eta
+    elif {"m1", "k1", "omega"} & set(map(str, data.coords)):
         return None
-    if "level" not in known and {"amplitude", "frequency"} <= set(known):
-        known["level"] = known["amplitude"] * known["frequency"] ** 2
-    return known["level"] / omega_of(data) ** 2 if "level" in known else None
+    else:
+        omega = omega_of(data)
+    box = {name: number_of(data, name) for name in ("level", "amplitude", "frequency")}
+    if box["level"] is None and box["amplitude"] is not None and box["frequency"] is not None:
+        box["level"] = box["amplitude"] * box["frequency"] ** 2
+    if box["level"] is None or np.all(box["level"] != 0.0):
+        return None if box["level"] is None else box["level"] / omega**2
+    softness = {"box_acceleration": omega**2}
+    softness |= {f"force{half}": number_of(data, f"k{half}") for half in "12"}
+    pushes = [(number_of(data, name, 0.0), stiffness) for name, stiffness in softness.items()]
+    if any(push is None or stiffness is None for push, stiffness in pushes):
+        return None
+    lengths = [abs(push) / stiffness for push, stiffness in pushes]
+    static = np.maximum(np.maximum(lengths[0], lengths[1]), lengths[2])
+    return static + box["level"] / omega**2 if np.all(box["level"] == 0.0) else None
+
+
+def number_of(data: xr.Dataset, name: str, usual: float | None = None) -> Any:
+    """Return a parameter's values along a dataset, or the number all share; None if not known."""
+    if name in data.coords:
+        return data[name]
+    told = data.attrs.get(name, usual)
+    return told if is_finite_number(told) else None
 
 
 def is_finite_number(value: Any) -> bool:

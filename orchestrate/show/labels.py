@@ -25,6 +25,10 @@ SYMBOLS = {
     "x_rel": "gap $x_2 - x_1$ in m",
     "v_rel": r"gap velocity $\dot{x}_2 - \dot{x}_1$ in m/s",
 }
+PUSHED = {
+    "box_acceleration": "{:.4g} m/s$^2$ more of the box",
+    **{f"force{half}": f"$F_{half}$ = {{:.4g}} N" for half in "12"},
+}
 # what a title leaves out
 USUAL_VALUES = {"mu": 1.0, "kappa": 1.2, "gamma": STRUCTURE["gamma"].default, "omega": 1.0}
 RATIOS = ("D", "D1", "D2", "mu", "kappa", "omega")
@@ -158,7 +162,7 @@ def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str,
         texts["frequency"] = format_frequency(data, known["frequency"])
     if "amplitude" in known and units.acceleration and "frequency" in known:
         texts["amplitude"] = format_level(data, known["amplitude"] * known["frequency"] ** 2)
-    elif "amplitude" in known and not is_papers_amplitude(data, known):
+    elif known.get("amplitude") and not is_papers_amplitude(data, known):
         texts["amplitude"] = f"$a$ = {format_length(data, known['amplitude'])}"
     elif "level" in known:
         texts["level"] = format_level(data, known["level"])
@@ -166,7 +170,8 @@ def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str,
         level = (data.amplitude * data.frequency**2).values
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
             texts["amplitude"] = format_level(data, level.max())
-    return texts
+    pushed = {name: known[name] for name in PUSHED if known.get(name)}
+    return texts | {name: PUSHED[name].format(value) for name, value in pushed.items()}
 
 
 def is_papers_amplitude(data: xr.Dataset, known: Mapping[str, float]) -> bool:

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from ..errors import InputError
 from ..flags import flag_words
 from ..model.ranges import OF_LENGTH, STRUCTURE
-from ..units import omega_of
+from ..units import length_of_ratio, omega_of
 from .colours import BLUE, RED
 from .kinds import kind_of
 from .scales import ETA, acceleration_scale, axis_values, frequency_scale, parameter_scale
@@ -167,8 +167,9 @@ def length_factors(
     """Return what lengths over a eta^2 are multiplied by at each point; 1 for an axis of ratios."""
     if not factor:
         return np.ones(branch.sizes["point"])
-    box = branch.amplitude.values if amplitude is None else amplitude
-    return np.asarray(box * branch.eta.values**2 / factor)
+    if amplitude is None or not amplitude.any():
+        return np.broadcast_to(np.asarray(length_of_ratio(branch)), branch.sizes["point"]) / factor
+    return np.asarray(amplitude * branch.eta.values**2 / factor)
 
 
 def draw_orbits(

@@ -234,10 +234,10 @@ def label_attractors(plane: Axes, data: xr.Dataset) -> None:
 
 def gap_text(data: xr.Dataset, gap: float) -> str:
     """Format a gap over a eta^2, as a length where a unit of length is asked for."""
-    if not (units_of(data).length and {"amplitude", "frequency"} <= set(data.attrs)):
+    length = length_of_ratio(data) if units_of(data).length else None
+    if length is None:
         return f"{XI_REL} = {gap:.3g}"
-    eta = float(data.attrs["frequency"]) / omega_of(data)
-    return f"gap = {labels.format_length(data, gap * float(data.attrs['amplitude']) * eta**2)}"
+    return f"gap = {labels.format_length(data, gap * float(length))}"
 
 
 @draws("border", beside=MORE)

@@ -8,7 +8,15 @@ import numpy as np
 import xarray as xr
 
 from ..errors import InputError
-from ..units import FACTORS, OVER_OMEGA, is_in_ratios, omega_of, scale_of, units_of
+from ..units import (
+    FACTORS,
+    OVER_OMEGA,
+    is_in_ratios,
+    length_of_ratio,
+    omega_of,
+    scale_of,
+    units_of,
+)
 from .labels import gap_name, has_frequency_unit, si_prefix, symbol, typeset_unit
 from .style import XI_REL
 
@@ -132,15 +140,14 @@ def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
 
 def gap_scale(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
     """Return the unit of an axis of gaps, m (0: gaps are shown over a eta^2), and its label."""
-    asked = has_frequency_unit(data) or units_of(data).length
-    if not (asked and {"amplitude", "eta"} <= set(data.coords)):
+    length = length_of_ratio(data) if has_frequency_unit(data) or units_of(data).length else None
+    if length is None:
         return 0.0, XI_REL
-    largest = float((values * data.amplitude * data.eta**2).max())
-    factor, unit = length_scale(data, largest)
+    factor, unit = length_scale(data, float((values * length).max()))
     return factor, in_unit(gap_name(data), unit)
 
 
 def displayed_gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
     """Convert gaps over a eta^2 to display units; return them and the axis label."""
-    factor, label = gap_scale(data, values)
-    return (values * data.amplitude * data.eta**2 / factor if factor else values), label
+    (factor, label), length = gap_scale(data, values), length_of_ratio(data)
+    return (values * length / factor if factor and length is not None else values), label

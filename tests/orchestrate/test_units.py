@@ -11,6 +11,8 @@ import xarray as xr
 import orchestrate
 from orchestrate import InputError, Structure
 from orchestrate.running import formats
+from orchestrate.show.labels import title_from_attributes
+from orchestrate.show.scales import displayed_gaps
 from orchestrate.units import (
     Units,
     as_shown,
@@ -175,3 +177,22 @@ def test_the_cross_of_a_state_lies_where_the_gap_is():
     ]
     x1, x2, *_ = answer.state.values[0]
     assert crosses[0][0] == pytest.approx(1e6 * (x2 - x1 - 2e-5))
+
+
+@pytest.mark.parametrize("over", ["frequency", "force1", "k2"])
+def test_gaps_without_box_motion_have_the_length_of_what_pushes(over):
+    """They were shown as 0 mm: xi is not over a eta^2 there."""
+    beam = orchestrate.Structure.from_file("beam")
+    values = {"frequency": [68.0, 75.0], "force1": [1.0, 5.0], "k2": [9000.0, 12000.0]}[over]
+    along = {} if over == "frequency" else {"over": over, "values": values}
+    asked = {"frequency": 70.0, "amplitude": 0.0, "force1": 3.0, "transient": 100}
+    asked = {key: value for key, value in asked.items() if key != along.get("over")}
+    varied = {"frequency": values} if over == "frequency" else {}
+    found = orchestrate.sweep(beam, **along, **asked | varied, samples=20)
+    shown, label = displayed_gaps(with_units(found, Units("Hz", "mm")), found.xi_rel_max)
+    assert "mm" in label and "$F_1$" in title_from_attributes(found) or over == "force1"
+    for value, gap in zip(values, shown.values, strict=True):
+        one = beam.replace(k2=value) if over == "k2" else beam
+        own = {**asked, over: value} if over != "k2" else asked
+        motion = orchestrate.simulate(one, **own, periods=20)
+        assert gap == pytest.approx(1e3 * float(motion.x_rel.max()), rel=5e-3)
