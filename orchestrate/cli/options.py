@@ -74,7 +74,8 @@ QUANTITIES = f"""quantities:
   Omega = 2 pi Hz = 2 pi rpm/60 rad/s; the box moves by a sin(Omega t), T = 2 pi/Omega
   eta = Omega/omega     frequency ratio
   g                     a Omega^2 over 9.80665 m/s2: the box's peak acceleration
-  xi = x/(a eta^2)      displacement without a unit; xi_Rel = xi_2 - xi_1 is the gap
+  xi = x/(a eta^2)      displacement without a unit; xi_Rel = xi_2 - xi_1 is the gap; with the box
+                        at rest over the largest static displacement by forces and acceleration
   tau = omega t         time without a unit
 
 """
