@@ -12,7 +12,7 @@ from ..constants import TURN
 from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
-from ..units import is_in_ratios, range_text, units_of, with_units
+from ..units import is_in_ratios, number_of, range_text, units_of, with_units
 from .answer import Asked, is_curve
 from .command import Question, option
 from .grammar import parse, plain_int
@@ -189,12 +189,11 @@ alone may miss one whose basin is small."""
         structure = Structure.from_attributes(about)
         if name not in ("eta", "frequency"):
             structure = structure.replace(**{name: float(at[name])})
-        motions = []
-        for state, n in zip(at.state.values, at.multiplicity.values, strict=True):
-            periods = int(n) or 60  # that are drawn of an irregular attractor
-            box: Question = {"frequency": float(at.frequency), "amplitude": float(at.amplitude)}
-            box |= {n: float(at[n] if n in at.coords else data.attrs.get(n, 0.0)) for n in PUSHES}
-            motions.append(orchestrate.simulate(structure, **box, start=state, periods=periods))
+        names = ("frequency", "amplitude", *PUSHES)
+        box: Question = {name: float(number_of(at, name, 0.0)) for name in names}
+        periods = at.multiplicity.astype(int).where(at.multiplicity > 0, 60)  # irregular: 60
+        starts = zip(at.state.values, periods.values, strict=True)
+        motions = [orchestrate.simulate(structure, **box, start=x, periods=n) for x, n in starts]
         return draw_motions(at, [with_units(motion, units_of(data)) for motion in motions])
 
 
