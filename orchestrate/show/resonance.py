@@ -70,10 +70,9 @@ def draw_resonance(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Datas
             plane.set_xlim(span)
     if "x_rel_max" in axes and data.sizes.get("jump"):
         draw_jumps(axes["x_rel_max"], data, parameter, x)
-    for name in (name for row in rows for name in row):  # panels of two widths
-        axes[name].tick_params(labelbottom=True)
-    for name in (name for row in rows[-2:] for name in row):
-        axes[name].set_xlabel(x.label)
+    for plane in axes.values():  # panels of two widths
+        plane.tick_params(labelbottom=True)
+        plane.set_xlabel(x.label)
     legend_below(figure, reversed(list(axes.values())), columns=6)
     return figure
 
