@@ -8,11 +8,10 @@ none.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from functools import reduce
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from .constants import GRAVITY, TURN
 from .errors import InputError
@@ -134,6 +133,8 @@ def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
     It is a eta^2, without box motion the largest static displacement by what pushes; None where
     omega changes or the excitation is not known.
     """
+    import numpy as np
+
     if {"eta", "frequency"} <= set(data.coords):
         omega: Any = data.frequency / data.eta
     elif {"m1", "k1", "omega"} & set(map(str, data.coords)):
@@ -145,14 +146,18 @@ def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
         box["level"] = box["amplitude"] * box["frequency"] ** 2
     if box["level"] is None or np.all(box["level"] != 0.0):
         return None if box["level"] is None else box["level"] / omega**2
-    softness = {"box_acceleration": omega**2}
-    softness |= {f"force{half}": number_of(data, f"k{half}") for half in "12"}
-    pushes = [(number_of(data, name, 0.0), stiffness) for name, stiffness in softness.items()]
-    if any(push is None or stiffness is None for push, stiffness in pushes):
+    pushes = [number_of(data, name, 0.0) for name in ("box_acceleration", "force1", "force2")]
+    stiffness = [omega**2, number_of(data, "k1"), number_of(data, "k2")]
+    if any(one is None for one in (*pushes, *stiffness)) or np.any(box["level"] != 0.0):
         return None
-    lengths = [abs(push) / stiffness for push, stiffness in pushes]
-    static = np.maximum(np.maximum(lengths[0], lengths[1]), lengths[2])
-    return static + box["level"] / omega**2 if np.all(box["level"] == 0.0) else None
+    return static_length(pushes, [1.0 / one for one in stiffness]) + box["level"]  # along it too
+
+
+def static_length(pushes: Iterable[Any], softness: Iterable[Any]) -> Any:
+    """Return the largest static displacement, m, by the box's acceleration and both forces."""
+    import numpy as np  # commands whose help is asked for do without
+
+    return reduce(np.maximum, (abs(p) * s for p, s in zip(pushes, softness, strict=True)))
 
 
 def number_of(data: xr.Dataset, name: str, usual: float | None = None) -> Any:

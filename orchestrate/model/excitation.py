@@ -14,6 +14,7 @@ from functools import lru_cache
 from os import PathLike
 
 from ..errors import InputError
+from ..units import static_length
 from .described import Described
 from .ranges import EXCITATION, PUSHES, RATIO_QUANTITIES, construct_or_explain, exact_inverse
 from .structure import Structure
@@ -112,7 +113,7 @@ class Excitation(Described):
         """
         if self.amplitude == 0.0:
             softness = 1.0 / structure.omega**2, 1.0 / structure.k1, 1.0 / structure.k2
-            return max(abs(push) * s for push, s in zip(self.pushes, softness, strict=True))
+            return float(static_length(self.pushes, softness))
         eta = self.eta(structure)
         length = self.amplitude * (eta * eta)
         return 1.0 if math.isclose(length, 1.0, rel_tol=2e-15) else length
