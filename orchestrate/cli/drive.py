@@ -224,7 +224,7 @@ class OfRamp(Options):
         from ..weak_drive import averaged
         from ..weak_drive.couple import require_motor
 
-        require_motor(drive)
+        require_motor(structure, drive)
         folds = averaged.folds(structure, drive)
         if not folds:
             raise InputError(
@@ -325,7 +325,7 @@ class OfController(Options):
                     expected = f"expected {option_names([needed])} with it"
                     raise InputError(f"{option_names([name])} {given[name]:g}: {expected}")
         own = {name.removeprefix("speed_"): given[name] for name in given if name not in CONTROLS}
-        require_motor(drive)
+        require_motor(structure, drive)
         constant = drive.motor_constant
         if chosen == "speed_control":
             slow = drive.rotor_inertia * drive.armature_resistance / constant**2

@@ -24,6 +24,7 @@ from ..laboratory.swept_sine import SweptSine
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..response.labels import variable, yes_or_no
+from ..response.questions import checked_structure
 from ..running.executors import InlineExecutor
 from ..running.job import Job, Table, refuse_family
 from ..running.options import Running
@@ -112,7 +113,7 @@ def plan_test(
     >>> bool(plan.counts), plan.sound_verdict.values.tolist()
     (True, ['no opening seen', 'no opening seen', 'no opening seen'])
     """
-    refuse_family("plan_test", structure)
+    refuse_family("plan_test", checked_structure(structure))
     if structure.bonded:
         raise InputError("structure: bonded; expected a guess of the delaminated one")
     f, zeta = bonded_mode(structure)

@@ -18,7 +18,7 @@ from ..model.outcomes import ABSENT, WORDS
 from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
 from ..response.questions import Point, SeriesQuestion, Values, require_delaminated
 from ..response.signatures import as_given, question
-from ..running.job import Fmus, Table
+from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from .clusters import (
     ABOUT,
@@ -62,7 +62,7 @@ class AttractorsJob(SeriesQuestion):
 
     settings: SettlingRun
     replaced: ClassVar[tuple[str, ...]] = RUN_LENGTHS
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
     chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"

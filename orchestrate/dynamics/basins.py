@@ -37,7 +37,7 @@ from ..response.questions import (
     require_delaminated,
 )
 from ..response.signatures import as_given, question
-from ..running.job import Fmus, Table
+from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from ..running.provenance import what_it_is
 from .attractors import (
@@ -134,7 +134,7 @@ class BasinJob(Question):
     known: tuple[tuple[float, ...], ...]  # states on attractors that are known, at phase 0
     settings: SettlingRun
     replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *PUSHES, "phase", *RUN_LENGTHS)
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
     chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"

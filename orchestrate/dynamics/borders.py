@@ -16,7 +16,7 @@ from ..model.arguments import Count, Number
 from ..response.labels import variable
 from ..response.questions import EXCITATION_PARAMETERS, OF_EXCITATION, Question, require_delaminated
 from ..response.signatures import as_given, question
-from ..running.job import Fmus, Table
+from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, Kind
@@ -56,7 +56,7 @@ KEPT = ("state", "xi", "multipliers", *NODES)  # variables of orbits that those 
 class BorderJob(Question):
     """Job of :func:`orchestrate.border`: one bifurcation followed over two parameters."""
 
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
     setting: Setting  # the two parameters and their limits
     start: FirstGuess  # nodes of the orbit at the bifurcation
     period: int

@@ -19,7 +19,7 @@ from ..model.arguments import Count, Number, checked_integer, checked_number
 from ..model.ranges import OF_LENGTH, PUSHES
 from ..response.questions import OF_EXCITATION, Question, excitation_numbers, require_delaminated
 from ..response.signatures import as_given, question
-from ..running.job import Fmus, Table
+from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from ..running.provenance import what_it_is
 from .bifurcations import KINDS
@@ -60,7 +60,7 @@ OF_SETTING = ("over", "limits", *PUSHES)  # with an excitation
 class BranchJob(Question):
     """Job of :func:`orchestrate.branch`: a branch of orbits continued over one parameter."""
 
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
     setting: Setting  # the parameter that varies and its limits
     start: FirstGuess  # nodes of the orbit that it begins with
     value: float  # of the parameter there

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..fmu import OSCILLATOR, STATE, EventInstance, Impacts, Instance, begin
 from ..response.questions import Point, StartedSeriesQuestion, State
-from ..running.job import Fmus, Table
+from ..running.job import FAMILY, Fmus, Table
 from .variational import nondimensional_impacts
 
 
@@ -28,7 +28,7 @@ class FollowedResponse(NamedTuple):
 class ImpactsQuestion(StartedSeriesQuestion, ABC):
     """Base of questions along a parameter about the impacts of responses after a transient."""
 
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
 
     def items(self) -> Sequence[FollowedResponse]:
         points = self.series.points

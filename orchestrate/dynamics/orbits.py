@@ -26,7 +26,7 @@ from ..response.questions import (
     require_delaminated,
 )
 from ..response.signatures import as_given, question
-from ..running.job import Fmus, Table
+from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
@@ -98,7 +98,7 @@ class SingleOrbitQuestion(Question, ABC):
 class OrbitJob(SingleOrbitQuestion):
     """Job of :func:`orchestrate.orbit`: one periodic orbit, checked by the FMU."""
 
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
     guess: FirstGuess | None
 
     def call_text(self) -> str:

@@ -38,7 +38,7 @@ from ..response.respond import DecidedResponse, Response, decisions_from, respon
 from ..response.response_loop import LoopSettings, response_loop
 from ..response.signatures import as_given, question
 from ..response.sweep import HOW_DECIDED
-from ..running.job import Fmus, Table, plain
+from ..running.job import FAMILY, Fmus, Table, plain
 from ..running.options import RunOptions
 from .clusters import transient_periods
 from .following import follow_impacts
@@ -63,7 +63,7 @@ class MapJob(Question):
     # parameters of the excitation and the structure; two of them are lists
     given: tuple[tuple[str, Numbers], ...]
     replaced: ClassVar[tuple[str, ...]] = (*QUANTITIES, "over", "values")
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
     chunk_size: ClassVar[int] = 120
 
     def __post_init__(self) -> None:

@@ -18,7 +18,7 @@ from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import OneMotionQuestion, Point, checked_point, checked_state
 from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME
-from ..running.job import Fmus, Table
+from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from .following import FollowedResponse, state_after_transient
 from .variational import deviations, nondimensional_impacts
@@ -35,7 +35,7 @@ Floats = NDArray[np.float64]
 class PoincareJob(OneMotionQuestion):
     """Job of :func:`orchestrate.poincare`: the Poincaré section of one motion."""
 
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
 
     def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
         """Simulate the motion after its transient; return states and times of the section."""

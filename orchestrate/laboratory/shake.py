@@ -22,7 +22,7 @@ from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import Question, checked_state, checked_structure
 from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
-from ..running.job import Table, refuse_unknown
+from ..running.job import FAMILY, Table, refuse_unknown
 from ..running.options import Running
 from .level_control import LevelControl, shake_on
 from .pieces import Pieces
@@ -55,7 +55,7 @@ class ShakeJob(Question):
     sequential: ClassVar[bool] = True
     item_columns: ClassVar[tuple[str, ...]] = ()  # samples, impacts, and a state
     item: ClassVar[str] = "piece"
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
 
     @property
     def pieces(self) -> Pieces:

@@ -455,7 +455,7 @@ class SeriesQuestion(Question, ABC):
         super().__post_init__()
         name = self.over if self.over in QUANTITIES else "values"
         object.__setattr__(self, "values", excitation_numbers(str(name), self.values))
-        known = self.takes_family if self.over == "stroke" else hasattr(self, str(self.over))
+        known = self.over in self.family or hasattr(self, str(self.over))
         if not known and self.over in (*PUSHES, "stroke"):
             raise InputError(f"over = {self.over!r}: {self.asked} does not know it yet")
         _ = self.series  # what is wrong is said before any work

@@ -13,7 +13,7 @@ from ..fmu import NO_INPUT, OSCILLATOR, EventInstance, Impacts, begin
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Transient
-from ..running.job import Table
+from ..running.job import FAMILY, Table
 from ..running.options import Running
 from .equations import acceleration_of_box, accelerations_under
 from .labels import Variable, make_dataset, variable, yes_or_no
@@ -43,7 +43,7 @@ class SimulateJob(OneMotionQuestion):
 
     result: ClassVar[str] = "motion"
     replaced: ClassVar[tuple[str, ...]] = (*OneMotionQuestion.replaced, "phase")
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
 
     def grid(self) -> NDArray[np.float64]:
         """Return the equally spaced times, s, at which the motion is sampled."""

@@ -23,7 +23,7 @@ from ..fmu.c_library import loaded_loop
 from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
 from ..model.arguments import Count, Positive, Transient, whole
-from ..running.job import Table
+from ..running.job import FAMILY, Table
 from ..running.options import Running
 from .equations import accelerations_under
 from .labels import make_dataset, variable
@@ -75,7 +75,7 @@ def acceleration_spectrum(states: Floats, periods: int, excitation: Excitation) 
 class SpectraJob(SeriesQuestion):
     """Job of :func:`orchestrate.spectra`: spectra of responses, bonded and delaminated."""
 
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -15,7 +15,7 @@ from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Positive, Transient
 from ..running.blocks import lazy_rows
-from ..running.job import Table
+from ..running.job import FAMILY, Table
 from ..running.options import Running
 from ..running.store import StoredRows
 from .labels import (
@@ -57,7 +57,7 @@ HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a g
 class SweepJob(StartedSeriesQuestion):
     """Job of :func:`orchestrate.sweep`: responses along one parameter, up, down or both."""
 
-    takes_family: ClassVar[bool] = True
+    family: ClassVar[tuple[str, ...]] = FAMILY
     chunk_size: ClassVar[int] = 100
     in_threads: ClassVar[bool] = True
     bulk: ClassVar[tuple[str, ...]] = ("gap",)

@@ -35,6 +35,9 @@ class Chunk:
     after: int | None  # the chunk whose result it starts from
 
 
+FAMILY = ("wall", "stroke")  # parameters of a structure that not all questions know
+
+
 @dataclass(frozen=True)
 class Job(ABC):
     """Base of a computation with a stored result; subclasses define its items and the work."""
@@ -47,7 +50,7 @@ class Job(ABC):
     gathers: ClassVar[bool] = False  # the last item starts from all others, in a chunk of its own
     last_weight: ClassVar[int] = 1  # of a gathering job's last item, in the progress bar
     warmup_items: ClassVar[int] = 0  # after which a sequential job has forgotten its beginning
-    takes_family: ClassVar[bool] = False  # whether its rules hold with a wall or a stroke
+    family: ClassVar[tuple[str, ...]] = ()  # those of `FAMILY` with which its rules hold
     in_threads: ClassVar[bool] = False  # whether its work is in the FMU, past Python
     bulk: ClassVar[tuple[str, ...]] = ()  # columns that a store on disk gives as `StoredRows`
     # columns of a chunk's table that have a row an item, None for all; the others have as many rows
@@ -62,11 +65,11 @@ class Job(ABC):
 
     def check_family(self) -> None:
         """Raise ``InputError`` if a structure has a wall or a stroke that the job does not know."""
-        for field in fields(self) if not self.takes_family else ():
+        for field in fields(self):
             value = getattr(self, field.name)
             if isinstance(value, Job):
                 value.check_family()
-            refuse_family(self.asked or type(self).__name__, value)
+            refuse_family(self.asked or type(self).__name__, value, self.family)
 
     def count(self) -> int:
         return len(self.items())
@@ -135,11 +138,11 @@ class Job(ABC):
         return chunks
 
 
-def refuse_family(asked: str, structure: Any) -> None:
-    """Raise ``InputError`` if a structure has a wall or a stroke; ``asked``: by which function."""
-    given = {name: getattr(structure, name, None) for name in ("wall", "stroke")}
-    known = all(isinstance(value, (bool, float)) for value in given.values())
-    refuse_unknown(asked, given if known and not structure.bonded else {})
+def refuse_family(asked: str, structure: Any, known: tuple[str, ...] = ()) -> None:
+    """Raise ``InputError`` if a structure has a wall or a stroke that a function does not know."""
+    given = {name: getattr(structure, name, None) for name in FAMILY if name not in known}
+    are_numbers = all(isinstance(value, (bool, float)) for value in given.values())
+    refuse_unknown(asked, given if given and are_numbers and not structure.bonded else {})
 
 
 def refuse_unknown(asked: str, given: Mapping[str, Any]) -> None:

@@ -330,7 +330,7 @@ def capture(
     >>> found.passes.values.tolist(), 1.5 < float(found.border) < 1.6
     ([0, 1], True)
     """
-    require_motor(drive)
+    require_motor(structure, drive)
     system = System(structure, drive)
     parameter_values = check_parameter_values(over, values, system)
     try:

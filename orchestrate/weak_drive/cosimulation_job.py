@@ -154,6 +154,7 @@ class CosimulateJob(CoupledJob, Question):
     force_sign: str = "tested"
     points: Count = 1
     asked: ClassVar[str] = "cosimulate"
+    family: ClassVar[tuple[str, ...]] = ("stroke",)  # at a wall the box's velocity jumps
 
     @property
     def alone(self) -> bool:

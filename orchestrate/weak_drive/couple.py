@@ -15,7 +15,8 @@ from ..model.arguments import unmasked
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
-from ..running.job import Fmus, Table
+from ..response.questions import checked_structure
+from ..running.job import Fmus, Table, refuse_family
 from ..running.options import Running
 from . import averaged, own_resonance
 from .controllers import Controller
@@ -187,8 +188,11 @@ def bracket_variables(
     }
 
 
-def require_motor(drive: Drive) -> None:
-    """Raise an error if the drive has no motor constant."""
+def require_motor(structure: Structure, drive: Drive) -> None:
+    """Raise an error unless these are a structure of two masses and a drive with a motor."""
+    refuse_family("a motor", checked_structure(structure))
+    if not isinstance(drive, Drive):
+        raise InputError(f"drive = {drive!r}: expected a Drive, such as Drive.from_file('quick')")
     if not drive.motor_constant > 0.0:
         raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
 
@@ -205,7 +209,7 @@ def schedule_from_arguments(
     spin_up: float | None = None,
 ) -> Schedule:
     """Build the voltage schedule from the arguments of :func:`couple`."""
-    require_motor(drive)
+    require_motor(structure, drive)
     if isinstance(voltage, Schedule):
         return voltage
     unmasked("voltage", voltage)

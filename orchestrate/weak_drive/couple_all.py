@@ -48,8 +48,8 @@ def couple_job_from_numbers(
 ) -> couple.CoupleJob:
     """Build the job of one coupled run from non-dimensional voltages and rate."""
     structure, drive = system
+    couple.require_motor(structure, drive)
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
-    couple.require_motor(drive)
     volts, omega = drive.volts(structure), structure.omega
     first, last = voltage_range(structure.as_bonded(), drive) if eta0 is None else eta0
     ends, speed = (first * volts, last * volts), rate * volts * omega
@@ -110,8 +110,8 @@ def couple_all(
     >>> found.rate.values.tolist(), bool((found.jumps.sel(jump="up") > 7.0).any())
     ([0.0004, 0.0008], False)
     """
-    if not systems:
-        raise InputError("systems: expected one structure with its drive, or more")
+    if not isinstance(systems, Mapping) or not systems:
+        raise InputError(f"systems = {systems!r}: expected {{name: (structure, drive), ...}}")
     for kind in kinds:
         if kind not in KINDS:
             raise InputError(f"kinds = {kind!r}: expected {' or '.join(KINDS)}")

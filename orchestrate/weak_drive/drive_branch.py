@@ -309,7 +309,7 @@ def drive_branch(
     >>> found.bifurcation_voltage[bonded].values.round(4).tolist()
     [1.5831]
     """
-    require_motor(drive)
+    require_motor(structure, drive)
     omega = structure.omega
     low, high = (speed * omega for speed in own_resonance.resonances(structure, drive))
     first, last = (0.95 * low, 1.25 * high) if speed is None else map(float, speed)

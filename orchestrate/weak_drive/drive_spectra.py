@@ -28,7 +28,7 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
-from .couple import KINDS, couple_job, scheme_from_arguments
+from .couple import KINDS, couple_job, require_motor, scheme_from_arguments
 from .run import MotorRun, begin_run
 from .schedule import Ramp, check
 
@@ -189,6 +189,7 @@ def drive_spectra(
     >>> found.acceleration.dims, bool(found.acceleration.sel(order=1.0, mass=1).min() > 1.0)
     (('kind', 'mass', 'order'), True)
     """
+    require_motor(structure, drive)
     omega, volts = structure.omega, drive.volts(structure)
     speed = 1e-4 * volts * omega if rate is None else float(rate)
     hold = 800.0 / omega if hold is None else float(hold)

@@ -194,7 +194,7 @@ def jump_voltages(
     >>> bool(found.jumps.sel(structure="bonded", jump="up") > 1.57)
     True
     """
-    require_motor(drive)
+    require_motor(structure, drive)
     unit = drive.volts(structure) * structure.omega
     volt_rates = [rate * unit for rate in (1e-4, 5e-5, 2.5e-5)] if rates is None else list(rates)
     if not volt_rates:

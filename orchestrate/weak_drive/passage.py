@@ -247,7 +247,9 @@ def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> Non
         raise InputError(f"mass = {mass!r}: expected 1 or 2")
     checked_integer("revolutions", revolutions, 1)
     check("highest", highest, "times the speed", low=0.0, exclusive=True)
-    missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(map(str, data))
+    missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(
+        getattr(data, "variables", ())
+    )
     if missing:
         raise InputError(f"no {sorted(missing)[0]} in the dataset: expected one of passage()")
     gaps = np.diff(data.time.values)

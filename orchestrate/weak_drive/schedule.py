@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..files import read_text, reason
-from ..model.arguments import unmasked
+from ..model.arguments import checked_numbers
 
 
 def check(
@@ -178,8 +178,8 @@ class Course(Schedule):
 
     def __post_init__(self) -> None:
         for name in ("times", "voltages"):
-            values = unmasked(name, getattr(self, name))
-            object.__setattr__(self, name, tuple(float(value) for value in values))
+            values = np.asarray(checked_numbers(name, getattr(self, name)), dtype=float)
+            object.__setattr__(self, name, tuple(values.ravel().tolist()))
         if len(self.times) != len(self.voltages) or len(self.times) < 2:
             count = f"{len(self.times)} times and {len(self.voltages)} voltages"
             raise InputError(f"{count}: expected as many of both, two or more")

@@ -31,6 +31,7 @@ from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
 from ..model.drive import Drive
 from ..model.shaker import Shaker
 from ..model.structure import Structure
+from ..response.questions import checked_structure
 from .connection import FORCE, MOTION, PUSHES, Link, checked_links, checked_units
 from .cosimulate import checked_parameters
 from .run import oscillator_start
@@ -277,6 +278,7 @@ def write_ssp(
     """
     if version not in REAL:
         raise InputError(f"version = {version!r}: expected {' or '.join(map(repr, REAL))}")
+    checked_structure(structure)
     stop = 100.0 / structure.omega if stop_time is None else stop_time
     check("stop_time", stop, "s", low=0.0)
     length = 1e-3 / structure.omega if step is None else step

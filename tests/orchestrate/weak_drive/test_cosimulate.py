@@ -61,6 +61,20 @@ def error(run, truth):
 
 
 @pytest.mark.usefixtures("exported")
+def test_halves_that_strike_at_both_ends_of_a_play(drive):
+    structure = STRUCTURE.replace(clearance=0.004, stroke=0.015)
+    positions, impacts = together(table_drive(table.NUMBERS), structure, sine(), TIMES)
+    run = {**RUN, "connect": CONNECTIONS["both"]}
+    coarse, fine = (orchestrate.cosimulate(structure, drive, step=h, **run) for h in (0.01, 0.005))
+    assert error(fine, positions) < 1e-4 * np.abs(positions).max()
+    assert error(coarse, positions) / error(fine, positions) > 8.0
+    assert coarse.sizes["impact"] == fine.sizes["impact"] == impacts > 40
+    assert fine.x_rel.max() > 0.99 * structure.stroke
+    with pytest.raises(InputError, match="wall = True: cosimulate does not know it yet"):
+        orchestrate.cosimulate(structure.replace(wall=True), drive, step=0.01, **run)
+
+
+@pytest.mark.usefixtures("exported")
 @pytest.mark.parametrize(
     ("name", "most", "ratio"),
     [

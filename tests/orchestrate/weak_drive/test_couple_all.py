@@ -37,7 +37,7 @@ def test_each_run_is_that_of_couple(found):
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        ({"systems": {}}, "systems: expected"),
+        ({"systems": {}}, "systems = .*: expected"),
         ({"rates": [0.0]}, "rate = 0.0: expected a number > 0"),
         ({"kinds": ["glued"]}, "kinds = 'glued': expected bonded or delaminated"),
         ({"rates": []}, "expected one of each"),

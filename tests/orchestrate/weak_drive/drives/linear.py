@@ -153,9 +153,13 @@ def together(drive, s, command, times, start=(0.0,) * 4):
         return [v1, v2, a1, a2, *(drive.a @ x + drive.b @ u)]
 
     def gap(time, state):
-        return state[1] - state[0]
+        return state[1] - state[0] + s.clearance
 
-    gap.terminal, gap.direction = True, -1
+    def play(time, state):
+        return s.stroke - gap(time, state)
+
+    gap.terminal, gap.direction, play.terminal, play.direction = True, -1, True, -1
+    ends = (gap, play) if s.stroke else (gap,)
     time, impacts, rows = 0.0, 0, {0.0: start[:2]}
     # masses that are pressed together at first are let apart where they part, a step later
     state = np.array([start[0], start[1] or 1e-14, *start[2:], *np.zeros(len(drive.c))])
@@ -167,23 +171,24 @@ def together(drive, s, command, times, start=(0.0,) * 4):
             method="DOP853",
             rtol=1e-11,
             atol=1e-14,
-            events=gap,
+            events=ends,
             t_eval=times[time + 1e-12 < times],
             max_step=0.01,
         )
         rows |= dict(
             zip(np.round(done.t, 9), np.reshape(done.y, (len(state), -1))[:2].T, strict=True)
         )
-        if not done.t_events[0].size:
+        if done.status == 0:
             break
-        time, state = done.t_events[0][0], done.y_events[0][0].copy()
+        far = int(not done.t_events[0].size)  # whether it is the other end of the play
+        time, state = done.t_events[far][0], done.y_events[far][0].copy()
         closing = state[2] - state[3]
         assert impacts < 400, "it chatters, which this solver cannot"
         impulse = (1.0 + s.e) * s.m1 * s.m2 / (s.m1 + s.m2) * closing
         state[2] -= impulse / s.m1
         state[3] += impulse / s.m2
-        state[1] = state[0] + 1e-15
-        impacts += closing > 1e-9
+        state[1] = state[0] - s.clearance + (s.stroke - 1e-15 if far else 1e-15)
+        impacts += abs(closing) > 1e-9
     return np.array([rows[time] for time in np.round(times, 9)]), impacts
 
 
