@@ -66,12 +66,12 @@ def test_a_course_from_a_file(tmp_path):
     ("text", "parts"),
     [
         ("0,1\n", ["1 times", "two or more"]),
-        ("", ["0 times"]),
+        ("", ["times: 0 values"]),
         ("0,1\n1;2\n", ["line 2", "1;2"]),
         ("0;1\n1;2\n", ["line 1", "0;1", "a comma"]),
         ("1,1\n2,2\n", ["rising ones from 0"]),
         ("0,1\n2,2\n1,3\n", ["rising ones from 0"]),
-        ("0,1\n2,nan\n", ["voltage = nan"]),
+        ("0,1\n2,nan\n", ["voltages = nan"]),
     ],
 )
 def test_mistakes_in_a_course(tmp_path, text, parts):
