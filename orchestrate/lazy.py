@@ -1,12 +1,14 @@
-"""xarray, imported when it is first used, and ``Unpack`` of older Pythons."""
+"""xarray and NumPy, imported when they are first used, and ``Unpack`` of older Pythons."""
 
 from __future__ import annotations
 
 import typing
+from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import numpy as np
     import xarray as xr
     from typing_extensions import Unpack
 else:
@@ -14,10 +16,13 @@ else:
     class Lazy:
         """A package that takes long to import, in place of which its name may stand already."""
 
-        def __getattr__(self, name: str) -> Any:
-            return getattr(import_module("xarray"), name)
+        def __init__(self, load: Callable[[], Any]) -> None:
+            self.load = load
 
-    xr = Lazy()
+        def __getattr__(self, name: str) -> Any:
+            return getattr(self.load(), name)
+
+    np, xr = Lazy(lambda: import_module("numpy")), Lazy(lambda: import_module("xarray"))
     Unpack = getattr(typing, "Unpack", typing.Optional)  # before 3.11 any generic type will do
 
-__all__ = ["Unpack", "xr"]
+__all__ = ["Unpack", "np", "xr"]

@@ -28,7 +28,7 @@ KERNELS = {  # headers that a source may include, translated from Python
         "repeat": repetition.repeat,
         "confirm": repetition.confirm,
         "nearest": repetition.nearest,
-        "describe": linear_response.describe,
+        "rest_and_threshold": linear_response.write_rest_and_threshold,
     },
     "turn.h": {"turn": turn.turn},
     "deviations.h": {"deviate": deviations.deviate},

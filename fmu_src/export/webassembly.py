@@ -37,7 +37,7 @@ OF_MODELS = (  # exported of each
 OF_LOOPS = (
     *("malloc", "free", "begin", "respond", "sample_evenly", "memory_size", "play", "couple"),
     "find_revolutions",
-    *("describe_linear_response", "find_gaps", "find_accelerations", "carry_state"),
+    *("rest_and_threshold", "find_gaps", "find_accelerations", "carry_state"),
     *("nearest_state", "spectrum_size", "acceleration_spectrum", "exponent_size"),
     *("largest_exponent", "wander_floor", "classify_exponent", "sizes_of_couple"),
 )

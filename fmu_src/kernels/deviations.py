@@ -17,10 +17,13 @@ from .oscillator.parameters import derive
 from .oscillator.response import fundamental_solutions
 from .oscillator.roots import walk
 
-# impacts, the end of the span in s; then a row for each impact (time, state after it, closing
-# speed, whether contact follows), a matrix, and the duration of contact in tau
+# impacts, the end of the span in s; then of each impact a row, a matrix, and how long contact
+# lasts, in tau
 IMPACTS, SPAN_END, TABLES = at.SIZE, at.SIZE + 1, at.SIZE + 2
-ROW, STATES = 7, 4
+# a row: time, state after the impact, closing speed, whether contact follows
+TIME, X1, X2, V1, V2, CLOSING, STICKS, ROW = range(8)
+STATES = 4
+OF_X1, OF_X2, OF_V1, OF_V2 = 0, 4, 8, 12  # rows of a matrix, each over x1, x2, v1, v2
 SMALLEST = 1e-300  # closing speed: a grazing impact has none, its matrix is very large instead
 WORK = 1e7  # evaluations until a release is given up
 
@@ -38,11 +41,11 @@ def deviate(m, time):
         row, matrix = TABLES + ROW * i, TABLES + ROW * count + STATES * STATES * i
         end = m[SPAN_END]
         if i + 1 < count:
-            end = m[row + ROW]
-        left, touching = m[at.OMEGA] * (end - m[row]), 0.0
+            end = m[row + ROW + TIME]
+        left, touching = m[at.OMEGA] * (end - m[row + TIME]), 0.0
         go_to_side(m, row)
         write_saltation(m, row, matrix)
-        if m[row + 6] != 0.0:
+        if m[row + STICKS] != 0.0:
             touching = contact_duration(m, row, left)
             flow(m, matrix, at.OSCILLATOR_3, at.OSCILLATOR_3, touching)
         flow(m, matrix, at.OSCILLATOR_1, at.OSCILLATOR_2, left - touching)
@@ -55,7 +58,7 @@ def go_to_side(m, row):
 
     Deviations have another sign in both, before the impact and after it: their matrix is one.
     """
-    gap = m[row + 2] - m[row + 1] + m[at.CLEARANCE]
+    gap = m[row + X2] - m[row + X1] + m[at.CLEARANCE]
     side = 1.0 if 2.0 * gap < m[at.LIMIT] else -1.0
     if side != m[at.SIDE]:  # rarely
         mirror(m)
@@ -73,24 +76,24 @@ def write_saltation(m, row, matrix):
             m[matrix + STATES * i + k] = 0.0
             if i == k:
                 m[matrix + STATES * i + k] = 1.0
-    if m[row + 6] != 0.0:
+    if m[row + STICKS] != 0.0:
         for i in range(STATES):
             first = 2 * int(i / 2)
             m[matrix + STATES * i + first] = one
             m[matrix + STATES * i + first + 1] = two
         return
-    closing, slope = m[row + 5] / m[at.OMEGA], m[at.E_SLOPE] * m[at.OMEGA]
+    closing, slope = m[row + CLOSING] / m[at.OMEGA], m[at.E_SLOPE] * m[at.OMEGA]
     slower = 1.0 / (1.0 + slope * closing)
     rate = 1.0 + m[at.E] * slower * slower  # of the gap's velocity, by the closing speed
-    m[matrix + 10] = 1.0 - two * rate
-    m[matrix + 11] = two * rate
-    m[matrix + 14] = one * rate
-    m[matrix + 15] = 1.0 - one * rate
-    x1, x2 = side * m[row + 1], side * m[row + 2]
-    v1, v2 = side * m[row + 3] / m[at.OMEGA], side * m[row + 4] / m[at.OMEGA]
+    m[matrix + OF_V1 + 2] = 1.0 - two * rate
+    m[matrix + OF_V1 + 3] = two * rate
+    m[matrix + OF_V2 + 2] = one * rate
+    m[matrix + OF_V2 + 3] = 1.0 - one * rate
+    x1, x2 = side * m[row + X1], side * m[row + X2]
+    v1, v2 = side * m[row + V1] / m[at.OMEGA], side * m[row + V2] / m[at.OMEGA]
     common = common_velocity(m, v1, v2)
     b1, b2 = common + two * closing, common - one * closing
-    sine, cosine = sincos_turns(fraction(m[at.ETA_TURNS] * m[at.OMEGA] * m[row]))
+    sine, cosine = sincos_turns(fraction(m[at.ETA_TURNS] * m[at.OMEGA] * m[row + TIME]))
     drive_1, _ = drive_at(m, at.OSCILLATOR_1, cosine, sine, 0.0)
     drive_2, _ = drive_at(m, at.OSCILLATOR_2, cosine, sine, 0.0)
     after_1 = acceleration(m, at.OSCILLATOR_1, drive_1, x1, v1)
@@ -98,12 +101,12 @@ def write_saltation(m, row, matrix):
     before_1 = acceleration(m, at.OSCILLATOR_1, drive_1, x1, b1)
     before_2 = acceleration(m, at.OSCILLATOR_2, drive_2, x2, b2)
     scale = 1.0 / max(closing, SMALLEST)
-    add_jump(m, matrix, (v1 - b1) * scale)
-    add_jump(m, matrix + 4, (v2 - b2) * scale)
-    jump_1 = after_1 - m[matrix + 10] * before_1 - m[matrix + 11] * before_2
-    jump_2 = after_2 - m[matrix + 14] * before_1 - m[matrix + 15] * before_2
-    add_jump(m, matrix + 8, jump_1 * scale)
-    add_jump(m, matrix + 12, jump_2 * scale)
+    add_jump(m, matrix + OF_X1, (v1 - b1) * scale)
+    add_jump(m, matrix + OF_X2, (v2 - b2) * scale)
+    jump_1 = after_1 - m[matrix + OF_V1 + 2] * before_1 - m[matrix + OF_V1 + 3] * before_2
+    jump_2 = after_2 - m[matrix + OF_V2 + 2] * before_1 - m[matrix + OF_V2 + 3] * before_2
+    add_jump(m, matrix + OF_V1, jump_1 * scale)
+    add_jump(m, matrix + OF_V2, jump_2 * scale)
 
 
 def acceleration(m, b, drive, x, v):
@@ -119,9 +122,9 @@ def add_jump(m, place, jump):
 
 def contact_duration(m, row, span):
     """Return how long permanent contact after an impact lasts, in tau, at most a span."""
-    set_phase(m, m[at.ETA_TURNS] * m[at.OMEGA] * m[row])
+    set_phase(m, m[at.ETA_TURNS] * m[at.OMEGA] * m[row + TIME])
     side = m[at.SIDE]
-    x, v = side * m[row + 1] - m[at.REST_1], side * m[row + 3] / m[at.OMEGA]
+    x, v = side * m[row + X1] - m[at.REST_1], side * m[row + V1] / m[at.OMEGA]
     m[at.MODE] = at.FLIGHT
     m[at.WORK] = 0.0
     m[at.WORK_LIMIT] = WORK

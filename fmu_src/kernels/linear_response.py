@@ -1,11 +1,11 @@
-"""What a structure and its excitation tell of responses: places at rest, and what they impact at.
+"""Rest positions, and the box amplitude above which no response without impacts exists.
 
 In the subset of Python that :mod:`fmu_src.export.translation` translates, over a flat memory.
 """
 
 import math
 
-# given, then found
+# given; then written
 M1, M2, K1, K2, D1, D2, CLEARANCE, BONDED, WALL, STROKE = range(10)
 OMEGA, BOX_FREQUENCY, BOX_AMPLITUDE, PUSHED = range(10, 14)
 GAP_OFFSET, REST_1, REST_2, THRESHOLD, MUST_IMPACT, TRAITS = range(14, 20)
@@ -13,7 +13,7 @@ LEVEL_ROUNDING = 1e-12  # of the level at which the linear response opens or tou
 NEVER = float("inf")
 
 
-def describe(m, time):
+def write_rest_and_threshold(m, time):
     """Write the gap between unloaded springs, the places of rest, the threshold, and whether the
     excitation exceeds it, so that no response without impacts exists: not known with a wall, a
     stroke, or with loads other than the box's harmonic motion.
@@ -28,7 +28,7 @@ def describe(m, time):
     if m[WALL] != 0.0:
         m[REST_1] = min(0.0, offset)
         m[REST_2] = 0.0
-    m[THRESHOLD] = threshold(m, offset)
+    m[THRESHOLD] = contact_threshold(m, offset)
     m[MUST_IMPACT] = 0.0
     if m[WALL] != 0.0 or m[STROKE] != 0.0 or m[PUSHED] != 0.0:
         return 0
@@ -37,7 +37,7 @@ def describe(m, time):
     return 0
 
 
-def threshold(m, offset):
+def contact_threshold(m, offset):
     """Return the box amplitude at which the linear response opens or touches.
 
     With a gap each mass moves freely, (11) with i = 1, 2, and touch where the amplitude of x2 - x1
@@ -50,12 +50,14 @@ def threshold(m, offset):
     both, mass = m[K1] + m[K2], m[M1] + m[M2]
     stiff_1, stiff_2, stiff_3 = m[K1] / m[M1] / square, m[K2] / m[M2] / square, both / mass / square
     loss_1, loss_2 = eta * m[D1] / m[M1] / omega, eta * m[D2] / m[M2] / omega
-    answer = length(stiff_1 - stiff_2, loss_1 - loss_2) * eta * eta
+    answer = magnitude(stiff_1 - stiff_2, loss_1 - loss_2) * eta * eta
     if offset < 0.0:
         loss_3 = eta * (m[D1] + m[D2]) / mass / omega
-        level = -offset * stiff_2 / stiff_3 * length(stiff_3 - eta * eta, loss_3)
+        level = -offset * stiff_2 / stiff_3 * magnitude(stiff_3 - eta * eta, loss_3)
     else:
-        level = offset * length(stiff_1 - eta * eta, loss_1) * length(stiff_2 - eta * eta, loss_2)
+        level = (
+            offset * magnitude(stiff_1 - eta * eta, loss_1) * magnitude(stiff_2 - eta * eta, loss_2)
+        )
     if level == 0.0:
         return 0.0
     if answer == 0.0:  # the halves move alike
@@ -63,6 +65,6 @@ def threshold(m, offset):
     return level / answer
 
 
-def length(real, imaginary):
+def magnitude(real, imaginary):
     """Return the absolute value of a complex number."""
     return math.sqrt(real * real + imaginary * imaginary)

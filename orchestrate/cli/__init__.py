@@ -19,9 +19,9 @@ import cyclopts
 from cyclopts.exceptions import CycloptsError
 
 from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable
-from ..model.ranges import closest
+from ..model.ranges import closest, did_you_mean
 from ..version import __version__
-from . import cosimulation, diagnosis, dynamics, laboratory, pages, records, responses, weak_drive
+from . import cosimulation, diagnosis, dynamics, laboratory, pages, responses, weak_drive
 from .command import Command, explain
 from .grammar import with_option_names
 from .options import QUANTITIES, list_shipped_sets
@@ -31,7 +31,7 @@ COMMANDS: dict[str, type[Command]] = {
     kind.name(): kind
     for kind in (
         *(pages.Build, responses.Simulate, laboratory.Shake, laboratory.Analyse),
-        *(records.Channels, records.Halves),
+        *(laboratory.Channels, laboratory.Halves),
         *(diagnosis.Diagnose, diagnosis.Plan, responses.Resonance, responses.Spectra),
         *(responses.Sweep, responses.Map, dynamics.Lyapunov, dynamics.Poincare),
         *(dynamics.Attractors, dynamics.Basin, dynamics.Orbit, dynamics.Manifold),
@@ -118,8 +118,7 @@ def parse_arguments(arguments: Sequence[str]) -> Command | None:
     name = words[0] if words else "COMMAND is missing"
     help_is_at = f"({program_name()} --help lists them)"
     if name not in COMMANDS and not name.startswith("-"):
-        near = closest(name, COMMANDS)
-        meant = f"; did you mean {near}?" if near else ""
+        meant = did_you_mean(closest(name, COMMANDS))
         raise InputError(f"{name}: no command{meant} {help_is_at}")
     app = make_app()
     try:
@@ -137,13 +136,11 @@ def parse_arguments(arguments: Sequence[str]) -> Command | None:
 
 
 def set_up_logging() -> None:
-    """Send the library's log messages of level INFO and above to standard error."""
     logging.basicConfig(format="%(message)s")
     logging.getLogger(__package__.partition(".")[0]).setLevel(logging.INFO)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line on a list of arguments; print errors; return the exit code."""
     try:
         with safe_outputs() as output:
             code = run_command(sys.argv[1:] if arguments is None else arguments)
@@ -159,7 +156,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def run_command(arguments: Sequence[str]) -> int:
-    """Parse the arguments and run the command they name; return the exit code."""
     set_up_logging()
     if store := sys.modules.get(STORE):  # of a command before, in this process
         store.STARTED.clear()
@@ -226,5 +222,4 @@ def print_warnings_in_one_line(chosen: Command) -> Iterator[None]:
 
 
 def print_error(line: str) -> None:
-    """Print a line on standard error, with control characters escaped."""
     print(printable(line), file=sys.stderr)

@@ -3,170 +3,189 @@
 from __future__ import annotations
 
 import inspect
-from abc import abstractmethod
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Literal
+
+import orchestrate
 
 from ..errors import InputError
 from ..lazy import xr
+from ..model import Structure
 from ..units import Units, with_readable_lengths, with_units
 from .command import Command, Options, Question, option, option_names
 from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
-from .output import Files, digest, importing_matplotlib, result_name
-
-if TYPE_CHECKING:
-    from ..model import Structure
+from .output import Files, digest, importing_matplotlib, result_name, write_result
 
 UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}
 UNIT_OF_KEY = {  # of a structure's file
-    "frequency_hz": "Hz",
-    "frequency_rpm": "rpm",
-    "frequency_rad_s": "rad/s",
-    "eta": "eta",
+    **{"frequency_hz": "Hz", "frequency_rpm": "rpm", "frequency_rad_s": "rad/s", "eta": "eta"},
 }
 VARIED = ("eta", "frequency", "level", "values")
+Runs = Mapping[str, "xr.Dataset"]  # by structure, or by "" where there is one
 
 
 class Overlay(Options):
     """The option of branches over a picture."""
 
     overlay: list[str] = option(
-        "NetCDF files of branches that are drawn over the picture", (), value="FILE,...", many=True
+        "NetCDF files of branches that are drawn over the picture", (), "FILE,...", many=True
     )
+
+
+class Only(Options):
+    """The option of one structure of both."""
+
+    only: Literal["bonded", "delaminated"] | None = option("one of both (default: both)")
 
 
 class Asked(Command):
     """A command that asks its public function and shows the result."""
 
-    def ask(self) -> tuple[Structure | None, Question]:
-        """Return the structure and the keywords of the public function, at one frequency."""
+    stores = True  # whether the function itself writes the result
+
+    def ask(self) -> tuple[Any, ...]:
+        """Return what the public function takes: the structure, ..., and its keywords."""
         structure = self.read_structure()
         excitation = self.read_excitation(structure, si=True, one=True)
         return structure, {**self.keywords(), **excitation}
 
-    @abstractmethod
     def summary(self, data: Any) -> Iterable[str]:
-        """Return the lines that are printed of the result."""
+        """Return the lines that are printed of one result."""
+        return ()
+
+    def summaries(self, results: Runs) -> Iterator[str]:
+        for state, data in results.items():
+            yield from [f"{state}:"] if state else []
+            yield from self.summary(data)
 
     def has_picture(self, question: Question) -> bool:
         return True
 
-    def draw(self, data: xr.Dataset, *others: xr.Dataset) -> Any:
-        """Return the figure of the result, with others in it."""
-        import orchestrate
+    def draw(self, results: Runs, question: Question, *over: xr.Dataset) -> Any:
+        """Return the figure of the results, with branches over them."""
+        return orchestrate.plot(*[*results.values()][::-1], *over)
 
-        return orchestrate.plot(data, *others)
+    def source_names(self) -> list[str]:
+        """Return the names of the files that a drive, and the structure, come from."""
+        paths = (getattr(self, name, None) for name in ("drive", "structure", "start"))
+        files = [Path(path).stem for path in paths if path and isinstance(path, (str, Path))]
+        return list(dict.fromkeys(files))[:2] or ["paper"]
+
+    def states(self, structure: Any) -> dict[str, Any]:
+        """Return the structures that are asked about, by name; ``""`` for the one that is given."""
+        if not (getattr(self, "beside", False) or hasattr(self, "only")):
+            return {"": structure}
+        both = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
+        only = getattr(self, "only", None)
+        for name in ("store", "start"):
+            if not only and getattr(self, name, None) is not None:
+                text = "computes two structures; expected it without"
+                raise InputError(f"--beside: {text} {option_names([name])}")
+        return {only: both[only]} if only else both
+
+    def compute(
+        self, states: Mapping[str, Any], others: Any, question: Question, files: Mapping[str, Files]
+    ) -> dict[str, xr.Dataset]:
+        function: Callable[..., xr.Dataset] = getattr(orchestrate, self.calls)
+        return {
+            state: function(
+                structure,
+                *others,
+                **question,
+                **self.running(files[state].result if self.stores else None),
+            )
+            for state, structure in states.items()
+        }
 
     def __call__(self) -> None:
-        """Ask, print the summary, write result and picture."""
-        structure, question = self.ask()
-        if structure is None or not getattr(self, "beside", False):
-            self.answer(structure, question)
-            return
-        for name in ("store", "start"):
-            if getattr(self, name) is not None:
-                raise InputError(f"--beside: computes two structures; expected it without --{name}")
-        bonded = self.answer(structure.as_bonded(), question, picture=False)
-        print("delaminated:")
-        delaminated = structure.as_delaminated()
-        self.answer(delaminated, question, ending="with_bonded", beside=(bonded,))
+        structure, *others, question = self.ask()
+        self.answer(structure, *others, question)
 
-    def answer(
-        self,
-        structure: Structure | None,
-        question: Question,
-        *,
-        picture: bool = True,
-        ending: str = "",
-        function: str = "",
-        beside: tuple[xr.Dataset, ...] = (),
-    ) -> xr.Dataset:
-        """Compute one result, print its summary, write files, drawn with others; return it."""
-        import orchestrate
-
-        function = function or self.calls
-        known = inspect.signature(getattr(orchestrate, function)).parameters
-        if "others" not in known and (unknown := [name for name in question if name not in known]):
-            text = f"{function} does not know it yet; expected the command without it"
-            raise InputError(f"{option_names(unknown[:1])}: {text}")
-        branches = self.read_overlay(structure, question) if structure else []
+    def answer(self, structure: Any, *rest: Any, picture: bool = True) -> dict[str, xr.Dataset]:
+        """Compute results, print their summary, write files; return them."""
+        *others, question = rest
+        self.check_known(question)
+        states, branches = self.states(structure), self.read_overlay(structure, question)
         over = f"over_{digest(*branches)}" if branches else ""
-        file = getattr(self, "structure", "") or getattr(self, "start", None) or "paper"
-        name = result_name(function, file, structure, question)
-        files = Files.from_options(self, f"{name}_{ending}" if ending else name, over)
+        name = result_name(self.calls, self.source_names(), structure, *others, question)
+        named = {state: f"{name}_{state}" if state else name for state in states}
+        files = {state: Files.from_options(self, one, over) for state, one in named.items()}
         picture = picture and self.has_picture(question)
-        if structure:
+        common = next(iter(files.values()))
+        if len(files) > 1:
+            fresh = any(one.fresh for one in files.values())
+            common = Files.from_options(self, name, over, fresh)
+        if isinstance(structure, Structure) and not others:
             print_frequency_notes(self, structure, question)
-        with importing_matplotlib(picture and files.lacks_pictures()):
-            running = self.running(files.result)
-            data: xr.Dataset = getattr(orchestrate, function)(structure, **question, **running)
-        asked = with_units(data, self.display_units(question))
-        (shown,) = with_readable_lengths(asked)
-        notes = trivial_notes(structure, question, shown) if structure else ()
-        for line in (*notes, *self.summary(shown)):
-            print(line)
-        draw = partial(self.draw, shown, *branches, *beside)
-        files.write(asked, draw if picture else None)
-        self.write_more(files, question, data)
-        return data
+        with importing_matplotlib(picture):
+            results = self.compute(states, others, question, files)
+        chosen = self.display_units(question)
+        asked = {state: with_units(data, chosen) for state, data in results.items()}
+        shown = dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
+        alone = isinstance(structure, Structure) and not others
+        notes = trivial_notes(structure, question, [*shown.values()][-1]) if alone else ()
+        print(*notes, *self.summaries(shown), sep="\n")
+        self.print_units_note(*shown.values())
+        for state, data in asked.items():
+            if not self.stores:
+                write_result(files[state], results[state])
+            files[state].write(data)
+        if picture:
+            common.write_pictures(partial(self.draw, shown, question, *branches))
+        self.write_more(common, question, shown, results)
+        return results
 
-    def write_more(self, files: Files, question: Question, data: xr.Dataset) -> None:
-        """Write what a command has besides the result."""
+    def write_more(self, files: Files, question: Question, shown: Runs, results: Runs) -> None:
+        """Write what a command has besides results and picture."""
 
-    def read_overlay(self, structure: Structure, question: Mapping[str, Any]) -> list[xr.Dataset]:
+    def check_known(self, question: Question) -> None:
+        """Raise for an option that the public function does not take."""
+        known = inspect.signature(getattr(orchestrate, self.calls)).parameters
+        if "others" not in known and (unknown := [name for name in question if name not in known]):
+            text = f"{self.calls} does not know it yet; expected the command without it"
+            raise InputError(f"{option_names(unknown[:1])}: {text}")
+
+    def read_overlay(self, structure: Any, question: Question) -> list[xr.Dataset]:
         """Return the branches of ``--overlay``; raise for one that does not fit the question."""
-        texts = getattr(self, "overlay", [])
-        paths = [Path(name) for text in texts for name in text.split(",")]
+        paths = [Path(name) for text in getattr(self, "overlay", []) for name in text.split(",")]
         if not paths:
             return []
+        from ..show.overlay import explain_border_mismatch, explain_mismatch
+
         branches = [read_earlier_result("--overlay", path) for path in paths]
-        if self.calls == "map":
-            from ..show.overlay import explain_border_mismatch
-
-            both = {name for name, value in question.items() if isinstance(value, tuple)}
-            for path, curve in zip(paths, branches, strict=True):
-                if why := explain_border_mismatch(curve, both, structure.parameters()):
-                    raise InputError(f"--overlay {path}: {why}")
-            return branches
-        if self.calls == "resonance" and "level" in question:
-            raise InputError(f"--overlay: with several levels, --g {self.g}; expected one")
-        if not is_curve(question):
-            raise InputError("--overlay: one value has no picture; expected a range or a list")
-        from ..show.overlay import explain_mismatch
-
-        over = question.get("over") or ("eta" if "eta" in question else "frequency")
         parameters = structure.parameters()
-        if self.calls == "resonance":  # of both
-            parameters.pop("bonded")
+        if self.calls == "map":
+            both = {name for name, value in question.items() if isinstance(value, tuple)}
+            explain = partial(explain_border_mismatch, over=both, parameters=parameters)
+        elif "level" in question:
+            raise InputError(f"--overlay: with several levels, --g {self.g}; expected one")
+        elif not is_curve(question):
+            raise InputError("--overlay: one value has no picture; expected a range or a list")
+        else:
+            over = question.get("over") or ("eta" if "eta" in question else "frequency")
+            if self.calls == "resonance":  # of both
+                parameters.pop("bonded")
+            explain = partial(explain_mismatch, over=over, parameters=parameters)
         for path, branch in zip(paths, branches, strict=True):
-            if why := explain_mismatch(branch, over, parameters):
+            if why := explain(branch):
                 raise InputError(f"--overlay {path}: {why}")
         return branches
 
-    def display_units(self, question: Mapping[str, Any]) -> Units:
+    def display_units(self, question: Question) -> Units:
         """Return the display units: those of ``--units``, else those of the question's options."""
         varied = str(getattr(self, "over", "")).replace(" ", "").split(",")  # two of a border
-        over = next((UNIT_OF_OPTION[name] for name in varied if name in UNIT_OF_OPTION), "")
-        given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(self, name, None)]
-        keys = self.excitation_keys() if "frequency" in question and not given else ()
+        given = [UNIT_OF_OPTION[name] for name in varied if name in UNIT_OF_OPTION]
+        given += [unit for name, unit in UNIT_OF_OPTION.items() if getattr(self, name, None)]
+        keys = self.section("excitation") if "frequency" in question and not given else ()
         given += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
         both = question.get("over") or ()  # of a border
         by_ratio = "eta" in question or (not isinstance(both, str) and "eta" in both)
-        frequency = over or next(iter(given), "eta" if by_ratio else "Hz")
         in_g = getattr(self, "g", None) is not None or "acceleration_g" in keys
-        usual = Units(frequency, acceleration="g" if in_g else "")
+        usual = Units((*given, "eta" if by_ratio else "Hz")[0], acceleration="g" if in_g else "")
         return self.read_units().with_defaults(usual)
-
-    def excitation_keys(self) -> Collection[str]:
-        """Return the keys of the section ``[excitation]`` in the TOML file of ``--structure``."""
-        from ..model.toml_files import parse, resolve
-
-        if self.structure is None:  # but that of a stored result
-            return ()
-        return tuple(parse(resolve(self.structure)).get("excitation", {}))
 
 
 def is_curve(question: Mapping[str, Any]) -> bool:

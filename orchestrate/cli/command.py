@@ -10,54 +10,32 @@ from __future__ import annotations
 import functools
 import inspect
 import re
+import typing
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import (
-    TYPE_CHECKING,
-    Annotated,
-    Any,
-    ClassVar,
-    Literal,
-    get_args,
-    get_origin,
-    get_type_hints,
-)
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import cyclopts
-from cyclopts import Parameter
-from cyclopts.exceptions import (
-    CycloptsError,
-    MissingArgumentError,
-    UnknownOptionError,
-    UnusedCliTokensError,
-)
+from cyclopts import exceptions
+
+import orchestrate
 
 from ..errors import InputError
-from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest
-from .grammar import (
-    SET_NAMES,
-    Ends,
-    Orders,
-    PlaneSide,
-    State,
-    parse_state,
-    read_choice,
-    read_earlier_result,
-    read_float,
-    read_int,
-)
+from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest, did_you_mean
+from . import grammar
 
 LINK = re.compile(r"As (?:in|for) :\w+:`orchestrate\.(\w+)`")
 MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
 MAPPING = re.compile(r'\{"(\w+)": "?([^"}]*)"?\}')  # on the command line NAME=VALUE
 KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of options are read, named
-    "array_like or xarray.Dataset": (State, "X1,X2,V1,V2|FILE.nc"),
-    "array_like of 4 floats": (Annotated[Any, parse_state], "X1,X2,V1,V2"),
-    "(str, float, float, int)": (PlaneSide, "NAME,FIRST,LAST,COUNT"),
-    "(float, float)": (Ends, "FIRST:LAST"),
-    "int or sequence of float": (Orders, "N|A,B,..."),
+    "array_like or xarray.Dataset": (grammar.State, "X1,X2,V1,V2|FILE.nc"),
+    "array_like of 4 floats, or mapping": (grammar.State, "X1,X2,V1,V2|FILE.nc"),
+    "array_like of 4 floats": (Annotated[Any, grammar.parse_state], "X1,X2,V1,V2"),
+    "(str, float, float, int)": (grammar.PlaneSide, "NAME,FIRST,LAST,COUNT"),
+    "(float, float)": (grammar.Ends, "FIRST:LAST"),
+    "int or sequence of float": (grammar.Orders, "N|A,B,..."),
     "int": (int, "N"),
     "float or mapping": (str, "X|CHANNEL=X,..."),
     "float": (float, "X"),
@@ -76,8 +54,8 @@ SAID = {  # for options of ours
     **{"--duration": "--periods", "--sine": "--swept-sine", "--sweep": "--swept-sine"},
 }
 OF_BOX = ("eta", "frequency", "amplitude", "level")
-READERS: dict[Any, Callable[[str, str], Any]] = {int: read_int, float: read_float}
-STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *SET_NAMES)
+READERS: dict[Any, Callable[[str, str], Any]] = {int: grammar.read_int, float: grammar.read_float}
+STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *grammar.SET_NAMES)
 Question = dict[str, Any]
 
 
@@ -103,12 +81,12 @@ class Option:
         return self.help if said else f"{self.help} (default: {usual})"
 
     def parameter(self, attribute: str, kind: Any, group: cyclopts.Group) -> inspect.Parameter:
-        read, choices = reader_of(kind)
+        read, called = reader_of(kind)
         flag = self.name or option_names([attribute])
-        details = Parameter(
+        details = cyclopts.Parameter(
             name=None if self.position else (flag, self.also) if self.also else flag,
             help=self.words,
-            metavar="{" + ",".join(choices) + "}" if choices else self.value or name_of_value(kind),
+            metavar=self.value or called,
             group=group,
             negative=(),
             show_default=False,
@@ -119,18 +97,17 @@ class Option:
             converter=converter(read) if read else None,
             n_tokens=1 if read else None,
         )
-        position = inspect.Parameter.POSITIONAL_ONLY
         return inspect.Parameter(
             attribute,
-            position if self.position else inspect.Parameter.KEYWORD_ONLY,
+            inspect.Parameter.POSITIONAL_ONLY if self.position else inspect.Parameter.KEYWORD_ONLY,
             default=inspect.Parameter.empty if self.needed else self.default,
             annotation=Annotated[kind, details],
         )
 
 
-def option(help: str, default: Any = None, **details: Any) -> Any:
+def option(help: str, default: Any = None, value: str = "", **details: Any) -> Any:
     """Return an option, as ``Any``: as an attribute it has the value's type."""
-    return Option(help, default, **details)
+    return Option(help, default, value, **details)
 
 
 def option_names(names: Iterable[str], joint: str = ", ") -> str:
@@ -138,28 +115,23 @@ def option_names(names: Iterable[str], joint: str = ", ") -> str:
     return joint.join(f"--{name.replace('_', '-')}" for name in names)
 
 
-def name_of_value(kind: Any) -> str:
-    """Return what the help calls a value of a type."""
-    known = {int: "N", float: "X", Path: "FILE"}
-    parts = (name_of_value(one) for one in get_args(kind))
-    return known.get(kind) or next((name for name in parts if name != "TEXT"), "TEXT")
-
-
-def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, tuple[str, ...]]:
-    """Return what reads a text of a type, by an option's name and the text; and its choices."""
-    for one in (kind, *get_args(kind)):
-        if get_origin(one) is Annotated:
-            return next(read for read in get_args(one) if inspect.isfunction(read)), ()
-        if get_origin(one) is Literal:
-            choices = get_args(one)
-            return functools.partial(read_choice, choices), tuple(map(str, choices))
+def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, str]:
+    """Return what reads a text of a type, by an option's name and the text; and its name."""
+    known, parts = {int: "N", float: "X", Path: "FILE"}, (kind, *typing.get_args(kind))
+    called = next((known[one] for one in parts if one in known), "TEXT")
+    for one in parts:
+        if typing.get_origin(one) is Annotated:
+            return next(read for read in typing.get_args(one) if inspect.isfunction(read)), "X"
+        if typing.get_origin(one) is Literal:
+            choices = typing.get_args(one)
+            read = functools.partial(grammar.read_choice, choices)
+            return read, "{" + ",".join(map(str, choices)) + "}"
         if one in READERS:
-            return READERS[one], ()
-    return None, ()
+            return READERS[one], called
+    return None, called
 
 
 def converter(read: Callable[[str, str], Any]) -> Callable[..., Any]:
-    """Return a reader in the form of cyclopts' converters."""
     return lambda _, tokens: read(tokens[-1].keyword or "", tokens[-1].value)
 
 
@@ -217,20 +189,18 @@ class Command(Debugging, ABC):
     @functools.cache
     def options(cls) -> dict[str, tuple[Option, Any, type[Options]]]:
         """Return each option, its type and the group that it stands in, by the attribute."""
-        hints = get_type_hints(cls, include_extras=True)
+        hints = typing.get_type_hints(cls, include_extras=True)
         found: dict[str, tuple[Option, Any, type[Options]]] = {}
         for group in reversed(cls.__mro__):
-            for name, one in vars(group).items():
-                if isinstance(one, Option):
-                    if hints[name] is bool:
-                        one = replace(one, default=False)
-                    found[name] = one, hints[name], found[name][2] if name in found else group
             own = vars(group)
+            for name, one in own.items():
+                if isinstance(one, Option):
+                    one = replace(one, default=False) if hints[name] is bool else one
+                    found[name] = one, hints[name], found[name][2] if name in found else group
             takes = own.get("takes", "*" if own.get("calls") else "")
             others = [name for name in arguments_read(cls.calls) if name not in found]
-            takes = takes.replace("*", " ".join(others))
-            taken = options_of_functions(takes, cls.calls, own.get("if_given"))
-            found |= {name: (one, kind, group) for name, one, kind in taken}
+            taken = takes.replace("*", " ".join(others)), cls.calls, own.get("if_given")
+            found |= {name: (one, kind, group) for name, one, kind in options_of_functions(*taken)}
         return dict(sorted(found.items(), key=lambda row: vars(row[1][2]).get("rank", 2)))
 
     @classmethod
@@ -247,20 +217,22 @@ class Command(Debugging, ABC):
         names = [name for name, (_, _, of) in self.options().items() if of in groups]
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
+    def needed(self, name: str, expected: str) -> Any:
+        if (value := getattr(self, name)) is None:
+            raise InputError(f"{option_names([name])} is missing{expected}")
+        return value
+
     def keywords(self) -> Question:
         """Return the values of options that are arguments of the public function, by name."""
-        import orchestrate
-
         arguments = inspect.signature(getattr(orchestrate, self.calls)).parameters
         found: Question = {}
         for name, (one, kind, of) in self.options().items():
             if of is type(self) and name in arguments:
                 found[name] = getattr(self, name)
-                if found[name] is None and arguments[name].default is inspect.Parameter.empty:
-                    words = one.help.removesuffix(NEEDED)
-                    raise InputError(f"{option_names([name])} is missing ({words})")
-                if kind is State and isinstance(found[name], Path):
-                    found[name] = read_earlier_result(option_names([name]), found[name])
+                if arguments[name].default is inspect.Parameter.empty:
+                    self.needed(name, f" ({one.help.removesuffix(NEEDED)})")
+                if kind is grammar.State and isinstance(found[name], Path):
+                    found[name] = grammar.read_earlier_result(option_names([name]), found[name])
         return found
 
     @classmethod
@@ -268,11 +240,9 @@ class Command(Debugging, ABC):
         groups: dict[str, cyclopts.Group] = {}
         parameters = []
         for name, (one, kind, of) in cls.options().items():
-            heading = vars(of).get("heading", "question")
-            remark = vars(of).get("remark", "")
-            group = cyclopts.Group(heading, help=remark, sort_key=len(groups))
-            group = groups.setdefault(heading, group)
-            parameters.append(one.parameter(name, kind, group))
+            heading, remark = (vars(of).get(key, "") for key in ("heading", "remark"))
+            group = cyclopts.Group(heading or "question", help=remark, sort_key=len(groups))
+            parameters.append(one.parameter(name, kind, groups.setdefault(heading, group)))
         parameters.sort(key=lambda one: one.kind)
 
         def make(*positions: Any, **values: Any) -> Command:
@@ -292,8 +262,6 @@ def documentation_of(function: str) -> dict[str, tuple[str, str]]:
     """Return type and description of each argument of a public function, by name."""
     import docstring_parser
 
-    import orchestrate
-
     found = {}
     text = inspect.getdoc(getattr(orchestrate, function)) or ""
     for one in docstring_parser.parse(text, docstring_parser.DocstringStyle.NUMPYDOC).params:
@@ -308,8 +276,6 @@ def documentation_of(function: str) -> dict[str, tuple[str, str]]:
 @functools.cache
 def arguments_read(function: str) -> list[str]:
     """Return a public function's arguments that the command line can read by their types."""
-    import orchestrate
-
     if not function:
         return []
     typed = documentation_of(function)
@@ -329,36 +295,28 @@ def options_of_functions(
     takes: str, usual_function: str, if_given: bool | None
 ) -> Iterator[tuple[str, Option, Any]]:
     """Yield name, option and type of arguments of public functions."""
-    import orchestrate
-
     for part in filter(None, takes.split("; ")):
         function, _, names = part.rpartition(": ")
         function = function or usual_function
         parameters = inspect.signature(getattr(orchestrate, function)).parameters
         for name in names.split():
             typed, meaning = documentation_of(function)[name]
+            kind, value = next((KINDS[one] for one in KINDS if typed.startswith(one)), (None, ""))
             if typed.startswith("{"):
-                kind, value = Literal[tuple(re.findall(r'"(\w+)"', typed))], ""
-            else:
-                kind, value = next(KINDS[one] for one in KINDS if typed.startswith(one))
+                kind = Literal[tuple(re.findall(r'"(\w+)"', typed))]
             usual = parameters[name].default if name in parameters else None
             words = help_text(meaning)
             if usual is inspect.Parameter.empty:
                 usual, words = None, words if if_given else f"{words}{NEEDED}"
-            default = None if if_given else usual
             if ";" in takes:
                 words = f"{cyclopts.default_name_transform(function)}: {words}"
-            yield name, Option(words, default, value, usual=usual), kind
+            yield name, Option(words, None if if_given else usual, value, usual=usual), kind
 
 
 def help_text(meaning: str) -> str:
     """Return the first sentence of an argument's description, and the default, as help."""
-    plain = (
-        MARKUP.sub(lambda match: match[1] or match[2], meaning)
-        .removeprefix("Whether ")
-        .removeprefix("to ")
-    )
-    plain = MAPPING.sub(r"\1=\2", plain)
+    plain = MARKUP.sub(lambda match: match[1] or match[2], meaning)
+    plain = MAPPING.sub(r"\1=\2", plain.removeprefix("Whether ").removeprefix("to "))
     first, *others = plain.rstrip(".").split(". ")
     usual = "".join(f"; b{one[1:]}" for one in others if one.startswith("By default"))
     begins = first[:1] if first.startswith(("Hz", "V ")) else first[:1].lower()
@@ -368,35 +326,34 @@ def help_text(meaning: str) -> str:
 # -- mistakes --------------------------------------------------------------------------------------
 
 
-def explain(error: CycloptsError, command: type[Command]) -> str:
+def explain(error: exceptions.CycloptsError, command: type[Command]) -> str:
     lists = f"({command.name()} --help lists them)"
     if isinstance(error.__cause__, InputError):
         return str(error.__cause__)
-    if isinstance(error, UnknownOptionError):
+    if isinstance(error, exceptions.UnknownOptionError):
         flag = (error.token.keyword or error.token.value).partition("=")[0]
-        near = suggestion(flag, error, command)
-        return f"{flag}: no option of {command.name()}{near} {lists}"
-    if isinstance(error, UnusedCliTokensError):
+        return f"{flag}: no option of {command.name()}{suggestion(flag, error, command)} {lists}"
+    if isinstance(error, exceptions.UnusedCliTokensError):
         from ..model.toml_files import SETS
 
         words = " ".join(error.unused_tokens or ())
         known = words.endswith(".toml") or words in SETS
-        near = f"; did you mean --structure {words}?" if known else ""
-        return f"{words}: no option of {command.name()}{near} {lists}"
-    name = error.argument.name if error.argument else ""
-    if isinstance(error, MissingArgumentError):
+        meant = did_you_mean(f"--structure {words}") if known else ""
+        return f"{words}: no option of {command.name()}{meant} {lists}"
+    if isinstance(error, exceptions.MissingArgumentError):
+        name = error.argument.name if error.argument else ""
         return f"{error.keyword}: expected one value" if error.keyword else f"{name} is missing"
     return " ".join(str(error).split())
 
 
-def suggestion(flag: str, error: UnknownOptionError, command: type[Command]) -> str:
+def suggestion(flag: str, error: exceptions.UnknownOptionError, command: type[Command]) -> str:
     """Return what is probably meant by an unknown option, as words of a message; or nothing."""
     name = flag.lstrip("-").replace("-", "_")
     if name in STRUCTURE_NAMES and "--set" in command.flags():
         words = error.root_input_tokens or []
         after = words[words.index(flag) + 1 :] if flag in words else []
-        return f"; did you mean --set {name}={''.join(after[:1]) or 'VALUE'}?"
-    near = closest(flag, command.flags()) if flag.startswith("--") else ""
-    if (said := SAID.get(flag, "")).partition(" ")[0] in command.flags():
-        near = said
-    return f"; did you mean {near}?" if near else ""
+        return did_you_mean(f"--set {name}={''.join(after[:1]) or 'VALUE'}")
+    said = SAID.get(flag, "")
+    if said.partition(" ")[0] in command.flags():
+        return did_you_mean(said)
+    return did_you_mean(closest(flag, command.flags()) if flag.startswith("--") else "")

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
+
+import orchestrate
 
 from ..errors import InputError
 from ..lazy import xr
+from ..model import Structure
 from ..units import text_of
 from .answer import Asked
 from .command import Options, Question, option
 from .grammar import plain_float, read_pairs
 from .options import OfStructure
 from .output import Results, Stored
-from .text import extents
-
-if TYPE_CHECKING:
-    from ..model import Structure
+from .printing import extents
 
 LISTED = ("parameter", "structuralParameter", "input", "output")
 PAIR = "NAME=VALUE"
@@ -30,18 +30,15 @@ def split_at_commas(texts: Sequence[str] | None) -> tuple[str, ...]:
 
 def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
     """Return values by name: numbers, true or false; of inputs also files with time and value."""
-    from .. import Course
-
     found: dict[str, Any] = {}
     for name, text in read_pairs(option, texts, PAIR).items():
         try:
             found[name] = text == "true" if text in ("true", "false") else plain_float(text)
         except ValueError:
             if option != "--input":
-                raise InputError(
-                    f"{option} {name}={text}: expected a number, true or false"
-                ) from None
-            found[name] = Course.from_csv(text)
+                text = f"{option} {name}={text}: expected a number, true or false"
+                raise InputError(text) from None
+            found[name] = orchestrate.Course.from_csv(text)
     return found
 
 
@@ -65,10 +62,8 @@ def variable_lines(drive: Path) -> Iterator[str]:
             yield f"  {ours:17} {theirs}: {reason_for(description, ours, theirs)}"
     else:
         outputs = " ".join(f"{ours}=OUTPUT" for ours in MOTION)
-        yield (
-            f"units and names do not tell which are the box's: --connect {outputs} box_force=INPUT "
-            "(one motion is enough, all are more exact)"
-        )
+        text = f"--connect {outputs} box_force=INPUT (one motion is enough, all are more exact)"
+        yield f"units and names do not tell which are the box's: {text}"
 
 
 class OfDrive(Options):
@@ -82,25 +77,20 @@ class OfDrive(Options):
         "force1, force2, its forces on the halves; a "
         "minus before a name turns its sign, a unit after it in brackets states it: pos[mm]",
         (),
-        value="OURS=THEIRS",
+        "OURS=THEIRS",
         many=True,
     )
     unit: list[str] = option(
         "units of connected variables that it does not state, or not rightly",
         (),
-        value="NAME=UNIT",
+        "NAME=UNIT",
         many=True,
     )
-    parameter: list[str] = option("its start values", (), value="NAME=VALUE", many=True)
+    parameter: list[str] = option("its start values", (), PAIR, many=True)
     input: list[str] = option(
-        "its other inputs: a number, or a CSV file with time in s and value",
-        (),
-        value="NAME=VALUE",
-        many=True,
+        "its other inputs: a number, or a CSV file with time in s and value", (), PAIR, many=True
     )
-    record: list[str] = option(
-        "variables of the drive that are stored", (), value="NAME", many=True
-    )
+    record: list[str] = option("variables of the drive that are stored", (), "NAME", many=True)
 
 
 class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
@@ -119,8 +109,7 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
 
     def __call__(self) -> None:
         if self.listed:
-            for line in variable_lines(self.drive):
-                print(line)
+            print(*variable_lines(self.drive), sep="\n")
         else:
             super().__call__()
 
@@ -130,10 +119,8 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
             raise InputError("--set: --structure none has no parameters; leave it out")
         structure = None if alone else self.read_structure()
         if self.structure == "paper" and not self.set:
-            raise InputError(
-                "--structure is missing; expected one in SI units, as the drive has them, or none "
-                "for the drive alone"
-            )
+            text = "expected one in SI units, as the drive has them, or none for the drive alone"
+            raise InputError(f"--structure is missing; {text}")
         return structure, self.keywords() | {
             "drive": str(self.drive),
             "connect": read_pairs("--connect", split_at_commas(self.connect), PAIR),

@@ -3,31 +3,22 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
+
+import orchestrate
 
 from ..errors import InputError
 from ..lazy import xr
-from ..units import Units, range_text, text_of, with_readable_lengths, with_units
+from ..model import Structure
+from ..units import Units, range_text, text_of, with_units
+from . import grammar, output, printing
+from .answer import Asked
 from .command import Command, Options, Question, option
-from .grammar import Listed, floats, with_option_names
 from .options import OfSensors, OfStructure
-from .output import (
-    Files,
-    InColumns,
-    Reading,
-    Results,
-    digest,
-    file_checksum,
-    result_name,
-    unit_note,
-)
-from .text import columns_of, parameter_column, table
-
-if TYPE_CHECKING:
-    from ..model import Structure
+from .output import Files, InColumns, Reading, digest, file_checksum, unit_note
 
 log = logging.getLogger(__name__)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
@@ -48,12 +39,11 @@ class Sweep(NamedTuple):
     number: int = 0
 
     def __str__(self) -> str:
-        """Return the file's path, and the number of the sweep where there are several."""
         return f"{self.path}{f', sweep {self.number}' if self.number else ''}"
 
 
 EXPECTED = "a factor for face 1, or for both faces, such as 1.57 or 0.53,0.6"
-Participation = Annotated[tuple[float, ...] | None, floats(EXPECTED, ",", (1, 2))]
+Participation = Annotated[tuple[float, ...] | None, grammar.floats(EXPECTED, ",", (1, 2))]
 
 
 class DiagnosedRecords(Options):
@@ -75,7 +65,7 @@ class DiagnosedRecords(Options):
     )
 
 
-class Diagnose(DiagnosedRecords, OfStructure, InColumns, Reading, Command, Results):
+class Diagnose(DiagnosedRecords, OfStructure, InColumns, Reading, Command, output.Results):
     """Whether a measured beam is delaminated: a verdict, its evidence, a report."""
 
     structure: Any = option(
@@ -108,8 +98,6 @@ what it gives:
   and for each record a report to read, print and sign (.html), the answers (.nc), a picture"""
 
     def __call__(self) -> None:
-        import orchestrate
-
         Files.from_options(self, "", fresh=True)  # before records are read
         if self.structure is None and self.set:
             raise InputError("--set: of a guess; expected --structure FILE.toml with it")
@@ -121,14 +109,11 @@ what it gives:
         records, refused = self.read_all_records()
         names = {one: self.file_stem(one, guess) for one in records}
         verdicts = self.compute_verdicts(records, names, guess, others) if records else {}
-        units = self.read_record_units()
         for sweep, verdict in verdicts.items():
-            for line in self.verdict_lines(sweep, with_units(verdict, units)):
-                print(line)
+            shown = with_units(verdict, self.read_record_units())
+            print(*self.verdict_lines(sweep, shown), sep="\n")
             log.info("%s: signs, pictures and page", sweep.path.name)
-            same = [
-                data for one, data in records.items() if one.path == sweep.path and one != sweep
-            ]
+            same = [one for key, one in records.items() if key.path == sweep.path and key != sweep]
             signs = orchestrate.signs(records[sweep], other=[*others, *same], structure=guess)
             self.write_files(names[sweep], {"": verdict, "_signs": signs})
         if refused:
@@ -138,10 +123,9 @@ what it gives:
     def file_stem(self, sweep: Sweep, guess: Structure | None) -> str:
         """Return the name of a record's results, unique for content, guess and reading."""
         read_as = [self.channels, self.participation, *self.given(Reading).items()]
+        checksums = [file_checksum(path) for path in (sweep.path, *self.other)]
         number = f"_sweep{sweep.number}" if sweep.number else ""
-        others = [file_checksum(path) for path in self.other]
-        part = digest(file_checksum(sweep.path), others, guess and guess.parameters(), read_as)
-        return f"diagnose_{sweep.path.stem}{number}_{part}"
+        return f"diagnose_{sweep.path.stem}{number}_{digest(checksums, guess, read_as)}"
 
     def read_all_records(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
         """Read all record files; return a dict of sweeps, and an error line per refused file."""
@@ -156,9 +140,8 @@ what it gives:
                 record = self.read_one_record(path)
                 checked_data(record)
                 parts = split_sweeps(record)
-                records |= {
-                    Sweep(path, n * (len(parts) > 1)): one for n, one in enumerate(parts, 1)
-                }
+                several = len(parts) > 1
+                records |= {Sweep(path, n * several): one for n, one in enumerate(parts, 1)}
             except InputError as error:
                 line = str(error)
                 refused.append(line if line.startswith(str(path)) else f"{path}: {line}")
@@ -168,44 +151,39 @@ what it gives:
 
     def read_one_record(self, path: Path) -> xr.Dataset:
         """Read a record from a file; raise if it has no acceleration of either face."""
-        from .. import read_record
-
-        record = read_record(path, **self.given(InColumns, Reading))
+        record = orchestrate.read_record(path, **self.given(InColumns, Reading))
         if "acceleration1" not in record and "acceleration2" not in record:
             taken = record.attrs.get("columns", "no columns")
             text = "expected a face's too: name its column by --channels, as base=Table,face1=Beam"
             raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
         return record
 
-    def participation_by_sensor(self) -> dict[str, float] | None:
-        """Return ``--participation G,...`` by face; None if it is not given."""
-        faces = ("acceleration1", "acceleration2")
-        return dict(zip(faces, self.participation, strict=False)) if self.participation else None
-
     def compute_verdicts(
         self,
-        records: Mapping[Sweep, xr.Dataset],
-        names: Mapping[Sweep, str],
+        records: dict[Sweep, xr.Dataset],
+        names: dict[Sweep, str],
         guess: Structure | None,
-        others: Sequence[xr.Dataset] = (),
+        others: Sequence[xr.Dataset],
     ) -> dict[Sweep, xr.Dataset]:
         """Compute or load each beam's verdict; store with it where it comes from."""
-        from .. import detect_all
-        from ..running.store import write_netcdf
-
-        named = {names[sweep]: [record, *others] for sweep, record in records.items()}
-        running = self.running(self.output)
-        factors = self.participation_by_sensor()
-        verdicts = detect_all(named, guess, participation=factors, **running)
+        factors = dict(
+            zip(("acceleration1", "acceleration2"), self.participation or (), strict=False)
+        )
+        verdicts = orchestrate.detect_all(
+            {names[sweep]: [record, *others] for sweep, record in records.items()},
+            guess,
+            participation=factors or None,
+            **self.running(self.output),
+        )
         described = {}
         for sweep, name in names.items():
             verdict = verdicts[name]
             words = self.origin_attributes(sweep.path, records[sweep])
-            label = Sweep(Path(sweep.path.name), sweep.number)
+            label = sweep._replace(path=Path(sweep.path.name))
             words["title"] = f"Verdict on {label}: {verdict.verdict.item()}"
             described[sweep] = verdict.assign_attrs(words)
             if not words.items() <= verdict.attrs.items():
-                write_netcdf(described[sweep], self.output / f"{name}.nc")
+                output.write_result(Files.from_options(self, name, fresh=True), described[sweep])
         return described
 
     def origin_attributes(self, path: Path, record: xr.Dataset) -> dict[str, str]:
@@ -218,77 +196,41 @@ what it gives:
         words |= {"guess_file": str(self.structure or "")}
         return {name: text for name, text in words.items() if text}
 
-    def write_files(self, stem: str, answers: Mapping[str, xr.Dataset]) -> None:
+    def write_files(self, stem: str, answers: dict[str, xr.Dataset]) -> None:
         """Write results, pictures and the HTML report of one record; print the files' paths."""
-        from .. import plot, report
-        from ..files import open_folder
-        from ..running.store import write_netcdf
-
-        folder, units = open_folder(self.output), self.read_record_units()
+        units = self.read_record_units()
         for ending, answer in answers.items():
             files = Files.from_options(self, f"{stem}{ending}", fresh=True)
             if ending:  # the verdict is stored already
-                write_netcdf(answer, files.result)
+                output.write_result(files, answer)
             shown = with_units(answer, units)
-            files.write(shown, partial(plot, shown))
-        page = folder / f"{stem}.html"
-        print(report(*answers.values(), output=page, notes=self.notes or "", units=units))
+            files.write(shown, partial(orchestrate.plot, shown))
+        page = self.output / f"{stem}.html"
+        more: Any = {"output": page, "notes": self.notes or "", "units": units}
+        print(orchestrate.report(*answers.values(), **more))
 
     def verdict_lines(self, sweep: Sweep, verdict: xr.Dataset) -> Iterator[str]:
-        """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
         from ..show.verdict import make_verdict
 
         shown = make_verdict(verdict)
-        yield f"{sweep}: {shown.word} {with_option_names(shown.sentence, self)}"
+        yield f"{sweep}: {shown.word} {grammar.with_option_names(shown.sentence, self)}"
         for name, label in LINES.items():
             if verdict.attrs.get(name):
-                yield f"  {label}: {with_option_names(verdict.attrs[name], self)}"
+                yield f"  {label}: {grammar.with_option_names(verdict.attrs[name], self)}"
 
 
-def plan_lines(data: xr.Dataset) -> Iterator[str]:
-    """Yield the recommended sweep, whether it decides, and what each rehearsed level shows."""
-    level, second = (
-        text_of(data, one, "m/s2", ".3g") for one in (data.recommended_level, data.second_level)
-    )
-    ends = range_text(data, float(data.recommended_first), float(data.recommended_last), "Hz")
-    seconds, rate = float(data.recommended_duration), float(data.recommended_rate)
-    twice = f"at {level}, then at {second}" if second != level else f"twice at {level}"
-    yield f"sweep {ends} {twice}, {seconds:.0f} s each, {rate:.0f} samples a s"
-    if second == level:
-        yield "the highest of the levels: a second, higher one in --g would be a further check"
-    if not data.counts and data.decides.any():
-        yield "both verdicts are right at lower levels only, not at all above: see the table"
-    elif not data.counts:
-        yield "no verdict is right at these levels: raise --g, or lower the --noise"
-    opens = float(data.opening_level)
-    if opens > 0.0:
-        times = float(data.recommended_level) / opens
-        lowest = text_of(data, data.opening_level, "m/s2", ".3g")
-        yield f"pressed together: it opens from {lowest}: {times:.2g} times less"
-    elif not data.attrs["clearance"]:
-        yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
-    rows = parameter_column(data, "level", data.level.values, ".3g")
-    rows["verdict on the guess"] = [str(word) for word in data.verdict.values]
-    rows["on its sound twin"] = [str(word) for word in data.sound_verdict.values]
-    for name, cells in columns_of(data, "opening", form=".3g").items():
-        rows[name.replace("opening", "largest gap")] = cells
-    if data.overload.any():
-        rows["sensor"] = ["overload" if flag else "" for flag in data.overload.values]
-    yield from table(rows)
+PlanEnds = Annotated[Any, grammar.floats("FIRST:LAST in Hz, such as 30:60", "[:,]", (2,))]
 
 
-PlanEnds = Annotated[Any, floats("FIRST:LAST in Hz, such as 30:60", "[:,]", (2,))]
-
-
-class Plan(OfStructure, OfSensors, Command, Results):
+class Plan(OfStructure, OfSensors, Asked, output.Results):
     """Plan a test: rehearse it, and recommend the lowest level at which the verdict is right."""
 
-    calls = "plan_test"
+    calls, stores = "plan_test", False
     hz: PlanEnds = option(
         "the sweep's ends in Hz (default: 0.65 to 1.4 times the bonded resonance)",
         value="FIRST:LAST",
     )
-    g: Listed = option(
+    g: grammar.Listed = option(
         "levels, peak acceleration in g (default: nine from 0.01 to 1)", value="VALUES"
     )
     faces: Literal["1", "2", "both"] | None = option("faces with a sensor (default: both)")
@@ -312,20 +254,31 @@ bandwidth (--sensor) takes as many times longer."""
             sensor = {f"acceleration{self.faces}": sensor or usual_sensor(last)}
         return structure, {**self.keywords(), "frequencies": self.hz, "sensor": sensor}
 
-    def __call__(self) -> None:
-        import orchestrate
+    def display_units(self, question: Question) -> Units:
+        return self.read_units().with_defaults(Units("Hz", acceleration="g"))
 
-        from ..files import open_folder
-        from ..running.store import write_netcdf
-
-        structure, question = self.ask()
-        name = result_name("plan", self.structure, structure, question)
-        files = Files.from_options(self, name, fresh=True)
-        plan = orchestrate.plan_test(structure, **question, **self.running())
-        units = self.read_units().with_defaults(Units("Hz", acceleration="g"))
-        described = plan.assign_attrs(structure.parameters())
-        (shown,) = with_readable_lengths(with_units(described, units))
-        print(*plan_lines(shown), sep="\n")
-        open_folder(self.output)
-        write_netcdf(plan, files.result)
-        files.write(shown, partial(orchestrate.plot, shown))
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        levels = (data.recommended_level, data.second_level, data.opening_level)
+        level, second, lowest = (text_of(data, one, "m/s2", ".3g") for one in levels)
+        ends = range_text(data, data.recommended_first, data.recommended_last, "Hz")
+        seconds, rate = float(data.recommended_duration), float(data.recommended_rate)
+        twice = f"at {level}, then at {second}" if second != level else f"twice at {level}"
+        yield f"sweep {ends} {twice}, {seconds:.0f} s each, {rate:.0f} samples a s"
+        if second == level:
+            yield "the highest of the levels: a second, higher one in --g would be a further check"
+        if not data.counts and data.decides.any():
+            yield "both verdicts are right at lower levels only, not at all above: see the table"
+        elif not data.counts:
+            yield "no verdict is right at these levels: raise --g, or lower the --noise"
+        if (opens := float(data.opening_level)) > 0.0:
+            times = float(data.recommended_level) / opens
+            yield f"pressed together: it opens from {lowest}: {times:.2g} times less"
+        elif not data.attrs["clearance"]:
+            yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
+        rows = printing.columns_of(data, "level verdict sound_verdict opening", form=".3g")
+        if data.overload.any():
+            rows["sensor"] = ["overload" * bool(flag) for flag in data.overload.values]
+        titles = {"verdict": "verdict on the guess", "sound_verdict": "on its sound twin"}
+        titles = {title: titles.get(title, title) for title in rows}
+        named = {titles[t].replace("opening", "largest gap"): cells for t, cells in rows.items()}
+        yield from printing.table(named)

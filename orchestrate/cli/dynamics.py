@@ -2,52 +2,25 @@
 
 from __future__ import annotations
 
-import ast
 import math
 from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
+
+import orchestrate
 
 from ..constants import TURN
 from ..errors import InputError
-from ..flags import flag_words
-from ..lazy import xr
+from ..lazy import np, xr
+from ..model import PARAMETERS, Structure
+from ..model.ranges import PUSHES
 from ..units import is_in_ratios, number_of, range_text, units_of, with_units
-from .answer import Asked, is_curve
+from . import printing
+from .answer import Asked, Runs, is_curve
 from .command import Question, option
-from .grammar import parse, plain_int
-from .options import CONTINUED, OfBox, OfStored, OfStructure, Over, parse_varied
+from .grammar import plain_int, reads
+from .options import CONTINUED, OfBox, OfPushes, OfStored, OfStructure, Over, parse_varied
 from .output import Files, Results, Stored, result_name
-from .stored import read_structure_and_question
-from .text import (
-    MOST_ROWS,
-    attractor_table,
-    columns_of,
-    end_lines,
-    extents,
-    flag_word,
-    format_largest_gap,
-    format_parameter,
-    format_range,
-    format_ranges,
-    format_share,
-    has_flag,
-    length_text,
-    parameter_column,
-    table,
-    time_text,
-    varied_parameter,
-    without_unit,
-)
-
-if TYPE_CHECKING:
-    from ..model import Structure
-
-
-def ask_along_parameter(arguments: Any, si: bool = False) -> tuple[Structure, Question]:
-    structure = arguments.read_structure()
-    excitation, _ = arguments.varied_arguments(structure, si=si)
-    return structure, {**arguments.keywords(), **excitation}
 
 
 class Lyapunov(OfStructure, OfBox, Over, Asked, Stored, Results):
@@ -66,10 +39,8 @@ decided with so few --periods."""
     has_picture = staticmethod(is_curve)
 
     def ask(self) -> tuple[Structure, Question]:
-        structure, question = ask_along_parameter(self)
+        structure, question = self.ask_along_parameter()
         if self.follow:
-            import orchestrate
-
             others = self.keywords()
             swept: Question = {name: question[name] for name in question if name not in others}
             swept |= {"direction": self.follow, "samples": 1, "transient": question["transient"]}
@@ -77,34 +48,28 @@ decided with so few --periods."""
         return structure, question
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        name = varied_parameter(data)
+        name = printing.varied_parameter(data)
         data = data.sortby(name)
-        if data.sizes[name] <= MOST_ROWS:
-            rows = parameter_column(data, name, data[name].values)
-            rows |= columns_of(data, "exponent standard_error verdict")
+        if data.sizes[name] <= printing.MOST_ROWS:
+            rows = printing.columns_of(data, f"{name} exponent standard_error verdict")
             if "exponents" in data:
-                each = data.exponents.transpose(name, "order").values
-                rows["all exponents"] = [", ".join(f"{x:.5g}" for x in row) for row in each]
-                rows |= columns_of(data, "kaplan_yorke_dimension")
-            yield from table(rows)
+                every = data.transpose(name, ...)
+                rows |= printing.columns_of(every, "exponents:.5g kaplan_yorke_dimension")
+            yield from printing.table(rows)
         else:
             top = data.isel(data.exponent.argmax(...))
+            (largest,) = printing.with_error(top.exponent, top.standard_error, ".5f", ".5f")
             yield (
-                f"largest exponent {float(top.exponent):.5f} +- {float(top.standard_error):.5f} "
-                f"per tau at {format_parameter(data, name, top[name])}; the largest of "
+                f"largest exponent {largest} per tau at "
+                f"{printing.format_parameter(data, name, top[name])}; the largest of "
                 f"{data.sizes[name]} is biased by its error: repeat only it, with more --periods "
                 "and another --transient"
             )
-            for word in flag_words(data.verdict.attrs).values():
-                holds = has_flag(data.verdict, word).values
-                where = f" at {format_ranges(data, name, holds)}" if holds.any() else ""
-                yield f"{format_share(int(holds.sum()), holds.size, word)}{where}"
-        neutral = data.isel({name: has_flag(data.verdict, "neutral").values})
+            yield from printing.shares_and_ranges(data, name, data.verdict)
+        neutral = data.isel({name: printing.has_flag(data.verdict, "neutral").values})
+        sizes = (abs(neutral.exponent) * neutral.period).values
         wander = math.log(float(data.attrs["wander"]))
-        sizes = zip(abs(neutral.exponent.values), neutral.period.values, strict=True)
-        needed = max(
-            (wander / (size * period) for size, period in sizes if size > 0.0), default=0.0
-        )
+        needed = max((wander / size for size in sizes if size > 0.0), default=0.0)
         if needed > float(data.attrs["periods"]):
             yield (
                 "neutral: quasi-periodic, or too few periods: exponents of these sizes take about "
@@ -130,7 +95,17 @@ class Poincare(OfStructure, OfBox, Asked, Stored, Results):
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         yield f"{data.sizes['point']} points"
-        yield from extents(data, COORDINATES[str(data.attrs["at"])])
+        yield from printing.extents(data, COORDINATES[str(data.attrs["at"])])
+
+
+def motion_of(data: xr.Dataset, state: xr.DataArray, periods: int) -> xr.Dataset:
+    """Simulate the motion that begins at a state of a result, under its excitation."""
+    varied = {name: data[name].item() for name in PARAMETERS if name in data.coords}
+    structure = Structure.from_attributes(data.attrs).replace(**varied)
+    names = ("frequency", "amplitude", *PUSHES)
+    box: Question = {name: float(number_of(data, name, 0.0)) for name in names}
+    motion = orchestrate.simulate(structure, **box, start=state.values, periods=periods)
+    return with_units(motion, units_of(data))
 
 
 class Attractors(OfStructure, OfBox, Over, Asked, Stored, Results):
@@ -146,55 +121,42 @@ value is carried to its neighbours, so along a range it is found as far as it ex
 alone may miss one whose basin is small."""
 
     def ask(self) -> tuple[Structure, Question]:
-        return ask_along_parameter(self, si=True)  # states are printed in m and m/s
+        return self.ask_along_parameter(si=True)  # states are printed in m and m/s
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        name = varied_parameter(data)
+        name = printing.varied_parameter(data)
         if data.sizes[name] <= 5:  # values up to which every attractor is printed
-            for i in range(data.sizes[name]):
-                at = data.isel({name: i})
-                count, where = int(at.number), format_parameter(data, name, at[name])
+            for at in (data.isel({name: i}) for i in range(data.sizes[name])):
+                count, where = int(at.number), printing.format_parameter(data, name, at[name])
                 word = "attractor" if count == 1 else "attractors"
                 yield f"{count} {word} at {where} ({data.sizes['start']} random starts)"
-                yield from attractor_table(at)
+                yield from printing.attractor_table(at)
             yield "few starts overlook small basins: basin, or a range of values, finds them"
             return
         data = data.sortby(name)
-        for number in sorted(set(data.number.values.tolist())):
+        for number in sorted({*data.number.values.tolist()}):
             holds = data.number.values == number
-            share = format_share(int(holds.sum()), holds.size, f"values with {number}")
-            yield f"{share}: {format_ranges(data, name, holds)}"
+            share = printing.format_share(int(holds.sum()), holds.size, f"values with {number}")
+            yield f"{share}: {printing.format_ranges(data, name, holds)}"
         shares = data.share.where(data.multiplicity.notnull())
         ends = zip(data.first_found.values, data.last_found.values, strict=True)
-        columns = {
-            "range": [format_range(data, name, *map(float, pair)) for pair in ends],
-            "smallest share": [f"{share:.1%}" for share in shares.min(name).values],
-            "largest share": [f"{share:.1%}" for share in shares.max(name).values],
-        }
-        yield from table(columns)
+        columns = {"range": [printing.format_range(data, name, *pair) for pair in ends]}
+        for word, values in (("smallest", shares.min(name)), ("largest", shares.max(name))):
+            columns[f"{word} share"] = [f"{share:.1%}" for share in values.values]
+        yield from printing.table(columns)
 
-    def draw(self, data: xr.Dataset, *_: xr.Dataset) -> Any:
-        import orchestrate
-
-        from ..model import Structure
-        from ..model.ranges import PUSHES
+    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
         from ..show.planes import draw_motions
 
-        name = varied_parameter(data)
+        data = results[""]
+        name = printing.varied_parameter(data)
         if data.sizes[name] > 1:
             return orchestrate.plot(data)
         at = data.isel({name: 0})
         at = at.isel(attractor=at.multiplicity.notnull().values)
-        about = {str(key): value for key, value in data.attrs.items()}
-        structure = Structure.from_attributes(about)
-        if name not in ("eta", "frequency"):
-            structure = structure.replace(**{name: float(at[name])})
-        names = ("frequency", "amplitude", *PUSHES)
-        box: Question = {name: float(number_of(at, name, 0.0)) for name in names}
         periods = at.multiplicity.astype(int).where(at.multiplicity > 0, 60)  # irregular: 60
-        starts = zip(at.state.values, periods.values, strict=True)
-        motions = [orchestrate.simulate(structure, **box, start=x, periods=n) for x, n in starts]
-        return draw_motions(at, [with_units(motion, units_of(data)) for motion in motions])
+        pairs = zip(at.state, periods.values, strict=True)
+        return draw_motions(at, [motion_of(at, state, int(count)) for state, count in pairs])
 
 
 class Basin(OfStructure, OfBox, Asked, Stored, Results):
@@ -212,20 +174,16 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         labels = data.attractor_of.values
         started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
-        axes = [data[name] for name in map(str, data.attractor_of.dims)]
         sides = []
-        for axis in axes:
+        for axis in (data[name] for name in map(str, data.attractor_of.dims)):
             unit = str(axis.attrs["units"])
             text = range_text(data, axis.min().item(), axis.max().item(), unit)
-            sides.append(f"{axis.name} {without_unit(data, text, unit)}")
-        plane = ", ".join(sides)
-        yield f"{data.sizes['attractor']} found, of {started} starts in {plane}"
-        yield from attractor_table(data)
+            sides.append(f"{axis.name} {printing.without_unit(data, text, unit)}")
+        yield f"{data.sizes['attractor']} found, of {started} starts in {', '.join(sides)}"
+        yield from printing.attractor_table(data)
         if overlapping:
             yield f"{overlapping} starts left out: there the masses would overlap"
         if data.sizes["attractor"] > 1 and min(labels.shape) >= 32:  # along a side, for entropies
-            import orchestrate
-
             mixed = orchestrate.basin_entropy(data)
             yield (
                 f"basin entropy {float(mixed.basin_entropy):.3g}, at boundaries "
@@ -233,17 +191,15 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
             )
             exponent, error = mixed.uncertainty_exponent, mixed.uncertainty_exponent_error
             if math.isfinite(exponent):
-                yield (
-                    f"uncertainty exponent {float(exponent):.3g} +- {float(error):.2g} "
-                    "(1: smooth boundaries)"
-                )
+                (words,) = printing.with_error(exponent, error, ".3g")
+                yield f"uncertainty exponent {words} (1: smooth boundaries)"
 
 
 def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
     """Return the title of an orbit's picture: whether it is stable, structure and excitation."""
     from ..show.labels import title_from_attributes
 
-    return f"{flag_word(orbit.stability)} orbit, {title_from_attributes(motion)}"
+    return f"{printing.flag_word(orbit.stability)} orbit, {title_from_attributes(motion)}"
 
 
 class Orbit(OfStructure, OfBox, Asked, Stored, Results):
@@ -253,45 +209,32 @@ class Orbit(OfStructure, OfBox, Asked, Stored, Results):
     examples = """
   {program} orbit --eta 3.0                     unstable: simulate would leave it
   {program} orbit --eta 1.32 --period 2
+  {program} orbit --eta 3.1 --guess orbit.nc    from an orbit that was found at another frequency
   {program} orbit --structure beam --hz 16.7 --g 0.02
 Floquet multipliers: of a stable orbit all lie inside the unit circle."""
 
-    def draw(self, data: xr.Dataset, *_: xr.Dataset) -> Any:
-        import orchestrate
-
-        from ..model import Structure
-        from ..model.ranges import PUSHES
-
-        excitation: Question = dict(ast.literal_eval(str(data.attrs["excitation"])))
-        excitation |= {name: data.attrs[name] for name in PUSHES}
-        motion = orchestrate.simulate(
-            Structure.from_attributes({str(name): value for name, value in data.attrs.items()}),
-            **excitation,
-            periods=int(data.attrs["period"]),
-            start=data.state.isel(sample=0).values,
-        )
-        shown = with_units(motion, units_of(data))
-        return orchestrate.plot(shown, title=orbit_title(data, shown))
+    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
+        data = results[""]
+        motion = motion_of(data, data.state.isel(sample=0), int(data.attrs["period"]))
+        return orchestrate.plot(motion, title=orbit_title(data, motion))
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         parts = data.multipliers.transpose("multiplier", "part").values
         size = max(abs(complex(*pair)) for pair in parts)
-        word = flag_word(data.stability)
+        word = printing.flag_word(data.stability)
         yield f"{word}: the largest multiplier has the absolute value {size:.6f}"
         if word == "undecided":
             yield "a run of the FMU from this orbit has other impacts: it may not be a motion"
-        yield "multipliers " + ", ".join(
-            f"{real:.6f}{imaginary:+.6f}i" for real, imaginary in parts
-        )
+        yield "multipliers " + ", ".join(f"{real:.6f}{other:+.6f}i" for real, other in parts)
         for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
             if math.isfinite(time):
-                closing = length_text(data, speed, "m/s")
-                yield f"impact at {time_text(data, time, '.8g')}, closing at {closing}"
+                closing = printing.length_text(data, speed, "m/s")
+                yield f"impact at {printing.time_text(data, time, '.8g')}, closing at {closing}"
         names = "x1, x2, v1, v2" if is_in_ratios(data) else "x1, x2 in m, v1, v2 in m/s"
         for i, state in enumerate(data.state.values):
             numbers = ", ".join(f"{value:.8g}" for value in state)
             yield f"state at phase 0 after {i} periods: {numbers} ({names})"
-        yield f"largest gap: {format_largest_gap(data)}"
+        yield f"largest gap: {printing.format_largest_gap(data)}"
 
 
 class Manifold(OfStored, OfBox, Asked, Stored, Results):
@@ -305,28 +248,27 @@ class Manifold(OfStored, OfBox, Asked, Stored, Results):
 What starts next to a saddle with one multiplier outside the unit circle leaves along it."""
 
     def ask(self) -> tuple[Structure, Question]:
-        structure, question = read_structure_and_question(self)
+        structure, question = self.read_structure_and_question()
         if self.is_shaken() or question["start"] is None:
             question |= self.read_excitation(structure, si=True, one=True)
         return structure, question
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         yield f"saddle: multiplier {float(data.multiplier):.6f}"
-        yield from extents(data, "x_rel")
-        lengths = (data.arclength.max("point") / data.orbit_size).values
-        sides = columns_of(data, "side end") | {
-            "points": [f"{n}" for n in data.arclength.count("point").values],
-            "length over the orbit's size": [f"{length:.4g}" for length in lengths],
-            "breaks": [f"{int((data.break_side == i).sum())}" for i in range(data.sizes["side"])],
-        }
-        yield from table(sides)
+        yield from printing.extents(data, "x_rel")
+        sides = {"points": data.arclength.count("point")}
+        sides["size"] = data.arclength.max("point") / data.orbit_size
+        breaks = [int((data.break_side == i).sum()) for i in range(data.sizes["side"])]
+        columns = printing.columns_of(data.assign(sides), "side end points size:.4g")
+        columns["length over the orbit's size"] = columns.pop("size")
+        yield from printing.table({**columns, "breaks": [*map(str, breaks)]})
 
 
 class Branch(OfStored, OfBox, Asked, Stored, Results):
     """Follow periodic motions along a parameter, stable and unstable, to their bifurcations."""
 
     calls = "branch"
-    over: str = option(f"what varies: {CONTINUED}", "eta", value="NAME")
+    over: str = option(f"what varies: {CONTINUED}", "eta", "NAME")
     limits: str | None = option("between which it is followed, in its own unit", value="FIRST:LAST")
     examples = """
   {program} branch --eta 2.5 --limits 2.4:2.8
@@ -336,33 +278,27 @@ class Branch(OfStored, OfBox, Asked, Stored, Results):
 The excitation says where a first orbit is looked for; without it that is the lower limit."""
 
     def ask(self) -> tuple[Structure, Question]:
-        if self.limits is None:
-            raise InputError("--limits is missing; expected FIRST:LAST")
-        over, limits = parse_varied(self.over, self.limits)
-        structure, keywords = read_structure_and_question(self)
+        over, limits = parse_varied(self.over, self.needed("limits", "; expected FIRST:LAST"))
+        structure, keywords = self.read_structure_and_question()
         if over == "frequency" and self.g is not None:
             self.hold_amplitude(structure, limits[0])
         excitation = self.branch_excitation(structure, over, keywords["start"] is not None)
         return structure, {**keywords, **excitation, "over": over, "limits": limits}
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        name = str(data.attrs["over"])
-        stable, undecided = int(data.stable.sum()), int(has_flag(data.stability, "undecided").sum())
-        unsure = (
-            f", {undecided} undecided (runs of the FMU have other impacts)" if undecided else ""
-        )
-        where = format_range(data, name, float(data[name].min()), float(data[name].max()))
-        yield f"{data.sizes['point']} orbits at {where}, {stable} of them stable{unsure}"
-        if data.sizes.get("bifurcation", 0):
-            rows = {"number": [str(i) for i in range(data.sizes["bifurcation"])]}
-            rows |= columns_of(data, "kind", "bifurcation_")
-            rows |= parameter_column(data, name, data.bifurcation_value.values, ".8f")
-            yield from table(rows, len(rows["number"]))
+        name, count = str(data.attrs["over"]), data.sizes.get("bifurcation", 0)
+        undecided = int(printing.has_flag(data.stability, "undecided").sum())
+        unsure = f", {undecided} undecided (runs of the FMU have other impacts)" * bool(undecided)
+        orbits = f"{data.sizes['point']} orbits at {printing.format_reach(data, name)}"
+        yield f"{orbits}, {int(data.stable.sum())} of them stable{unsure}"
+        if count:
+            rows = data.rename(bifurcation_value=f"bifurcation_{name}")
+            rows = rows.assign(bifurcation_number=("bifurcation", range(count)))
+            columns = printing.columns_of(rows, f"number kind {name}:.8f", "bifurcation_")
+            yield from printing.table(columns, count)
         else:
             yield "no bifurcation in this range"
-        ends = data.attrs["first_end"], data.attrs["last_end"]
-        yield "first end: {}; last end: {}".format(*ends)
-        yield from end_lines(ends)
+        yield from printing.both_ends(data)
 
     def hold_amplitude(self, structure: Structure, first: float) -> None:
         """Replace ``--g`` by the amplitude that it is at the start of a branch over frequency."""
@@ -388,8 +324,8 @@ The excitation says where a first orbit is looked for; without it that is the lo
             given = {} if amplitude is None else {"amplitude": amplitude}
             return given | self.pushes()
         excitation = self.read_excitation(structure, one=True)
-        needed = "frequency" if over in ("frequency", "amplitude") else over
-        if over in ("eta", "frequency", "amplitude") and needed not in excitation:
+        needed = {"eta": "eta", "frequency": "frequency", "amplitude": "frequency"}.get(over)
+        if needed and needed not in excitation:
             expected = (
                 "--eta without an amplitude" if over == "eta" else "a frequency and --amplitude"
             )
@@ -399,11 +335,6 @@ The excitation says where a first orbit is looked for; without it that is the lo
 
 def is_on_curve(curve: xr.Dataset, question: Question, near: float = 1e-3) -> bool:
     """Return whether a curve of a bifurcation's kind passes it, within a part of the range."""
-    import numpy as np
-
-    from ..flags import flag_words
-    from ..model import Structure
-
     start, (across, along) = question["start"], question["over"]
     found = start.isel(bifurcation=question["bifurcation"])
     level = Structure.from_attributes(start.attrs).parameters().get(along, np.nan)
@@ -411,27 +342,25 @@ def is_on_curve(curve: xr.Dataset, question: Question, near: float = 1e-3) -> bo
     at = np.flatnonzero((y[:-1] * y[1:] <= 0.0) & (y[:-1] != y[1:]))
     passes = x[at] - y[at] * (x[at + 1] - x[at]) / (y[at + 1] - y[at])
     reach = near * np.ptp(question["limits"][0])
-    kind = flag_words(start.bifurcation_kind.attrs)[int(found.bifurcation_kind)]
-    return bool(curve.attrs["kind"] == kind and (np.abs(passes) < reach).any())
+    same = curve.attrs["kind"] == printing.flag_word(found.bifurcation_kind)
+    return bool(same and (np.abs(passes) < reach).any())
 
 
-def parse_bifurcation(option: str, text: str) -> int | str:
-    """Parse the number of a bifurcation, or the word ``all``."""
-    return text if text == "all" else parse(option, text, "a number, or all", plain_int)
-
-
+parse_bifurcation = reads(
+    "a number, or all", lambda text: text if text == "all" else plain_int(text)
+)
 Bifurcation = Annotated[int | str, parse_bifurcation]
 
 
-class Border(OfStored, Asked, Stored, Results):
+class Border(OfStored, OfPushes, Asked, Stored, Results):
     """Follow a bifurcation of a branch over two parameters: where a window begins or ends."""
 
     calls = "border"
     over: str = option(
-        f"what varies, that of the branch first, each {CONTINUED}", "eta,e", value="NAME,NAME"
+        f"what varies, that of the branch first, each {CONTINUED}", "eta,e", "NAME,NAME"
     )
     limits: Any = option("between which each is followed, in its own unit", value="A:B,C:D")
-    bifurcation: Bifurcation = option("its number, or all of them in one picture", 0, value="N|all")
+    bifurcation: Bifurcation = option("its number, or all of them in one picture", 0, "N|all")
     examples = """
   {program} border --start branch.nc --bifurcation 0 --over eta,e --limits 2.4:2.9,0.6:0.8
   {program} border --start beam.nc --over hz,e --limits 14:18,0.6:0.8
@@ -440,26 +369,19 @@ class Border(OfStored, Asked, Stored, Results):
 structure and excitation are those of that branch."""
 
     def ask(self) -> tuple[Structure, Question]:
-        for name, expected in (("start", "a file of the command branch"), ("limits", "A:B,C:D")):
-            if getattr(self, name) is None:
-                raise InputError(f"--{name} is missing; expected {expected}")
-        over, limits = self.over, self.limits
-        names, ranges = ([part.strip() for part in text.split(",")] for text in (over, limits))
+        self.needed("start", "; expected a file of the command branch")
+        ranges = self.needed("limits", "; expected A:B,C:D").split(",")
+        names = [part.strip() for part in self.over.split(",")]
         if len(names) != 2:
-            raise InputError(f"--over {over}: expected two names, such as eta,e or hz,e")
-        pairs = [parse_varied(*pair) for pair in zip(names, ranges, strict=False)]
+            raise InputError(f"--over {self.over}: expected two names, such as eta,e or hz,e")
         if len(ranges) != 2:
-            raise InputError(f"--limits {limits}: expected A:B,C:D, a range for each of {over}")
-        structure, question = read_structure_and_question(self)
-        both = {
-            "over": tuple(name for name, _ in pairs),
-            "limits": tuple(ends for _, ends in pairs),
-        }
-        return structure, {**question, **both}
+            text = f"expected A:B,C:D, a range for each of {self.over}"
+            raise InputError(f"--limits {self.limits}: {text}")
+        over, limits = zip(*map(parse_varied, names, map(str.strip, ranges)), strict=True)
+        structure, question = self.read_structure_and_question()
+        return structure, {**question, **self.pushes(), "over": over, "limits": limits}
 
     def __call__(self) -> None:
-        import orchestrate
-
         structure, question = self.ask()
         if question["bifurcation"] != "all":
             self.answer(structure, question)
@@ -473,28 +395,23 @@ structure and excitation are those of that branch."""
                 print(f"number {number} is on a curve that was followed")
                 continue
             try:
-                curves.append(self.answer(structure, one, picture=False))
+                curves += self.answer(structure, one, picture=False).values()
             except InputError as reason:
                 print(f"number {number} is not followed: {reason}")
         if not curves:
             raise InputError(f"--start {self.start}: no bifurcation that can be followed")
-        name = result_name("border_all", str(self.start), structure, question)
+        name = result_name("border_all", self.source_names(), structure, question)
         shown = [with_units(curve, self.display_units(question)) for curve in curves]
         files = Files.from_options(self, name, fresh=True)
         files.write_pictures(partial(orchestrate.plot, *shown))
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        names = [str(name) for name in data.attrs["over"]]
+        names, count = [str(name) for name in data.attrs["over"]], data.sizes["codimension_two"]
         yield f"{data.attrs['kind']}: {data.sizes['point']} points"
         for name in names:
-            reach = format_range(data, name, float(data[name].min()), float(data[name].max()))
-            both = (format_parameter(data, name, data[name][i]) for i in (0, -1))
-            yield f"from {' to '.join(both)}, within {reach}"
-        if data.sizes["codimension_two"]:
-            rows = columns_of(data, "kind", "codimension_two_")
-            for name in names:
-                rows |= parameter_column(data, name, data[f"codimension_two_{name}"].values)
-            yield from table(rows, data.sizes["codimension_two"])
-        ends = data.attrs["first_end"], data.attrs["last_end"]
-        yield "first end: {}; last end: {}".format(*ends)
-        yield from end_lines(ends)
+            both = [printing.format_parameter(data, name, data[name][i]) for i in (0, -1)]
+            yield f"from {' to '.join(both)}, within {printing.format_reach(data, name)}"
+        if count:
+            rows = printing.columns_of(data, f"kind {' '.join(names)}", "codimension_two_")
+            yield from printing.table(rows, count)
+        yield from printing.both_ends(data)

@@ -1,4 +1,4 @@
-"""Commands of the laboratory: shake and analyse."""
+"""Commands of the laboratory: shake, analyse, channels and halves."""
 
 from __future__ import annotations
 
@@ -8,40 +8,20 @@ import warnings
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+import orchestrate
+
+from ..constants import GRAVITY
 from ..errors import InputError
 from ..lazy import xr
+from ..model import Shaker, Structure
 from ..units import text_of, with_units
-from .answer import Asked
+from . import grammar, output, printing
+from .answer import Asked, Runs
 from .command import Command, Options, Question, option, option_names
-from .grammar import (
-    Density,
-    Listed,
-    floats,
-    parse_breakpoints,
-    positive_number,
-    read_earlier_result,
-    read_pairs,
-)
 from .options import Beside, OfSensors, OfStructure
-from .output import (
-    Files,
-    Formats,
-    InColumns,
-    InFolder,
-    InUnits,
-    Reading,
-    Results,
-    Stored,
-    digest,
-    parse_endings,
-    unit_note,
-)
-from .text import Columns, columns_of, extents, impact_lines, table
-
-if TYPE_CHECKING:
-    from ..model import Structure
+from .output import Files, InColumns, Reading, digest, unit_note
 
 KINDS = {  # of excitation: the class, or the reader, whose arguments are its options
     "swept_sine": "SweptSine",
@@ -52,16 +32,21 @@ KINDS = {  # of excitation: the class, or the reader, whose arguments are its op
     "record": "read_record",
 }
 
-SweepEnds = Annotated[Any, floats("FIRST:LAST in Hz, such as 8:20", ":", (2,))]
-Knock = Annotated[Any, floats("PEAK:WIDTH in N and s, two numbers such as 20:0.004", ":", (2,))]
+SweepEnds = Annotated[Any, grammar.floats("FIRST:LAST in Hz, such as 8:20", ":", (2,))]
+Knock = Annotated[
+    Any, grammar.floats("PEAK:WIDTH in N and s, two numbers such as 20:0.004", ":", (2,))
+]
 LEVELS = ("g", "acceleration")
+LEVELED = ("swept_sine", "stepped_sine", "shock", "random")
+MAIN = {  # the arguments that the option of a kind itself is
+    **{"swept_sine": ("first", "last"), "stepped_sine": ("frequencies",), "random": ("psd",)},
+    **{"shock": ("shape",), "hammer": ("peak", "width")},
+}
 LEVEL_OF = {"shock": "peak", "random": "rms"}  # the argument that the level is, if another
 
 
 def arguments_of(function: str) -> dict[str, bool]:
     """Return the arguments of a public function or class, and whether each is needed."""
-    import orchestrate
-
     parameters = inspect.signature(getattr(orchestrate, function)).parameters.values()
     return {one.name: one.default is inspect.Parameter.empty for one in parameters}
 
@@ -77,8 +62,10 @@ class OfExcitation(Options):
     )
     if_given = True
     swept_sine: SweepEnds = option("frequencies, Hz; downwards too", value="FIRST:LAST")
-    stepped_sine: Listed = option("frequencies, Hz; or a list A,B,...", value="FIRST:LAST:STEP")
-    random: Density = option(
+    stepped_sine: grammar.Listed = option(
+        "frequencies, Hz; or a list A,B,...", value="FIRST:LAST:STEP"
+    )
+    random: grammar.Density = option(
         "density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz, or in g2/Hz with that behind it",
         value="PSD",
     )
@@ -90,9 +77,7 @@ class OfExcitation(Options):
         "of random its rms, to which the density is scaled",
         value="LEVEL",
     )
-    acceleration: str | None = option(
-        "peak acceleration, m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too", value="LEVEL"
-    )
+    acceleration: str | None = option("the same in m/s2", value="LEVEL")
     duration: float | None = option("of all, s")
     column: str | None = option(
         "of a record: the box's, by name or number from 0 (default: by usual names, or 1)",
@@ -101,8 +86,6 @@ class OfExcitation(Options):
 
     def read_excitation(self) -> Any:
         """Return the excitation that the options describe, such as a ``SweptSine``."""
-        import orchestrate
-
         kind = self.excitation_kind()
         settings = self.given(OfExcitation)
         main = settings.pop(kind)
@@ -114,16 +97,13 @@ class OfExcitation(Options):
             if note := unit_note(record.attrs):
                 print(f"{main}: {note}")
             return orchestrate.Sampled.from_record(record)
-        if kind == "hammer":
-            return orchestrate.Hammer(peak=main[0], width=main[1], **settings)
-        has_level = any(settings.pop(name, None) is not None for name in LEVELS)
-        if kind != "random" or has_level:
-            level = self.read_level()
-            settings[LEVEL_OF.get(kind, "acceleration")] = level
+        has_level = [settings.pop(name) for name in LEVELS if name in settings]
+        if kind in LEVELED and (has_level or kind != "random"):
+            settings[LEVEL_OF.get(kind, "acceleration")] = level = self.read_level()
             if kind in LEVEL_OF and not isinstance(level, float):
                 raise InputError(f"{option_names([kind])}: expected one number for its level")
-        names = {"stepped_sine": "frequencies", "random": "psd", "shock": "shape"}
-        settings |= {names[kind]: main} if kind in names else {"first": main[0], "last": main[1]}
+        names = MAIN[kind]
+        settings |= dict(zip(names, main if len(names) > 1 else (main,), strict=True))
         return getattr(orchestrate, KINDS[kind])(**settings)
 
     def excitation_kind(self) -> str:
@@ -132,16 +112,14 @@ class OfExcitation(Options):
         chosen = [name for name in KINDS if name in given]
         if len(chosen) != 1:
             words = option_names(chosen, " and ") or "nothing"
-            names = option_names(KINDS)
-            raise InputError(f"excitation: {words} given; expected one of {names}")
+            raise InputError(f"excitation: {words} given; expected one of {option_names(KINDS)}")
         takes = {name: arguments_of(called) for name, called in KINDS.items()}
-        leveled = ["swept_sine", "stepped_sine", "shock", "random"]
-        owners = {**dict.fromkeys(LEVELS, leveled), "column": ["record"]}
+        owners = {**dict.fromkeys(LEVELS, LEVELED), "column": ["record"]}
         for name in given.keys() - KINDS.keys():
             own = owners.get(name) or [one for one in KINDS if name in takes[one]]
             if chosen[0] not in own:
-                words = option_names(own, " or ")
-                raise InputError(f"{option_names([name])}: expected only with {words}")
+                text = f"expected only with {option_names(own, ' or ')}"
+                raise InputError(f"{option_names([name])}: {text}")
         for name in ("duration", "length"):
             if takes[chosen[0]].get(name) and name not in given:
                 raise InputError(f"{option_names(chosen)}: expected --{name} with it, in s")
@@ -149,38 +127,34 @@ class OfExcitation(Options):
 
     def read_level(self) -> Any:
         """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
-        from ..constants import GRAVITY
-
         chosen = [name for name in LEVELS if getattr(self, name) is not None]
         if len(chosen) != 1:
             words = option_names(chosen, " and ") or "nothing"
             raise InputError(f"level: {words} given; expected one of --g and --acceleration")
         text, unit = getattr(self, chosen[0]), GRAVITY if chosen[0] == "g" else 1.0
         if ":" not in text:
-            return unit * positive_number(f"--{chosen[0]}", text)
-        return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{chosen[0]}", text))
+            return unit * grammar.positive_number(f"--{chosen[0]}", text)
+        pairs = grammar.parse_breakpoints(f"--{chosen[0]}", text)
+        return tuple((frequency, unit * value) for frequency, value in pairs)
 
 
-class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, Stored, Results):
+class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, output.Results):
     """As in the laboratory: motion and impacts under sines, random, shock or a record."""
 
     calls = "shake"
     shaker: str | None = option("its electrodynamic shaker, level controlled", value="FILE")
     examples = """
-  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
+  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --sensor 2000
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
   {program} shake --structure beam --stepped-sine 10:14:0.1 --settle-cycles 150 --g 0.02
-  {program} shake --structure beam --random 5:0.1,100:0.1 --duration 30 --seed 1
   {program} shake --structure beam --random 5:1e-3,100:1e-3g2/Hz --g 0.3 --duration 30
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --shaker shaker_1kN
   {program} shake --structure beam --shock half-sine --length 0.011 --g 5
   {program} shake --structure beam --hammer 20:0.004 --half 2 --at 0.1 --duration 5
   {program} shake --structure beam --record base.csv --unit g
-  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --sensor 2000
-The last one also writes what accelerometers read, a record for diagnose, analyse and channels."""
+--sensor also writes what accelerometers read, a record for diagnose, analyse and channels."""
 
     def ask(self) -> tuple[Structure, Question]:
-        from .. import Shaker
         from ..running.job import refuse_family
 
         structure, shaker = self.read_structure(), self.shaker
@@ -196,91 +170,79 @@ The last one also writes what accelerometers read, a record for diagnose, analys
             "shaker": None if shaker is None else Shaker.from_file(shaker),
         }
 
-    def write_more(self, files: Files, question: Question, data: xr.Dataset) -> None:
-        """Write what sensors read of the motion, as a record."""
-        from .. import measure, write_record
-
+    def write_more(self, files: Files, question: Question, shown: Runs, results: Runs) -> None:
         if (sensor := self.read_sensor()) is None:
             return
-        path = files.beside(f"sensors_{digest(sensor.label, sensor.rate)}")
-        record = measure(data, sensor, excitation=None if self.shaker else question["excitation"])
-        for ending in dict.fromkeys(("nc", *(one for one in files.formats if one != "xlsx"))):
-            print(f"{write_record(record, path.with_suffix(f'.{ending}'))}: what the sensors read")
+        excitation = None if self.shaker else question["excitation"]
+        for state, data in results.items():
+            own = "" if self.store else digest(sensor.label, sensor.rate)  # one file, one name
+            path = files.beside(state, "sensors", own)
+            record = orchestrate.measure(data, sensor, excitation=excitation)
+            for ending in dict.fromkeys(("nc", *(one for one in files.formats if one != "xlsx"))):
+                written = orchestrate.write_record(record, path.with_suffix(f".{ending}"))
+                print(f"{written}: what the sensors read")
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         channels = "box_acceleration", "force1", "force2"
         driven = [name for name in channels if name in data and data[name].any()]
-        yield from extents(data, f"{' '.join(driven)} a1_abs a2_abs x_rel")
+        yield from printing.extents(data, f"{' '.join(driven)} a1_abs a2_abs x_rel", rms=True)
         if "transient_time" in data:
             yield f"a linear transient decays within {float(data.transient_time):.3g} s"
         elif data.control_aborted.notnull():
             end = float(data.control_aborted)
             yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
-        yield from impact_lines(data)
+        yield from printing.impact_lines(data)
 
 
 MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
+ANALYSES = {  # of --show: the public function, what it shows; whose peaks, what else is printed
+    "frf": ("frf", "frequency response and coherence", "magnitude", "random_error coherence"),
+    "psd": ("psd", "power spectral density", "psd", "rms"),
+    "orders": ("track_orders", "orders of a swept sine", "amplitude", ""),
+    "harmonics": ("harmonics", "harmonics and their distortion", "distortion", ""),
+    "spectrogram": ("spectrogram", "spectra over the time", "amplitude", ""),
+    "shock": ("shock_spectrum", "shock response spectrum", "maximax", ""),
+    "density": (
+        *("probability_density", "probability density, skewness", ""),
+        "skewness skewness_error kurtosis kurtosis_error standard_deviation",
+    ),
+}
+SHOWN = ", ".join(f"{name} ({row[1]})" for name, row in ANALYSES.items())
 
 
-def peak_cells(data: xr.Dataset, values: xr.DataArray, unit: str) -> list[str]:
+def peak_cells(data: xr.Dataset, values: xr.DataArray) -> list[str]:
     """Return each channel's largest value with the frequency, and the time, at which it is."""
     cells = []
     for channel in values.channel.values:
         flat = values.sel(channel=channel).stack(every=[d for d in values.dims if d != "channel"])
         peak = flat.isel(every=int(flat.fillna(-1.0).values.argmax()))
-        size = text_of(data, peak, unit, ".4g").removesuffix(" 1")
+        size = text_of(data, peak, str(values.attrs["units"]), ".4g").removesuffix(" 1")
         when = f", {float(peak.time):.4g} s" if "time" in peak.coords else ""
-        cells.append(f"{size} at {text_of(data, peak.frequency, 'Hz', '.5g')}{when}")
+        frequency = text_of(data, peak.frequency, "Hz", ".5g")
+        cells.append(f"{size.replace('m2/s4', '(m/s2)2')} at {frequency}{when}")
     return cells
 
 
-def columns_of_analysis(name: str, data: xr.Dataset) -> Columns:
+def columns_of_analysis(name: str, data: xr.Dataset) -> printing.Columns:
     """Return the columns of the table that is printed of an analysis, a row for each channel."""
     if name in ("orders", "harmonics"):  # of the box they are those of the excitation
         data = data.drop_sel(channel="box_acceleration", errors="ignore")
-    columns: Columns = {"channel": [MASSES[str(channel)] for channel in data.channel.values]}
-    if name == "frf":
-        h1 = data.magnitude.sel(estimator="H1").where(data.excited > 0)
-        columns["largest |H1|"] = peak_cells(data, h1, str(data.magnitude.units))
-        at = {"frequency": h1.fillna(-1.0).argmax("frequency")}
-        of_peak = data[["random_error", "coherence"]].isel(at)
-        medians = data.coherence.where(data.excited > 0).median("frequency")
-        return columns | columns_of(of_peak.assign(median=medians), "random_error coherence median")
-    if name == "psd":
-        largest = peak_cells(data, data.psd, "m2/s4/Hz")
-        columns["largest density"] = [cell.replace("m2/s4", "(m/s2)2") for cell in largest]
-        return columns | columns_of(data, "rms")
-    if name == "orders":
-        orders = data.order.values
-        parts = {f"order {n:g}": data.amplitude.sel(order=n) for n in orders}
-        return columns | {title: peak_cells(data, part, "m/s2") for title, part in parts.items()}
-    if name == "harmonics":
-        columns["largest distortion"] = peak_cells(data, data.distortion, "1")
-        medians = data.distortion.median(set(data.distortion.dims) - {"channel"})
-        return columns | columns_of(data.assign(median=medians), "median")
-    if name == "density":
-        names = "skewness skewness_error kurtosis kurtosis_error standard_deviation"
-        return columns | columns_of(data, names)
-    variable = {"spectrogram": "amplitude", "shock": "maximax"}[name]
-    return columns | {"largest amplitude": peak_cells(data, data[variable], "m/s2")}
-
-
-ANALYSES = {  # that --show names: the public function, and what it shows
-    "frf": ("frf", "frequency response and coherence"),
-    "psd": ("psd", "power spectral density"),
-    "orders": ("track_orders", "orders of a swept sine"),
-    "harmonics": ("harmonics", "harmonics and their distortion"),
-    "spectrogram": ("spectrogram", "spectra over the time"),
-    "shock": ("shock_spectrum", "shock response spectrum"),
-    "density": ("probability_density", "probability density, skewness"),
-}
-SHOWN = ", ".join(f"{name} ({text})" for name, (_, text) in ANALYSES.items())
+    columns = {"channel": [MASSES[str(channel)] for channel in data.channel.values]}
+    _, _, variable, others = ANALYSES[name]
+    if variable:
+        peaks, title = data[variable], f"largest {variable}"
+        if name == "frf":
+            peaks, title = peaks.sel(estimator="H1", drop=True), "largest |H1|"
+            peaks = peaks.where(data.excited > 0)
+            data = data.isel(frequency=peaks.fillna(-1.0).argmax("frequency"))
+        orders = data.order.values if name == "orders" else ()
+        parts = {f"order {n:g}": peaks.sel(order=n) for n in orders} or {title: peaks}
+        columns |= {of: peak_cells(data, part) for of, part in parts.items()}
+    return columns | printing.columns_of(data, others)
 
 
 def analyse(name: str, record: xr.Dataset, path: Path, settings: Mapping[str, Any]) -> xr.Dataset:
     """Call the public function of an analysis on a record; errors begin with the file's name."""
-    import orchestrate
-
     try:
         result: xr.Dataset = getattr(orchestrate, ANALYSES[name][0])(record, **settings)
     except InputError as error:
@@ -318,25 +280,24 @@ class AnalysedRecords(Options):
     to: float | None = option("time it ends at, s")
 
 
-class Analyse(
-    AnalysedRecords, OfSensors, InColumns, Reading, Settings, InUnits, Formats, InFolder, Command
-):
+class Reported(output.InUnits, output.Formats, output.InFolder):
+    """Options of units and files."""
+
+
+class Analyse(AnalysedRecords, OfSensors, InColumns, Reading, Settings, Reported, Command):
     """What an analyser shows of a record: responses, spectra, orders, shock spectra."""
 
     examples = """
   {program} analyse results/shake.nc --show frf,psd --resolution 0.5
   {program} analyse swept.nc --label delaminated --beside bonded=whole.nc --show orders,harmonics
-  {program} analyse swept.nc --sensor 2000 --beside measured=bench.csv --show orders
   {program} analyse measured.csv --unit g --channels time=0,base=3,face1=4
   {program} analyse run.wav --scale 500 --show spectrogram,density --from 2 --to 30
   {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv"""
 
     def __call__(self) -> None:
-        from ..files import open_folder
-        from ..running.store import write_netcdf
         from ..show.analysis import draw
 
-        names = parse_endings("--show", self.show, tuple(ANALYSES))
+        names = output.parse_endings("--show", self.show, tuple(ANALYSES))
         Files.from_options(self, "", fresh=True)  # before records are read
         settings = self.settings_by_analysis(names)
         paths = self.paths_by_label()
@@ -357,16 +318,15 @@ class Analyse(
             shown = {label: with_units(data, units) for label, data in results.items()}
             for label, data in shown.items():
                 print(f"{f'{label}: ' if label else ''}{ANALYSES[name][1]}")
-                print(*table(columns_of_analysis(name, data)), sep="\n")
+                print(*printing.table(columns_of_analysis(name, data)), sep="\n")
             self.print_units_note(*shown.values())
             read = {label: str(path) for label, path in paths.items()}
             stem = f"analyse_{name}_{self.record.stem}_{digest(read, settings[name], *reading)}"
-            open_folder(self.output)
             for label, data in results.items():
                 words = "".join(letter if letter.isalnum() else "-" for letter in label)
                 ending = f"_{words}" if len(results) > 1 else ""
                 files = Files.from_options(self, f"{stem}{ending}", fresh=True)
-                write_netcdf(data, files.result)
+                output.write_result(files, data)
                 files.write(shown[label])
             (label, first), *others = shown.items()
             picture = Files.from_options(self, stem, fresh=True)
@@ -379,10 +339,8 @@ class Analyse(
         """
         simulated = [label for label, record in records.items() if "impulse" in record]
         if self.sensor is not None and not simulated:
-            raise InputError(
-                f"--sensor {self.sensor}: of simulated motions; expected a result of shake, or a "
-                "record without it"
-            )
+            text = "of simulated motions; expected a result of shake, or a record without it"
+            raise InputError(f"--sensor {self.sensor}: {text}")
         if self.sensor is None and 0 < len(simulated) < len(records):
             warnings.warn(
                 f"{', '.join(simulated)}: accelerations between impacts, compared with a record "
@@ -393,7 +351,7 @@ class Analyse(
     def settings_by_analysis(self, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
         """Return each analysis's keywords; raise for an option that none of them takes."""
         chosen = self.given(Settings)
-        takes = {name: arguments_of(function) for name, (function, _) in ANALYSES.items()}
+        takes = {name: arguments_of(row[0]) for name, row in ANALYSES.items()}
         for one in chosen:
             owners = [name for name in takes if one in takes[name]]
             if not set(owners) & set(names):
@@ -403,20 +361,16 @@ class Analyse(
     def paths_by_label(self) -> dict[str, Path]:
         """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""
         label = self.label or (self.record.stem if self.beside else "")
-        beside = read_pairs("--beside", self.beside, "LABEL=FILE, such as bonded=whole.nc")
+        beside = grammar.read_pairs("--beside", self.beside, "LABEL=FILE, such as bonded=whole.nc")
         if label in beside:
-            expected = "expected another label"
-            raise InputError(
-                f"--beside {label}={beside[label]}: a second record {label}; {expected}"
-            )
+            text = f"a second record {label}; expected another label"
+            raise InputError(f"--beside {label}={beside[label]}: {text}")
         return {label: self.record, **{name: Path(path) for name, path in beside.items()}}
 
     def cut(self, record: xr.Dataset, path: Path) -> xr.Dataset:
         """Apply ``--sensor`` to a simulated record; cut it from ``--from`` to ``--to``."""
-        from .. import measure
-
         if (sensor := self.read_sensor()) is not None and "impulse" in record:
-            record = measure(record, sensor)
+            record = orchestrate.measure(record, sensor)
         begin, end = self.begin, self.to
         if "time" not in record.coords or begin is end is None:
             return record
@@ -427,14 +381,107 @@ class Analyse(
         return part
 
     def read_record_file(self, path: Path) -> xr.Dataset:
-        """Read a record from a file of any format."""
-        from .. import read_record
-
         if path.suffix.lower() == ".nc":
-            stored = read_earlier_result("FILE" if path == self.record else "--beside", path)
+            stored = grammar.read_earlier_result(
+                "FILE" if path == self.record else "--beside", path
+            )
             units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
-            return stored if units <= {"m/s2"} else read_record(path)
+            return stored if units <= {"m/s2"} else orchestrate.read_record(path)
         reading = self.given(InColumns, Reading)
         if path.suffix.lower() != ".wav":  # the scale is of the others
             reading.pop("scale", None)
-        return read_record(path, **reading)
+        return orchestrate.read_record(path, **reading)
+
+
+Pair = Annotated[Any, grammar.floats("H1,H2, two numbers such as 3,2", ",", (2,))]
+
+
+class Halves(InColumns, Reading, Command):
+    """Fit a structure to knocks of a hammer on each half, and write it as TOML file."""
+
+    calls, takes = "halves", "resolution estimator"
+    records: list[Path] = option(
+        "knocks on half 1 and on half 2, a file each; or on a sound beam, with --thicknesses",
+        position=True,
+        needed=True,
+    )
+    thicknesses: Pair = option("of layers 1 and 2 of a sound beam, in any unit", value="H1,H2")
+    output: Path | None = option("where to write the structure", value="FILE.toml")
+    examples = """
+  {program} halves half1.csv half2.csv --output beam.toml
+  {program} halves sound.uff --thicknesses 3,2 --output beam.toml
+  {program} halves half1.csv half2.csv --channels knocks.toml
+A record has a column of force, in N, and the acceleration of the half that is struck. Knock so
+softly that the halves do not strike each other: 2/pi x peak x width below 2 pi f m x gap. The file
+is a guess: --structure of diagnose, plan and others; complete it by e and clearance."""
+
+    def __call__(self) -> None:
+        if len(self.records) > 2:
+            raise InputError(f"{self.records[-1]}: expected one record of each half")
+        reading = self.given(InColumns, Reading)
+        records = [orchestrate.read_record(path, **reading) for path in self.records]
+        if len({*map(output.file_checksum, self.records)}) < len(records):
+            text = f"the same numbers as {self.records[0]}; expected one record of each half"
+            raise InputError(f"{self.records[-1]}: {text}")
+        if len(records) == 2 and all("force1" in one and "force2" not in one for one in records):
+            print(f"{self.records[1]}: taken for knocks on half 2, as the second record")
+            names = {"force1": "force2", "acceleration1": "acceleration2"}
+            if "acceleration2" in records[1]:  # both faces are measured
+                del names["acceleration1"]
+            records[1] = records[1].rename({n: new for n, new in names.items() if n in records[1]})
+        try:
+            fits = orchestrate.halves(*records, **self.keywords())
+        except InputError as error:
+            name, _, text = str(error).partition(": ")
+            path = dict(zip(("record", "other"), self.records, strict=False)).get(name, name)
+            raise InputError(f"{path}: {text}" if text else name) from None
+        columns = {"half": [str(half) for half in fits.knocked.values]}
+        for name in ("mass", "frequency", "damping"):
+            title = f"{name} {str(fits[name].units).removeprefix('1')}".rstrip()
+            columns[title] = printing.with_error(fits[name], fits[f"{name}_error"])
+        columns |= printing.columns_of(fits, "misfit:.1%")
+        print(*printing.table(columns), sep="\n")
+        print("e = {e:g} and clearance = {clearance:g} m are assumed".format(**fits.attrs))
+        if self.output is not None:
+            print(self.output)
+
+
+class Channels(InColumns, Reading, Command):
+    """List the columns of a record, and as which channels they are read; write that as a file."""
+
+    record: Path = option("as for analyse", position=True, needed=True)
+    output: Path | None = option(
+        "where to write how the columns are read, as TOML: to complete with units, sensitivities, "
+        "delays and sensors, and to give as --channels",
+        value="FILE.toml",
+    )
+    examples = """
+  {program} channels run.csv
+  {program} channels run.csv --channels base=Table,face1=3 --unit face1=g --output setup.toml
+  {program} channels run.csv --channels setup.toml
+diagnose, analyse and others take --channels setup.toml too. Where the channels cannot be read as
+they are, the last line says what is missing."""
+
+    def __call__(self) -> None:
+        from ..laboratory.columns import BY_ORDER
+
+        reading = self.given(InColumns, Reading)
+        found = orchestrate.channels(self.record, **reading, output=self.output)
+        names = ("column", "role", "known", "quantity", "unit")
+        rows = {name: found[name].values.tolist() for name in names}
+        rms = ["" if value != value else f"{value:.4g}" for value in found.rms.values]
+        print(*printing.table({**rows, "rms": rms}, len(rms)), sep="\n")
+        if proposed := found.role.values[found.known.values == BY_ORDER].tolist():
+            columns = found.column.values[found.known.values == BY_ORDER].tolist()
+            said = [f'"{one}" as {role}' for one, role in zip(columns, proposed, strict=True)]
+            warnings.warn(
+                f"{self.record}: a proposal by the columns' order: {', '.join(said)}; see that it "
+                "is right, and say it by --channels, in full or as a file (--output)",
+                stacklevel=2,
+            )
+        if rate := found.attrs["sample_rate"]:
+            print(f"{rate:.6g} samples a second")
+        if refused := found.attrs["refused"]:
+            print(f"not to be read so: {grammar.with_option_names(refused, self)}")
+        if self.output is not None:
+            print(self.output)

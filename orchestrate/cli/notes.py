@@ -7,14 +7,15 @@ import math
 import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import orchestrate
 
 from ..constants import GRAVITY, TURN
-from ..lazy import xr
+from ..lazy import np, xr
+from ..model import Structure
+from ..model.ranges import COMPLETE, OF_LENGTH
 from ..units import text_of
-
-if TYPE_CHECKING:
-    from ..model import Structure
 
 OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
     "frequency": (1.0 / TURN, "rad/s", "--hz"),
@@ -42,6 +43,10 @@ class NoteSettings:
 SETTINGS = NoteSettings()
 
 
+def warn(text: str) -> None:
+    warnings.warn(text, stacklevel=3)
+
+
 def mass_note(structure: Structure) -> str:
     """Return a line that gives heavy masses their unit; empty for lighter ones and in ratios."""
     masses = {f"m{half}": getattr(structure, f"m{half}") for half in structure.halves}
@@ -55,8 +60,6 @@ def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -
     """Yield notes for the user on arguments that make the result trivial, such as bonded."""
     varied = isinstance(question.get("level"), tuple) or question.get("over") == "level"
     if varied and not structure.has_scale:
-        from ..model.ranges import OF_LENGTH
-
         nothing = ", ".join(f"{name} = 0" for name in OF_LENGTH)
         yield f"{nothing}: the response is proportional to the level; one level is enough"
     elif structure.bonded:
@@ -67,24 +70,25 @@ def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -
         yield from clearance_notes(structure, question, shown)
 
 
-def warn_of_level(question: Question) -> None:
-    """Warn once if the box's amplitude or acceleration is beyond what shakers have."""
-    import numpy as np
+def box_motion(structure: Structure, question: Question) -> tuple[Any, Any]:
+    """Return frequencies, rad/s, and amplitudes, m, of all points asked, as arrays."""
+    box = {name: np.ravel(question[name]) for name in set().union(*COMPLETE) & question.keys()}
+    if "eta" in box:
+        return box["eta"] * structure.omega, box["eta"] ** -2.0
+    if "level" in box:
+        frequency = box["frequency"][:, None]
+        return frequency, box["level"] / frequency**2
+    return box["frequency"], box["amplitude"]
 
-    frequency = np.ravel(question["frequency"])
-    if "level" in question:
-        level = np.max(question["level"])
-        amplitude = level / frequency.min() ** 2
-    elif "amplitude" in question:
-        amplitude = np.max(question["amplitude"])
-        level = np.max(question["amplitude"] * frequency**2)
-    else:
-        return
-    if amplitude > SETTINGS.travel or level > SETTINGS.violent * GRAVITY:
-        warnings.warn(
-            f"the box moves by up to {amplitude:.3g} m and {level / GRAVITY:.3g} g: beyond what "
-            "shakers do; is the amplitude in m (1 mm is 1e-3, or 1mm), the level in g?",
-            stacklevel=3,
+
+def warn_of_level(structure: Structure, question: Question) -> None:
+    """Warn once if the box's amplitude or acceleration is beyond what shakers have."""
+    frequency, amplitude = box_motion(structure, question)
+    travel, level = amplitude.max(), (amplitude * frequency**2).max() / GRAVITY
+    if travel > SETTINGS.travel or level > SETTINGS.violent:
+        warn(
+            f"the box moves by up to {travel:.3g} m and {level:.3g} g: beyond what shakers do; is "
+            "the amplitude in m (1 mm is 1e-3, or 1mm), the level in g?"
         )
 
 
@@ -93,29 +97,26 @@ def warn_of_voltage(text: str, voltages: tuple[float, ...], volts: float) -> Non
     ratios = [abs(voltage) / volts for voltage in voltages]
     if max(ratios) < SETTINGS.slow or min(ratios) > SETTINGS.fast:
         eta0 = " to ".join(f"{ratio:.3g}" for ratio in ratios)
-        warnings.warn(
+        warn(
             f"{text}: eta0 = {eta0}, far from the resonance: without a load the motor turns at "
-            f"omega with {volts:.4g} V (eta0 = 1)",
-            stacklevel=2,
+            f"omega with {volts:.4g} V (eta0 = 1)"
         )
 
 
 def print_frequency_notes(arguments: Any, structure: Structure, question: Question) -> None:
     """Print which structure is used by default; warn if frequencies are far from its own."""
-    frequency = question.get("frequency")
-    values = (
-        frequency if isinstance(frequency, tuple) else () if frequency is None else (frequency,)
-    )
-    if not values:
+    if question.get("frequency") is None:
         return
+    values = np.ravel(question["frequency"])
     own_frequency = f"{structure.omega / TURN:.4g} Hz"
     if getattr(arguments, "structure", "") == "paper" and not arguments.set:
         omega = f"omega = {structure.omega:.6g} rad/s, {own_frequency}"
         print(f"structure: the paper's, {omega} (--structure names another)")
-    warn_of_other_unit(arguments, structure, values)
     if not math.isclose(structure.omega, 1.0):
-        warn_of_level(question)
-    low, high = (end(values) / structure.omega for end in (min, max))
+        warn_of_other_unit(arguments, structure, values.min(), values.max())
+        if {"amplitude", "level"} & question.keys():
+            warn_of_level(structure, question)
+    low, high = values.min() / structure.omega, values.max() / structure.omega
     if high > SETTINGS.far or low < 1.0 / SETTINGS.far:
         ends = " to ".join(f"{ratio:.3g}" for ratio in dict.fromkeys((low, high)))
         log.warning(
@@ -125,67 +126,53 @@ def print_frequency_notes(arguments: Any, structure: Structure, question: Questi
         )
 
 
-def warn_of_other_unit(arguments: Any, structure: Structure, values: tuple[float, ...]) -> None:
+def warn_of_other_unit(arguments: Any, structure: Structure, first: float, last: float) -> None:
     """Warn if frequencies would fit the structure in the other unit: Hz for rad/s or reverse."""
-    near = SETTINGS.near
-    low, high = (1.0 - near) * min(values), (1.0 + near) * max(values)
-    f = [getattr(structure, f"f{half}") for half in structure.halves]
-    own = [TURN * each for each in f]
-    if math.isclose(structure.omega, 1.0) or any(low <= omega <= high for omega in own):
-        return
-    for name, (factor, unit, other) in OTHER_UNIT.items():
+    low, high = (1.0 - SETTINGS.near) * first, (1.0 + SETTINGS.near) * last
+    hertz = [getattr(structure, f"f{half}") for half in structure.halves]
+
+    def is_own(factor: float) -> bool:
+        return any(low <= factor * TURN * each <= high for each in hertz)
+
+    for name, (factor, unit, other) in OTHER_UNIT.items() if not is_own(1.0) else ():
         text = getattr(arguments, name, None)
-        if text and any(low <= factor * omega <= high for omega in own):
-            numbers = " and ".join(f"{each:.4g}" for each in f) + " Hz"
-            warnings.warn(
+        if text and is_own(factor):
+            numbers = " and ".join(f"{each:.4g}" for each in hertz) + " Hz"
+            warn(
                 f"--{name} {text}: these are {unit}, and the structure's own frequencies are "
-                f"{numbers}; is {other} meant?",
-                stacklevel=2,
+                f"{numbers}; is {other} meant?"
             )
 
 
 def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset) -> Iterator[str]:
     """Yield a note if the level is below the threshold at which the gap opens or closes."""
-    import numpy as np
-
-    from ..model.ranges import COMPLETE
-
-    names = {"eta", "frequency", "amplitude", "level"} & question.keys()
     if question.get("over") == "level":
-        question, names = {**question, "level": question["values"]}, names | {"level"}
+        question = {**question, "level": question["values"]}
     elif question.get("over") is not None or "clearance" in question:
         return
-    if structure.bonded or structure.wall or structure.stroke:
+    linear = structure.bonded or structure.wall or structure.stroke or not structure.clearance
+    if linear or set().union(*COMPLETE) & question.keys() not in COMPLETE:
         return
-    if not structure.clearance or names not in COMPLETE:
-        return
-    ratio = threshold_over_level(structure, {name: np.ravel(question[name]) for name in names})
+    ratio = threshold_over_level(structure, question)
     if ratio <= 1.0:
         return
-    opens = structure.clearance < 0.0
     if ratio > SETTINGS.unfelt:
-        warnings.warn(
+        warn(
             f"clearance = {structure.clearance:g} m: {ratio:.3g} times what this level moves; is "
-            "it in m (20 um is 2e-5)?",
-            stacklevel=2,
+            "it in m (20 um is 2e-5)?"
         )
-    kind = "pressed together" if opens else "open"
+    pressed = structure.clearance < 0.0
+    kind, event = ("pressed together", "opens") if pressed else ("open", "touches")
+    length = text_of(shown, abs(structure.clearance), "m")
     yield (
-        f"{kind} by {text_of(shown, abs(structure.clearance), 'm')}, it first "
-        f"{'opens' if opens else 'touches'} at {ratio:.4g} times this level: from rest the "
-        "response is linear"
+        f"{kind} by {length}, it first {event} at {ratio:.4g} times this level: from rest the "
+        + ("response is linear")
     )
 
 
-def threshold_over_level(structure: Structure, box: Mapping[str, Any]) -> float:
+def threshold_over_level(structure: Structure, question: Question) -> float:
     """Return the smallest ratio of contact threshold to excitation level, of all points asked."""
-    import orchestrate
-
-    frequency = box["eta"] * structure.omega if "eta" in box else box["frequency"]
-    level = orchestrate.contact_threshold(structure, frequency=frequency)
-    threshold = level.threshold_amplitude.values
-    if "eta" in box:
-        return float((threshold * box["eta"] ** 2).min())
-    if "level" in box:
-        return float((threshold * frequency**2).min() / box["level"].max())
-    return float((threshold / box["amplitude"]).min())
+    frequency, amplitude = box_motion(structure, question)
+    level = orchestrate.contact_threshold(structure, frequency=np.unique(frequency))
+    threshold = np.interp(frequency, level.frequency, level.threshold_amplitude)
+    return float((threshold / amplitude).min())

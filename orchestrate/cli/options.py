@@ -7,56 +7,40 @@ import math
 import textwrap
 from collections.abc import Callable, Mapping
 from copy import copy
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import orchestrate
+
+from ..constants import GRAVITY
 from ..errors import InputError
+from ..lazy import xr
+from ..model import SETS, Structure, read, resolve
+from ..model.conversions import warn_of_per_cent
 from ..model.ranges import ADDED, PUSHES, STRUCTURE
-from .command import Options, option, option_names
-from .grammar import (
-    Acceleration,
-    Bandwidth,
-    Length,
-    Noise,
-    Positive,
-    is_single_number,
-    parse_changes,
-    parse_ends,
-    parse_listed,
-    parse_one_or_more,
-    positive_number,
-)
+from ..model.sections import TO_RAD_S
+from ..model.toml_files import parse
+from . import grammar
+from .command import Options, Question, option, option_names
 from .notes import SETTINGS, mass_note
 
-if TYPE_CHECKING:
-    from .. import Sensor
-    from ..model import Structure
-
-SETS = Path(__file__).resolve().parents[1] / "model" / "sets"
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
 FREQUENCIES = ("eta", *UNITS)
-SET_NAMES = tuple(path.stem for path in sorted(SETS.glob("*.toml")))
 ASSUMED = {  # what a beam needs besides what is set, with the names that set it as well
-    "m1": ("mu",),
-    "m2": ("mu",),
-    "f1": ("k1", "omega"),
-    "f2": ("k2", "kappa"),
-    "zeta1": ("d1", "D", "D1"),
-    "zeta2": ("d2", "D", "D2"),
-    "e": (),
+    **{"m1": ("mu",), "m2": ("mu",), "f1": ("k1", "omega"), "f2": ("k2", "kappa")},
+    **{"zeta1": ("d1", "D", "D1"), "zeta2": ("d2", "D", "D2"), "e": ()},
 }
 CONTINUED = (  # what a continuation varies, for help texts
     "eta, hz, rpm, frequency, amplitude, box_acceleration or a parameter of the structure"
 )
+MOST_NAMED = 3  # parameters that a line on two structures names
 
 
-def parameter_help(name: str, width: int = 94, indent: int = 24) -> str:
+def parameter_help(name: str) -> str:
     """Return lines of help text on a structure's parameter, from the FMU's variable table."""
     quantity = STRUCTURE[name]
     unit = "" if quantity.unit == "1" else f", {quantity.unit}"
     text = f"{quantity.description[0].lower()}{quantity.description[1:]}{unit}"
-    space = " " * indent
-    return textwrap.fill(text, width, initial_indent=f"  {name:22}", subsequent_indent=space)
+    return textwrap.fill(text, 94, initial_indent=f"  {name:22}", subsequent_indent=" " * 24)
 
 
 QUANTITIES = f"""quantities:
@@ -82,16 +66,15 @@ QUANTITIES = f"""quantities:
 
 
 def list_shipped_sets() -> str:
-    """Return a text with the shipped parameter sets, one line each, for the help."""
     lines = []
-    for path in sorted(SETS.glob("*.toml")):
+    for name, path in sorted(SETS.items()):
         above = path.read_text(encoding="utf-8").partition("\n\n")[0]
-        words = above.replace("#", "").split()
-        lines.append(f"  {path.stem:8}{' '.join(words).partition('. ')[0].rstrip('.')}")
+        words = " ".join(above.replace("#", "").split())
+        lines.append(f"  {name:8}{words.partition('. ')[0].rstrip('.')}")
     return "\n".join(lines)
 
 
-# -- groups of options ----------------------------------------------------------------------------
+# -- structures -----------------------------------------------------------------------------------
 
 
 class OfStructure(Options):
@@ -99,29 +82,30 @@ class OfStructure(Options):
 
     heading, rank = "structure", 0
     structure: Any = option(
-        "TOML file with a [structure], or the name of a set", "paper", value="SET|FILE"
+        "TOML file with a [structure], or the name of a set", "paper", "SET|FILE"
     )
     set: list[str] = option(
         f"one of its parameters, SI ({' '.join(STRUCTURE)}), of each half (f1 f2 in Hz, zeta1 "
         "zeta2) or the paper's (mu kappa D D1 D2 omega); wall=true: one mass before a stop; may be "
         "repeated",
         (),
-        value="NAME=VALUE",
+        "NAME=VALUE",
     )
 
     def read_structure(self) -> Structure:
         """Return the ``Structure`` of ``--structure`` with the changes of ``--set``."""
-        from ..model import Structure
-        from ..model.toml_files import parse, resolve
-
         structure = Structure.from_file(self.structure)
-        changes = parse_changes(self.set, structure.wall)
+        changes = grammar.parse_changes(self.set, structure.wall)
         structure = structure.replace(**changes)
         print_assumptions(structure, self.structure, changes)
-        file = {} if self.structure in SET_NAMES else parse(resolve(self.structure))
-        if not structure.bonded and "e" not in {**file.get("structure", {"e": 0}), **changes}:
+        stated = {"e"} if self.structure in SETS else self.section("structure")
+        if not structure.bonded and "e" not in {*stated, *changes}:
             print(f"assumed: e = {structure.e:g} ({self.structure} has none; --set e=VALUE)")
         return structure
+
+    def section(self, name: str) -> dict[str, Any]:
+        """Return a section of the TOML file of ``--structure``; empty where there is none."""
+        return parse(resolve(self.structure)).get(name, {}) if self.structure else {}
 
 
 class OfStored(OfStructure):
@@ -133,200 +117,60 @@ class OfStored(OfStructure):
         value="SET|FILE",
     )
 
+    def read_structure_and_question(self) -> tuple[Structure, Question]:
+        """Return structure and keywords of a command that may begin with a stored result."""
+        if self.start is None:
+            self.structure = self.structure or "paper"
+            return self.read_structure(), self.keywords()
+        data = grammar.read_earlier_result("--start", self.start)
+        structure = self.structure_like("--start", self.start, data)
+        return structure, {**self.keywords(), "start": data}
 
-class OfBox(Options):
-    """Options of the box's harmonic motion."""
-
-    heading, rank = "the box's motion", 1
-    remark = (
-        "one frequency and one amplitude of these, or the [excitation] of the file of --structure; "
-        "where several values are taken: FIRST:LAST:STEP with both ends, or a list A,B,..."
-    )
-    hz: str | None = option("frequency in Hz", value="VALUES")
-    rpm: str | None = option("the same in turns per minute", value="VALUES")
-    frequency: str | None = option("the same as Omega in rad/s", value="VALUES")
-    eta: Any = option("the same as frequency ratio Omega/omega", value="VALUES")
-    amplitude: Length = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
-    g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
-    box_acceleration: Acceleration = option(
-        "constant acceleration of the box beside it, m/s2 or with g: -1g is gravity towards "
-        "positive x, as to a stop"
-    )
-    force1: float | None = option("amplitude of a force F sin(Omega t) on half 1, N")
-    force2: float | None = option("the same on half 2")
-
-    def pushes(self) -> dict[str, float]:
-        """Return the constant acceleration and the forces that are given, by name."""
-        given = {name: getattr(self, name) for name in PUSHES}
-        return {name: value for name, value in given.items() if value is not None}
-
-    def read_excitation(
-        self, structure: Structure, si: bool = False, one: bool = False
-    ) -> dict[str, Any]:
-        """Return frequency and amplitude of the box's motion as keywords of the public API."""
-        from ..constants import GRAVITY
-        from ..model.sections import TO_RAD_S
-
-        name, amplitude = self.frequency_option(), self.read_amplitude()
-        if not self.is_shaken() and (described := self.excitation_from_file()):
-            return described
-        if name is None:
-            raise InputError(
-                f"frequency: nothing given; expected one of {option_names(FREQUENCIES)}"
-            )
-        text = getattr(self, name)
-        values = parse_one_or_more(f"--{name}", text, one)
-        if name == "eta" and amplitude is None:
-            if si and not math.isclose(structure.omega, 1.0):
-                raise InputError(
-                    f"--eta {text}: omega is {structure.omega:g} rad/s; expected --amplitude in m "
-                    "or --g with it (1/eta^2 m is the paper's, for omega = 1 rad/s)"
-                )
-            return {"eta": values, **self.pushes()}
-        if amplitude is None:
-            raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
-        omega = structure.omega
-        frequencies = apply_to_each(
-            TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values
-        )
-        if self.g is not None:
-            level = amplitude * GRAVITY
-            amplitude = apply_to_each(lambda value: level / (value * value), frequencies)
-        return {"frequency": frequencies, "amplitude": amplitude, **self.pushes()}
-
-    def excitation_from_file(self) -> dict[str, Any] | None:
-        """Return keywords of the excitation in the structure's file, or None; set ``--phase``."""
-        import orchestrate
-
-        from ..model.toml_files import read
-
-        excitation: Any = read(self.structure).get("excitation")
-        if excitation is None:
-            return None
-        if getattr(self, "phase", None) == 0.0:
-            self.phase = excitation.phase
-        pushes = {name: getattr(excitation, name) for name in PUSHES if getattr(excitation, name)}
-        pushes |= self.pushes()
-        called: str = getattr(self, "calls")  # noqa: B009 (of the command, which has this group)
-        known = inspect.signature(getattr(orchestrate, called)).parameters
-        if unknown := [name for name in pushes if name not in known]:
-            text = f"{called} does not know it yet; expected only the box's motion"
-            raise InputError(f"{self.structure}: excitation.{unknown[0]}: {text}")
-        return {"frequency": excitation.frequency, "amplitude": excitation.amplitude, **pushes}
-
-    def frequency_option(self) -> str | None:
-        """Return which option gives the frequency, None if none does."""
-        return self.one_of(*FREQUENCIES)
-
-    def read_amplitude(self) -> float | None:
-        """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is given."""
-        given = self.one_of("amplitude", "g") == "g"
-        return positive_number("--g", self.g) if given else self.amplitude
-
-    def is_shaken(self) -> bool:
-        """Return whether an option gives a frequency or an amplitude of the box."""
-        return self.frequency_option() is not None or self.read_amplitude() is not None
-
-    def excitation_by_level(self, structure: Structure, one: bool = False) -> dict[str, Any]:
-        """Return the box's frequency and its level (m/s2), each a number or a tuple."""
-        from ..constants import GRAVITY
-
-        self.one_of("amplitude", "g")
-        levels = parse_one_or_more("--g", self.g)
-        plain = copy(self)
-        plain.g, plain.amplitude = None, 1.0
-        frequency = plain.read_excitation(structure, one=one)["frequency"]
-        level = apply_to_each(lambda peak: peak * GRAVITY, levels)
-        return {"frequency": frequency, "level": level, **self.pushes()}
+    def structure_like(self, flag: str, path: Any, data: xr.Dataset) -> Structure:
+        """Return the structure asked for, else that of a stored result; print how they differ."""
+        stored = structure_of(flag, path, data)
+        if self.structure:
+            asked = self.read_structure()
+        else:
+            changes = grammar.parse_changes(self.set)
+            asked = stored.replace(**changes)
+            print_assumptions(asked, "", changes)
+        print_difference(flag, path, stored, asked)
+        return asked
 
 
-class Over(Options):
-    """Options of a parameter that varies."""
+def structure_of(flag: str, path: Any, data: xr.Dataset) -> Structure:
+    """Return the structure in a stored result's attributes; raise ``InputError`` if none is."""
+    from ..running.provenance import what_it_is
 
-    over: Any = option(
-        "a parameter of the structure that varies, as for --set, at one frequency", value="NAME"
-    )
-    values: Any = option("its values, FIRST:LAST:STEP or a list A,B,...", value="VALUES")
-
-    def read_over(self) -> tuple[tuple[float, ...], bool] | None:
-        """Return the values of ``--over``, and whether they are a range; None without it."""
-        if (self.over is None) != (self.values is None):
-            raise InputError("--over and --values: expected both, or none of them")
-        return parse_listed(self.over, self.values) if self.over else None
-
-    def varied_arguments(
-        self, structure: Structure, usual: str | None = None, si: bool = False
-    ) -> tuple[dict[str, Any], bool]:
-        """Return excitation and varied parameter as keywords, and whether a range was given."""
-        if self.over is None and self.g is not None and not is_single_number(self.g):
-            box = self.excitation_by_level(structure, one=True)
-            levels = {"over": "level", "values": box.pop("level")}
-            return {**box, **levels}, ":" in self.g
-        if (values := self.read_over()) is not None:
-            self.check_over(self.over)
-            fixed = self.read_excitation(structure, si, one=True)
-            return {**fixed, "over": self.over, "values": values[0]}, values[1]
-        if usual is not None and not self.is_shaken():
-            self.eta = usual
-        excitation = self.read_excitation(structure, si)
-        return excitation, ":" in str(getattr(self, self.frequency_option() or "eta"))
-
-    def check_over(self, over: str) -> None:
-        """Raise unless a parameter of a structure may vary with these options."""
-        if over in FREQUENCIES:
-            raise InputError(f"--over {over}: expected --{over} VALUES instead")
-        if over in ("amplitude", "g", "level"):
-            raise InputError(f"--over {over}: expected --g VALUES at one frequency instead")
-        scaled = self.read_amplitude() is not None and self.eta is not None
-        if scaled and over in ("m1", "k1", "omega"):
-            expected = option_names(UNITS, " or ")
-            raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
+    try:
+        return Structure.from_attributes(dict(data.attrs))
+    except (KeyError, TypeError, ValueError):
+        text = f"{what_it_is(data)}, without a structure; expected an orbit or a branch"
+        raise InputError(f"{flag} {path}: {text}") from None
 
 
-class OfSensors(Options):
-    """Options of accelerometers that read a simulated motion."""
-
-    heading = "sensors of a simulated test"
-    sensor: Bandwidth = option(
-        "what accelerometers of this bandwidth read, with the spikes of impacts; RATE: samples a "
-        "second (default: 2.56 times it)",
-        value="HZ[:RATE]",
-    )
-    noise: Noise = option("density of their noise, (m/s2)/sqrt(Hz), or 30ug of g/sqrt(Hz)")
-    range: Positive = option("of the sensors, g (default: none)")
-
-    def read_sensor(self, usual: Callable[..., Sensor] | None = None) -> Sensor | None:
-        """Return the sensor; without ``--sensor`` the ``usual`` one, None without any option."""
-        from .. import Sensor
-        from ..constants import GRAVITY
-
-        limits = {"noise": self.noise, "range": self.range and GRAVITY * self.range}
-        given: dict[str, Any] = {n: value for n, value in limits.items() if value is not None}
-        if self.sensor is not None:
-            bandwidth, *rate = self.sensor
-            return Sensor(bandwidth=bandwidth, sample_rate=rate[0] if rate else None, **given)
-        if given and usual is None:
-            raise InputError(f"{option_names(given)}: of sensors; expected --sensor HZ with it")
-        return usual(**given) if given and usual else None
-
-
-class Beside(Options):
-    """The option of both structures."""
-
-    beside: bool = option("also compute the bonded structure and plot both")
-
-
-# -- structures -----------------------------------------------------------------------------------
+def print_difference(flag: str, path: Any, stored: Structure, asked: Structure) -> None:
+    """Print one line if a stored result was computed for another structure than the one asked."""
+    names = (*STRUCTURE, "bonded", "wall")
+    pairs = {name: (float(getattr(stored, name)), float(getattr(asked, name))) for name in names}
+    texts = [
+        f"{name} = {there:.6g} there, {here:.6g} here"
+        for name, (there, here) in pairs.items()
+        if not math.isclose(there, here, rel_tol=1e-9)
+    ]
+    left = len(texts) - MOST_NAMED
+    texts = texts[:MOST_NAMED] + [f"and {left} more parameters"] * (left > 0)
+    if texts:
+        print(f"{flag} {path} was computed for another structure: {'; '.join(texts)}")
 
 
 def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
     """Print which parameters of the user's beam are taken from a shipped set; warn of per cent."""
-    from ..model.conversions import warn_of_per_cent
-
     warn_of_per_cent({name: changes[name] for name in ("zeta1", "zeta2") if name in changes})
     if note := mass_note(structure):
         print(note)
-    if source not in SET_NAMES or not changes.keys() & {"f1", "f2"}:
+    if source not in SETS or not changes.keys() & {"f1", "f2"}:
         return
     left = [name for name, others in ASSUMED.items() if not changes.keys() & {name, *others}]
     left = [name for name in left if not (structure.wall and name.endswith("2"))]
@@ -344,13 +188,114 @@ def print_assumptions(structure: Structure, source: str, changes: Mapping[str, A
 
 def format_assumed(name: str, value: float) -> str:
     """Format a parameter's value with its unit; damping ratios in per cent."""
-    units = {"m": " kg", "f": " Hz"}
     if name.startswith("zeta"):
         return f"{100.0 * value:.4g} %"
-    return f"{value:.4g}{units.get(name[0], '')}"
+    return f"{value:.4g}{ {'m': ' kg', 'f': ' Hz'}.get(name[0], '') }"
 
 
 # -- the box's motion -----------------------------------------------------------------------------
+
+
+class OfPushes(Options):
+    """Options of what acts besides the box's harmonic motion."""
+
+    heading, rank = "what acts besides", 1
+    box_acceleration: grammar.Acceleration = option(
+        "constant acceleration of the box, m/s2 or with g: -1g is gravity towards positive x, as "
+        "to a stop"
+    )
+    force1: float | None = option("amplitude of a force F sin(Omega t) on half 1, N")
+    force2: float | None = option("the same on half 2")
+
+    def pushes(self) -> dict[str, float]:
+        """Return the constant acceleration and the forces that are given, by name."""
+        return self.given(OfPushes)
+
+
+class OfBox(OfPushes):
+    """Options of the box's harmonic motion."""
+
+    heading, rank = "the box's motion", 1
+    remark = (
+        "one frequency and one amplitude of these, or the [excitation] of the file of --structure; "
+        "where several values are taken: FIRST:LAST:STEP with both ends, or a list A,B,..."
+    )
+    hz: str | None = option("frequency in Hz", value="VALUES")
+    rpm: str | None = option("the same in turns per minute", value="VALUES")
+    frequency: str | None = option("the same as Omega in rad/s", value="VALUES")
+    eta: Any = option("the same as frequency ratio Omega/omega", value="VALUES")
+    amplitude: grammar.Length = option(
+        "amplitude a in m (default with --eta: 1/eta^2 m)", value="A"
+    )
+    g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
+
+    def read_excitation(
+        self, structure: Structure, si: bool = False, one: bool = False
+    ) -> Question:
+        """Return frequency and amplitude of the box's motion as keywords of the public API."""
+        name, amplitude = self.frequency_option(), self.read_amplitude()
+        if not self.is_shaken() and (described := self.excitation_from_file()):
+            return described
+        if name is None:
+            text = f"expected one of {option_names(FREQUENCIES)}"
+            raise InputError(f"frequency: nothing given; {text}")
+        text = getattr(self, name)
+        values = grammar.parse_one_or_more(f"--{name}", text, one)
+        if name == "eta" and amplitude is None:
+            if si and not math.isclose(structure.omega, 1.0):
+                raise InputError(
+                    f"--eta {text}: omega is {structure.omega:g} rad/s; expected --amplitude in m "
+                    "or --g with it (1/eta^2 m is the paper's, for omega = 1 rad/s)"
+                )
+            return {"eta": values, **self.pushes()}
+        if amplitude is None:
+            raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
+        to_rad_s = TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * structure.omega
+        frequencies = apply_to_each(to_rad_s, values)
+        if self.g is not None:
+            level = amplitude * GRAVITY
+            amplitude = apply_to_each(lambda value: level / (value * value), frequencies)
+        return {"frequency": frequencies, "amplitude": amplitude, **self.pushes()}
+
+    def excitation_from_file(self) -> Question | None:
+        """Return keywords of the excitation in the structure's file, or None; set ``--phase``."""
+        excitation: Any = read(self.structure).get("excitation")
+        if excitation is None:
+            return None
+        if getattr(self, "phase", None) == 0.0:
+            self.phase = excitation.phase
+        pushes = {name: getattr(excitation, name) for name in PUSHES if getattr(excitation, name)}
+        pushes |= self.pushes()
+        called: str = getattr(self, "calls")  # noqa: B009 (of the command, which has this group)
+        known = inspect.signature(getattr(orchestrate, called)).parameters
+        if unknown := [name for name in pushes if name not in known]:
+            text = f"{called} does not know it yet; expected only the box's motion"
+            raise InputError(f"{self.structure}: excitation.{unknown[0]}: {text}")
+        return {"frequency": excitation.frequency, "amplitude": excitation.amplitude, **pushes}
+
+    def frequency_option(self) -> str | None:
+        return self.one_of(*FREQUENCIES)
+
+    def read_amplitude(self) -> float | None:
+        """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is given."""
+        given = self.one_of("amplitude", "g") == "g"
+        return grammar.positive_number("--g", self.g) if given else self.amplitude
+
+    def is_shaken(self) -> bool:
+        return self.frequency_option() is not None or self.read_amplitude() is not None
+
+    def has_levels(self) -> bool:
+        return self.g is not None and not grammar.is_single_number(self.g)
+
+    def excitation_by_level(self, structure: Structure, one: bool = False) -> Question:
+        """Return the box's frequency and its level (m/s2), each a number or a tuple."""
+        self.one_of("amplitude", "g")
+        levels = grammar.parse_one_or_more("--g", self.g)
+        plain = copy(self)
+        plain.g, plain.amplitude = None, 1.0
+        frequency = plain.read_excitation(structure, one=one)["frequency"]
+        level = apply_to_each(lambda peak: peak * GRAVITY, levels)
+        return {"frequency": frequency, "level": level, **self.pushes()}
 
 
 def apply_to_each(change: Callable[[float], float], values: float | tuple[float, ...]) -> Any:
@@ -361,14 +306,96 @@ def apply_to_each(change: Callable[[float], float], values: float | tuple[float,
 # -- a parameter that varies ----------------------------------------------------------------------
 
 
-def parse_varied(name: str, limits: str) -> tuple[str, tuple[float, float]]:
-    """Return a continued parameter's name in the public API, and its limits in that one's unit."""
-    from ..model.sections import TO_RAD_S
+class Over(Options):
+    """Options of a parameter that varies."""
 
+    over: Any = option(
+        "a parameter of the structure that varies, as for --set, at one frequency", value="NAME"
+    )
+    values: Any = option("its values, FIRST:LAST:STEP or a list A,B,...", value="VALUES")
+
+    def read_over(self) -> tuple[tuple[float, ...], bool] | None:
+        """Return the values of ``--over``, and whether they are a range; None without it."""
+        if (self.over is None) != (self.values is None):
+            raise InputError("--over and --values: expected both, or none of them")
+        return grammar.parse_listed(self.over, self.values) if self.over else None
+
+    def over_arguments(self) -> Question:
+        """Return the varied parameter and its values as keywords; none without it."""
+        values = self.read_over()
+        return {} if values is None else {"over": self.over, "values": values[0]}
+
+    def varied_arguments(
+        self, structure: Structure, usual: str | None = None, si: bool = False
+    ) -> tuple[Question, bool]:
+        """Return excitation and varied parameter as keywords, and whether a range was given."""
+        if self.over is None and self.has_levels():
+            box = self.excitation_by_level(structure, one=True)
+            return {**box, "over": "level", "values": box.pop("level")}, ":" in self.g
+        if (values := self.read_over()) is not None:
+            self.check_over(self.over)
+            fixed = self.read_excitation(structure, si, one=True)
+            return {**fixed, "over": self.over, "values": values[0]}, values[1]
+        if usual is not None and not self.is_shaken():
+            self.eta = usual
+        excitation = self.read_excitation(structure, si)
+        return excitation, ":" in str(getattr(self, self.frequency_option() or "eta"))
+
+    def ask_along_parameter(self, si: bool = False) -> tuple[Structure, Question]:
+        structure = self.read_structure()
+        excitation, _ = self.varied_arguments(structure, si=si)
+        return structure, {**self.keywords(), **excitation}
+
+    def check_over(self, over: str) -> None:
+        """Raise unless a parameter of a structure may vary with these options."""
+        if over in FREQUENCIES:
+            raise InputError(f"--over {over}: expected --{over} VALUES instead")
+        if over in ("amplitude", "g", "level"):
+            raise InputError(f"--over {over}: expected --g VALUES at one frequency instead")
+        scaled = self.read_amplitude() is not None and self.eta is not None
+        if scaled and over in ("m1", "k1", "omega"):
+            expected = option_names(UNITS, " or ")
+            raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
+
+
+def parse_varied(name: str, limits: str) -> tuple[str, tuple[float, ...]]:
+    """Return a continued parameter's name in the public API, and its limits in that one's unit."""
     if name == "g":
         raise InputError("--over g: expected --over amplitude, in m, at one frequency")
-    first, last = parse_ends("--limits", limits)
-    if name in UNITS:
-        to_rad_s = TO_RAD_S[UNITS[name]]
-        return "frequency", (to_rad_s(first), to_rad_s(last))
-    return name, (first, last)
+    ends = grammar.parse_ends("--limits", limits)
+    return ("frequency", tuple(map(TO_RAD_S[UNITS[name]], ends))) if name in UNITS else (name, ends)
+
+
+# -- sensors --------------------------------------------------------------------------------------
+
+
+class OfSensors(Options):
+    """Options of accelerometers that read a simulated motion."""
+
+    heading = "sensors of a simulated test"
+    sensor: grammar.Bandwidth = option(
+        "what accelerometers of this bandwidth read, with the spikes of impacts; RATE: samples a "
+        "second (default: 2.56 times it)",
+        value="HZ[:RATE]",
+    )
+    noise: grammar.Noise = option("density of their noise, (m/s2)/sqrt(Hz), or 30ug of g/sqrt(Hz)")
+    range: grammar.Positive = option("of the sensors, g (default: none)")
+
+    def read_sensor(
+        self, usual: Callable[..., orchestrate.Sensor] | None = None
+    ) -> orchestrate.Sensor | None:
+        """Return the sensor; without ``--sensor`` the ``usual`` one, None without any option."""
+        limits = {"noise": self.noise, "range": self.range and GRAVITY * self.range}
+        given: Question = {n: value for n, value in limits.items() if value is not None}
+        if self.sensor is not None:
+            bandwidth, *rate = self.sensor
+            return orchestrate.Sensor(bandwidth=bandwidth, sample_rate=[*rate, None][0], **given)
+        if given and usual is None:
+            raise InputError(f"{option_names(given)}: of sensors; expected --sensor HZ with it")
+        return usual(**given) if given and usual else None
+
+
+class Beside(Options):
+    """The option of both structures."""
+
+    beside: bool = option("also compute the bonded structure and plot both")

@@ -7,21 +7,21 @@ import json
 import os
 import re
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..files import escape_glob
 from ..lazy import xr
+from ..units import FACTORS, Units, scale_of
 from .command import Options, option
 from .grammar import floats
 
 if TYPE_CHECKING:
-    from ..model import Structure
     from ..running.options import Running
-    from ..units import Units
 
 FORMATS = ("nc", "csv", "mat", "xlsx")
 PLOTS = ("png", "pdf", "svg")
@@ -41,8 +41,6 @@ class Reading(Options):
 
     def read_record_units(self) -> Units:
         """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
-        from ..units import FACTORS, Units
-
         own = self.unit if self.unit in FACTORS["acceleration"] else ""
         return self.read_units().with_defaults(Units(acceleration=own))
 
@@ -72,25 +70,17 @@ class InUnits(Options):
 
     def read_units(self) -> Units:
         """Return the display units of ``--units``; none chosen where a command lacks the option."""
-        from ..units import Units
-
         return Units.from_text(getattr(self, "units", None) or "", "--units")
 
     def print_units_note(self, *answers: xr.Dataset) -> None:
         """Print a note if ``--units`` changes none of the numbers of some results."""
-        from ..units import scale_of
-
-        kinds = {
-            str(array.attrs.get("units", "1"))
-            for data in answers
-            for array in data.variables.values()
-            if array.dtype.kind == "f"
-        }
-        units = self.read_units()
+        arrays = [one for data in answers for one in data.variables.values()]
+        kinds = {str(one.attrs.get("units", "1")) for one in arrays if one.dtype.kind == "f"}
+        chosen = self.read_units()
         changed = any(scale_of(data, kind)[1] != kind for data in answers for kind in kinds)
-        if units.words and not changed and kinds.isdisjoint(units.words):
+        if chosen.words and not changed and kinds.isdisjoint(chosen.words):
             words = ", ".join(sorted(kinds - {"1"}))
-            print(f"--units {units}: these have no such numbers, only {words}")
+            print(f"--units {chosen}: these have no such numbers, only {words}")
 
 
 class Formats(Options):
@@ -98,9 +88,9 @@ class Formats(Options):
 
     heading, rank = "files", 4
     format: str = option(
-        f"also as {', '.join(FORMATS[1:])}, a list; nc is always written", "nc", value="A,B,..."
+        f"also as {', '.join(FORMATS[1:])}, a list; nc is always written", "nc", "A,B,..."
     )
-    plot: str = option(f"pictures: {', '.join(PLOTS)}, a list, or none", "png", value="A,B,...")
+    plot: str = option(f"pictures: {', '.join(PLOTS)}, a list, or none", "png", "A,B,...")
     size: str | None = option(
         "shape of the pictures for slides, such as 16:9, with larger letters", value="W:H"
     )
@@ -120,7 +110,7 @@ class InFolder(Options):
     """The option of the folder of results."""
 
     heading, rank = "results and running", 5
-    output: Path = option("folder of the results", Path("results"), value="FOLDER")
+    output: Path = option("folder of the results", Path("results"), "FOLDER")
 
 
 class HowRun(Options):
@@ -158,8 +148,7 @@ class OfBoth(Results):
 
 def unit_note(attributes: Mapping[Any, Any]) -> str:
     """Return a line that says that ``--unit`` was taken in place of a file's unit; or nothing."""
-    own = attributes.get("unit_in_file", "")
-    used = attributes.get("unit", "")
+    own, used = attributes.get("unit_in_file", ""), attributes.get("unit", "")
     return f"--unit {used} was used, although the file says {own}" if own else ""
 
 
@@ -180,9 +169,7 @@ def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
 
 def parse_endings(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...]:
     """Parse a list such as ``png,pdf`` into a tuple of known names; ``none`` is empty."""
-    if text == "none":
-        return ()
-    names = tuple(dict.fromkeys(part.strip() for part in text.split(",")))
+    names = () if text == "none" else tuple(dict.fromkeys(part.strip() for part in text.split(",")))
     for name in names:
         if name not in known:
             expected = ", ".join(known)
@@ -194,9 +181,7 @@ def check_output(folder: Path, option: str = "--output") -> None:
     """Raise unless a folder is writable or could be made; it is not made yet."""
     if folder.suffix[1:] in ("html", *FORMATS, *PLOTS) and not folder.is_dir():
         raise InputError(f"{option} {folder}: the name of a file; expected a folder")
-    existing = next(
-        (existing for existing in (folder, *folder.parents) if existing.exists()), Path()
-    )
+    existing = next((one for one in (folder, *folder.parents) if one.exists()), Path())
     if not (existing.is_dir() and os.access(existing, os.W_OK)):
         reason = "not writable" if existing.is_dir() else f"{existing} is no folder"
         raise InputError(f"{option} {folder}: {reason}; expected a folder that can be written")
@@ -205,21 +190,19 @@ def check_output(folder: Path, option: str = "--output") -> None:
 # -- names ----------------------------------------------------------------------------------------
 
 
-def result_name(
-    command: str, structure_file: str, structure: Structure | None, question: Mapping[str, Any]
-) -> str:
-    """Return a result's file name: command, the structure's name, and a digest of all."""
-    stem = Path(structure_file).stem
-    own = OWN_NAME.fullmatch(stem)
-    digits = digest(structure.parameters() if structure else {}, question)
-    return f"{command}_{own[1] if own else stem}_{digits}"
+def result_name(command: str, sources: Sequence[Any], *asked: Any) -> str:
+    stems = [Path(source).stem for source in sources]
+    own = [match[1] if (match := OWN_NAME.fullmatch(stem)) else stem for stem in stems]
+    return f"{command}_{'_'.join(own)}_{digest(*asked)}"
 
 
 def digest(*arguments: Any) -> str:
     """Return the first hexadecimal digits of a SHA-256 over arguments, for a file name."""
 
-    def other(value: Any) -> str:  # a stored result is the question that it answers
-        identity = getattr(value, "attrs", {}).get("identity")
+    def other(value: Any) -> Any:
+        if hasattr(value, "parameters"):  # of a structure, a drive
+            return value.parameters()
+        identity = getattr(value, "attrs", {}).get("identity")  # a stored result is its question
         return json.dumps(json.loads(identity)["question"]) if identity else repr(value)
 
     text = json.dumps(arguments, sort_keys=True, default=other)
@@ -227,7 +210,6 @@ def digest(*arguments: Any) -> str:
 
 
 def file_checksum(path: Path) -> str:
-    """Return a file's SHA-256 in hexadecimal digits."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
@@ -244,7 +226,7 @@ class Files:
     plots: tuple[str, ...]
     fresh: bool  # whether the result is to be computed: then tables and pictures are made again
     units: str = ""  # of `--units`: tables and pictures in these have them in their names
-    size: tuple[float, float] | None = None  # shape of the pictures
+    size: tuple[float, ...] | None = None  # shape of the pictures
     over: str = ""  # suffix of the pictures' names, where other data lie over the result
 
     @classmethod
@@ -264,19 +246,14 @@ class Files:
 
             resumed = journal_path(result, anew=True).exists()
             fresh = arguments.force or resumed or not result.exists()
-        units = str(arguments.read_units()).replace(", ", "-").replace("/", "_")
-        text = getattr(arguments, "size", None)
-        size = SIZE("--size", text) if text else None
-        files = cls(
-            result, formats, plots, fresh, units, (size[0], size[1]) if size else None, over
-        )
+        chosen = str(arguments.read_units()).replace(", ", "-").replace("/", "_")
+        size = SIZE("--size", arguments.size) if arguments.size else None
+        files = cls(result, formats, plots, fresh, chosen, size, over)
         others = [*files.table_paths(), *files.picture_paths()]
         existing = [path for path in others if existing_files(path)]
         if store is not None and existing and not result.exists():
-            raise InputError(
-                f"{existing[0]} already exists but {result.name} does not; "
-                "choose another --store or delete it"
-            )
+            text = f"{existing[0]} already exists but {result.name} does not"
+            raise InputError(f"{text}; choose another --store or delete it")
         return files
 
     def beside(self, *endings: str) -> Path:
@@ -284,19 +261,14 @@ class Files:
         return self.result.with_stem("_".join(filter(None, [self.result.stem, *endings])))
 
     def table_paths(self) -> list[Path]:
-        """Return the paths of the result's tables: their names have the display units."""
         table = self.beside(self.units)
         return [table.with_suffix(f".{ending}") for ending in self.formats if ending != "nc"]
 
     def picture_paths(self, *endings: str) -> list[Path]:
         """Return the paths of a picture: its name has units and overlay."""
-        size = f"{self.size[0]:g}-{self.size[1]:g}" if self.size else ""
+        size = "{:g}-{:g}".format(*self.size) if self.size else ""
         picture = self.beside(self.units, self.over, *endings, size)
         return [picture.with_suffix(f".{ending}") for ending in self.plots]
-
-    def lacks_pictures(self) -> bool:
-        """Return whether a picture has to be drawn: the result is new or a picture is missing."""
-        return any(self.fresh or not path.exists() for path in self.picture_paths())
 
     def write(self, data: xr.Dataset, draw: Callable[[], Any] | None = None) -> None:
         """Write missing tables and pictures next to the NetCDF file; print all paths."""
@@ -305,8 +277,7 @@ class Files:
         print(f"{self.result}{'' if self.fresh else ': complete already'}")
         for path in self.table_paths():
             existing = [] if self.fresh else existing_files(path)
-            for file in existing or sorted(write(data, path)):
-                print(file)
+            print(*(existing or sorted(write(data, path))), sep="\n")
         if draw is not None:
             self.write_pictures(draw)
 
@@ -319,11 +290,20 @@ class Files:
 
             figure, dpi = draw(), {}
             if self.size:
-                figure = for_slides(figure, self.size)
+                figure = for_slides(figure, (self.size[0], self.size[1]))
                 dpi = {"dpi": figure.dpi}
             save(figure, paths[0].with_suffix(""), [path.suffix[1:] for path in missing], **dpi)
         for path in paths:
             print(path)
+
+
+def write_result(files: Files, data: xr.Dataset) -> None:
+    """Write the NetCDF file of a result that was not stored while it was computed."""
+    from ..files import open_folder
+    from ..running.store import write_netcdf
+
+    open_folder(files.result.parent)
+    write_netcdf(data, files.result)
 
 
 @contextmanager
@@ -349,7 +329,5 @@ def importing_matplotlib(needed: bool) -> Iterator[None]:
 
 def existing_files(path: Path) -> list[Path]:
     """Return the existing files of a table that may be several: ``x.csv``, ``x.eta.csv``."""
-    from ..files import escape_glob
-
     several = path.parent.glob(f"{escape_glob(path.stem)}.*{path.suffix}")
     return [*([path] if path.exists() else []), *sorted(several)]

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import orchestrate
 
 from ..errors import InputError
 from ..lazy import xr
 from .command import Command, option, option_names
-from .grammar import parse_changes, read_earlier_result
-from .options import OfStored
+from .grammar import read_earlier_result
+from .options import OfStored, print_difference, structure_of
 from .output import HowRun, InColumns, InFolder, InUnits, Reading, check_output
-from .stored import print_difference, structure_of
-
-if TYPE_CHECKING:
-    from ..model import Structure
 
 
 class Build(Command):
@@ -42,10 +40,7 @@ class Build(Command):
     )
     examples = """
   {program} build
-  {program} build --folder /tmp/fmus
-  {program} build --platforms all
-  {program} build --plain
-  {program} build --sources-only"""
+  {program} build --folder /tmp/fmus --platforms all"""
 
     def __call__(self) -> None:
         from ..fmu import FORMS, PLAIN_FORMS, build, build_libraries, build_web_kernels, sources_of
@@ -93,13 +88,11 @@ class Explore(OfStored, InColumns, Reading, InUnits, Command):
     def __call__(self) -> None:
         from ..explorer.page import explore
 
-        record, branches, drawn = self.read_record(), None, None
+        record, branches = self.read_record(), None
         if self.branches is not None:
             branches = read_earlier_result("--branches", self.branches)
-            drawn = structure_of("--branches", self.branches, branches)
-        data = self.read_diagram(drawn)
         page = explore(
-            data,
+            self.read_diagram(branches),
             output=self.output,
             branches=branches,
             record=record,
@@ -113,32 +106,28 @@ class Explore(OfStored, InColumns, Reading, InUnits, Command):
             webbrowser.open(page.resolve().as_uri())
 
     def read_record(self) -> xr.Dataset | None:
-        """Read the file of ``--record``; None without one."""
-        from .. import read_record
-
         reading = self.given(InColumns, Reading)
-        if self.record is None:
-            if reading:
-                raise InputError(f"{option_names(list(reading)[:1])}: expected only with --record")
-            return None
-        return read_record(self.record, **reading)
+        if self.record is not None:
+            return orchestrate.read_record(self.record, **reading)
+        if reading:
+            raise InputError(f"{option_names(list(reading)[:1])}: expected only with --record")
+        return None
 
-    def read_diagram(self, drawn: Structure | None) -> Any:
+    def read_diagram(self, branches: xr.Dataset | None) -> Any:
         """Return the sweep of RESULT, or the structure: given, of ``--branches``, or usual."""
-        data: Any
         if self.result is not None:
             if self.set or self.structure:
                 raise InputError(f"{self.result} with --structure or --set: expected one of them")
             data = read_earlier_result("RESULT", self.result)
-            structure = structure_of("RESULT", self.result, data) if drawn else None
-        elif drawn and not self.structure:
-            data = structure = drawn.replace(**parse_changes(self.set))
-        else:
-            self.structure = self.structure or "paper"
-            data = structure = self.read_structure()
-        if self.branches and drawn and structure:
-            print_difference("--branches", self.branches, drawn, structure)
-        return data
+            if branches is not None:
+                drawn = structure_of("--branches", self.branches, branches)
+                structure = structure_of("RESULT", self.result, data)
+                print_difference("--branches", self.branches, drawn, structure)
+            return data
+        if branches is not None:
+            return self.structure_like("--branches", self.branches, branches)
+        self.structure = self.structure or "paper"
+        return self.read_structure()
 
 
 class Report(InUnits, InFolder, Command):
@@ -157,8 +146,6 @@ class Report(InUnits, InFolder, Command):
   {program} report results/map.nc results/resonance.nc --output study"""
 
     def __call__(self) -> None:
-        import orchestrate
-
         from ..files import open_folder
 
         check_output(self.output)
@@ -169,7 +156,6 @@ class Report(InUnits, InFolder, Command):
 
 
 def claim_lines(verdicts: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the verdicts of claims and regions, a line each."""
     for row in verdicts["claims"]:
         text, printed = row["text"], row["printed"]
         verdict = f"{row['section']:4} {row['verdict']:7}"
@@ -211,8 +197,5 @@ Repeat the command to resume an interrupted run. Finished data is left as it is.
         figures = None if self.figures is None else self.figures.split(",")
         resolution = QUICK if self.quick else FULL
         outcome = reproduce(output, resolution, figures, self.running())
-        for line in claim_lines(outcome.found):
-            print(line)
-        for picture in outcome.pictures.values():
-            print(picture)
-        print(outcome.report)
+        lines = [*claim_lines(outcome.found), *outcome.pictures.values(), outcome.report]
+        print(*lines, sep="\n")

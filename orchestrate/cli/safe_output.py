@@ -26,7 +26,6 @@ class SafeStream:
         return len(text)
 
     def flush(self) -> None:
-        """Flush the stream; do nothing if it has failed."""
         self._call_unless_failed("flush")
 
     def _call_unless_failed(self, name: str, *arguments: object) -> None:
@@ -42,7 +41,6 @@ class SafeStream:
                 self.error = error
 
     def __getattr__(self, name: str) -> Any:
-        """Return all other attributes of the wrapped stream."""
         return getattr(self._stream, name)
 
     def detach(self) -> None:

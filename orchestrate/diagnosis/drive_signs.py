@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,8 +24,15 @@ def is_drive_run(data: object) -> bool:
     )
 
 
-def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> tuple[dict[str, float], dict[str, float]]:
-    """Compute fall of the jump voltage and extra power against the sound beam, and errors."""
+class DriveSigns(NamedTuple):
+    """Signs of a run against that of the sound beam, relative, or their errors; NaN: unknown."""
+
+    jump_voltage_fall: float
+    extra_power: float
+
+
+def signs_against_sound(run: xr.Dataset, sound: xr.Dataset) -> tuple[DriveSigns, DriveSigns]:
+    """Compute the signs of a run against that of the sound beam, and their errors."""
     first, second = jump_voltage(run), jump_voltage(sound)
     fall = 1.0 - first / second
     lag = sum(  # of the ramps; NaN where it is not known
@@ -32,10 +40,7 @@ def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> tuple[dict[str, float], d
         for one, voltage in ((run, first), (sound, second))
     )
     power, scatter = extra_power(run, sound)
-    names = "jump_voltage_fall", "extra_power"
-    return dict(zip(names, (fall, power), strict=True)), dict(
-        zip(names, (lag, scatter), strict=True)
-    )
+    return DriveSigns(fall, power), DriveSigns(lag, scatter)
 
 
 def jump_voltage(run: xr.Dataset) -> float:

@@ -18,7 +18,7 @@ from ..model import Structure
 from ..model.arguments import checked_integer
 from ..response.labels import flags, variable
 from ..running.job import refuse_family
-from .drive_signs import drive_signs, is_drive_run
+from .drive_signs import is_drive_run, signs_against_sound
 from .indicators import INDICATORS
 from .order_windows import sensor_channels
 from .response_signs import (
@@ -282,9 +282,10 @@ def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset], factor: fl
     """Compute the signs of a run on a weak drive, against that of the sound beam."""
     if len(others) != 1 or not is_drive_run(others[0]):
         raise InputError("other: expected the run of the sound beam on the same drive")
-    own, lags = drive_signs(run, others[0])
-    values = {name: np.array([own.get(name, np.nan)]) for name in INDICATORS}
-    floors = {name: np.array([lags.get(name, np.nan)]) for name in INDICATORS}
+    values, floors = (
+        {name: np.array([getattr(signs, name, np.nan)]) for name in INDICATORS}
+        for signs in signs_against_sound(run, others[0])
+    )
     shown = 0.0 * np.stack(list(floors.values()))[None]  # against itself; an unknown floor stays so
     title = str(run.attrs.get("title", "run"))
     described = {"seeds": "none", "sound_from": "the run of the sound beam"}

@@ -154,7 +154,7 @@ def border(
     ----------
     structure : Structure
     start : xarray.Dataset
-        A branch of :func:`orchestrate.branch`.
+        A result of :func:`orchestrate.branch`.
     bifurcation : int
         Number of one of its bifurcations: a fold, period doubling, Neimark-Sacker bifurcation,
         grazing or earlier release. Of a structure that a preload holds together the earlier release

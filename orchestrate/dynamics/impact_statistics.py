@@ -18,7 +18,7 @@ from ..response.questions import Values
 from ..response.signatures import as_given, question
 from ..running.job import Table
 from ..running.options import Running
-from .following import FollowedResponse, ImpactsQuestion
+from .impacts_after_transient import FollowedResponse, ImpactsQuestion
 from .lyapunov import exponent_of
 from .variational import deviations, period_in_tau
 

@@ -24,7 +24,7 @@ from ..response.signatures import as_given, question
 from ..running.job import Table
 from ..running.options import Running
 from .closed_form import FREE, INNER, ClosedForm
-from .following import FollowedResponse, ImpactsQuestion
+from .impacts_after_transient import FollowedResponse, ImpactsQuestion
 from .lyapunov_spectrum import (
     STATES,
     kaplan_yorke_dimension,

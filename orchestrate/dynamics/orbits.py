@@ -231,17 +231,20 @@ def orbit(
     period : int
         Excitation periods after which the orbit closes.
     guess : array_like of 4 floats, or mapping, optional
-        What Newton's method begins with: a state x1, x2 in m, v1, v2 in m/s at phase 0, from which
-        the FMU is run; or a mapping with ``impact_time``, times of all impacts in s, of which the
-        distances matter most; or an orbit found before, at another parameter. By default
+        What Newton's method begins with: a state x1, x2 in m, v1, v2 in m/s at phase 0, or a result
+        that this function has found at another parameter. Or, in Python, a mapping with
+        ``impact_time``, times of all impacts in s, of which the distances matter most. By default
         the closest returns of the response from rest, then orbits with a single impact: the first
         stable orbit among what is found, or the first.
     box_acceleration, force1, force2 : float
         As in :func:`orchestrate.simulate`: a constant acceleration of the box in m/s2, amplitudes
         of forces on the masses in N, in phase with the box.
-    transient, search, tries : int
-        Periods of the response that are dropped and searched for close returns, and how many of
-        these are tried, where there is no guess.
+    transient : int
+        Periods of the response that are dropped where there is no guess.
+    search : int
+        Periods after these that are searched for close returns.
+    tries : int
+        Close returns that are tried.
     **running
         ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.
 

@@ -38,10 +38,10 @@ from ..response.respond import DecidedResponse, Response, decisions_from, respon
 from ..response.response_loop import LoopSettings, response_loop
 from ..response.signatures import as_given, question
 from ..response.sweep import HOW_DECIDED
-from ..running.job import FAMILY, Fmus, Table, plain
+from ..running.job import FAMILY, Chunk, Fmus, Table, plain
 from ..running.options import RunOptions
 from .clusters import transient_periods
-from .following import follow_impacts
+from .impacts_after_transient import follow_impacts
 from .lyapunov import SAYS, WORDS, classify_exponents, exponent_of, wander_floor
 
 FIELDS = {
@@ -88,6 +88,13 @@ class MapJob(Question):
 
     def items(self) -> Sequence[Point]:
         return self.points
+
+    def chunks(self) -> list[Chunk]:
+        """Split the points into 16 parts at least, so that slow ones are stored soon as well."""
+        count = self.count()
+        size = min(self.chunk_size, -(-count // 16))
+        starts = enumerate(range(0, count, size))
+        return [Chunk(i, first, min(first + size, count), None) for i, first in starts]
 
     def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
         """Compute a chunk of the map's points by the FMU; return them as a table."""

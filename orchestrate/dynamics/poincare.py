@@ -20,7 +20,7 @@ from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
-from .following import FollowedResponse, state_after_transient
+from .impacts_after_transient import FollowedResponse, state_after_transient
 from .variational import deviations, nondimensional_impacts
 
 COLUMNS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel")

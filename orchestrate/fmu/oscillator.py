@@ -108,7 +108,7 @@ def library() -> Any:
     loaded.sample_evenly.restype = loaded.sample_periods.restype = c_bool
     loaded.nearest_state.argtypes = [c_void_p, c_size_t, c_double, c_double, c_void_p, c_void_p]
     loaded.nearest_state.restype = c_double
-    for name in ("decide_multiplicity", "find_repetition", "describe_linear_response"):
+    for name in ("decide_multiplicity", "find_repetition", "rest_and_threshold"):
         getattr(loaded, name).argtypes = [c_void_p]
     return loaded
 
@@ -202,7 +202,7 @@ def traits(
     """
     numbers = (getattr(structure, name) for name in TRAITS)
     memory = (c_double * len(TRAIT_NAMES))(*numbers, structure.omega, frequency, amplitude, pushed)
-    library().describe_linear_response(memory)
+    library().rest_and_threshold(memory)
     return memory
 
 

@@ -16,7 +16,7 @@ from ..files import check_path_encoding, reason, write_whole
 from ..lazy import xr
 from ..reader_process import read_in_process
 from ..running.netcdf import check_size, stored_size
-from .analysis.channels import CHANNELS as ACCELERATIONS
+from .analysis.channels import NAMES_IN_RESULTS
 from .channel_setup import Channels, ChannelSetup
 from .columns import Column, Columns, converted_channels
 from .conversion import SMALLEST, ByChannel, number_by_channel
@@ -233,7 +233,7 @@ def read_netcdf(path: Path) -> Columns:
                     "expected what sensors read of it: shake --sensor HZ, or measure, writes that"
                 )
                 raise InputError(f"{path}: simulated accelerations leave out the impacts; {text}")
-            names = {"time": "time", **{stored: name for name, stored in ACCELERATIONS.items()}}
+            names = {"time": "time", **{stored: name for name, stored in NAMES_IN_RESULTS.items()}}
             names |= {name: name for name in FORCES}
         columns = [
             Column(

@@ -34,9 +34,11 @@ class SteppedSine(Sine):
     acceleration : float or sequence of (float, float)
         Peak acceleration, m/s2, or its profile as break points (Hz, m/s2), as for
         :class:`orchestrate.SweptSine`.
-    settle_cycles, measured_cycles : int
-        At each frequency: cycles before what is measured, and those measured. A free vibration with
-        a damping ratio of zeta falls to a thousandth within ``1.1/zeta`` cycles.
+    settle_cycles : int
+        Cycles at each frequency before what is measured. A free vibration with a damping ratio of
+        zeta falls to a thousandth within ``1.1/zeta`` cycles.
+    measured_cycles : int
+        Cycles at each frequency that are measured.
 
     Examples
     --------

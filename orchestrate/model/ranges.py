@@ -220,8 +220,13 @@ RATIO_QUANTITIES = {
 def expected_one_of(name: str, known: Iterable[str]) -> str:
     """Return error text "expected one of ..." with the known names and the closest match."""
     names = list(known)
-    near = closest(name, names)
-    return f"expected one of {', '.join(names)}" + (f" (did you mean {near}?)" if near else "")
+    return f"expected one of {', '.join(names)}{did_you_mean(closest(name, names))}"
+
+
+def did_you_mean(*names: str) -> str:
+    """Return the words that ask for what is probably meant; nothing without a name."""
+    near = " or ".join(filter(None, names))
+    return f"; did you mean {near}?" if near else ""
 
 
 def closest(name: str, names: Iterable[str]) -> str:

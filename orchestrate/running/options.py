@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypedDict
 
 from ..errors import InputError
 from ..model.arguments import checked_integer, checked_path
-from ..model.ranges import checked_flag, closest
+from ..model.ranges import checked_flag, closest, did_you_mean
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -126,9 +126,8 @@ def check_keywords(names: Iterable[str], own: Iterable[str] = ()) -> None:
     known = [*own, *running]
     for name in names:
         if name not in known:
-            near = OF_COMMANDS.get(name) or closest(name, known)
-            meant = f"did you mean {near}? " if near else ""
+            meant = did_you_mean(OF_COMMANDS.get(name) or closest(name, known))
             raise TypeError(
-                f"unexpected keyword argument {name!r}: {meant}expected the function's own or one "
-                f"of {', '.join(running)}"
+                f"unexpected keyword argument {name!r}: expected the function's own or one of "
+                f"{', '.join(running)}{meant}"
             )

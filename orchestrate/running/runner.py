@@ -78,6 +78,10 @@ class Runner:
                 self.compute_all()
             results = ((name, state.result) for name, state in self.states.items())
             return {name: result for name, result in results if result is not None}
+        except KeyboardInterrupt as ended:
+            kept = "what was stored is kept: the same call resumes" if self.options.store else ""
+            ended.add_note(kept or "nothing was stored; with store= the same call would resume")
+            raise
         finally:
             for future in self.futures:  # of a call that is interrupted or fails
                 future.cancel()

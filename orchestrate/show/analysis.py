@@ -20,7 +20,7 @@ from .style import draw_line, make_panels, set_title, styled, use_plain_log
 
 Results = dict[str, xr.Dataset]  # by label
 Reader = Callable[[xr.Dataset], xr.DataArray]
-CHANNELS = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
+CHANNEL_TITLES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 COLOURS = (BLUE, RED, BLACK, ORANGE, GREEN, PURPLE)
 FRF_OVER = {"1/kg": "force in 1/kg"}  # by the unit of the magnitude
 PHASE = {"ylim": (-280.0, 100.0), "yticks": (-270, -180, -90, 0, 90)}  # an axis in degrees
@@ -61,7 +61,7 @@ def frequency_label(results: Results, words: str = "frequency") -> str:
 def channels_in(results: Results) -> list[str]:
     """Return the names of the channels that any of the records has, the base first."""
     known = {str(name) for data in results.values() for name in data.channel.values}
-    return [name for name in CHANNELS if name in known]
+    return [name for name in CHANNEL_TITLES if name in known]
 
 
 def iterate_records(results: Results, channel: str) -> Iterator[tuple[str, xr.Dataset, str]]:
@@ -157,7 +157,7 @@ def draw_frequency_rows(results: Results, rows: Sequence[Row], across: str) -> F
                     curve = row.values(part)
                     draw_line(plane, curve.frequency, curve, style, colour, 1.0)
                     values.setdefault(label, []).append(curve.values)
-        column[0].set_title(CHANNELS[channel])
+        column[0].set_title(CHANNEL_TITLES[channel])
         column[-1].set_xlabel(frequency_label(results, across))
     for plane, row, values in zip(axes[:: len(names)], rows, shown, strict=True):
         plane.set_ylabel(row.label)
@@ -197,7 +197,7 @@ def draw_psd(results: Results) -> Figure:
             draw_line(plane, data.frequency, data.psd, "-", colour, 1.0, words)
             shown.append(data.psd.values[1:])
         limit_log_axis(plane, shown)
-        plane.set_title(CHANNELS[channel])
+        plane.set_title(CHANNEL_TITLES[channel])
         plane.set_ylabel(f"spectral density\nin {typeset_array_unit(first_of(results).psd)}")
         plane.legend(loc="upper right")
     axes[-1].set_xlabel(frequency_label(results))
@@ -248,7 +248,7 @@ def draw_spectrograms(results: Results) -> Figure:
             limits: Any = {"vmin": -80.0, "vmax": 0.0, "rasterized": True}
             mesh = plane.pcolormesh(data.time, data.frequency, levels.T, **limits)
             plane.grid(visible=False)
-            plane.set_title(", ".join(filter(None, [CHANNELS[channel], label])))
+            plane.set_title(", ".join(filter(None, [CHANNEL_TITLES[channel], label])))
             if column == 0:
                 plane.set_ylabel(frequency_label(results))
             if row == len(names) - 1:
@@ -269,7 +269,7 @@ def draw_shock_spectra(results: Results) -> Figure:
             plane.loglog(data.frequency, data.maximax, color=colour, linewidth=1.4)
             plane.loglog(data.frequency, data.residual, ":", color=colour, linewidth=0.7)
             shown.append(data.maximax.values)
-        plane.set_title(f"{CHANNELS[channel]} (dotted: after the record)")
+        plane.set_title(f"{CHANNEL_TITLES[channel]} (dotted: after the record)")
         plane.set_xlabel(frequency_label(results, "natural frequency"))
     first = first_of(results)
     unit, damping = typeset_array_unit(first.maximax), f"{100.0 * float(first.damping):g} %"
@@ -296,7 +296,7 @@ def draw_densities(results: Results) -> Figure:
             over = (data.acceleration - data["mean"]) / sigma
             draw_line(plane, over, density, "-", colour, 1.1, words)
         plane.set_ylim(1e-5, 20.0)
-        plane.set_title(CHANNELS[channel])
+        plane.set_title(CHANNEL_TITLES[channel])
         plane.set_xlabel("acceleration in standard deviations")
         plane.legend(loc="upper right", fontsize=7)
     axes[0].set_ylabel("probability density")

@@ -18,7 +18,7 @@ from .labels import plain_title
 from .scales import label_with_unit, typeset_array_unit
 from .style import draw_line, legend_below, make_panels, styled, use_plain_log
 
-CHANNELS = {"acceleration1": "sensor 1", "acceleration2": "sensor 2", "motor": "motor"}
+SENSOR_TITLES = {"acceleration1": "sensor 1", "acceleration2": "sensor 2", "motor": "motor"}
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY)
 FITS = (BLUE, ORANGE, GREEN)  # of the delaminated, of the best sound structure, of the bonded one
 PARTED, BONDED = "delaminated", "bonded"  # names of hypotheses begin so
@@ -40,7 +40,7 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     limit = float(data.attrs["factor"])
     for number, channel in enumerate(channels):
         positions = signs + share * (number - 0.5 * (len(channels) - 1))
-        values, label = ratio.sel(channel=channel).values, CHANNELS.get(channel, channel)
+        values, label = ratio.sel(channel=channel).values, SENSOR_TITLES.get(channel, channel)
         colour = COLOURS[number % len(COLOURS)]
         axes.barh(positions, np.nan_to_num(values), share, color=colour, label=label)
         write_values(axes, positions, values, data.value.sel(channel=channel).values, limit)
@@ -126,7 +126,7 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
         if place % columns == 0:
             plane.set_ylabel(f"order {float(at.order):g}\nin {typeset_array_unit(data.measured)}")
         if place < columns:
-            plane.set_title(CHANNELS.get(channels[place], channels[place]))
+            plane.set_title(SENSOR_TITLES.get(channels[place], channels[place]))
     for plane in axes[-columns:]:
         plane.set_xlabel(label_with_unit("frequency of the excitation", data.frequency))
     legend_below(figure, axes, 3)

@@ -17,6 +17,7 @@ from ..errors import InputError
 from ..fmu.description import Description
 from ..fmu.instance import INTEGER_TYPES, REAL_TYPES
 from ..fmu.unit_names import unit_by_name
+from ..model.ranges import did_you_mean
 
 MOTION = ("box_acceleration", "box_velocity", "box_position")  # outputs of a drive
 FORCE = ("box_force", "box_force_1", "box_force_2", "box_force_3")  # inputs: with its derivatives
@@ -169,8 +170,7 @@ def factor_to_si(drive: Description, ours: str, theirs: str, units: Mapping[str,
 
 def near(name: str, known: Iterable[str]) -> str:
     """Return a hint on names that are nearly this one, or nothing."""
-    close = difflib.get_close_matches(name, list(known), 3)
-    return f" (did you mean {' or '.join(close)}?)" if close else ""
+    return did_you_mean(*difflib.get_close_matches(name, list(known), 3))
 
 
 def proposals(drive: Description) -> dict[str, str]:

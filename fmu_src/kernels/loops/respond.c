@@ -334,4 +334,4 @@ EXPORT double nearest_state(const double *states, size_t count, double frequency
     return memory[DEVIATION];
 }
 
-EXPORT int describe_linear_response(double *memory) { return kernel_describe(memory, 0.0); }
+EXPORT int rest_and_threshold(double *memory) { return kernel_rest_and_threshold(memory, 0.0); }

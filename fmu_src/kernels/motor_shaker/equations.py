@@ -4,9 +4,9 @@ A mass matrix of two rows, the motor's circuit, and the energies they exchange.
 
 With S = unbalance_mass unbalance_radius, position y, angle phi, speed w, current i:
 
-    M y'' + S cos(phi) w' = S w^2 sin(phi) - c y' - k y + F(t)
-    S cos(phi) y'' + J w' = K i
-    L i' = U - R i - K w,   or i = (U - K w) / R where L = 0
+    (a)  M y'' + S cos(phi) w' = S w^2 sin(phi) - c y' - k y + F(t)
+    (b)  S cos(phi) y'' + J w' = K i
+    (c)  L i' = U - R i - K w,   or i = (U - K w) / R where L = 0
 """
 
 from ..numerics.elementary import TWO_PI, sincos_turns
@@ -39,12 +39,12 @@ def force_now(m):
 
 
 def static_current(m, speed):
-    """Return the current without inductance, A."""
+    """Return the current without inductance, A: (c) with L = 0."""
     return (m[at.VOLTAGE] - m[at.MOTOR_CONSTANT] * speed) / m[at.ARMATURE_RESISTANCE]
 
 
 def accelerations(m, sine, cosine, p, q):
-    """Solve the mass matrix: ``M a + S cos(phi) b = p``, ``S cos(phi) a + J b = q``."""
+    """Return y'' and w' that (a) and (b) have for right-hand sides ``p`` and ``q``."""
     mass, inertia, coupling = m[at.BOX_MASS], m[at.ROTOR_INERTIA], m[at.UNBALANCE] * cosine
     unbalance = m[at.UNBALANCE]
     # M J - S^2 cos^2 = (M J - S^2) + S^2 sin^2, without cancelling
@@ -73,12 +73,13 @@ def compute_rates(m, stage, t):
     current_rate = 0.0
     if m[at.ARMATURE_INDUCTANCE] > 0.0:
         drop = m[at.VOLTAGE] - m[at.ARMATURE_RESISTANCE] * current - m[at.MOTOR_CONSTANT] * speed
-        current_rate = drop / m[at.ARMATURE_INDUCTANCE]
+        current_rate = drop / m[at.ARMATURE_INDUCTANCE]  # (c)
     else:
         current = static_current(m, speed)
-    torque = m[at.MOTOR_CONSTANT] * current
+    torque = m[at.MOTOR_CONSTANT] * current  # right-hand side of (b)
     pushed = force(m, t)
     damped = m[at.BOX_DAMPING] * velocity
+    # right-hand side of (a)
     p = m[at.UNBALANCE] * speed * speed * sine - damped - m[at.BOX_STIFFNESS] * position + pushed
     box, rotor = accelerations(m, sine, cosine, p, torque)
     row = at.RATES + stage * at.STATES

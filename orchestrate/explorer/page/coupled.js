@@ -1,6 +1,6 @@
 /** The structure and the motor that shakes it, by the compiled loop of the project's master. */
 
-import { Rooms } from "./kernel.js";
+import { Buffers } from "./kernel.js";
 
 /**
  * @typedef {"oscillator" | "drive"} Side
@@ -19,18 +19,18 @@ export class Coupled {
   constructor(library, start, run) {
     this.library = library;
     this.start = start;
-    this.rooms = new Rooms(library);
+    this.buffers = new Buffers(library);
     const { pair, columns, names } = start;
-    this.kept = { oscillator: this.rooms.array("u32", 1), drive: this.rooms.array("u32", 1) };
-    const scratch = this.rooms.array("f64", 2 * names.drive.inputs.length);
-    this.pair = this.rooms.structure("Pair", { ...pair, scratch, ...this.sideOf("oscillator"), ...this.sideOf("drive") });
+    this.kept = { oscillator: this.buffers.array("u32", 1), drive: this.buffers.array("u32", 1) };
+    const scratch = this.buffers.array("f64", 2 * names.drive.inputs.length);
+    this.pair = this.buffers.structure("Pair", { ...pair, scratch, ...this.sideOf("oscillator"), ...this.sideOf("drive") });
     for (const side of SIDES) {
       if (!library.calls[`${MODELS[side]}_open_fmu`](this.place(side), 0)) throw new Error("out of memory");
       if (run) this.restore(side, run[side]);
       else this.begin(side, start[side]);
     }
-    this.row = this.rooms.array("f64", run?.row ?? columns.map(() => NaN));
-    this.last = this.rooms.array("f64", run?.last ?? 3);
+    this.row = this.buffers.array("f64", run?.row ?? columns.map(() => NaN));
+    this.last = this.buffers.array("f64", run?.last ?? 3);
     if (!run) this.beginRow(columns.indexOf("x1"), names.oscillator.outputs);
   }
 
@@ -39,7 +39,7 @@ export class Coupled {
       this.call(side, "fmi3FreeFMUState", this.kept[side]);
       this.library.calls[`${MODELS[side]}_close_fmu`](this.place(side));
     }
-    this.rooms.free();
+    this.buffers.free();
   }
 
   /** Fields of a side. @param {Side} side */
@@ -48,9 +48,9 @@ export class Coupled {
     const { inputs, outputs } = this.start.names[side];
     const [save, restore, release] = this.library.view("u32", this.library.places[`${model}_state_functions`].value, 3);
     const fields = {
-      ...{ save, restore, release, kept: this.kept[side], answer: this.rooms.structure("StepAnswer", {}) },
-      ...{ inputs: this.rooms.references(inputs, model), outputs: this.rooms.references(outputs, model) },
-      impacts: this.rooms.references(side === "oscillator" ? ["impact_count"] : [], model),
+      ...{ save, restore, release, kept: this.kept[side], answer: this.buffers.structure("StepAnswer", {}) },
+      ...{ inputs: this.buffers.references(inputs, model), outputs: this.buffers.references(outputs, model) },
+      impacts: this.buffers.references(side === "oscillator" ? ["impact_count"] : [], model),
     };
     return Object.fromEntries(Object.entries(fields).map(([name, value]) => [`${side}.${name}`, value]));
   }
@@ -69,11 +69,11 @@ export class Coupled {
 
   /** @param {Side} side @param {Record<string, number>} values */
   begin(side, values) {
-    const { rooms, library } = this;
+    const { buffers, library } = this;
     const [booleans, reals] = [true, false].map((is) => Object.keys(values).filter((name) => library.loops.booleans.includes(name) === is));
     for (const [type, kind, names] of /** @type {[string, Kind, string[]][]} */ ([["Float64", "f64", reals], ["Boolean", "u8", booleans]])) {
-      const numbers = rooms.array(kind, names.map((name) => values[name]));
-      this.call(side, `fmi3Set${type}`, rooms.references(names, MODELS[side]), names.length, numbers, names.length);
+      const numbers = buffers.array(kind, names.map((name) => values[name]));
+      this.call(side, `fmi3Set${type}`, buffers.references(names, MODELS[side]), names.length, numbers, names.length);
     }
     this.call(side, "fmi3EnterInitializationMode", 0, 0, 0, 0, 0);
     this.call(side, "fmi3ExitInitializationMode");
@@ -82,23 +82,23 @@ export class Coupled {
   /** The first row: of the step nothing, and the motion; the loop looks at the drive. @param {number} place @param {string[]} outputs */
   beginRow(place, outputs) {
     this.library.view("f64", this.row, place).fill(0);
-    this.call("oscillator", "fmi3GetFloat64", this.rooms.references(outputs), outputs.length, this.row + 8 * place, outputs.length);
+    this.call("oscillator", "fmi3GetFloat64", this.buffers.references(outputs), outputs.length, this.row + 8 * place, outputs.length);
   }
 
   /** @param {Side} side @param {Uint8Array} bytes */
   restore(side, bytes) {
-    this.call(side, "fmi3DeserializeFMUState", this.rooms.array("u8", bytes), bytes.length, this.kept[side]);
+    this.call(side, "fmi3DeserializeFMUState", this.buffers.array("u8", bytes), bytes.length, this.kept[side]);
     this.call(side, "fmi3SetFMUState", this.library.view("u32", this.kept[side], 1)[0]);
   }
 
   /** @param {Side} side */
   save(side) {
-    const size = this.rooms.array("u32", 1);
+    const size = this.buffers.array("u32", 1);
     this.call(side, "fmi3GetFMUState", this.kept[side]);
     const [state] = this.library.view("u32", this.kept[side], 1);
     this.call(side, "fmi3SerializedFMUStateSize", state, size);
     const [count] = this.library.view("u32", size, 1);
-    const bytes = this.rooms.take(count);
+    const bytes = this.buffers.take(count);
     this.call(side, "fmi3SerializeFMUState", state, bytes, count);
     return new Uint8Array(/** @type {Uint8Array} */ (this.library.view("u8", bytes, count)));
   }
@@ -117,14 +117,14 @@ export class Coupled {
 
   /** Steps under given voltages; the revolutions that they complete. @param {number[]} voltages */
   run(voltages) {
-    const { library, rooms, start, row } = this;
+    const { library, buffers, start, row } = this;
     const [width, count] = [start.columns.length, voltages.length];
-    const rows = rooms.array("f64", (1 + count) * width);
+    const rows = buffers.array("f64", (1 + count) * width);
     /** @type {Float64Array} */ (library.view("f64", rows, width)).set(library.view("f64", row, width));
-    const ends = rooms.array("i32", count);
-    const done = library.calls.couple(this.pair, row, rows, ends, rooms.array("f64", voltages), count, start.h);
+    const ends = buffers.array("i32", count);
+    const done = library.calls.couple(this.pair, row, rows, ends, buffers.array("f64", voltages), count, start.h);
     if (done < count) throw new Error(SIDES.map((side) => library.message(MODELS[side])).join(" ").trim() || "the coupled run stopped");
-    const found = rooms.array("f64", 4 * count);
+    const found = buffers.array("f64", 4 * count);
     const turns = library.calls.find_revolutions(rows, width, 1, ends, count, this.last, found);
     const [table, voltage] = [this.numbers(rows, (1 + count) * width), start.columns.indexOf("voltage")];
     return Array.from({ length: turns }, (_, i) => {

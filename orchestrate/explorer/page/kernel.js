@@ -47,8 +47,8 @@ export class Library {
   }
 }
 
-/** Room in a library's memory: arrays and structures of C, freed together. */
-export class Rooms {
+/** Arrays and structures of C in a library's memory, freed together. */
+export class Buffers {
   /** @param {Library} library */
   constructor(library) {
     this.library = library;
@@ -100,7 +100,7 @@ export class Rooms {
     /** @type {Record<string, number>} */
     const known = { ...structure, omega: omegaOf(structure), frequency, amplitude, pushed };
     const row = this.array("f64", loops.traits.map((name) => known[name] ?? 0));
-    calls.describe_linear_response(row);
+    calls.rest_and_threshold(row);
     return row;
   }
 
@@ -122,12 +122,12 @@ export class Oscillator {
   /** @param {Library} library @param {boolean} [stops] whether steps end at its events */
   constructor(library, stops = false) {
     this.library = library;
-    this.rooms = new Rooms(library);
+    this.buffers = new Buffers(library);
     const { reals, booleans, read, series, capacity } = library.loops;
-    this.own = this.rooms.structure("OscillatorCalls", {
-      ...{ reals: this.rooms.references(reals), booleans: this.rooms.references(booleans), series: this.rooms.references(series) },
+    this.own = this.buffers.structure("OscillatorCalls", {
+      ...{ reals: this.buffers.references(reals), booleans: this.buffers.references(booleans), series: this.buffers.references(series) },
       ...{ real_count: reals.length, boolean_count: booleans.length, start: reals.indexOf("x1_start") },
-      ...{ series_count: series.length, capacity, kept: this.rooms.array("f64", series.length * capacity) },
+      ...{ series_count: series.length, capacity, kept: this.buffers.array("f64", series.length * capacity) },
       ...Object.fromEntries(read.map((name) => [name, library.variables.oscillator[name]])),
     });
     if (!library.calls.oscillator_open_fmu(this.own, Number(stops))) throw new Error(library.message() || "out of memory");
@@ -135,7 +135,7 @@ export class Oscillator {
 
   close() {
     this.library.calls.oscillator_close_fmu(this.own);
-    this.rooms.free();
+    this.buffers.free();
   }
 
   /** Call a loop until it is done. @param {string} name @param {number[]} numbers @returns {Generator<undefined, void>} it pauses */
@@ -148,28 +148,28 @@ export class Oscillator {
     }
   }
 
-  /** What there is to compute: one response. @param {Rooms} rooms @param {Point} point @param {Iterable<number>} start @param {Record<string, number>} more */
-  task(rooms, point, start, more) {
+  /** What there is to compute: one response. @param {Buffers} buffers @param {Point} point @param {Iterable<number>} start @param {Record<string, number>} more */
+  task(buffers, point, start, more) {
     const { loops } = this.library;
     const { set, reals, booleans } = loops;
     const { structure, frequency, amplitude } = point;
     const pushes = Object.fromEntries(pushesOf(structure, loops));
     /** @type {Record<string, number>} */
     const values = { ...set, ...structure, ...pushes, box_frequency: frequency, box_amplitude: amplitude };
-    return rooms.structure("ResponseTask", {
-      ...{ count: 1, piece: PIECE, traits: rooms.traits(point), starts: rooms.array("f64", Array.from(start)) },
-      reals: rooms.array("f64", reals.map((name) => values[name])),
-      booleans: rooms.array("u8", booleans.map((name) => values[name])),
-      periods: rooms.array("f64", [(2 * Math.PI) / frequency]),
+    return buffers.structure("ResponseTask", {
+      ...{ count: 1, piece: PIECE, traits: buffers.traits(point), starts: buffers.array("f64", Array.from(start)) },
+      reals: buffers.array("f64", reals.map((name) => values[name])),
+      booleans: buffers.array("u8", booleans.map((name) => values[name])),
+      periods: buffers.array("f64", [(2 * Math.PI) / frequency]),
       ...more,
     });
   }
 
   /** Begin at phase 0. @param {Point} point @param {Iterable<number>} start */
   begin(point, start) {
-    const rooms = new Rooms(this.library);
-    const begun = this.library.calls.begin(this.own, this.task(rooms, point, start, {}), 0);
-    rooms.free();
+    const buffers = new Buffers(this.library);
+    const begun = this.library.calls.begin(this.own, this.task(buffers, point, start, {}), 0);
+    buffers.free();
     if (!begun) throw new Error(this.library.message());
   }
 
@@ -182,21 +182,21 @@ export class Oscillator {
    */
   *spectrum(point, first, { periods, points, highest }) {
     const { library } = this;
-    const rooms = new Rooms(library);
+    const buffers = new Buffers(library);
     const [period, count] = [(2 * Math.PI) / point.frequency, periods * points];
     try {
-      const states = rooms.array("f64", 4 * count);
+      const states = buffers.array("f64", 4 * count);
       for (let done = 0; done < periods; done += SAMPLED) {
         const [time, target] = [first + done, first + done + SAMPLED].map((periods) => periods * period);
         if (!library.calls.sample_evenly(this.own, time, target, points * SAMPLED, states + 32 * points * done)) throw new Error(library.message());
         yield;
       }
-      const [memory, amplitudes] = [library.calls.spectrum_size(count), count / 2 + 1].map((size) => rooms.array("f64", size));
+      const [memory, amplitudes] = [library.calls.spectrum_size(count), count / 2 + 1].map((size) => buffers.array("f64", size));
       library.calls.acceleration_spectrum(states, 4, count, periods, point.frequency, point.amplitude, memory, amplitudes);
       const amplitude = new Float64Array(library.view("f64", amplitudes, highest * periods + 1));
       return { order: Float64Array.from(amplitude, (_, line) => line / periods), amplitude };
     } finally {
-      rooms.free();
+      buffers.free();
     }
   }
 
@@ -210,16 +210,16 @@ export class Oscillator {
    */
   *respond(point, start, { transient, samples, tolerance }, decides) {
     const { calls, loops } = this.library;
-    const rooms = new Rooms(this.library);
+    const buffers = new Buffers(this.library);
     try {
       const places = {
-        ...{ states: rooms.array("f64", 4 * samples), ends: rooms.array("f64", 4), largest: rooms.array("f64", 1) },
-        ...{ impacts: rooms.array("f64", 1), counts: rooms.array("i32", loops.counts.length) },
+        ...{ states: buffers.array("f64", 4 * samples), ends: buffers.array("f64", 4), largest: buffers.array("f64", 1) },
+        ...{ impacts: buffers.array("f64", 1), counts: buffers.array("i32", loops.counts.length) },
       };
-      const more = { transients: rooms.array("u32", [transient, 0]), memory: rooms.array("f64", calls.memory_size(samples)) };
+      const more = { transients: buffers.array("u32", [transient, 0]), memory: buffers.array("f64", calls.memory_size(samples)) };
       const asked = { samples, tolerance, decides: Number(decides), ...more, ...places };
-      const task = this.task(rooms, point, start, asked);
-      yield* this.loop("respond", this.own, task, rooms.structure("ResponseProgress", {}), WORK);
+      const task = this.task(buffers, point, start, asked);
+      yield* this.loop("respond", this.own, task, buffers.structure("ResponseProgress", {}), WORK);
       /** @param {number} address @param {number} count */
       const numbers = (address, count) => new Float64Array(this.library.view("f64", address, count));
       const counts = this.library.view("i32", places.counts, loops.counts.length);
@@ -231,7 +231,7 @@ export class Oscillator {
         counts: Object.fromEntries(loops.counts.map((name, i) => [name, counts[i]])),
       };
     } finally {
-      rooms.free();
+      buffers.free();
     }
   }
 
@@ -244,25 +244,25 @@ export class Oscillator {
    * @returns {Generator<undefined, {rows: Float64Array, contact: Uint8Array, impacts: number[][]}>} of each impact its time, what is told, and whether contact begins
    */
   *play(from, times, outputs, told) {
-    const rooms = new Rooms(this.library);
+    const buffers = new Buffers(this.library);
     const width = told.length + 2;
     try {
-      const player = rooms.structure("PlayerCalls", {
-        ...{ outputs: rooms.references(outputs), impact_outputs: rooms.references(told), contact: rooms.references(["in_contact"]) },
+      const player = buffers.structure("PlayerCalls", {
+        ...{ outputs: buffers.references(outputs), impact_outputs: buffers.references(told), contact: buffers.references(["in_contact"]) },
         ...{ output_count: outputs.length, impact_output_count: told.length },
       });
       const { PlayerCalls, PlayProgress } = this.library.loops.structures;
       const fmi = PlayerCalls.fields.inputs[1]; // it comes first
       this.library.view("u8", player, fmi).set(this.library.view("u8", this.own, fmi));
       const places = {
-        rows: rooms.array("f64", outputs.length * times.length),
-        ...{ contacts: rooms.array("u8", times.length), impacts: rooms.array("f64", width * IMPACTS) },
+        rows: buffers.array("f64", outputs.length * times.length),
+        ...{ contacts: buffers.array("u8", times.length), impacts: buffers.array("f64", width * IMPACTS) },
       };
-      const task = rooms.structure("PlayTask", {
-        ...{ nodes: rooms.array("f64", [from, times[times.length - 1]]), samples: rooms.array("f64", times) },
+      const task = buffers.structure("PlayTask", {
+        ...{ nodes: buffers.array("f64", [from, times[times.length - 1]]), samples: buffers.array("f64", times) },
         ...{ piece_count: 1, sample_count: times.length, impact_capacity: IMPACTS, max_steps: WORK, ...places },
       });
-      const progress = rooms.structure("PlayProgress", { time: from });
+      const progress = buffers.structure("PlayProgress", { time: from });
       const kept = PlayProgress.fields.impact[1] / WIDTH.u32;
       /** @type {number[][]} */
       const impacts = [];
@@ -282,7 +282,7 @@ export class Oscillator {
         impacts,
       };
     } finally {
-      rooms.free();
+      buffers.free();
     }
   }
 
@@ -312,15 +312,15 @@ export class Oscillator {
   exponentOf(point, impacts, end) {
     const { calls, loops } = this.library;
     const { blocks, batches, sigmas, wander } = loops.exponent;
-    const rooms = new Rooms(this.library);
+    const buffers = new Buffers(this.library);
     /** @type {Record<string, number>} */
     const known = { ...point.structure };
-    const numbers = rooms.array("f64", [...loops.deviating.map((name) => known[name] ?? 0), point.amplitude, point.frequency, ...pushesOf(point.structure, loops).map(([, value]) => value)]);
-    const rows = rooms.array("f64", impacts.flat());
-    const [memory, found] = [calls.exponent_size(impacts.length), 2].map((size) => rooms.array("f64", size));
+    const numbers = buffers.array("f64", [...loops.deviating.map((name) => known[name] ?? 0), point.amplitude, point.frequency, ...pushesOf(point.structure, loops).map(([, value]) => value)]);
+    const rows = buffers.array("f64", impacts.flat());
+    const [memory, found] = [calls.exponent_size(impacts.length), 2].map((size) => buffers.array("f64", size));
     calls.largest_exponent(numbers, rows, impacts.length, end, blocks, batches, memory, found);
     const [value, error] = this.library.view("f64", found, 2);
-    rooms.free();
+    buffers.free();
     const floor = calls.wander_floor(wander, omegaOf(point.structure) * end);
     return { value, error, verdict: calls.classify_exponent(value, error, floor, sigmas) };
   }

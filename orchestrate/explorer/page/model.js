@@ -1,6 +1,6 @@
 /** What the compiled loops say of a structure and of states of it, at once. */
 
-import { Rooms } from "./kernel.js";
+import { Buffers } from "./kernel.js";
 import { lengthOf, omegaOf } from "./structure.js";
 
 /** @type {Library} of the oscillator, of this thread */
@@ -12,15 +12,15 @@ export const useLibrary = (compiled) => (library = compiled);
 /**
  * Call a function of the library with arrays in its memory.
  * @template T
- * @param {(rooms: Rooms, calls: Library["calls"]) => T} run
+ * @param {(buffers: Buffers, calls: Library["calls"]) => T} run
  * @returns {T}
  */
 function inRooms(run) {
-  const rooms = new Rooms(library);
+  const buffers = new Buffers(library);
   try {
-    return run(rooms, library.calls);
+    return run(buffers, library.calls);
   } finally {
-    rooms.free();
+    buffers.free();
   }
 }
 
@@ -30,7 +30,7 @@ const taken = (address, count) => new Float64Array(library.view("f64", address, 
 /** A structure under an excitation: its numbers, and by name what follows from them. @param {Point} point @returns {Record<string, number>} */
 export function traitsOf(point) {
   const { traits } = library.loops;
-  const row = inRooms((rooms) => taken(rooms.traits(point), traits.length));
+  const row = inRooms((buffers) => taken(buffers.traits(point), traits.length));
   return Object.fromEntries(traits.map((name, i) => [name, row[i]]));
 }
 
@@ -38,18 +38,18 @@ export function traitsOf(point) {
 export function gapsOf(states, point) {
   const count = states.length / 4;
   const { gap_offset } = traitsOf(point);
-  return inRooms((rooms, calls) => {
-    const gaps = rooms.array("f64", count);
-    calls.find_gaps(rooms.array("f64", states), count, rooms.array("f64", [gap_offset]), 1, gaps);
+  return inRooms((buffers, calls) => {
+    const gaps = buffers.array("f64", count);
+    calls.find_gaps(buffers.array("f64", states), count, buffers.array("f64", [gap_offset]), 1, gaps);
     return taken(gaps, count);
   });
 }
 
 /** Absolute accelerations of both masses. @param {Motion} motion @param {Point} point */
 export function accelerationsOf({ states, contact }, point) {
-  return inRooms((rooms, calls) => {
-    const found = rooms.array("f64", 2 * contact.length);
-    calls.find_accelerations(rooms.array("f64", states), contact.length, rooms.traits(point), rooms.array("u8", contact), found);
+  return inRooms((buffers, calls) => {
+    const found = buffers.array("f64", 2 * contact.length);
+    calls.find_accelerations(buffers.array("f64", states), contact.length, buffers.traits(point), buffers.array("u8", contact), found);
     return taken(found, 2 * contact.length);
   });
 }
@@ -58,9 +58,9 @@ export function accelerationsOf({ states, contact }, point) {
 export function carried(state, from, to) {
   const length = lengthOf(to) / lengthOf(from);
   const speed = (length * omegaOf(to.structure)) / omegaOf(from.structure);
-  return inRooms((rooms, calls) => {
-    const like = rooms.array("f64", 4);
-    calls.carry_state(rooms.array("f64", state), rooms.traits(from), rooms.traits(to), length, speed, like);
+  return inRooms((buffers, calls) => {
+    const like = buffers.array("f64", 4);
+    calls.carry_state(buffers.array("f64", state), buffers.traits(from), buffers.traits(to), length, speed, like);
     return Array.from(taken(like, 4));
   });
 }
@@ -68,8 +68,8 @@ export function carried(state, from, to) {
 /** How near states of a motion come to a state, over the motion's size. @param {Float64Array} states @param {number} frequency @param {number} gap its largest, m @param {ArrayLike<number>} state */
 export function distanceOf(states, frequency, gap, state) {
   const count = states.length / 4;
-  return inRooms((rooms, calls) => {
-    const [one, other] = [states, state].map((numbers) => rooms.array("f64", numbers));
-    return calls.nearest_state(one, count, frequency, gap, other, rooms.array("f64", calls.memory_size(count)));
+  return inRooms((buffers, calls) => {
+    const [one, other] = [states, state].map((numbers) => buffers.array("f64", numbers));
+    return calls.nearest_state(one, count, frequency, gap, other, buffers.array("f64", calls.memory_size(count)));
   });
 }

@@ -17,7 +17,7 @@ from ..columns import column_taken
 from ..pieces import Floats
 
 BOX = "box_acceleration"
-CHANNELS = {  # and what the result of shake calls them
+NAMES_IN_RESULTS = {  # and what the result of shake calls them
     BOX: BOX,
     "acceleration1": "a1_abs",
     "acceleration2": "a2_abs",
@@ -30,7 +30,7 @@ class Channels:
 
     time: Floats  # s
     sample_rate: float  # Hz
-    names: tuple[str, ...]  # of `CHANNELS`
+    names: tuple[str, ...]  # of `NAMES_IN_RESULTS`
     values: Floats  # m/s2
     title: str  # of the record
     # what messages call the box's acceleration: the column of the file that it was read from
@@ -44,11 +44,11 @@ class Channels:
             dataset = isinstance(record, xr.Dataset)
             what = what_it_is(record) if dataset else type(record).__name__
             raise InputError(f"record: {what}, without time; {expected}")
-        variables = {name: channel_variable(record, name) for name in CHANNELS}
+        variables = {name: channel_variable(record, name) for name in NAMES_IN_RESULTS}
         present = {name: array for name, array in variables.items() if array is not None}
         missing = [name for name in needed if name not in present]
         if missing or not present:
-            lacking = " and no ".join(missing or CHANNELS)
+            lacking = " and no ".join(missing or NAMES_IN_RESULTS)
             expected = " and ".join(needed) or "one of them"
             raise InputError(f"record: no {lacking}; expected {expected} over time, in m/s2")
         time = np.asarray(record.time.values, dtype=float)
@@ -77,7 +77,7 @@ class Channels:
 
 def channel_variable(record: xr.Dataset, name: str) -> xr.DataArray | None:
     """Return a channel by its name or :func:`orchestrate.shake`'s name of it; None without."""
-    for candidate in (name, CHANNELS[name]):
+    for candidate in (name, NAMES_IN_RESULTS[name]):
         if candidate in record and record[candidate].dims == ("time",):
             return record[candidate]
     return None

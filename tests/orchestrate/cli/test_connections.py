@@ -139,7 +139,7 @@ def test_a_drive_runs_without_a_structure(drives, capsys, tmp_path, monkeypatch)
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "no structure: the drive alone for 0.1 s"
     assert lines[1].startswith("acceleration of the box: ")
-    assert len(list((tmp_path / "results").glob("cosimulate_none_*.nc"))) == 1
+    assert len(list((tmp_path / "results").glob("cosimulate_plain_none_*.nc"))) == 1
     for more, words in ((["--set", "m1=2"], "--set: --structure none has"), ([], "has no struct")):
         assert cli.main([*line, "--connect", A, F, *more]) == 2
         assert words in capsys.readouterr().err

@@ -15,7 +15,7 @@ from matplotlib import image
 import orchestrate
 from orchestrate import InputError, Structure, cli
 from orchestrate.cli import responses
-from orchestrate.cli.diagnosis import plan_lines
+from orchestrate.cli.diagnosis import Plan
 from orchestrate.cli.dynamics import is_on_curve
 from orchestrate.cli.options import OfBox
 from orchestrate.fmu import OSCILLATOR, find
@@ -80,7 +80,7 @@ TRIVIAL = [
         ("sweep", "--set", "e=0.86", "--eta", "0.827,0.9", "--transient", "240", "--samples", "60"),
         "undecided (50 %); undecided: slow to converge or nearly periodic, --transient 5000",
     ),
-    (("lyapunov", "--eta", "2.9", "--periods", "50", "--spectrum"), "all exponents"),
+    (("lyapunov", "--eta", "2.9", "--periods", "50", "--spectrum"), "kaplan_yorke_dimension"),
     (("lyapunov", "--eta", "1", "--set", "bonded=true", "--periods", "20"), "there are no impacts"),
 ]
 
@@ -395,6 +395,7 @@ def test_a_plan(ask, folder, monkeypatch):
     ask("plan", "--structure", "beam", "--hz", "10").complaint("--hz 10", "FIRST:LAST")
     asked = {}
 
+    @functools.wraps(orchestrate.plan_test)
     def plan(_, **question):
         asked.update(question)
         raise InputError("stop")
@@ -417,7 +418,7 @@ def test_a_plan_of_which_the_higher_levels_do_not_decide(decides, said):
     made |= {"opening": ("level", [0.0, 0.0], {"units": "m", "long_name": "opening"})}
     level = ("level", [20.0, 40.0], {"units": "m/s2", "long_name": "level"})
     data = xr.Dataset(made, {"level": level}, {"clearance": 1.0})
-    assert any(said in line for line in plan_lines(data))
+    assert any(said in line for line in Plan().summary(data))
 
 
 def test_forces_of_a_file_act_or_are_refused(ask, tmp_path):

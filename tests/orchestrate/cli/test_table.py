@@ -16,7 +16,7 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
 from orchestrate.cli.output import result_name
-from orchestrate.cli.text import end_lines, format_ranges
+from orchestrate.cli.printing import end_lines, format_ranges
 from orchestrate.errors import InputError
 from orchestrate.model.structure import Structure
 from orchestrate.units import with_units
@@ -188,7 +188,7 @@ CHANGES = [
 def test_another_question_or_structure_has_another_name():
     asked = [(Structure(), ASKED), (Structure(e=0.7 + 1e-15), ASKED)]
     asked += [(Structure(), ASKED | change) for change in CHANGES]
-    names = {result_name("sweep", "own/my beam.toml", *one) for one in asked}
+    names = {result_name("sweep", ["own/my beam.toml"], *one) for one in asked}
     assert len(names) == len(asked)
     assert all(name.startswith("sweep_my beam_") and len(name) == 20 for name in names)
 

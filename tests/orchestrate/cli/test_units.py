@@ -12,7 +12,7 @@ import xarray as xr
 
 from orchestrate import cli
 from orchestrate.cli import dynamics, responses
-from orchestrate.cli.text import attractor_table
+from orchestrate.cli.printing import attractor_table
 from orchestrate.dynamics.orbit_records import STABILITY
 from orchestrate.response.labels import flags
 from orchestrate.units import with_units
@@ -54,7 +54,7 @@ ASKED = {  # command, a unit, what is printed in it, and what is printed anyhow
     "map": (
         (*BOX[:2], *GRID),
         *("rpm", r"7[28]0 rpm"),
-        ("4 responses: ", "largest gap", "impacts per excitation period"),
+        ("4 responses: ", "largest gap"),
     ),
     "lyapunov": (
         ("--eta", "0.8,1.047", "--transient", "100", "--periods", "300"),

@@ -189,7 +189,7 @@ def test_bifurcations_of_a_drive_are_listed_by_structure_and_voltage():
     )
     data["end"] = ("structure", "leg"), [["limit"]]
     data = data.assign_coords(structure=["bonded"], leg=["lowest speed"])
-    listed = [line.split() for line in weak_drive.DriveBranch().summary({"": data})][1:4]
+    listed = [line.split() for line in weak_drive.DriveBranch().summaries({"": data})][1:4]
     assert [row[:1] + row[2:3] for row in listed] == [
         ["bonded", "1.6"],
         ["bonded", "1.7"],
@@ -204,12 +204,12 @@ def test_a_jump_that_no_ramp_has_and_an_undecided_one():
     jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[1e-4, np.nan], [np.nan] * 2]
     made = {"jumps": jumps, "standard_error": errors, "decided": decided}
     data = xr.Dataset({name: (tuple(each), values) for name, values in made.items()}, each)
-    _, up, down, hint = weak_drive.JumpVoltages().summary({"": data})
+    _, up, down, hint = weak_drive.JumpVoltages().summary(data)
     assert up.split() == ["up", "1.50000", "+-", "0.00010", "none"]
     assert down.split() == ["down", "undecided", "none"] and "drive-branch" in hint
-    assert len(list(weak_drive.JumpVoltages().summary({"": data.isel(jump=[0])}))) == 2
+    assert len(list(weak_drive.JumpVoltages().summary(data.isel(jump=[0])))) == 2
     data.decided[:, 1] = ""  # the ramps went up alone, as by --one-way
-    assert len(list(weak_drive.JumpVoltages().summary({"": data}))) == 2
+    assert len(list(weak_drive.JumpVoltages().summary(data))) == 2
 
 
 def test_the_weak_drive_as_a_package(ask, tmp_path):

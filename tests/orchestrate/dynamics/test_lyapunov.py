@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.dynamics.following import follow_impacts
+from orchestrate.dynamics.impacts_after_transient import follow_impacts
 from orchestrate.dynamics.lyapunov import (
     CHAOTIC,
     NEUTRAL,

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import orchestrate
-from orchestrate.dynamics.following import follow_impacts
+from orchestrate.dynamics.impacts_after_transient import follow_impacts
 from orchestrate.dynamics.lyapunov_spectrum import (
     compound_matrices,
     kaplan_yorke_dimension,

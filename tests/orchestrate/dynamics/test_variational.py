@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from orchestrate.dynamics.closed_form import FREE, INNER, ClosedForm
-from orchestrate.dynamics.following import follow_impacts
+from orchestrate.dynamics.impacts_after_transient import follow_impacts
 from orchestrate.dynamics.variational import contact_durations, deviations, period_in_tau
 from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
 from orchestrate.model import Excitation, Structure

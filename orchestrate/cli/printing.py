@@ -1,0 +1,256 @@
+"""Format what commands print: parameters, ranges, counts, tables of a result's variables."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import Any
+
+from .. import units
+from ..flags import flag_words, runs_of
+from ..lazy import np, xr
+
+MOST_ROWS = 10  # of a table that is printed
+PARAMETERS = ("eta", "frequency", "level")  # shown in Hz and g unless other units are asked for
+ENDS = {  # of a branch, beyond which there may be more of it: what was tried, and what to do
+    "no convergence": "Newton's method found no motion beyond, however short the step, as where an "
+    "impact or a flight grazes; a shorter --longest, with a larger --most, looks closer",
+    "most points": "a larger --most goes on",
+}
+Columns = dict[str, list[str]]  # of a table: cells by title
+
+# -- tables ---------------------------------------------------------------------------------------
+
+
+def table(columns: Mapping[str, Iterable[str]], most: int = MOST_ROWS) -> Iterator[str]:
+    """Yield the lines of a table, titles first, at most as many rows."""
+    rows = list(zip(*columns.values(), strict=True))
+    shown = [tuple(columns), *rows[:most]]
+    widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
+    for row in shown:
+        cells = (f"{cell:{width}}" for cell, width in zip(row, widths, strict=True))
+        yield f"  {'  '.join(cells)}".rstrip()
+    if len(rows) > most:
+        yield f"  ... and {len(rows) - most} more"
+
+
+def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g") -> Columns:
+    """Return columns of variables along one dimension, in display units.
+
+    A name may have a format of its own: ``"kind eta:.8f"``.
+    """
+    columns: Columns = {}
+    for name, _, own in (one.partition(":") for one in names.split()):
+        array = data[prefix + name]
+        form_of_it, values = own or form, array.values
+        if name in PARAMETERS:
+            parts = [parameter_parts(data, name, float(one), form_of_it) for one in values]
+            before, _, unit = parts[0] if parts else (name, "", "")
+            title = f"{before or ('frequency' if name == 'eta' else name)} {unit}".rstrip()
+            columns[title] = [number for _, number, _ in parts]
+            continue
+        factor, word = units.scale_of(data, str(array.attrs.get("units", "1")))
+        title = f"{name} {word}" if word not in ("1", "SI") else name
+        if "flag_meanings" in array.attrs:
+            words = flag_words(array.attrs)
+            columns[title] = [words[int(value)] for value in values]
+        elif array.ndim > 1:
+            columns[title] = [", ".join(f"{number:.6g}" for number in row) for row in values]
+        elif array.dtype.kind == "f":
+            columns[title] = [format(value / factor, form_of_it) for value in values]
+        else:
+            columns[title] = [str(value) for value in values]
+    return columns
+
+
+def extents(data: xr.Dataset, names: str, rms: bool = False) -> Iterator[str]:
+    """Yield the range of each named variable, in display units, by what it is; and its rms."""
+    for array in (data[name] for name in names.split()):
+        if array.size:
+            unit = str(array.attrs.get("units", "1"))
+            meaning = str(array.attrs.get("long_name", array.name)).partition(",")[0]
+            text = units.range_text(data, float(array.min()), float(array.max()), unit)
+            mean = length_text(data, float((array**2).mean()) ** 0.5, unit, ".4g")
+            ending = f", rms {mean}" if rms else ""
+            yield f"{meaning}: {without_unit(data, text, unit).removesuffix(' 1')}{ending}"
+
+
+def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
+    """Yield all variables of a result at one parameter value as a table."""
+    yield f"one value, {format_parameter(data, name, data[name][0])}: a table and no picture"
+    shown, order = units.as_shown(data.isel({name: 0})), {"structure", "direction"} & {*data.dims}
+    arrays = {key: one for key, one in shown.data_vars.items() if {*one.dims} <= order}
+    columns = {"": [str(key) for key in arrays]}
+    for case in itertools.product(*(data[dim].values.tolist() for dim in sorted(order)[::-1])):
+        at = dict(zip(sorted(order)[::-1], case, strict=True))
+        cells = [float(one.sel({dim: at[str(dim)] for dim in one.dims})) for one in arrays.values()]
+        columns[" ".join(case) or "value"] = [f"{cell:.6g}" for cell in cells]
+    columns["unit"] = [str(one.attrs.get("units", "1")).strip("1") for one in arrays.values()]
+    yield from table(columns, len(arrays))
+
+
+def impact_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield number and fastest of a motion's impacts, and how many begin permanent contact."""
+    count = data.sizes["impact"]
+    if not count:
+        yield "no impacts"
+        return
+    first = int(data.impact_velocity.values.argmax())
+    speed = length_text(data, data.impact_velocity[first], "m/s", ".4g")
+    hardest = f"at {time_text(data, float(data.impact_time[first]))}"
+    if not units.is_in_ratios(data):
+        hardest = f"{float(data.impulse[first]):.4g} N s {hardest}"
+    sticks = int(data.sticks.sum())
+    yield f"{count} impacts, the fastest at {speed} ({hardest}); {sticks} begin permanent contact"
+
+
+def attractor_table(data: xr.Dataset) -> Iterator[str]:
+    """Yield a table of attractors: share, period, impacts, gap, how decided, a state."""
+    data = data.isel(attractor=data.multiplicity.notnull().values)
+    names = "share multiplicity impacts_per_period decided_by"
+    columns = {"number": [str(number) for number in data.attractor.values]}
+    columns |= columns_of(data, names, form=".4g")
+    parts = [data.isel(attractor=i) for i in range(data.sizes["attractor"])]
+    columns["largest gap"] = [format_largest_gap(part) for part in parts]
+    (columns["state at phase 0" + " (SI)" * (not units.is_in_ratios(data))],) = columns_of(
+        data, "state"
+    ).values()
+    yield from table(columns)
+
+
+def end_lines(ends: Collection[str]) -> Iterator[str]:
+    """Yield what to do about those ends of branches that need not be one."""
+    yield from (f"{end}: {text}" for end, text in ENDS.items() if end in ends)
+
+
+def both_ends(data: xr.Dataset) -> Iterator[str]:
+    """Yield why a branch or a border ends at its first and last point, and what to do."""
+    ends = data.attrs["first_end"], data.attrs["last_end"]
+    yield "first end: {}; last end: {}".format(*ends)
+    yield from end_lines(ends)
+
+
+# -- parameters and ranges ------------------------------------------------------------------------
+
+
+def without_unit(data: xr.Dataset, text: str, unit: str) -> str:
+    """Return a text without its unit of length where a result has the paper's ratios."""
+    of_length = unit in ("m", "m/s", "m/s2")
+    return text.removesuffix(f" {unit}") if of_length and units.is_in_ratios(data) else text
+
+
+def length_text(data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g") -> str:
+    """Format a length, speed or acceleration in display units; as a ratio without one."""
+    return without_unit(data, units.text_of(data, value, unit, form), unit)
+
+
+def time_text(data: xr.Dataset, time: float, form: str = ".4g") -> str:
+    """Format a time in display units, as tau where a result in ratios was asked in none."""
+    if units.is_in_ratios(data) and not units.units_of(data).time:
+        return f"tau = {time:{form}}"
+    return units.text_of(data, time, "s", form)
+
+
+def varied_parameter(data: xr.Dataset) -> str:
+    others = {"direction", "structure", "attractor"}
+    (name,) = {str(dim) for dim in data.impacts_per_period.dims} - others
+    return name
+
+
+def format_parameter(data: xr.Dataset, name: str, value: Any, form: str = ".6g") -> str:
+    """Format a parameter's value in display units: ``12.5 Hz``, ``e = 0.7``."""
+    return format_range(data, name, value, value, form)
+
+
+def format_range(data: xr.Dataset, name: str, low: Any, high: Any, form: str = ".6g") -> str:
+    """Format a range of a parameter in display units: ``12.5 to 13 Hz``, ``e = 0.7 to 0.8``."""
+    before, first, unit = parameter_parts(data, name, float(low), form)
+    last = parameter_parts(data, name, float(high), form)[1]
+    numbers = first if first == last else f"{first} to {last}"
+    return f"{before} = {numbers} {unit}".rstrip() if before else f"{numbers} {unit}"
+
+
+def format_reach(data: xr.Dataset, name: str) -> str:
+    return format_range(data, name, data[name].min(), data[name].max())
+
+
+def parameter_parts(
+    data: xr.Dataset, name: str, value: float, form: str = ".6g"
+) -> tuple[str, str, str]:
+    """Return a parameter's name (may be empty), formatted value and unit for display."""
+    chosen, omega = units.units_of(data), units.omega_of(data)
+    if name == "eta" and chosen.frequency not in ("", "eta") and math.isfinite(omega):
+        name, value = "frequency", value * omega
+    if name == "frequency":
+        shown = data if chosen.frequency else units.with_units(data, "Hz")
+        number, unit = units.shown_number(shown, value, "rad/s", form)
+        return ("eta", number, "") if unit == "eta" else ("", number, unit)
+    if name == "level":
+        shown = data if chosen.acceleration else units.with_units(data, "g")
+        return ("", *units.shown_number(shown, value, "m/s2", form))
+    unit = str(data[name].attrs.get("units", "")) if name in data.variables else ""
+    return (name, *units.shown_number(data, value, unit.removeprefix("1"), form))
+
+
+def flag_word(value: xr.DataArray) -> str:
+    return flag_words(value.attrs)[int(value)]
+
+
+def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
+    """Return a Boolean array: where a CF flag variable has the number of a word."""
+    number = values.attrs["flag_meanings"].split().index(word)
+    return values == values.attrs["flag_values"][number]
+
+
+def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) -> str:
+    """Format the widest ranges of a dataset's parameter in which flags are true; or nowhere."""
+    values, runs = data[name].values, runs_of(flags)
+    if not runs:
+        return "nowhere"
+    longest = sorted(sorted(runs, key=lambda run: run[0] - run[1])[:max_ranges])
+    ends = [
+        [parameter_parts(data, name, float(values[i])) for i in dict.fromkeys(run)]
+        for run in longest
+    ]
+    before, _, unit = ends[0][0]
+    text = ", ".join(" to ".join(number for _, number, _ in run) for run in ends)
+    left = len(runs) - len(longest)
+    words = f"{before} = {text}" if before else text
+    return f"{words} {unit}".rstrip() + (f" and {left} shorter ranges" if left else "")
+
+
+def shares_and_ranges(data: xr.Dataset, name: str, flags: xr.DataArray) -> Iterator[str]:
+    """Yield for each word of a flag along a parameter its share, and where it is."""
+    for word in flag_words(flags.attrs).values():
+        holds = has_flag(flags, word).values
+        where = f" at {format_ranges(data, name, holds)}" if holds.any() else ""
+        yield f"{format_share(int(holds.sum()), holds.size, word)}{where}"
+
+
+def format_share(count: int, whole: int, word: str = "") -> str:
+    number = f"{count:,} {word}".rstrip()
+    return f"{number} ({100.0 * count / whole:.0f} %)"
+
+
+def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
+    """Format a response's largest gap over a eta^2, as length too if the box's motion is known."""
+    ratio, length = float(data.xi_rel_max), units.length_of_ratio(data)
+    parts = [f"xi_Rel = {ratio:{form}}"]
+    if length is not None and math.isfinite(float(length)) and not units.is_in_ratios(data):
+        parts.append(units.text_of(data, ratio * float(length), "m", ".4g"))
+    return ", ".join(parts)
+
+
+def largest_gap_line(data: xr.Dataset) -> str:
+    """Format the largest gap of all responses, and the parameters at which it is."""
+    top = data.isel(data.xi_rel_max.argmax(...))
+    names = [str(dim) for dim in data.xi_rel_max.dims if dim != "direction"]
+    where = ", ".join(format_parameter(data, name, top[name]) for name in names)
+    return f"largest gap: {format_largest_gap(top)} at {where}"
+
+
+def with_error(values: Any, errors: Any, form: str = ".5g", error_form: str = ".2g") -> list[str]:
+    """Return numbers with their errors as texts, ``none`` where there is no number."""
+    pairs = zip(np.ravel(values).tolist(), np.ravel(errors).tolist(), strict=True)
+    return [f"{x:{form}} +- {s:{error_form}}" if math.isfinite(x) else "none" for x, s in pairs]
