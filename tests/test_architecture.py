@@ -209,11 +209,18 @@ def test_tests_are_known_to_tests_alone():
     assert users("tests") == {"tools/c_host.py"}  # the benchmark's host is an importer of tests
 
 
-def test_the_sources_of_the_fmus_are_known_in_six_places():
+def test_the_sources_of_the_fmus_are_known_in_seven_places():
     found = {file for file in users("fmu_src") if file.startswith("orchestrate/")}
     access = {f"orchestrate/fmu/{name}.py" for name in ("c_library", "exported", "webassembly")}
     rule = "orchestrate/response/multiplicity.py"
-    assert found == {*access, rule, "orchestrate/model/ranges.py", "orchestrate/version.py"}
+    identity = "orchestrate/running/identity.py"
+    assert found == {
+        *access,
+        rule,
+        identity,
+        "orchestrate/model/ranges.py",
+        "orchestrate/version.py",
+    }
 
 
 PAGE = {  # modules of the explorer's page by what they are for; a new one needs a decision
