@@ -23,6 +23,9 @@ def main() -> int:
     """Run the command line with its streams open and its signals heard; return its exit code."""
     open_missing_streams()
     sys.unraisablehook = resend_interrupt
+    if not any(word.startswith("--cluster") for word in sys.argv):
+        # xarray loads all of it, half a second, to ask of each array whether it is one of Dask's
+        sys.modules.setdefault("dask", None)  # type: ignore[arg-type]
     if signal.getsignal(signal.SIGTERM) == signal.SIG_DFL:  # not ignored
         signal.signal(signal.SIGTERM, raise_terminated)
     return run()

@@ -59,11 +59,12 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
     "kernels.motor_shaker": {"kernels.numerics"},
     "kernels.electrodynamic_shaker": {"kernels.numerics"},
     "kernels.deviations": {"kernels.numerics", "kernels.oscillator"},
+    "kernels.orbits": {"kernels.numerics", "kernels.oscillator"},
     "runtime": set(),
     "models": {"kernels.oscillator", "kernels.motor_shaker", "runtime", "version"}
     | {"kernels.electrodynamic_shaker"},
     "export": {"runtime", "kernels.repetition", "kernels.linear_response"}
-    | {"kernels.numerics", "kernels.deviations"},
+    | {"kernels.numerics", "kernels.deviations", "kernels.orbits"},
 }
 DYNAMIC = {"orchestrate/__init__.py", "orchestrate/reader_child.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them
@@ -209,11 +210,18 @@ def test_tests_are_known_to_tests_alone():
     assert users("tests") == {"tools/c_host.py"}  # the benchmark's host is an importer of tests
 
 
-def test_the_sources_of_the_fmus_are_known_in_six_places():
+def test_the_sources_of_the_fmus_are_known_in_eight_places():
     found = {file for file in users("fmu_src") if file.startswith("orchestrate/")}
     access = {f"orchestrate/fmu/{name}.py" for name in ("c_library", "exported", "webassembly")}
-    rule = "orchestrate/response/multiplicity.py"
-    assert found == {*access, rule, "orchestrate/model/ranges.py", "orchestrate/version.py"}
+    rules = {"orchestrate/response/multiplicity.py", "orchestrate/dynamics/closed_form.py"}
+    identity = "orchestrate/running/identity.py"
+    assert found == {
+        *access,
+        *rules,
+        identity,
+        "orchestrate/model/ranges.py",
+        "orchestrate/version.py",
+    }
 
 
 PAGE = {  # modules of the explorer's page by what they are for; a new one needs a decision

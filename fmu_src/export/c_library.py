@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from ..kernels import deviations, linear_response, repetition
+from ..kernels import deviations, linear_response, orbits, repetition
 from ..kernels.numerics import turn
 from .archive import guid_of
 from .compiler import link
@@ -32,6 +32,12 @@ KERNELS = {  # headers that a source may include, translated from Python
     },
     "turn.h": {"turn": turn.turn},
     "deviations.h": {"deviate": deviations.deviate},
+    "orbits.h": {
+        "flow": orbits.flow,
+        "steady": orbits.steady,
+        "field": orbits.field,
+        "segments": orbits.segments,
+    },
 }
 
 

@@ -65,6 +65,9 @@ def shim_definitions(model: Model, slots: dict[str, int], real_outputs: bool) ->
         "MEMORY_SIZE": str(model.memory_size),
         "SKIP_FIRST": str(model.written_only[0]),
         "SKIP_COUNT": str(model.written_only[1]),
+        "FILLS_SERIES(memory)": f"(memory[{slots[model.series_count]}] > 0)"
+        if model.arrays
+        else "1",
         "LIMITED_CODE": str(model.limited),
         "TIME_SLOT": str(model.time_slot),
         "STOP_SLOT": str(model.stop_slot),

@@ -316,7 +316,7 @@ def importing_matplotlib(needed: bool) -> Iterator[None]:
 
             warm_up_matplotlib()
 
-    timer = threading.Timer(1.0, prepare)  # a shorter computation is not disturbed
+    timer = threading.Timer(2.0, prepare)  # a shorter computation is not disturbed
     if needed:
         timer.start()
     try:

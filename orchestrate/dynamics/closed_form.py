@@ -9,25 +9,26 @@ xi_1 = 0: the gap is xi_2 - xi_1 always, and the clearance is a constant load of
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from ctypes import c_void_p
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fmu_src.kernels import orbits
+
+from ..constants import TURN
+from ..fmu.c_library import loaded_loop
 from ..model import Excitation, Structure
 
 Floats = NDArray[np.float64]
 FREE, INNER, OUTER = 0, 1, 2  # modes: in flight, in permanent contact at either end
 Modes = NDArray[np.int_] | int
 Ends = NDArray[np.bool_] | bool  # whether an end is the outer one
-MASSES = slice(0, 2)  # oscillators 1 and 2
-MOVING = np.array([[0, 1], [2, 2], [3, 3]])  # oscillators that are the two masses, in each mode
 SAME = 1e-14  # of two amplitudes: within their rounding
-
-
-def oscillators(mode: Modes) -> slice | NDArray[np.intp]:
-    """Return indices of the two oscillators that move, (2) in flight alone, else (n, 2)."""
-    return MOVING[np.reshape(mode, -1)] if np.any(mode) else MASSES
 
 
 @dataclass(frozen=True)
@@ -142,52 +143,39 @@ class ClosedForm:
         factor = 1.0 / (1.0 + self.e_slope * closing)
         return self.e * factor * factor
 
-    def basis(self, i: int, time: Floats) -> tuple[Floats, Floats]:
-        """Return ``e^{-D t} cos(nu t)`` and ``e^{-D t} sin(nu t)/nu`` of (10), overdamped too."""
-        damping, square = self.damping[i], self.stiffness[i]
-        nu_squared = square - damping * damping  # (11)
-        if abs(nu_squared) <= 1e-14 * square:  # critical but for rounding
-            decay = np.exp(-damping * time)
-            return decay, time * decay
-        nu = np.sqrt(abs(nu_squared))
-        if nu_squared > 0.0:
-            decay = np.exp(-damping * time)
-            return decay * np.cos(nu * time), decay * np.sin(nu * time) / nu
-        slow, faster = np.exp(-square / (damping + nu) * time), np.expm1(-2.0 * nu * time)
-        return slow * (1.0 + 0.5 * faster), -0.5 * slow * faster / nu
+    @cached_property
+    def numbers(self) -> Floats:
+        """Return the memory of ``kernels.orbits`` up to its tables."""
+        square = self.stiffness - self.damping * self.damping  # (11)
+        square[np.abs(square) <= 1e-14 * self.stiffness] = 0.0  # critical but for rounding
+        nu = np.sqrt(np.abs(square))
+        columns = self.damping, self.stiffness, square, nu, nu / TURN, self.damping
+        more = self.cosine, self.sine, self.drive, self.push, self.offset, self.load
+        forces = self.force_v, self.force_x, float(self.wall), self.limit
+        motion = self.eta, self.e, self.e_slope, *self.shares, *forces
+        return np.concatenate([motion, np.column_stack([*columns, *more]).ravel()])
 
-    def oscillator(self, i: int, time: Floats) -> Floats:
-        """Return the free flow matrices (n, 2, 2) of oscillator ``i`` after given times."""
-        cosine, sine = self.basis(i, time)
-        matrices = np.empty((len(time), 2, 2))
-        matrices[:, 0, 0] = cosine + self.damping[i] * sine
-        matrices[:, 0, 1] = sine
-        matrices[:, 1, 0] = -self.stiffness[i] * sine
-        matrices[:, 1, 1] = cosine - self.damping[i] * sine
-        return matrices
+    def tabulate(self, name: str, columns: Sequence[Any], width: int, span: float = 0.0) -> Floats:
+        """Return what a function of ``kernels.orbits`` writes for rows: numbers, (n, width)."""
+        count, first = len(columns[0]), orbits.TABLE + len(columns) * len(columns[0])
+        memory = np.empty(first + width * count + orbits.SPARE)
+        memory[: orbits.ROWS] = self.numbers
+        memory[orbits.ROWS : orbits.TABLE] = count, span
+        for i, column in enumerate(columns):
+            memory[orbits.TABLE + i : first : len(columns)] = column
+        getattr(loaded_loop("orbits"), name)(c_void_p(memory.ctypes.data))
+        return memory[first : first + width * count].reshape(-1, width)
 
     def flow(self, time: Floats, mode: Modes = FREE) -> Floats:
         """Return the flow matrices (n, 4, 4) of the motion in modes after given times."""
-        modes = np.broadcast_to(mode, len(time))
+        turned = self.tabulate("find_flows", (time, mode), 8).reshape(-1, 2, 2, 2)
         matrices = np.zeros((len(time), 4, 4))
-        for held in (False, True):
-            chosen = np.flatnonzero((modes != FREE) == held)
-            for mass in range(0 if len(chosen) else 2, 2):
-                if not (self.wall and (held or mass)):  # what a wall does forgets deviations
-                    own = self.oscillator(2 if held else mass, time[chosen])
-                    matrices[chosen, mass::2, mass::2] = own
+        matrices[:, ::2, ::2], matrices[:, 1::2, 1::2] = turned[:, 0], turned[:, 1]
         return matrices
 
     def steady(self, phase: Floats, mode: Modes = FREE) -> Floats:
         """Return the steady-state response (harmonic part of (10)) at phases, shape (n, 4)."""
-        which = oscillators(mode)
-        cosine, sine = np.cos(phase)[:, None], np.sin(phase)[:, None]
-        a, b = self.cosine[which], self.sine[which]
-        states = np.empty((len(phase), 4))
-        states[:, :2] = a * cosine + b * sine + self.offset[which]
-        states[:, 2:] = self.eta * (b * cosine - a * sine)
-        states[:, 1] += self.apart(np.asarray(mode) == OUTER)
-        return states
+        return self.tabulate("find_steady", (phase, mode), 4)
 
     def apart(self, outer: Ends) -> Floats:
         """Return the gap at an end: the limit at the outer one."""
@@ -199,17 +187,7 @@ class ClosedForm:
 
     def field(self, state: Floats, phase: Floats, mode: Modes = FREE) -> Floats:
         """Return d(state)/d(tau), the right-hand side of (6), for states (n, 4) at phases."""
-        which = oscillators(mode)
-        rates = np.empty((len(phase), 4))
-        rates[:, :2] = state[:, 2:]
-        rates[:, 2:] = np.sin(phase)[:, None] * self.drive[which] + self.push[which]
-        rates[:, 2:] -= 2.0 * self.damping[which] * state[:, 2:]
-        rates[:, 2:] -= self.stiffness[which] * state[:, :2]
-        rates[:, 2:] += self.load[which]
-        outer = np.asarray(mode) == OUTER
-        if outer.any():
-            rates[:, 3] = np.where(outer, rates[:, 2], rates[:, 3])
-        return rates
+        return self.tabulate("find_rates", (phase, mode, *state.T), 4)
 
     def gap_drive(self, phase: Floats, outer: Ends = False) -> Floats:
         """Return the difference of the masses' harmonic right-hand sides, towards an end."""

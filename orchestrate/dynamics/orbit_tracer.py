@@ -96,15 +96,13 @@ class OrbitPoint:
 
     def test(self, kind: Kind) -> float:
         """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
-        # products are scaled: multipliers are infinite where an impact grazes
         if kind == Kind.FOLD:
             return float(self.root.tangent[self.family.size])
         if kind == Kind.FLIP:
-            values = self.multipliers
-            return float(np.prod((1.0 + values) / (1.0 + np.abs(values))).real)
+            return scaled_product(-self.multipliers)
         if kind == Kind.TORUS:
-            products = np.multiply.outer(self.multipliers, self.multipliers)[np.triu_indices(4, 1)]
-            return float(np.prod((1.0 - products) / (1.0 + np.abs(products))).real)
+            products = np.multiply.outer(self.multipliers, self.multipliers)
+            return scaled_product(products[np.triu_indices(4, 1)])
         if kind == Kind.GRAZING:
             closing = self.orbit.nodes[~self.orbit.sequence.releases, CLOSING]
             return float(closing.min(initial=np.inf))
@@ -124,6 +122,12 @@ class OrbitPoint:
     def reversed(self) -> OrbitPoint:
         """Return the same point with its tangent reversed, to continue the other way."""
         return OrbitPoint(self.family, self.root.reversed())
+
+
+def scaled_product(values: NDArray[np.complex128]) -> float:
+    """Return the product of 1 - value over its size, no number for the infinite ones of grazing."""
+    with np.errstate(invalid="ignore"):
+        return float(np.prod((1.0 - values) / (1.0 + np.abs(values))).real)
 
 
 class OrbitTracer(BranchTracer[Family, OrbitPoint]):

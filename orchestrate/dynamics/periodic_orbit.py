@@ -50,6 +50,11 @@ class ImpactSequence:
         """Return, for each node, whether it is at the outer end of a stroke."""
         return np.array(self.kinds, dtype=int) >= ENDS
 
+    @cached_property
+    def modes(self) -> NDArray[np.int_]:
+        """Return the mode of the segment after each node."""
+        return np.where(self.sticks, np.where(self.outer, OUTER, INNER), FREE)
+
     @property
     def impacts(self) -> int:
         """Return the number of impacts, releases not counted."""
@@ -102,13 +107,10 @@ class PeriodicOrbit:
         """Return the durations of the segments between nodes, in units of tau."""
         return (self.ends - self.begins) / self.form.eta
 
-    @cached_property
+    @property
     def modes(self) -> NDArray[np.int_]:
         """Return the mode of each segment: in flight, or in permanent contact at either end."""
-        if not self.count:
-            return np.array([self.form.rest_mode])
-        held = np.where(self.sequence.outer, OUTER, INNER)
-        return np.where(self.sequence.sticks, held, FREE)
+        return self.sequence.modes if self.count else np.array([self.form.rest_mode])
 
     @cached_property
     def contact(self) -> NDArray[np.bool_]:
@@ -116,45 +118,37 @@ class PeriodicOrbit:
         return self.modes != FREE
 
     @cached_property
+    def segments(self) -> tuple[Floats, ...]:
+        """Return of each segment: the residual (k, 4) of its equations, their derivatives by the
+        nodes before and after it (k, 4, 4), and the states (k, 4) at its begin and end.
+        """
+        columns = *self.nodes.T, self.modes, self.sequence.releases, self.sequence.outer
+        span = TURN * self.sequence.periods
+        rows = self.form.tabulate("find_segments", columns, 44, span).reshape(11, -1, 4)
+        before, after = (rows[i : i + 4].reshape(-1, 4, 4) for i in (1, 5))
+        return rows[0], before, after, rows[9], rows[10]
+
+    @property
     def starts(self) -> Floats:
         """Return the states at the begin of segments, just after impacts (15), shape (k, 4)."""
         if not self.count:
             return self.form.steady(np.zeros(1), self.modes)
-        (_, position, velocity, closing), outer = self.nodes.T, self.sequence.outer
-        parting = np.where(self.contact | self.sequence.releases, 0.0, self.form.parting(closing))
-        one, two = self.blow * parting
-        far = position + self.form.apart(outer)
-        return np.stack([position, far, velocity + one, velocity + two], axis=1)
+        return self.segments[3]
 
-    @cached_property
-    def blow(self) -> Floats:
-        """Return what both velocities gain by a separation speed, at each node, shape (2, k)."""
-        one, two = self.form.shares
-        return inwards(self.sequence.outer) * np.array([[-two], [one]])
-
-    @cached_property
-    def flows(self) -> Floats:
-        """Return the flow matrix of each segment from begin to end, shape (k, 4, 4)."""
-        return self.form.flow(self.durations, self.modes)
+    @property
+    def arrivals(self) -> Floats:
+        """Return the states at the end of segments, just before the next node, shape (k, 4)."""
+        return self.segments[4] if self.count else self.starts
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
         """Return the states at phases inside given segments, by the closed form, shape (n, 4)."""
         modes, begins = self.modes[segment], self.begins[segment]
         flow = self.form.flow((phase - begins) / self.form.eta, modes)
-        return self.moved(flow, segment, phase)
-
-    @cached_property
-    def arrivals(self) -> Floats:
-        """Return the states at the end of segments, just before the next node, shape (k, 4)."""
-        return self.moved(self.flows, np.arange(len(self.modes)), self.ends)
-
-    def moved(self, flow: Floats, segment: NDArray[np.int_], phase: Floats) -> Floats:
-        """Return the states at phases inside given segments, by the flow until there."""
         free = (self.starts - self.form.steady(self.begins, self.modes))[segment]
         moved: Floats = (flow @ free[:, :, None])[:, :, 0]
-        return moved + self.form.steady(phase, self.modes[segment])
+        return moved + self.form.steady(phase, modes)
 
-    @cached_property
+    @property
     def reductions(self) -> Floats:
         """Return matrices from states before nodes to gap, centre (x, v) and closing speed."""
         sign = inwards(of_next(self.sequence.outer))[:, None]
@@ -167,50 +161,11 @@ class PeriodicOrbit:
 
     def residual(self) -> Floats:
         """Return the residual of the orbit's equations at its nodes, shape (4 k,)."""
-        if not self.count:
-            return np.zeros(0)
-        after, outer = of_next(self.nodes), of_next(self.sequence.outer)
-        residual = (self.reductions @ self.arrivals[:, :, None])[:, :, 0]
-        apart = self.form.apart(outer)
-        residual[:, 0] -= apart
-        residual[:, 1] -= self.form.shares[1] * apart
-        residual[:, 1:] -= after[:, 1:]
-        released = of_next(self.sequence.releases)
-        if released.any():
-            phase, position, velocity = after[released, :CLOSING].T
-            force = self.form.force(phase, position, velocity, outer[released])
-            residual[released, 0] = force
-            residual[released, 3] = after[released, CLOSING]
-        return residual.ravel()
-
-    def segment_jacobians(self) -> tuple[Floats, Floats]:
-        """Return each segment's residual derivatives by the nodes before and after it."""
-        form, sequence = self.form, self.sequence
-        begun = form.field(self.starts, self.begins, self.modes)
-        shift = np.zeros((self.count, 4, 4))  # of the start, by the node's unknowns
-        shift[:, :, PHASE] = -begun / form.eta
-        shift[:, :2, POSITION] = 1.0
-        shift[:, 2:, VELOCITY] = 1.0
-        parting = ~(self.contact | sequence.releases)
-        rates = form.parting_rate(self.nodes[parting, CLOSING])
-        shift[parting, 2:, CLOSING] = (rates * self.blow[:, parting]).T
-        before = self.reductions @ self.flows @ shift
-        after = np.zeros((self.count, 4, 4))
-        rates = form.field(self.arrivals, self.ends, self.modes)
-        after[:, :, PHASE] = (self.reductions @ rates[:, :, None])[:, :, 0] / form.eta
-        after[:, [1, 2, 3], [1, 2, 3]] = -1.0
-        released = of_next(sequence.releases)
-        outer = of_next(sequence.outer)[released]
-        before[released] *= np.array([0.0, 1.0, 1.0, 0.0])[:, None]
-        after[released, 0] = np.outer(inwards(outer), [0.0, form.force_x, form.force_v, 0.0])
-        quarter = self.ends[released] + 0.5 * np.pi
-        after[released, 0, PHASE] = form.gap_drive(quarter, outer)
-        after[released, 3] = [0.0, 0.0, 0.0, 1.0]
-        return before, after
+        return self.segments[0].ravel() if self.count else np.zeros(0)
 
     def jacobian(self, multiplier: complex = 1.0) -> NDArray[np.inexact]:
         """Return the Jacobian of the residual by all nodes' unknowns, shape (4 k, 4 k)."""
-        before, after = self.segment_jacobians()
+        _, before, after, *_ = self.segments
         k = self.count
         matrix = np.zeros((k, 4, k, 4), dtype=complex if isinstance(multiplier, complex) else float)
         for i in range(k):
@@ -221,8 +176,9 @@ class PeriodicOrbit:
     def monodromy(self) -> Floats:
         """Return the monodromy matrix (4, 4): a deviation at the first node over one period."""
         if not self.count:
-            return self.flows[0] @ self.form.centre() if self.contact[0] else self.flows[0]
-        before, after = self.segment_jacobians()
+            flow = self.form.flow(self.durations, self.modes)[0]
+            return flow @ self.form.centre() if self.contact[0] else flow
+        _, before, after, *_ = self.segments
         product = np.eye(4)
         for step in -np.linalg.solve(after, before):
             product = step @ product

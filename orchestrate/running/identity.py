@@ -14,6 +14,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Protocol
 
+from fmu_src.export.sources import import_statements
+
 from .job import Job
 
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -137,13 +139,13 @@ def read_source(path: Path, module: str) -> tuple[str, tuple[str, ...]]:
         c_source.read_bytes().replace(b"\r\n", b"\n") if c_source.is_file() else b""
     )
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
-    names = tuple(dict.fromkeys(imported_names(ast.parse(source), package)))
+    names = tuple(dict.fromkeys(imported_names(source, package)))
     return hashlib.sha256(content).hexdigest()[:DIGITS], names
 
 
-def imported_names(tree: ast.AST, package: str) -> Iterator[str]:
+def imported_names(source: bytes, package: str) -> Iterator[str]:
     """Yield the absolute names that a module imports anywhere, and of the packages around them."""
-    for node in statements(tree):
+    for node in import_statements(source):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield from prefixes(alias.name)
@@ -153,16 +155,6 @@ def imported_names(tree: ast.AST, package: str) -> Iterator[str]:
             prefix = ".".join([*base, *([node.module] if node.module else [])])
             for alias in node.names:
                 yield from prefixes(f"{prefix}.{alias.name}")
-
-
-def statements(tree: ast.AST) -> Iterator[ast.AST]:
-    """Yield a module's statements, nested ones too: quicker than all nodes with expressions."""
-    waiting = [tree]
-    while waiting:
-        node = waiting.pop()
-        yield node
-        for block in ("body", "orelse", "finalbody", "handlers", "cases"):
-            waiting.extend(getattr(node, block, ()))
 
 
 def prefixes(name: str) -> Iterator[str]:

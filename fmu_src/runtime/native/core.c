@@ -257,6 +257,7 @@ static Status advance(Instance *instance, const char *call, double target) {
     memcpy(before, memory, head);
     memcpy(before + SKIP_FIRST, memory + SKIP_FIRST + SKIP_COUNT, tail);
     memory[STOP_SLOT] = instance->early_return;
+    if (FILLS_SERIES(memory)) instance->state.has_series = true;
     int code = kernel_advance(memory, target);
     if (!code) {  /* the time of an impact just after the communication point may round to one before it */
         if (memory[TIME_SLOT] < reached) memory[TIME_SLOT] = reached;
@@ -376,6 +377,7 @@ static bool unpack(State *state, const char *bytes, size_t size) {
     state->start_time = head[1];
     state->stale = head[2] == 1 || head[2] == 3;
     state->clock = head[2] >= 2;
+    state->has_series = true;
     return true;
 }
 
@@ -419,10 +421,18 @@ static Status restored(Instance *instance, const char *call, State *state) {
     return refuse_with(instance, call, NEVER "%s", NULL, NULL, TEXTS(problem));
 }
 
+/* Most of a state are series that a master never asks for. */
+static void copy_state(State *to, const State *from) {
+    size_t head = offsetof(State, memory) + SKIP_FIRST * sizeof(double), tail = head + SKIP_COUNT * sizeof(double);
+    bool whole = from->has_series || to->has_series;
+    memcpy(to, from, whole ? tail : head);
+    memcpy((char *)to + tail, (const char *)from + tail, sizeof *to - tail);
+}
+
 static Status keep(Instance *instance, const char *call, void **to, const State *state) {
-    if (!*to) *to = malloc(sizeof(State));
+    if (!*to) *to = calloc(1, sizeof(State));
     if (!*to) return refuse(instance, call, "out of memory");
-    memcpy(*to, state, sizeof(State));
+    copy_state(*to, state);
     return OK;
 }
 
@@ -432,7 +442,7 @@ Status save_state(Instance *instance, const char *call, void **to) {
 
 Status restore_state(Instance *instance, const char *call, const void *from) {
     if (!from) return refuse(instance, call, "a null pointer");
-    memcpy(&instance->state, from, sizeof(State));
+    copy_state(&instance->state, from);
     if (!instance->event_mode) {  /* saved by an instance that has event mode: here the event is done with */
         if (instance->state.phase == EVENT) instance->state.phase = STEPPING;
         instance->state.clock = false;

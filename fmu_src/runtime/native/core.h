@@ -42,6 +42,7 @@ typedef struct {  /* what saving an instance has to keep */
     int phase;
     bool stale;  /* outputs do not belong yet to the values set: in initialisation mode; where REFRESH is 1, later too */
     bool clock;  /* the event clock ticks now */
+    bool has_series;  /* a step may have filled the series since the reset; else they are zeros, and need no copying */
 } State;
 
 struct Instance {

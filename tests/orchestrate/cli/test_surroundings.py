@@ -146,6 +146,18 @@ sys.exit(main())
 """
 
 
+def test_a_command_loads_nothing_of_dask(tmp_path):
+    """It takes as long to load as the rest of a small sweep."""
+    pytest.importorskip("dask.array")
+    words = ["sweep", "--eta", "0.9,1.0", "--transient", "5", "--output", str(tmp_path)]
+    script = (
+        f"import sys; from orchestrate.__main__ import main; sys.argv[1:] = {words}; main(); "
+        "print([name for name in sys.modules if name.startswith(('dask.', 'scipy.'))])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
+    assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "[]")
+
+
 @pytest.mark.parametrize(
     ("name", "code", "word"), [("SIGINT", 130, "interrupted"), ("SIGTERM", 143, "terminated")]
 )

@@ -1,0 +1,98 @@
+"""Closed form and equations of orbits: one source in Python and C, exact derivatives."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from fmu_src.kernels import orbits
+from orchestrate.constants import TURN
+from orchestrate.dynamics.closed_form import FREE, OUTER, ClosedForm
+from orchestrate.dynamics.periodic_orbit import ImpactSequence, PeriodicOrbit
+from orchestrate.fmu.c_library import loaded_loop
+from orchestrate.model import Excitation, Structure
+
+ENTRIES = {
+    "find_flows": (orbits.flow, 2, 8),
+    "find_steady": (orbits.steady, 2, 4),
+    "find_rates": (orbits.field, 6, 4),
+    "find_segments": (orbits.segments, 7, 44),
+}
+
+
+def random_orbit(seed):
+    """Nodes that close no orbit: with a stroke at both ends, with a wall, overdamped."""
+    chance = np.random.default_rng(seed)
+    mu, kappa, *damping = chance.uniform([0.25, 0.4, 0.0, 0.0], [4.0, 3.0, 0.3, 3.0])
+    numbers = {"e": chance.uniform(0.1, 0.9), "e_slope": chance.choice([0.0, 0.3])}
+    made = Structure.nondimensional(mu=mu, kappa=kappa, D1=damping[0], D2=damping[1], **numbers)
+    kinds = 6 if seed % 2 else 3
+    if seed % 2:
+        made = made.replace(clearance=0.2, stroke=1.5)
+    if seed % 3 == 0:
+        made = made.replace(wall=True)
+    excitation = Excitation.nondimensional(chance.uniform(0.3, 3.0), made, box_acceleration=0.1)
+    form = ClosedForm.from_structure(made, excitation)
+    count, periods = int(chance.integers(1, 6)), int(chance.integers(1, 3))
+    nodes = chance.uniform(-1.0, 1.0, (count, 4))
+    nodes[:, 0] = np.sort(chance.uniform(0.0, TURN * periods, count))
+    nodes[:, 3] = np.abs(nodes[:, 3])
+    sequence = ImpactSequence(periods, tuple(chance.integers(0, kinds, count).tolist()))
+    return PeriodicOrbit(sequence, form, nodes)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_python_and_c_have_equal_bits(seed):
+    orbit, chance = random_orbit(seed), np.random.default_rng(seed)
+    for name, (entry, columns, width) in ENTRIES.items():
+        rows = chance.uniform(-9.0, 9.0, (5, columns))
+        rows[:, 1] = chance.integers(FREE, OUTER if np.isinf(orbit.form.limit) else OUTER + 1, 5)
+        if name == "find_segments":
+            rows = np.column_stack(
+                [orbit.nodes, orbit.modes, orbit.sequence.releases, orbit.sequence.outer]
+            )
+        result = orbit.form.tabulate(name, list(rows.T), width, 12.0)
+        head = [*orbit.form.numbers.tolist(), float(len(rows)), 12.0]
+        memory = [*head, *rows.ravel().tolist(), *[0.0] * (width * len(rows) + orbits.SPARE)]
+        entry(memory, 0.0)
+        first = orbits.TABLE + rows.size
+        assert result.ravel().tolist() == memory[first : first + result.size], name
+    assert loaded_loop("orbits")
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_equations_have_exact_derivatives(seed):
+    orbit, step = random_orbit(seed), 1e-6
+    exact, seen = orbit.jacobian(), []
+    for i in range(orbit.nodes.size):
+        ends = []
+        for away in (step, -step):
+            nodes = orbit.nodes.copy()
+            nodes.ravel()[i] += away
+            ends.append(dataclasses.replace(orbit, nodes=nodes).residual())
+        seen.append((ends[0] - ends[1]) / (2.0 * step))
+    assert np.abs(np.transpose(seen) - exact).max() < 1e-7 * max(1.0, np.abs(exact).max())
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_segments_follow_the_equations_of_motion(seed):
+    orbit, step = random_orbit(seed), 1e-5
+    segment = np.arange(orbit.count)
+    middle = 0.5 * (orbit.begins + orbit.ends)
+    states, form = orbit.states(segment, middle), orbit.form
+    ends = [orbit.states(segment, middle + sign * step * form.eta) for sign in (1, -1)]
+    moving = [0, 2] if form.wall else slice(None)
+    rates = form.field(states, middle, orbit.modes)[:, moving]
+    seen = (ends[0] - ends[1])[:, moving] / (2.0 * step)
+    assert rates == pytest.approx(seen, abs=1e-7)
+    if not (form.wall and orbit.contact.any()):
+        for phase, state in ((orbit.begins, orbit.starts), (orbit.ends, orbit.arrivals)):
+            found = orbit.states(segment, phase)[:, moving]
+            assert found == pytest.approx(state[:, moving], abs=1e-12)
+
+
+def test_an_iteration_that_went_astray_gives_no_number():
+    orbit = random_orbit(2)
+    nodes = orbit.nodes + [1e30, 0.0, 0.0, 0.0]
+    nodes[-1, 0] = np.nan
+    assert not np.isfinite(dataclasses.replace(orbit, nodes=nodes).residual()).all()
