@@ -12,9 +12,11 @@ import pytest
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import motion, stepper
 from tests import exact_motion as truth
+from tests.fmu.event_driven import CONTACT, Motion
+from tests.fmu.test_forces import KINDS, drawn
 
 from . import reference
-from .kernel import DEFAULTS, advanced, pieces, started
+from .kernel import DEFAULTS, advanced, pieces, set_inputs, started
 
 STATE = (-0.3, 0.2, 0.4, -0.5)  # x1, v1, x2, v2
 STARTS = dict(zip(("x1_start", "v1_start", "x2_start", "v2_start"), STATE, strict=True))
@@ -76,6 +78,28 @@ def test_event_by_event_in_high_precision(values):
     assert [m[i] for i in (at.X1, at.V1, at.X2, at.V2)] == pytest.approx(
         [float(value) for value in state], abs=1e-11 * (1.0 + speed)
     )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_gaps_walls_plays_and_forces_at_points_of_their_motion(kind):
+    """Against an event-driven solver: in flights and contacts at either end, from either origin."""
+    for seed in range(4):
+        values, changes, stop = drawn(kind, seed, 3)
+        motion, m, now = Motion(values), started(**values), 0.0
+        motion.longest *= 0.5  # no graze is stepped over
+        for time, inputs in [*changes, (stop, {})]:
+            for part in (0.25, 0.5, 0.75, 1.0):
+                motion.run(now + part * (time - now))
+                advanced(m, motion.time)
+                expected = *motion.state, motion.gap(0.0, motion.state)
+                found = [m[i] for i in (at.X1, at.V1, at.X2, at.V2, at.X_REL)]
+                assert found == pytest.approx(expected, abs=1e-10 * motion.size), (seed, motion.time)
+                found = m[at.IN_CONTACT], m[at.IMPACT_COUNT], m[at.IMPACT_SIDE]
+                side = (1 if motion.side > 0 else 2) if motion.impacts else 0
+                assert found == (motion.mode == CONTACT, len(motion.impacts), side)
+            motion.set(**inputs)
+            set_inputs(m, **inputs)
+            now = time
 
 
 @pytest.mark.parametrize(
