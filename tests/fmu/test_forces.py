@@ -25,7 +25,7 @@ KINDS = {
     **{HARMONIC: {"box_acceleration": -0.3}, "two masses": {}},
     **{"wall": WALL, "play": PLAY, "wall and play": {**WALL, **PLAY}},
 }
-FEW = 20  # seeds of the ordinary run
+FEW = 8  # seeds of the ordinary run
 SIZES = (1.0, 0.1, 0.02, 0.003)  # of a cubic's value and derivatives
 FORCES = {
     **{"force1_amplitude": 0.4, "force2_amplitude": -0.3, "force1": 0.1, "force1_1": -0.02},
@@ -114,7 +114,7 @@ def check(path, kind, seeds, periods):
 @pytest.mark.parametrize("kind", KINDS)
 def test_random_motions_are_those_of_an_independent_solver(kind):
     regular, impacts, releases = check(FMUS["fmi3"], kind, range(FEW), 3)
-    assert regular >= 10 and impacts > 50 and releases > 3
+    assert regular >= 5 and impacts > 20 and releases > 2
 
 
 @pytest.mark.slow

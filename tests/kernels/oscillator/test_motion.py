@@ -93,7 +93,10 @@ def test_gaps_walls_plays_and_forces_at_points_of_their_motion(kind):
                 advanced(m, motion.time)
                 expected = *motion.state, motion.gap(0.0, motion.state)
                 found = [m[i] for i in (at.X1, at.V1, at.X2, at.V2, at.X_REL)]
-                assert found == pytest.approx(expected, abs=1e-10 * motion.size), (seed, motion.time)
+                assert found == pytest.approx(expected, abs=1e-10 * motion.size), (
+                    seed,
+                    motion.time,
+                )
                 found = m[at.IN_CONTACT], m[at.IMPACT_COUNT], m[at.IMPACT_SIDE]
                 side = (1 if motion.side > 0 else 2) if motion.impacts else 0
                 assert found == (motion.mode == CONTACT, len(motion.impacts), side)

@@ -123,16 +123,6 @@ DOUBTED = {  # options, and the words of the warning
     "--set clearance=-20 --hz 42": "clearance = -20 m | 20 um is 2e-5",
     "--frequency 42": "these are rad/s | is --hz meant?",
     "--hz 264": "these are Hz | is --frequency meant?",
-    "--frequency 46.6": "these are rad/s",  # a tenth above 42 and below it
-    "--frequency 46.8": "",
-    "--frequency 38.3": "these are rad/s",
-    "--frequency 38": "",
-    "--set clearance=-14.66mm --hz 42": "it in m",  # 200 times what the level moves
-    "--set clearance=-14.54mm --hz 42": "",
-    "--hz 1051": "far from it",  # 25 times 42, and a 25th of it
-    "--hz 1049": "",
-    "--hz 1.67": "far from it",
-    "--hz 1.69": "",
     "--set zeta1=0.2 --set clearance=-2e-5 --hz 42": "",
     "--set clearance=1.5e-3 --hz 42": "",
     "--frequency 270": "",
@@ -142,9 +132,9 @@ DOUBTED = {  # options, and the words of the warning
 
 
 @pytest.mark.parametrize("options", DOUBTED)
-def test_what_is_implausible_triggers_a_warning_in_one_line(ask, options, caplog):
+def test_what_is_implausible_triggers_a_warning_in_one_line(ask, options):
     shaken = (*options.split(), "--g", "0.3")
-    complaints = said(ask, *HALVES, *MASSES, shaken=shaken)[1] + caplog.messages
+    complaints = said(ask, *HALVES, *MASSES, shaken=shaken)[1]
     words = [word for word in DOUBTED[options].split(" | ") if word]
     assert len(complaints) == bool(words)
     assert all(word in complaints[0] for word in words)

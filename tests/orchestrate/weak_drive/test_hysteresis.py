@@ -149,9 +149,7 @@ def test_a_jump_is_bracketed_within_the_width(length, bracket):
     assert jump.high - jump.low == pytest.approx(bracket)
 
 
-@pytest.mark.parametrize(
-    ("length", "left"), [(1.02e-6 * 8192, 0.51e-6), (0.98e-6 * 8192, 0.98e-6)]
-)
+@pytest.mark.parametrize(("length", "left"), [(1.02e-6 * 8192, 0.51e-6), (0.98e-6 * 8192, 0.98e-6)])
 def test_a_step_without_hysteresis_is_halved_to_the_finest(monkeypatch, length, left):
     loop, over = Scripted(lambda motion, before, voltage: 0.1 * (voltage > 1.503)), []
     jump_over = loop.jump_over
