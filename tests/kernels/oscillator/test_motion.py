@@ -11,6 +11,7 @@ import pytest
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import motion, stepper
+from fmu_src.kernels.oscillator.event_function import event_rounding
 from tests import exact_motion as truth
 from tests.fmu.event_driven import CONTACT, Motion
 from tests.fmu.test_forces import KINDS, drawn
@@ -206,8 +207,8 @@ def test_a_start_at_rest_leaves_the_boundary_by_half_of_what_its_bound_allows(or
     motion.leave_boundary(m, order, value)
     step = m[at.CLEAR]
     grown, taken = (s / math.factorial(k) for k, s in power_terms(step, order, value, bound))
-    assert 0.0 < step < m[at.RIGHT_AGE] and taken == pytest.approx(0.5 * grown)
-    assert motion.grown_to(step, order, value) == pytest.approx(grown + taken)
+    assert 0.0 < step < m[at.RIGHT_AGE] and taken == pytest.approx(0.5 * grown, abs=0.0)
+    assert motion.grown_to(step, order, value) == pytest.approx(grown + taken, abs=0.0)
     m[at.LIMIT] = 0.5 * (grown + taken)
     motion.leave_boundary(m, order, value)
     assert (
@@ -215,6 +216,21 @@ def test_a_start_at_rest_leaves_the_boundary_by_half_of_what_its_bound_allows(or
     )
     motion.leave_boundary(m, order, 1e9 * bound)
     assert m[at.CLEAR] <= m[at.RIGHT_AGE]
+
+
+def test_masses_that_touch_at_a_start_are_where_they_are_put():
+    """The centre of two equal numbers is off by their rounding for some masses."""
+    for m2 in (0.7, 1.0, 1.3, 1.9, 3.1, 4.7):
+        m = started(m2=m2, x1_start=0.2, x2_start=0.2, box_acceleration=-1.0)
+        assert (m[at.X1], m[at.X2]) == (0.2, 0.2)
+
+
+@pytest.mark.parametrize(("part", "narrow"), [(0.95, 1.0), (1.05, 0.0)])
+def test_a_stroke_of_a_million_roundings_of_the_gap_is_wide_enough(part, narrow):
+    m = started(**STARTS, stroke=2.0)
+    m[at.LIMIT] = 1e6 * event_rounding(m, 0.0) * part
+    motion.open_flight(m, *STATE, 0.7)
+    assert m[at.NARROW] == narrow
 
 
 def power_terms(step, order, value, bound):
