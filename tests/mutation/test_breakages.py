@@ -1,8 +1,8 @@
 """Each module's tests notice nine of ten breakages of it; those of the list change no answer.
 
-``python -m pytest tests/mutation -m slow`` takes ten minutes: ``PART`` modules by the
-seed, each for ``EACH`` seconds; ``-k first_root`` one module, ``--budget 0`` all and without an
-end. Tables are in ``results/mutation``, are resumed and judged whole.
+``python -m pytest tests/mutation -m slow`` takes less than a quarter of an hour: ``PART`` modules by
+the seed, each for ``EACH`` seconds; ``-k first_root`` one module, ``--budget 0`` all and without an
+end. Tables are in ``results/mutation``, are resumed and judged whole, from ``LEAST`` rows on.
 """
 
 import csv
@@ -19,6 +19,7 @@ from .subjects import SUBJECTS
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = ROOT / "results" / "mutation"
 USUAL, PART, EACH = 20, 4, 150  # breakages of a module; modules; s of each
+LEAST = 8  # breakages: of fewer nothing is said
 HARMLESS = Path(__file__).with_name("harmless.csv")
 
 
@@ -51,6 +52,8 @@ def test_the_tests_notice_what_is_broken(module, request):
     chance = 2.0 * math.sqrt(0.09 * len(judged)) if budget is None else 0.0  # of a sample
     told = f"{module}, seed {seed}: {len(left)} of {len(judged)} are not noticed"
     print(told)
+    if len(judged) < LEAST:
+        pytest.skip(f"{told}; expected {LEAST} or more in {EACH} s")
     assert len(left) <= 0.1 * len(judged) + chance, (
         f"{told}, beside {len(rows) - len(judged)} that change no answer:\n{text}"
     )
