@@ -1,7 +1,7 @@
 """Each module's tests notice nine of ten breakages of it; those of the list change no answer.
 
-``python -m pytest tests/mutation -m slow`` takes less than a quarter of an hour: ``PART`` modules by
-the seed, each for ``EACH`` seconds; ``-k first_root`` one module, ``--budget 0`` all and without an
+``python -m pytest tests/mutation -m slow`` takes a quarter of an hour at most: ``PART`` modules
+by the seed, each for ``EACH`` seconds; ``-k first_root`` one module, ``--budget 0`` all and without an
 end. Tables are in ``results/mutation``, are resumed and judged whole, from ``LEAST`` rows on.
 """
 
