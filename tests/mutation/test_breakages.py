@@ -1,8 +1,8 @@
 """Each module's tests notice nine of ten breakages of it; those of the list change no answer.
 
 ``python -m pytest tests/mutation -m slow`` takes a quarter of an hour at most: ``PART`` modules
-by the seed, each for ``EACH`` seconds; ``-k first_root`` one module, ``--budget 0`` all and without an
-end. Tables are in ``results/mutation``, are resumed and judged whole, from ``LEAST`` rows on.
+by the seed, each for ``EACH`` seconds; ``-k first_root`` one module, ``--budget 0`` all and without
+an end. Tables are in ``results/mutation``, are resumed and judged whole, from ``LEAST`` rows on.
 """
 
 import csv
@@ -61,12 +61,12 @@ def test_the_tests_notice_what_is_broken(module, request):
 
 def test_what_is_called_harmless_is_a_breakage_of_the_present_source():
     """A line that changes has to be looked at again."""
-    from .breakages import breakages
+    from .breakages import changes
 
     with HARMLESS.open(newline="") as file:
         rows = list(csv.DictReader(file))
     for module in {row["module"] for row in rows}:
-        known = {(one.text, one.broken) for one in breakages((ROOT / module).read_text())}
+        known = {(one.text, one.broken) for one in changes((ROOT / module).read_text())}
         assert set(harmless(module)) <= known
     assert all(row["reason"] for row in rows)
 
