@@ -50,7 +50,7 @@ class Motion:
         x1, x2 = p["x1_start"] - preload * softness[0], p["x2_start"] + preload * softness[1]
         self.state = np.array([x1, p["v1_start"], x2, p["v2_start"]])
         pushes = p["force1_amplitude"], p["force2_amplitude"], p["force1"], p["force2"]
-        self.size = np.abs(self.state).max() + p["box_amplitude"] + abs(p["clearance"])
+        self.size = np.abs(self.state).max() + abs(p["box_amplitude"]) + abs(p["clearance"])
         self.size = self.size + max(map(abs, pushes)) / p["k1"] or 1.0
         fastest = max(p["box_frequency"], self.own)
         self.time, self.impacts, self.longest = 0.0, [], 0.2 / fastest
@@ -60,8 +60,9 @@ class Motion:
         gap, v1, v2 = self.gap(0.0, self.state), p["v1_start"], p["v2_start"]
         self.side = 1 if gap < 0.5 * self.stroke else -1  # of the impact or contact, -1 outside
         closed = min(gap, self.stroke - gap) <= 1e-14 * self.size
-        pressed = closed and v1 == v2 and self.opening(0.0, x1, v1) < 0.0
-        self.mode, self.hop = (CONTACT, 0.0) if pressed else (FLIGHT, 0.0)
+        self.mode, self.hop = FLIGHT, 0.0
+        if closed and v1 == v2:
+            self.part_or_stay()
 
     def gap(self, _, y):
         return y[2] - y[0] + self.p["clearance"]
@@ -75,10 +76,22 @@ class Motion:
             if any(name in values for name in names):
                 self.since[kind] = self.time
         p |= values
-        if self.mode == CONTACT and self.opening(self.time, self.state[0], self.state[1]) > 0.0:
-            self.mode, self.hop = FLIGHT, 0.02 * self.longest
-            self.releases += 1
+        if self.mode == CONTACT:
+            self.releases += self.part_or_stay()
         return self
+
+    def part_or_stay(self):
+        """Touching with one velocity: whether the masses part, by the sign of the acceleration
+        that would part them; where it is zero, of what it is after a moment of contact.
+        """
+        soon, pull = 0.02 * self.longest, self.opening(self.time, *self.state[:2])
+        if abs(pull) <= 1e-14 * self.own**2 * self.size:
+            ends = self.time, self.time + soon
+            tight = {"rtol": TOLERANCE, "atol": 1e-20 * self.size}
+            after = solve_ivp(self.contact, ends, self.state, "DOP853", **tight).y[:, -1]
+            pull = self.opening(ends[1], *after[:2])
+        self.mode, self.hop = (FLIGHT, soon) if pull > 0.0 else (CONTACT, 0.0)
+        return pull > 0.0
 
     def harmonic(self, t):
         return np.sin(self.phase + self.p["box_frequency"] * (t - self.begun))

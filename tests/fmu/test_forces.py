@@ -25,7 +25,7 @@ KINDS = {
     **{HARMONIC: {"box_acceleration": -0.3}, "two masses": {}},
     **{"wall": WALL, "play": PLAY, "wall and play": {**WALL, **PLAY}},
 }
-FEW = 20  # seeds of the ordinary run
+FEW = 8  # seeds of the ordinary run
 SIZES = (1.0, 0.1, 0.02, 0.003)  # of a cubic's value and derivatives
 FORCES = {
     **{"force1_amplitude": 0.4, "force2_amplitude": -0.3, "force1": 0.1, "force1_1": -0.02},
@@ -33,7 +33,7 @@ FORCES = {
 }
 
 
-def drawn_forces(rng, half):
+def some_forces(rng, half):
     """A force on a half: harmonic, constant, a cubic, or some of these."""
     sizes = dict(zip(CUBICS[half], SIZES, strict=True)) | {f"force{half}_amplitude": 1.0}
     return {n: float(rng.integers(2) * size * rng.uniform(-1, 1)) for n, size in sizes.items()}
@@ -43,16 +43,15 @@ def harmonic_force(rng, half):
     return {f"force{half}_amplitude": float(rng.uniform(-1, 1)), f"force{half}": 0.0}
 
 
-@functools.cache
-def exact(kind, seed, periods):
-    """A structure, the inputs that are set at some times, and its motion by the solver.
+def drawn(kind, seed, periods):
+    """A structure, the inputs that are set at some times, and when its motion ends.
 
     Forces and cubics of the box, some from the start and others later: they jump, and so does the
     force of a contact.
     """
     rng = np.random.default_rng((65, seed))
-    drawn = harmonic_force if kind == HARMONIC else drawn_forces
-    values = structure(seed) | drawn(rng, 1) | drawn(rng, 2) | KINDS[kind]
+    forces = harmonic_force if kind == HARMONIC else some_forces
+    values = structure(seed) | forces(rng, 1) | forces(rng, 2) | KINDS[kind]
     values["clearance"] *= seed % 3 > 0
     values["box_amplitude"] *= seed % 5 > 0
     if values.get("wall") and values["clearance"] < values["x1_start"]:
@@ -60,15 +59,23 @@ def exact(kind, seed, periods):
     if "stroke" in values:
         gap = values["x2_start"] - values["x1_start"] + max(values["clearance"], 0.0)
         values["stroke"] = max(gap, values["clearance"]) + float(rng.choice([0.1, 0.3, 1.0]))
-    stop = periods * 2.0 * np.pi / values["box_frequency"]
-    motion, changes = Motion(values), []
-    motion.longest *= 0.5 if seed < FEW else 0.1  # no graze is stepped over
+    stop, changes = periods * 2.0 * np.pi / values["box_frequency"], []
     for time in stop * np.sort(rng.uniform(0.05, 0.95, 0 if kind == HARMONIC else 3)):
-        inputs = drawn_forces(rng, int(rng.integers(1, 3)))
+        inputs = some_forces(rng, int(rng.integers(1, 3)))
         if rng.random() < 0.3:
             inputs |= {"box_acceleration": float(rng.uniform(-0.5, 0.5)), "box_jerk": 0.05}
-        motion.run(time).set(**inputs)
         changes.append((float(time), inputs))
+    return values, changes, stop
+
+
+@functools.cache
+def exact(kind, seed, periods):
+    """What is drawn, and its motion by the solver."""
+    values, changes, stop = drawn(kind, seed, periods)
+    motion = Motion(values)
+    motion.longest *= 0.5 if seed < FEW else 0.1  # no graze is stepped over
+    for time, inputs in changes:
+        motion.run(time).set(**inputs)
     return values, changes, stop, motion.run(stop)
 
 
@@ -107,7 +114,7 @@ def check(path, kind, seeds, periods):
 @pytest.mark.parametrize("kind", KINDS)
 def test_random_motions_are_those_of_an_independent_solver(kind):
     regular, impacts, releases = check(FMUS["fmi3"], kind, range(FEW), 3)
-    assert regular >= 10 and impacts > 50 and releases > 3
+    assert regular >= 5 and impacts > 20 and releases > 2
 
 
 @pytest.mark.slow

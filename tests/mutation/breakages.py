@@ -22,14 +22,18 @@ class Breakage(NamedTuple):
 
 def breakages(source):
     """Return all breakages of a module, in its order."""
+    return sorted(one for one in changes(source) if is_whole(one.source))
+
+
+def changes(source):
+    """Return all changes of a module, also those that leave no Python."""
     tree = ast.parse(source)
     indices = {id(part) for node in ast.walk(tree) for part in subscripts(node)}
     nodes = [node for node in ast.walk(tree) if id(node) not in indices]
     edits = sorted({edit for node in nodes for edit in edits_of(node, source)})
     fields = threshold_lines(tree)
     found = (broken_by(edit, source, edit[0] in fields) for edit in edits)
-    made = {(one.text, one.broken): one for one in found}
-    return sorted(one for one in made.values() if is_whole(one.source))
+    return {(one.text, one.broken): one for one in found}.values()
 
 
 def threshold_lines(tree):

@@ -1,8 +1,8 @@
 """Each module's tests notice nine of ten breakages of it; those of the list change no answer.
 
-``python -m pytest tests/mutation -m slow`` takes ten minutes: ``PART`` modules by the
-seed, each for ``EACH`` seconds; ``-k first_root`` one module, ``--budget 0`` all and without an
-end. Tables are in ``results/mutation``, are resumed and judged whole.
+``python -m pytest tests/mutation -m slow`` takes a quarter of an hour at most: ``PART`` modules
+by the seed, each for ``EACH`` seconds; ``-k first_root`` one module, ``--budget 0`` all and without
+an end. Tables are in ``results/mutation``, are resumed and judged whole, from ``LEAST`` rows on.
 """
 
 import csv
@@ -19,6 +19,7 @@ from .subjects import SUBJECTS
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = ROOT / "results" / "mutation"
 USUAL, PART, EACH = 20, 4, 150  # breakages of a module; modules; s of each
+LEAST = 8  # breakages: of fewer nothing is said
 HARMLESS = Path(__file__).with_name("harmless.csv")
 
 
@@ -51,6 +52,8 @@ def test_the_tests_notice_what_is_broken(module, request):
     chance = 2.0 * math.sqrt(0.09 * len(judged)) if budget is None else 0.0  # of a sample
     told = f"{module}, seed {seed}: {len(left)} of {len(judged)} are not noticed"
     print(told)
+    if len(judged) < LEAST:
+        pytest.skip(f"{told}; expected {LEAST} or more in {EACH} s")
     assert len(left) <= 0.1 * len(judged) + chance, (
         f"{told}, beside {len(rows) - len(judged)} that change no answer:\n{text}"
     )
@@ -58,12 +61,12 @@ def test_the_tests_notice_what_is_broken(module, request):
 
 def test_what_is_called_harmless_is_a_breakage_of_the_present_source():
     """A line that changes has to be looked at again."""
-    from .breakages import breakages
+    from .breakages import changes
 
     with HARMLESS.open(newline="") as file:
         rows = list(csv.DictReader(file))
     for module in {row["module"] for row in rows}:
-        known = {(one.text, one.broken) for one in breakages((ROOT / module).read_text())}
+        known = {(one.text, one.broken) for one in changes((ROOT / module).read_text())}
         assert set(harmless(module)) <= known
     assert all(row["reason"] for row in rows)
 

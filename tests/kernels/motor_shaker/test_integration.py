@@ -96,9 +96,9 @@ def test_a_time_constant_far_below_the_step_is_known_at_once(values):
 @pytest.mark.parametrize("values", [{"armature_inductance": 3e-4}, {"box_damping": 1e5}])
 def test_a_short_time_constant_that_can_be_followed_is(values):
     m = started(voltage=5.0, **values)
-    assert stepper.advance(m, 0.5) == at.OK
+    assert stepper.advance(m, 0.1) == at.OK
     decay = stepper.fastest_decay(m)
-    assert m[at.WORK] >= at.STAGES / stepper.STABLE * decay * 0.5  # what is counted on beforehand
+    assert m[at.WORK] >= at.STAGES / stepper.STABLE * decay * 0.1  # what is counted on beforehand
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
@@ -108,8 +108,7 @@ def test_energy_to_the_rounding_of_what_the_motion_is_made_of(values, state, sto
     values = {**DEFAULTS, **values, **dict.fromkeys(CUBIC, 0.0)}
     names = ("x1_start", "v1_start", "x2_start", "v2_start")
     m = advanced(started(**values, **dict(zip(names, state, strict=True))), stop)
-    if m[at.IMPACT_COUNT] > 0.0:
-        return
+    assume(not m[at.IMPACT_COUNT])
     exact = terms = mp.mpf(0)
     for i, motion in enumerate(truth.free_motion(values, state, mp.mpf(values["phase_start"])), 1):
         mass, stiffness, speed = values[f"m{i}"], values[f"k{i}"], motion.derivative()
@@ -156,8 +155,8 @@ def test_impulses_of_short_steps(step, push):
     force = 30 * first + 9 * first.derivative() + 70 * second + mp.mpf(0.4) * second.derivative()
     impulse = mp.quad(force, [0, mp.mpf(step)])
     moment = mp.quad(lambda t: t * force(t), [0, mp.mpf(step)])
-    assert m[at.BOX_IMPULSE] == pytest.approx(float(impulse), rel=2e-14)
-    assert m[at.BOX_IMPULSE_MOMENT] == pytest.approx(float(moment), rel=2e-14)
+    assert m[at.BOX_IMPULSE] == pytest.approx(float(impulse), rel=2e-14, abs=0.0)
+    assert m[at.BOX_IMPULSE_MOMENT] == pytest.approx(float(moment), rel=2e-14, abs=0.0)
 
 
 @pytest.mark.parametrize("amplitude", [5e-324, 1e-310, 1e-201])

@@ -4,7 +4,7 @@ closed form is relative to the displacements.
 
 import mpmath as mp
 import pytest
-from hypothesis import example, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
@@ -35,8 +35,7 @@ def leaving(values, x, v, slope):
 @given(structures(), *PLACES, sizes(1e-9, 0.1))
 def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
     m, first, gap = leaving(values, x, v, slope)
-    if m[at.SERIES] == 0.0:
-        return
+    assume(m[at.SERIES] != 0.0)
 
     # of the gap's own terms, which may cancel; those of the displacements are larger by far. Two
     # oscillators that differ by rounding alone count as alike.
@@ -65,8 +64,7 @@ def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
 @given(structures(), *PLACES, sizes(1e-9, 0.1), st.floats(0.0, 1.0))
 def test_value_and_derivatives(values, x, v, slope, part):
     m, _, gap = leaving(values, x, v, slope)
-    if m[at.SERIES] == 0.0:
-        return
+    assume(m[at.SERIES] != 0.0)
     tau = part * m[at.END]
     with mp.workdps(50):
         scale = abs(gap.derivative()(mp.mpf(0))) + abs(gap.derivative().derivative()(mp.mpf(0)))
@@ -104,8 +102,7 @@ def test_a_short_flight_under_a_preload_is_that_of_the_gap(values, x, v, slope):
     own terms; the fifth derivative stays below the bound that makes the root certain.
     """
     m, gap = leaving_with_clearance(values, x, v, slope)
-    if m[at.SERIES] == 0.0:
-        return
+    assume(m[at.SERIES] != 0.0)
     with mp.workdps(50):
         end, curvature = m[at.END], abs(gap.derivative().derivative()(mp.mpf(0)))
         offset = values["clearance"] if values["clearance"] > 0.0 else 0.0

@@ -11,48 +11,12 @@ import pytest
 
 from orchestrate.cli import main
 
-from .commands import all_end, below, end, kill, wait_for
+from .commands import all_end, below, end, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups and /proc")
 RESUME = "repeat the command (without --force) to resume"
 INTERRUPTED = f"interrupted: what was stored is kept; {RESUME}"
 BEGINS_ANEW = "interrupted: nothing was stored; repeat the command to start again"
-SWEEP = ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "700", "--plot", "none")  # chaotic
-
-
-@pytest.fixture
-def uninterrupted(tmp_path, monkeypatch):
-    """Bytes of the results of a run, computed in one go in this process."""
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-
-    def results() -> dict[str, bytes]:
-        folder = tmp_path / "uninterrupted"
-        assert main([*SWEEP, "--output", str(folder)]) == 0
-        return {path.name: path.read_bytes() for path in sorted(folder.glob("*.nc"))}
-
-    return results
-
-
-def results_left(commands):
-    """Names in the folder of the results but for results."""
-    kinds = (".nc", ".png", ".pdf", ".html")
-    return [name for name in commands.files() if not name.endswith(kinds)]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
-def test_after_an_interruption_the_bytes_are_equal(commands, uninterrupted, number):
-    """A sweep, in threads."""
-    process = commands.start(*SWEEP)
-    wait_for(lambda: commands.chunks() > 0, process, "a chunk was on disk")
-    done = kill(process, number)
-    assert commands.chunks() > 0, "chunks are lost"
-    if number == signal.SIGINT:
-        assert done.complaint(code=130) == INTERRUPTED
-        assert list(commands.temporary.iterdir()) == []
-    commands.run(*SWEEP).success()
-    assert commands.results() == uninterrupted()
-    assert results_left(commands) == []
 
 
 GRID = ("--eta", "1.1:1.4:0.005", "--over", "e", "--values", "0.3:0.9:0.005")
@@ -118,15 +82,3 @@ def test_an_interrupted_command_without_a_store_says_so(tmp_path, capsys, monkey
     monkeypatch.setattr("orchestrate.explorer.page.render_page", interrupt)
     assert main(["explore", "--no-open", "--output", str(tmp_path / "page.html")]) == 130
     assert capsys.readouterr().err.splitlines() == [BEGINS_ANEW]
-
-
-@pytest.mark.slow
-def test_the_same_command_twice_at_once_spoils_nothing(commands, uninterrupted):
-    first = commands.start(*SWEEP)
-    wait_for(lambda: commands.chunks() >= 1, first, "a chunk was on disk")
-    second = commands.start(*SWEEP)
-    answers = [end(first), end(second)]
-    assert answers[0].code == 0
-    assert "Traceback" not in answers[1].err
-    assert answers[1].code == 0 or answers[1].complaint("another process", code=answers[1].code)
-    assert commands.results() == uninterrupted()

@@ -1,9 +1,6 @@
 """A command in a hostile place: outputs that are closed, full or not read, few files, signals."""
 
 import io
-import os
-import random
-import signal
 import subprocess
 import sys
 import time
@@ -18,12 +15,10 @@ from orchestrate.cli import main, responses
 from orchestrate.cli.safe_output import SafeStream
 from tests.faults import Surroundings
 
-from .commands import ROOT, all_end, below, end, wait_for
+from .commands import ROOT
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full, limits, /proc")
 ASKED = ("sweep", "--eta", "1.2", "--transient", "5", "--samples", "2", "--plot", "none")
-GRID = ("--eta", "1.1:1.4:0.005", "--over", "e", "--values", "0.3:0.9:0.005")
-LONG = ("map", *GRID, "--transient", "20000", "--jobs", "2")  # by worker processes
 
 
 def ask(folder, **where):
@@ -106,23 +101,6 @@ def test_too_little_memory_is_a_line(monkeypatch, capsys, error):
     told = capsys.readouterr().err
     assert told.count("\n") == 1
     assert "out of memory, or the installation is incomplete" in told
-
-
-@pytest.mark.slow
-def test_sigterm_at_random_moments_leaves_nothing(commands):
-    """No temporary folder, no worker, and no word of a resource tracker."""
-    chance = random.Random(1)
-    for _ in range(4):
-        process = commands.start(*LONG)
-        wait_for(lambda pid=process.pid: len(list(below(pid))) >= 3, process, "workers were there")
-        time.sleep(chance.uniform(0.0, 3.0))
-        workers = list(below(process.pid))
-        os.kill(process.pid, signal.SIGTERM)
-        done = end(process)
-        assert done.code == 143
-        assert [line for line in done.complaints if "resource_tracker" in line] == []
-        assert all_end(workers)
-        assert list(commands.temporary.iterdir()) == []
 
 
 IN_A_CALLBACK = """

@@ -52,22 +52,6 @@ def test_chattering_into_permanent_contact_leaves_two_multipliers():
     assert found.multiplier_product.item() == 0.0
 
 
-@pytest.mark.parametrize(
-    ("numbers", "eta"),
-    [
-        ({"D1": 0.005, "D2": 0.03, "mu": 0.5, "kappa": 1.4}, 0.35),  # f knows the velocity (18)
-        ({"D1": 0.01, "D2": 2.0}, 0.5),  # mass 2 overdamped
-        ({"e": 0.0}, 0.8),  # no chattering: every impact sticks, or both masses fly on together
-        ({"e": 1.0}, 1.5),
-    ],
-)
-def test_other_structures_are_run_through_by_the_fmu(numbers, eta):
-    found = known(eta, structure=Structure.nondimensional(**numbers))
-    assert found.fmu_same_impacts
-    assert found.fmu_return < 1e-13
-    assert found.permanent_contact == (numbers.get("e") != 1.0)
-
-
 def test_an_orbit_without_impacts():
     """Where the box's acceleration holds the gap open the response is harmonic."""
     found = orbit(PAPER, eta=1.5, box_acceleration=30.0)

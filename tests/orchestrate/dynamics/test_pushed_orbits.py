@@ -19,11 +19,14 @@ PUSHES = "box_acceleration", "force1", "force2"
 
 
 def draw_pushed(random):
-    """A structure of 3 kg and 7 rad/s, an eta, and pushes of the size of the box's own."""
+    """A structure of 3 kg and 7 rad/s, an eta, and pushes of the size of the box's own; its
+    restitution may decrease with the closing speed.
+    """
     drawn, eta = draw_structure(random)
     units = {"m": 3.0, "k": 3.0 * 49.0, "d": 3.0 * 7.0}
     names = [f"{quantity}{mass}" for quantity in units for mass in (1, 2)]
     structure = drawn.replace(**{name: units[name[0]] * drawn.get(name) for name in names})
+    structure = structure.replace(e_slope=float(random.choice([0.0, 0.1])))
     sizes = random.uniform(-1.5, 1.5, 3) * 49.0 * [1.0, structure.m1, structure.m2]
     return structure, eta, dict(zip(PUSHES, map(float, sizes), strict=True))
 

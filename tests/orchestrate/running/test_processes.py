@@ -1,7 +1,6 @@
 """Scripts of users on processes and threads, interrupted and killed: the same bytes in the end."""
 
 import os
-import random
 import signal
 import subprocess
 import sys
@@ -9,8 +8,6 @@ import time
 from pathlib import Path
 
 import pytest
-
-from orchestrate.running.journal import journal_path
 
 from ..cli.commands import all_end, below, chunks_in, wait_for
 
@@ -31,11 +28,6 @@ fmu = running["store"].with_suffix(".fmu")
 fmu.write_bytes(b"an FMU")
 job = Squares("squares", size=120, pause=0.1)
 print(float(answer(job, running, lambda model: Model(fmu, model)).square[-1]))
-"""
-SWEEP = f"""{HEAD}
-e, D, direction = float(sys.argv[3]), float(sys.argv[4]), sys.argv[5]
-etas = np.round(np.arange(0.1, 8.0005, 0.001), 3)
-sweep(Structure.nondimensional(e=e, D=D), eta=etas, direction=direction, **running)
 """
 
 
@@ -68,29 +60,3 @@ def test_workers_end_with_the_process_they_work_for(tmp_path, number, at_work):
     assert all_end(workers) and time.monotonic() - begun < 10
     assert err.count("KeyboardInterrupt") == (number == signal.SIGINT), err  # none of a worker
     assert journal.exists()
-
-
-FIGURES = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("script", "arguments"),
-    [
-        (SQUARES, ()),
-        *((SWEEP, (*FIGURES[name], way)) for name in FIGURES for way in ("up", "down")),
-    ],
-)
-def test_killed_at_random_moments_it_goes_on_with_equal_bytes(tmp_path, script, arguments):
-    whole, broken, chance = tmp_path / "whole.nc", tmp_path / "broken.nc", random.Random(1)
-    assert start(script, whole, 1, *arguments).wait(timeout=300) == 0
-    for jobs in (1, 2, 7):
-        process = start(script, broken, jobs, *arguments)
-        time.sleep(chance.uniform(1.5, 3.0))
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-    process = start(script, broken, 3, *arguments)
-    _, err = process.communicate(timeout=300)
-    assert process.returncode == 0, err
-    assert broken.read_bytes() == whole.read_bytes()
-    assert not journal_path(broken).exists()

@@ -149,6 +149,28 @@ def test_a_jump_is_bracketed_within_the_width(length, bracket):
     assert jump.high - jump.low == pytest.approx(bracket)
 
 
+@pytest.mark.parametrize(("length", "left"), [(1.02e-6 * 8192, 0.51e-6), (0.98e-6 * 8192, 0.98e-6)])
+def test_a_step_without_hysteresis_is_halved_to_the_finest(monkeypatch, length, left):
+    loop, over = Scripted(lambda motion, before, voltage: 0.1 * (voltage > 1.503)), []
+    jump_over = loop.jump_over
+
+    def note(*asked):
+        over.append(jump_over(*asked))
+        return over[-1]
+
+    monkeypatch.setattr(loop, "jump_over", note)
+    assert loop.jumps(loop.at(1.5), 1.5 + length) == []
+    assert over[-1].high - over[-1].low == pytest.approx(left)
+
+
+@pytest.mark.parametrize(("stairs", "outcomes"), [(19, []), (20, [UNDECIDED])])
+def test_what_is_left_after_all_rounds_is_undecided(stairs, outcomes):
+    """Stairs without hysteresis, of which 19 take 148 rounds and 20 would take 163."""
+    places = 1.5031 + 0.002 * np.arange(stairs)
+    loop = Scripted(lambda motion, before, voltage: 0.01 * (voltage > places).sum())
+    assert [jump.outcome for jump in loop.course()] == outcomes
+
+
 @pytest.mark.parametrize(("last", "count"), [(1.56, 3), (1.5601, 4), (1.44, 3), (1.5, 1)])
 def test_first_steps_are_those_of_the_grid(last, count):
     loop = Scripted(lambda *now: 0.0)

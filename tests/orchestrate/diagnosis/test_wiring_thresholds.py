@@ -1,0 +1,121 @@
+"""Thresholds of the notes on samples, lines of the mains and fits: just inside, just outside."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from orchestrate.diagnosis import wiring
+from orchestrate.diagnosis.wiring import WIRING, LowResponse
+from orchestrate.laboratory.analysis.channels import Channels
+
+RATE = 512.0
+BASE, FACE = "box_acceleration", "acceleration1"
+
+
+@pytest.mark.parametrize(("highest", "fitted"), [(27.9, True), (28.1, False)])
+def test_a_fit_needs_five_windows_below_seven_tenths_of_the_peak(highest, fitted):
+    hertz = np.array([20.0, 22.0, 24.0, 26.0, highest, 40.0])
+    response = np.where(hertz == 40.0, 9.0, 1.0).astype(complex)
+    assert (LowResponse.fitted(hertz, response, np.ones(6), WIRING) is not None) == fitted
+
+
+@pytest.mark.parametrize(
+    ("straight", "velocity", "kinds"),
+    [
+        *((0.14, 1.0, ["polarity"]), (0.16, 1.0, [])),  # what a fit may miss
+        *((0.21, 0.139, ["quantity"]), (0.2, 0.139, [])),  # half as much again better
+        *((0.9, 0.149, ["quantity"]), (0.9, 0.151, [])),
+    ],
+)
+def test_how_well_a_fit_describes_a_sensor(monkeypatch, straight, velocity, kinds):
+    misfits = iter((1.0, 1.0, straight, velocity, 1.0))  # by the power of i w, from -2 on
+    fits = lambda *given: LowResponse(10.0, -1.0, 0.0, next(misfits))  # noqa: E731
+    monkeypatch.setattr(LowResponse, "fitted", fits)
+    one = np.ones(6, complex)
+    orders = SimpleNamespace(
+        channels=SimpleNamespace(names=(FACE,)),
+        amplitude=one[None, None],
+        floor=np.zeros((1, 6)),
+        order=lambda number, name: one,
+        windows=SimpleNamespace(frequency=np.linspace(10.0, 20.0, 6)),
+        level=np.ones(6),
+    )
+    assert [note.kind for note in wiring.sensor_notes(orders, 0, WIRING)] == kinds
+
+
+def record(values, hertz):
+    """Orders of a record of one sensor, at a frequency of the base in each of its seconds."""
+    time = np.arange(len(values)) / RATE
+    windows = SimpleNamespace(
+        time=np.arange(len(hertz)) + 0.5, frequency=np.array(hertz), parts=[slice(None)]
+    )
+    channels = Channels(time, RATE, (BASE,), np.asarray(values)[None], "made")
+    return SimpleNamespace(channels=channels, windows=windows, level=np.ones(len(hertz)))
+
+
+def mains(seconds=30.0, hertz=44.0, other=0.0, turn=0.0):
+    """Whether a line at 50 Hz is named, with another one 2 Hz beside it, and that turns to and fro
+    from one window of 2 s to the next.
+    """
+    time = np.arange(int(seconds * RATE)) / RATE
+    sides = np.where(time // 2.0 % 2, turn, 0.0)
+    line = np.sin(100.0 * np.pi * time + sides) + other * np.sin(104.0 * np.pi * time)
+    orders = record(line, np.full(int(seconds), hertz))
+    return bool(list(wiring.hum_notes(orders, 0, WIRING)))
+
+
+@pytest.mark.parametrize(
+    ("inside", "outside"),
+    [
+        ({"seconds": 10.1}, {"seconds": 9.9}),  # five windows of 2 s
+        ({"hertz": 44.9}, {"hertz": 45.1}),  # away from the order by 5 Hz
+        ({"other": 1.0 / 6.3}, {"other": 1.0 / 5.7}),  # six times a line beside it
+        ({"turn": np.arccos(0.81)}, {"turn": np.arccos(0.79)}),
+    ],
+)
+def test_each_threshold_of_a_line_of_the_mains(inside, outside):
+    assert mains(**inside) and not mains(**outside)
+
+
+def jumps(turn, noise=0.0, seed=1):
+    """Whether lost samples are named in a sine of 20 Hz whose phase jumps by so much."""
+    time = np.arange(20 * int(RATE)) / RATE
+    phase = 40.0 * np.pi * time + turn * (time > 10.0)
+    values = np.sin(phase) + noise * np.random.default_rng(seed).standard_normal(len(time))
+    return bool(list(wiring.lost_sample_notes(record(values, np.full(20, 20.0)), WIRING)))
+
+
+def test_each_threshold_of_a_jump_of_the_phase():
+    assert [jumps(0.49), jumps(0.44)] == [True, False]  # three quarters of it are seen
+    assert [jumps(0.8, noise) for noise in (0.2, 0.25)] == [True, False]  # ten times a usual one
+
+
+@pytest.mark.parametrize(("ratio", "kept"), [(1.9, True), (2.1, False)])
+def test_the_phase_of_the_base_is_taken_up_to_twice_its_frequency(monkeypatch, ratio, kept):
+    boxes = []
+    measured = wiring.measured_phase
+
+    def note(channels):
+        boxes.append(channels.box)
+        return measured(channels)
+
+    monkeypatch.setattr(wiring, "measured_phase", note)
+    time = np.arange(20 * int(RATE)) / RATE
+    other = 0.1 * np.sin(40.0 * np.pi * ratio * time)
+    orders = record(np.sin(40.0 * np.pi * time) + other, np.full(20, 20.0))
+    list(wiring.lost_sample_notes(orders, WIRING))
+    assert (boxes[0] @ other > 0.5 * other @ other) == kept
+
+
+@pytest.mark.parametrize(("resonance", "few"), [(51.0, False), (51.5, True)])
+def test_ten_samples_in_a_period_of_the_resonance_are_enough(monkeypatch, resonance, few):
+    orders = record(np.zeros(20 * int(RATE)), np.full(20, 20.0))
+    orders.resonance, orders.rows = resonance, ()
+    orders.windows.is_tone = False
+    monkeypatch.setattr(wiring, "sine_windows", lambda channels: ())
+    monkeypatch.setattr(wiring, "assembled_orders", lambda channels: orders)
+    for name in ("clipped_notes", "lost_sample_notes", "hum_notes"):
+        monkeypatch.setattr(wiring, name, lambda *given: ())
+    kinds = [note.kind for note in wiring.wiring_notes(orders.channels)]
+    assert kinds == ["sampling"] * few
