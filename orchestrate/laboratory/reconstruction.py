@@ -38,6 +38,7 @@ class Motion:
     impulses: Floats
     sticks: Flags
     drives: str = "box_acceleration"  # channel of the pieces
+    steady: float = 0.0  # acceleration of the box beside them: gravity, m/s2
 
     @classmethod
     def from_history(
@@ -57,6 +58,7 @@ class Motion:
             history.impulse.values[kept],
             history.sticks.values.astype(bool)[kept],
             drives,
+            steady_acceleration(history),
         )
 
     def driven(self, channel: str, times: Floats) -> Floats:
@@ -75,7 +77,9 @@ class Motion:
 
     def box(self, times: Floats) -> Floats:
         """Compute the box's acceleration and its derivatives, shape (ORDER, n)."""
-        return in_order(self.driven("box_acceleration", times))
+        found = in_order(self.driven("box_acceleration", times))
+        found[0] += self.steady
+        return found
 
     def forces(self, times: Floats) -> Floats:
         """Compute the forces on both masses and their derivatives, shape (ORDER, 2, n)."""
@@ -163,6 +167,11 @@ class Motion:
         return force, abs(float(own[0])) + abs(float(other[0]))
 
 
+def steady_acceleration(history: xr.Dataset) -> float:
+    """Return the constant acceleration of a history's box, m/s2: gravity."""
+    return float(history.attrs.get("box_acceleration", 0.0))
+
+
 def in_order(taylor: Floats) -> Floats:
     """Return a cubic's derivatives at n times as the first rows of ORDER."""
     found = np.zeros((ORDER, len(taylor)))
@@ -196,7 +205,7 @@ def first_fall(derivatives: Floats, scale: float, length: float) -> float | None
 
 @dataclass(frozen=True)
 class SmoothParts:
-    """Hold the absolute accelerations of box and masses, without the impulses of impacts."""
+    """Hold the accelerations of box and masses without gravity and the impulses of impacts."""
 
     times: Floats  # of the record, s
     drive: Cells  # what moves the box, m/s2, or a half, N
@@ -228,6 +237,7 @@ def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
             for n in range(ORDER + 1)
         ]
     )
+    felt[0] -= motion.steady
     one, two = (Cells(starts, nodes[1:], felt[:, i].T) for i in (0, 1))
     return SmoothParts(times, drive, one, two, error)
 

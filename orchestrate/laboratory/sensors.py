@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -13,11 +12,11 @@ from ..errors import InputError
 from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer, checked_word
-from ..model.ranges import ADDED, PUSHES, STRUCTURE, Quantity, plain
+from ..model.ranges import ADDED, STRUCTURE, Quantity, plain
 from ..running.job import refuse_family, refuse_unknown
 from .analog_filter import AnalogFilter, Cells, Floats, anti_aliasing, in_series, low_pass
 from .pieces import Pieces
-from .reconstruction import Motion, SmoothParts, smooth_parts
+from .reconstruction import Motion, SmoothParts, smooth_parts, steady_acceleration
 from .record import ACCELERATIONS, CHANNELS, FORCES, record
 from .sampled import Sampled
 from .signals import HERTZ, ExcitationSignal, check_fields
@@ -171,7 +170,8 @@ def measure(
     Between the history's samples the equations of motion are solved through all impacts, so the
     history may be coarse; an impact of impulse J is a Dirac of area J/m, and the filters' response
     to both is exact. The filters are at rest at the history's beginning. They delay all channels;
-    those with the same sensor by the same time. Where the box's spline is not the excitation, the
+    those with the same sensor by the same time. A constant acceleration of the box (gravity) is not
+    read, as piezoelectric sensors do not read it. Where the box's spline is not the excitation, the
     box's channel has the spline's error, about ``(w h)^4/100`` of its amplitude for a sine of w
     rad/s sampled every h seconds, and the masses' channels less.
 
@@ -187,7 +187,7 @@ def measure(
     """
     structure = structure_of(history)
     refuse_family("measure", structure)
-    refuse_unknown("measure", {name: history.attrs.get(name) for name in PUSHES})
+    refuse_unknown("measure", {name: history.attrs.get(name) for name in FORCES})
     drives = driven_channel(history)
     sensors = sensor_by_channel(sensor, (drives, *list(ACCELERATIONS)[1:]))
     rate = next(iter(sensors.values())).rate
@@ -248,7 +248,8 @@ def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Piec
         return Pieces(whole.nodes - begin, whole.derivatives, whole.error)
     steps = len(history.time) - 1
     rate = steps / float(history.time[-1] - history.time[0])
-    driven: Any = history[driven_channel(history)].values
+    drives = driven_channel(history)
+    driven = history[drives].values - (0.0 if drives in FORCES else steady_acceleration(history))
     return Sampled(acceleration=driven, sample_rate=rate).pieces()
 
 

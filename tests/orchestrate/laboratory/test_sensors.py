@@ -10,7 +10,7 @@ import pytest
 from scipy import signal
 from scipy.linalg import expm
 
-from orchestrate import InputError, Sampled, Sensor, Structure, SweptSine, measure, shake
+from orchestrate import Hammer, InputError, Sampled, Sensor, Structure, SweptSine, measure, shake
 from orchestrate.laboratory.analog_filter import anti_aliasing, phi_functions
 
 from ...sparing import ordinary
@@ -249,3 +249,26 @@ def test_a_part_of_a_history_is_read_as_the_whole(excitation):
         peak = float(np.abs(both[channel]).max())
         difference = np.abs(felt[channel].values[60:] - both[channel].values).max()
         assert difference <= (1e-6 if excitation is not None else 1e-3) * peak, channel
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize("given", [True, False])
+@pytest.mark.parametrize("knocked", [False, True])
+def test_gravity_is_felt_as_another_gap_and_not_read(given, knocked):
+    """About the rest under gravity the halves move as without it, at another clearance."""
+    gravity, gap = -9.81, 1e-4
+    sag = -gravity * np.array([BEAM.m1 / BEAM.k1, BEAM.m2 / BEAM.k2])
+    start = (*sag, 0.0, 0.0)
+    knock = Hammer(peak=900.0, width=0.004, duration=0.25)
+    excitation = (
+        knock if knocked else SweptSine(first=30.0, last=60.0, duration=0.25, acceleration=20.0)
+    )
+    read = {"sensor": SENSOR, "excitation": excitation if given else None}
+    heavy, light = BEAM.replace(clearance=gap + sag[0] - sag[1]), BEAM.replace(clearance=gap)
+    down = shake(heavy, excitation, box_acceleration=gravity, start=start, progress=False)
+    free = shake(light, excitation, progress=False)
+    assert down.sizes["impact"] == free.sizes["impact"] > 5
+    found, expected = measure(down, **read), measure(free, **read)
+    for name in expected.data_vars:
+        scale = float(abs(expected[name]).max())
+        assert found[name].values == pytest.approx(expected[name].values, abs=1e-7 * scale), name
