@@ -11,15 +11,17 @@ loses the first. A steep but continuous branch is not a jump. The rule, for each
   halved, to `width`, and to `finest` where the speed comes back over it.
 - The motion before such a step has to last; if it does not, the motion that follows it is taken.
   Where disturbances are known to grow (:mod:`.growth`), it is held for `growths` growth times, and
-  left out where these are longer than `patience` holds; otherwise it is held `again` times.
+  left out where these are longer than `patience` holds. Unless they are known to decay, it may be
+  a transient: it is held for `again` times as long as it took to settle, and for `lives` times the
+  longest time after which it was seen to be lost within the step, up to `patience` holds.
 - It is *lost* over that step where the speed, taken back over it, is `clear` away and stays within
   `same` when it is held `again` times. There is *no* jump where no such step is left but of
   `finest`, over which the speed comes back, and on a way back over all of the ramp the speed is
-  nowhere `clear` away.
+  nowhere `clear` away; from a voltage where it is only `same` away the ramp's motion is taken.
 - All else is *undecided*: a ramp's beginning or end, or a way back, that does not settle, two
   motions nearer than `clear`, a step within which nothing settles or after `max_rounds` of this,
   another motion on the way back, and what comes after these or a loss if the speed moves against
-  the voltage.
+  the voltage, unless a motion known to last comes to one other at `landings` voltages past it.
 
 From differences the `errors` of irregular motions' speeds are taken off, but not on the last way
 back. Non-dimensional: voltages over K omega, speeds over omega, times in 1/omega, in the mirror
@@ -63,7 +65,9 @@ class HysteresisSettings(SettledSettings):
     clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
     again: int = 3  # times that a motion next to a jump is held again
     growths: float = 30.0  # growth times after which a motion is seen to last, or not
+    lives: float = 5.0  # of a motion beyond a step: how long that before it has to last
     patience: float = 10.0  # longest holds that these may be
+    landings: int = 6  # voltages, by `width`, at which one motion follows one that is lost
     max_rounds: int = 150  # of looking at the largest step of a ramp
     errors: float = 3.0  # standard errors that are taken off a difference of speeds
     parts: tuple[float, ...] = (0.5, 0.25, 0.75)  # of a step: where a speed between is sought
@@ -77,7 +81,8 @@ class HeldPoint(NamedTuple):
     speed: float  # NaN where it did not settle in time
     error: float  # of the speed of an irregular motion; 0 where it converged
     state: Table
-    lasts: bool = False  # whether the motion is known to last
+    time: float = 0.0  # s, held there until then: in it the motion before was lost, if it was
+    lasts: float = 0.0  # s, for which the motion is known to last
 
 
 class Jump(NamedTuple):
@@ -155,13 +160,14 @@ class HysteresisLoop:
         piece = max(1, round(settings.piece / self.omega / self.step))
         times = (0.0, moves * self.step, count * self.step)
         volts = (self.volts * first, self.volts * voltage, self.volts * voltage)
-        speeds, speed, error = np.zeros(0), math.nan, 0.0
+        speeds, speed, error, time = np.zeros(0), math.nan, 0.0, 0.0
         with closing(self.begin(Course(times, volts))) as run:
             if state is not None:
                 run.set_state(state)
             run.speeds(range(moves))
             for begin in range(moves, count, piece):
-                found = run.speeds(range(begin, min(begin + piece, count)))
+                end = min(begin + piece, count)
+                found, time = run.speeds(range(begin, end)), (end - moves) * self.step
                 speeds = np.append(speeds, np.abs(found) / self.omega)
                 speed, error = settled_speed(speeds, settings)
                 if math.isfinite(speed):
@@ -175,7 +181,7 @@ class HysteresisLoop:
                     if to_go < settings.left * abs(ends[0] - ends[1]):
                         speed = ends[1]
                         break
-            return HeldPoint(voltage, speed, error, run.get_state())
+            return HeldPoint(voltage, speed, error, run.get_state(), time)
 
     # -- the rule --
 
@@ -201,11 +207,11 @@ class HysteresisLoop:
             i = self.largest_step(points, jumps)
             if i is None:
                 break
-            if not points[i].lasts:
-                point = self.lasting(points[i])
+            low, high = points[i : i + 2]
+            if low.lasts < self.least(low, high):
+                point = self.lasting(low, high)
                 points[i : i + 1] = [point] if math.isfinite(point.speed) else []
                 continue
-            low, high = points[i : i + 2]
             is_wide = abs(high.voltage - low.voltage) > self.settings.width
             if is_wide and self.insert_between(points, i):
                 continue
@@ -224,15 +230,18 @@ class HysteresisLoop:
     def jump_over(self, points: list[HeldPoint], i: int, sign: float) -> Jump | None:
         """Return the jump over a step, by the way back; None where the step is small or halved."""
         low, high = points[i : i + 2]
-        landed = self.hold_beside(low, high.voltage, high.speed)
-        outcome = self.way_back(low, landed)
+        landed = self.hold_beside(low, high.voltage, high)
         points[i + 1] = high = landed if math.isfinite(landed.speed) else high
+        if low.lasts < self.least(low, high):
+            return None
+        outcome = self.way_back(low, landed)
         if outcome == NONE and abs(high.voltage - low.voltage) > self.settings.finest:
             if self.excess(points, i, {}) <= 0.0 or self.insert_between(points, i):
                 return None
             outcome = UNDECIDED
-        if outcome != NONE and sign * (high.speed - low.speed) < 0.0:
-            del points[i + 2 :]  # the ramp's landing point is unpredictable here
+        is_against = outcome != NONE and sign * (high.speed - low.speed) < 0.0
+        if is_against and not self.lands_surely(low, high):
+            del points[i + 2 :]
         return Jump(outcome, low.voltage, high.voltage, low.speed, high.speed)
 
     def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:
@@ -268,6 +277,13 @@ class HysteresisLoop:
         scatter = min(self.error(low, high), self.settings.smallest)
         return max(changed, -gained - self.settings.against) - scatter
 
+    def lands_surely(self, low: HeldPoint, high: HeldPoint) -> bool:
+        """Return whether a motion known to last comes to one other, wherever past it it is lost."""
+        step = math.copysign(self.settings.width, high.voltage - low.voltage)
+        voltages = [high.voltage + n * step for n in range(1, self.settings.landings + 1)]
+        every = (self.hold_from(low, voltage) for voltage in voltages)
+        return low.lasts == math.inf and all(self.is_same(point, high) for point in every)
+
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
         """Return whether two motions exist at a step's lower voltage and the first is lost."""
         back = self.hold_from(landed, low.voltage)
@@ -278,22 +294,34 @@ class HysteresisLoop:
         return LOST if later is back and is_clear else UNDECIDED
 
     def hold_beside(
-        self, low: HeldPoint, voltage: float, other: float, limit: float | None = None
+        self, low: HeldPoint, voltage: float, high: HeldPoint, limit: float | None = None
     ) -> HeldPoint:
         """Hold a voltage from a point until it is there or has lost its motion for another one."""
         point = self.hold_from(low, voltage, limit)
-        is_near = abs(point.speed - low.speed) < abs(point.speed - other)
-        return self.lasting(point) if is_near else point
+        if abs(point.speed - low.speed) < abs(point.speed - high.speed):
+            return self.lasting(point, high)
+        return point._replace(time=max(point.time, high.time))
 
-    def lasting(self, point: HeldPoint) -> HeldPoint:
+    def least(self, low: HeldPoint, high: HeldPoint) -> float:
+        """Return for how long, s, a motion before a step has to last if it may be a transient."""
+        settings = self.settings
+        least = max(settings.again * low.time, settings.lives * high.time)
+        return min(least, settings.patience * self.longest)
+
+    def lasting(self, point: HeldPoint, high: HeldPoint) -> HeldPoint:
         """Hold a motion until it is known to last; return it, or what it has become."""
         rate = self.growth_rate(point)
-        time = self.settings.growths / rate if rate > 0.0 else 0.0
-        if time > self.settings.patience * self.longest:
+        if rate <= 0.0:
+            return point._replace(lasts=math.inf)
+        grown = self.settings.growths / rate if rate > 0.0 else 0.0
+        if grown > self.settings.patience * self.longest:
             return point._replace(speed=math.nan)
-        later = self.hold(point.state, point.voltage, point.voltage, least=time) if time else point
-        later = self.hold_again(point) if math.isnan(rate) else later
-        return later._replace(lasts=self.distance(later, point) <= self.settings.same)
+        least = max(grown, self.least(point, high) - point.lasts)
+        later = self.hold(point.state, point.voltage, point.voltage, least=least)
+        lasted = point.lasts + later.time
+        if self.distance(later, point) <= self.settings.same:
+            return later._replace(time=point.time, lasts=lasted)
+        return later._replace(time=max(point.time + lasted, high.time))
 
     def growth_rate(self, point: HeldPoint) -> float:
         """Return the rate, 1/s, at which disturbances of a motion grow; NaN if it is unknown."""
@@ -319,7 +347,7 @@ class HysteresisLoop:
         change = high.voltage - low.voltage
         limit = high.speed if abs(change) < 0.5 * self.settings.smallest else None
         for part in self.settings.parts:
-            point = self.hold_beside(low, low.voltage + part * change, high.speed, limit)
+            point = self.hold_beside(low, low.voltage + part * change, high, limit)
             if math.isfinite(point.speed):
                 points.insert(i + 1, point)
                 return True
@@ -331,10 +359,11 @@ class HysteresisLoop:
         last, settled = points[-1], True
         for point in reversed(points[:-1]):
             back = self.hold_from(last, point.voltage)
-            if abs(back.speed - point.speed) >= self.settings.clear:
+            away = abs(back.speed - point.speed)
+            if away >= self.settings.clear:
                 return False
             if math.isfinite(back.speed):
-                last, settled = back, True
+                last, settled = back if away <= self.settings.same else point, True
             elif settled and point is not points[0]:
                 settled = False
             else:

@@ -141,9 +141,9 @@ def grid_problem(system: System, way: str, jumps: Sequence[Jump], rate: float) -
     behind, gained = sign * (back - there), np.append(sign * np.diff(there), 0.0)
     if any(jump.decided for jump in jumps) and (np.abs(behind) < SAME).all():
         return "lost, but held speeds come back everywhere"
-    if not jumps and (behind > CHANGE).any():
-        at, apart = voltages[int(np.nanargmax(behind))], np.nanmax(behind)
-        return f"none, but two motions last at {at:.5f}: speeds {apart:.4f} apart"
+    for i in np.flatnonzero((behind > CHANGE) & (np.append(behind[1:], 0.0) < SAME)):
+        if not jumps:  # from nearer ones on, at which motions part, none is a jump
+            return f"none, but two motions last at {voltages[i]:.5f}: {behind[i]:.4f} apart"
     usual = np.fmax(GRID, np.roll(gained, 1))  # a branch is as steep as before, or steeper
     for i in np.flatnonzero((gained > usual + CHANGE) & (behind > CHANGE)):
         ends = sorted(voltages[i : i + 2])

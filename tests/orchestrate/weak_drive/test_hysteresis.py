@@ -110,12 +110,13 @@ class Scripted(HysteresisLoop):
         super().__init__(lambda _: None, Ramp(1.4, 1.6, 1e-3), H, 1.0, 1.0, 1.0)
         self.higher = higher
 
-    def hold_from(self, point, voltage, limit=None):
-        motion = self.higher(point.state["motion"], point.voltage, voltage)
-        return self.at(voltage, motion)
+    def hold(self, state, first, voltage, ends=None, least=0.0):
+        motion = self.higher(state["motion"], first, voltage)
+        return self.at(voltage, motion)._replace(time=max(least, 1.0))
 
     def at(self, voltage, motion=0.0):
-        return HeldPoint(voltage, 1.3 + 0.5 * (voltage - 1.5) + motion, 0.0, {"motion": motion})
+        speed = 1.3 + 0.5 * (voltage - 1.5) + motion
+        return HeldPoint(voltage, speed, 0.0, {"motion": motion}, time=1.0)
 
     def course(self):
         """The jumps between 1.5 and 1.56."""
@@ -189,6 +190,43 @@ def test_what_comes_after_a_speed_against_the_voltage_is_undecided():
     lost, rest = Scripted(higher).course()
     assert lost.outcome == LOST and lost.low - 1e-9 <= 1.52 < lost.low + 1e-4
     assert rest == (UNDECIDED, lost.high, 1.56, *rest[3:])
+    known = Scripted(higher)
+    known.growth_rate = lambda point: -1.0
+    assert [jump.outcome for jump in known.course()] == [LOST, LOST]
+
+
+@pytest.mark.parametrize(
+    ("lasts", "widths", "sure"), [(np.inf, 6.5, True), (np.inf, 5.5, False), (1e9, 6.5, False)]
+)
+def test_each_threshold_of_what_a_lost_motion_comes_to(lasts, widths, sure):
+    """Another one from ``widths`` past the step on."""
+    loop = Scripted(lambda *now: 0.1 if now[2] > 1.521 + widths * 1e-4 else -0.02)
+    low, high = loop.at(1.52)._replace(lasts=lasts), loop.at(1.521, -0.02)
+    assert loop.lands_surely(low, high) == sure
+
+
+@pytest.mark.parametrize(
+    ("past", "life", "place"),
+    [(0.1, 3.9, 1.51), (0.1, 4.1, 1.52)]  # for three times the first hold more
+    + [(0.9, 5.4, 1.51), (0.9, 5.6, 1.52)],  # for five lives
+)
+def test_a_transient_is_held_for_lives_of_that_past_the_step(past, life, place):
+    """Lives in holds: of a motion past 1.52, and of the same between 1.51 and there."""
+
+    class Transient(Scripted):
+        def hold(self, state, first, voltage, ends=None, least=0.0):
+            age = state.get("age", 0.0) * (voltage == first)
+            lives = past if voltage > 1.52 else life if voltage > 1.51 else np.inf
+            is_lost = state["motion"] and voltage > 1.505 or age + max(least, 1.0) > lives
+            time = lives - age if is_lost and not state["motion"] else max(least, 1.0)
+            state = {"motion": 0.02 * bool(is_lost), "age": age + time}
+            return self.at(voltage, state["motion"])._replace(state=state, time=time)
+
+    loop = Transient(None)
+    (jump,) = loop.course()
+    assert jump.outcome == LOST and jump.low - 1e-9 <= place <= jump.high + 1e-9
+    high, *lives = (loop.at(1.52)._replace(time=time) for time in (0.0, 1.99, 2.01))
+    assert [loop.least(high, lived) for lived in lives] == pytest.approx([9.95, 10.0])
 
 
 @pytest.mark.parametrize("change", [0.02, -0.02])
@@ -256,14 +294,15 @@ def test_growth_is_seen_from_rounding_errors_on(disturbance, lasts):
 
     class Growing(Scripted):
         def hold(self, state, first, voltage, ends=None, least=0.0):
-            return self.at(voltage, disturbance * np.exp(self.growth_rate(None) * least))
+            motion = disturbance * np.exp(self.growth_rate(None) * least)
+            return self.at(voltage, motion)._replace(time=least)
 
         def growth_rate(self, point):
             return 1.0
 
     loop = Growing(None)
     loop.longest = 100.0
-    assert loop.lasting(loop.at(1.52)).lasts == lasts
+    assert bool(loop.lasting(loop.at(1.52), loop.at(1.53)).lasts) == lasts
 
 
 @pytest.mark.parametrize(("rate", "held"), [(3.1e-4, True), (2.9e-4, False)])
@@ -277,7 +316,7 @@ def test_growth_that_takes_more_than_ten_holds_is_left_out(rate, held):
 
     loop = Slow(None)
     loop.longest = 1e4
-    assert np.isfinite(loop.lasting(loop.at(1.52)).speed) == held
+    assert np.isfinite(loop.lasting(loop.at(1.52), loop.at(1.53)).speed) == held
 
 
 def line(*points):
@@ -358,6 +397,7 @@ def test_a_motion_is_held_for_a_time_unless_it_is_left(later, pieces):
     loop = HysteresisLoop(lambda course: run, Ramp(1.4, 1.6, 1e-4), 1.0, 1.0, 1.0, 2e4)
     point = loop.hold(None, 1.5, 1.5, least=1500.0)  # of pieces of 50/omega
     assert point.speed == pytest.approx(later) and len([rows for rows in told if rows]) == pieces
+    assert point.time == 50.0 * pieces
 
 
 def test_where_a_speed_between_is_sought(monkeypatch):
@@ -389,13 +429,25 @@ def test_the_way_back_settles_but_for_single_voltages(unsettled, away, comes):
     assert loop.comes_back(points) == comes
 
 
+@pytest.mark.parametrize(("away", "comes"), [(1.9e-3, False), (2.1e-3, True)])
+def test_the_way_back_goes_on_with_the_motion_that_another_parts_from(away, comes):
+    """First by little; on the other motion's own way it is 0.02 farther down."""
+
+    def higher(motion, before, voltage):
+        return motion and (away if voltage > 1.535 else 0.02)
+
+    loop = Scripted(higher)
+    points = [*(loop.at(voltage) for voltage in (1.5, 1.52, 1.54)), loop.at(1.55, 1e-4)]
+    assert loop.comes_back(points) == comes
+
+
 @pytest.mark.parametrize(("speed", "again"), [(1.304, True), (1.306, False)])
 def test_a_motion_nearer_to_the_one_before_is_held_on(monkeypatch, speed, again):
     loop = Scripted(None)
-    low, here = line((1.5, 1.3, 0.0), (1.501, speed, 0.0))
+    low, here, high = line((1.5, 1.3, 0.0), (1.501, speed, 0.0), (1.501, 1.31, 0.0))
     monkeypatch.setattr(loop, "hold_from", lambda *asked: here)
-    monkeypatch.setattr(loop, "lasting", lambda point: "held on")
-    assert loop.hold_beside(low, 1.501, 1.31) == ("held on" if again else here)
+    monkeypatch.setattr(loop, "lasting", lambda point, high: "held on")
+    assert loop.hold_beside(low, 1.501, high) == ("held on" if again else here)
 
 
 def test_a_ramp_is_taken_up_in_the_middle_of_a_step_from_the_checkpoint_before(monkeypatch):
