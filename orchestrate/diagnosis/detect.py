@@ -29,7 +29,14 @@ from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 from .impact_timing import strikes
 from .order_windows import RecordOrders
-from .search_job import RecordData, SearchJob, bonded_even, cached_evidence, cached_orders
+from .search_job import (
+    RecordData,
+    SearchJob,
+    bonded_even,
+    cached_evidence,
+    cached_orders,
+    faces_apart,
+)
 from .settings import Changes, Settings, checked_settings
 from .wiring import WiringSettings, wiring_notes
 
@@ -363,7 +370,7 @@ def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Fin
     return Findings(
         excess=even.excess,
         order2=even.largest,
-        apart=even.moved_apart,
+        apart=faces_apart(data),
         strikes=strikes(whole.channels, shut if is_guessed else math.nan),
         sensors=len(evidence.masses),
         low=float(evidence.level.min()),

@@ -210,7 +210,7 @@ def timed_windows(
         if end - begin < 6 * order:
             continue
         here, base, part = phase[begin:end], channels.box[begin:end], slice(begin, end)
-        waves = np.exp(-1j * np.outer(ORDERS, here))
+        waves = np.cumprod(np.tile(np.exp(-1j * here), (len(ORDERS), 1)), axis=0)
         size = amplitudes(moved[part], waves)
         # a displacement is opposite to its acceleration: the top of the stroke is at 0
         own = here + np.angle(-size[0])

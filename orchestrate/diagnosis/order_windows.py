@@ -321,24 +321,30 @@ def assembled_windows(
 
 def least_squares_matrix(one: Window, sample_rate: float) -> Complexes:
     """Compute the least-squares matrix of a window, shape (orders, samples)."""
-    orders = (*ORDERS, *OFF_ORDERS)
-    resolved = [n for n in orders if n * one.frequency <= NYQUIST * sample_rate]
-    columns, first = [np.ones_like(one.offset)], {}
-    for n in resolved:
-        sine, cosine = np.sin(n * one.phase), np.cos(n * one.phase)
-        first[n] = len(columns)
-        columns += [sine, cosine]
-        if n.is_integer():
-            columns += [one.offset * sine, one.offset * cosine]
-    basis = np.stack(columns)
+    orders = np.array([*ORDERS, *OFF_ORDERS])
+    resolved = np.flatnonzero(orders * one.frequency <= NYQUIST * sample_rate)
+    waves = waves_of_orders(one.phase)
+    moving = one.offset * waves[[row for row in resolved if orders[row] % 1.0 == 0.0]]
+    waves = waves[resolved]
+    parts = (waves.imag, waves.real, moving.imag, moving.real)
+    basis = np.concatenate([*parts, np.ones((1, len(one.offset)))])
     weighted = basis * one.weights
     # products as small as these wait for the threads of a BLAS, up to 20 times as long as they take
     normal = np.einsum("is,js->ij", weighted, basis)
-    solution = np.einsum("ij,js->is", np.linalg.pinv(normal, hermitian=True), weighted)
+    inverse = np.linalg.pinv(normal, hermitian=True)[: 2 * len(resolved)]
+    sine, cosine = np.einsum("ij,js->is", inverse, weighted).reshape(2, len(resolved), -1)
     found = np.full((len(orders), len(one.offset)), np.nan, dtype=complex)
-    for n, row in first.items():
-        found[orders.index(n)] = solution[row] + 1j * solution[row + 1]
+    found[resolved] = sine + 1j * cosine
     return found
+
+
+def waves_of_orders(phase: Floats) -> Complexes:
+    """Return exp(i n phase) of each of `ORDERS` and `OFF_ORDERS`, by products of two."""
+    half, off = np.exp(1j * np.outer((0.5, 0.37), phase))
+    first = half * half
+    second = first * first
+    third = second * first
+    return np.stack([first, second, third, half, first * off, second * off, third * off.conj()])
 
 
 def referred_to_base(box: Floats, one: Window, solution: Complexes) -> Complexes:
