@@ -296,11 +296,21 @@ def overlapping_windows(channels: Channels, phase: Floats) -> list[Window]:
     return found
 
 
+def usual_frequencies(phase: Floats, channels: Channels) -> Floats:
+    """Return the mean frequency in each twentieth of a record, Hz."""
+    marks = np.linspace(0, len(phase) - 1, 21).astype(int)
+    return np.asarray(np.diff(phase[marks]) / np.diff(marks) * channels.sample_rate / TURN)
+
+
 def median_sweep_rate(phase: Floats, channels: Channels) -> float:
     """Estimate the median size of the frequency's derivative, Hz/s."""
-    marks = np.linspace(0, len(phase) - 1, 21).astype(int)
-    frequency = np.diff(phase[marks]) / np.diff(marks) * channels.sample_rate / TURN
-    return float(np.median(np.abs(np.diff(frequency)))) * 20.0 / channels.duration
+    changes = np.abs(np.diff(usual_frequencies(phase, channels)))
+    return float(np.median(changes)) * 20.0 / channels.duration
+
+
+def highest_frequency(channels: Channels) -> float:
+    """Return a frequency in Hz that no sweep of the base exceeds: it may still rise at the end."""
+    return 1.1 * float(usual_frequencies(measured_phase(channels), channels).max())
 
 
 def assembled_windows(

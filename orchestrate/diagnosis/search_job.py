@@ -29,7 +29,14 @@ from .hypotheses import (
 )
 from .linear import misfit
 from .multistart import Search, Solution, difference_step, with_distinct_misfits, without_neighbours
-from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
+from .order_windows import (
+    MIN_WINDOWS,
+    SAMPLES_PER_PERIOD,
+    RecordOrders,
+    channel_orders,
+    decimated,
+    highest_frequency,
+)
 from .settings import SETTINGS, Settings
 from .standard_errors import Estimate, estimate
 
@@ -76,11 +83,17 @@ def cached_evidence(data: RecordData | CurveData) -> Evidence:
 
 
 @lru_cache(maxsize=2)
-def cached_orders(data: RecordData) -> RecordOrders:
-    """Return the orders of the whole record, computed once per process."""
+def cached_channels(data: RecordData) -> Channels:
+    """Return the channels of a record as arrays, made once per process."""
     time = data.begin + np.arange(len(data.channels[0])) / data.sample_rate
-    values = np.array(data.channels)
-    return channel_orders(Channels(time, data.sample_rate, data.names, values, "record"))
+    return Channels(time, data.sample_rate, data.names, np.array(data.channels), "record")
+
+
+@lru_cache(maxsize=2)
+def cached_orders(data: RecordData) -> RecordOrders:
+    """Return the orders of the whole record, thinned to what they need, once per process."""
+    channels = cached_channels(data)
+    return channel_orders(decimated(channels, highest_frequency(channels)))
 
 
 @lru_cache(maxsize=2)
