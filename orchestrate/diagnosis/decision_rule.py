@@ -31,7 +31,9 @@ class Findings:
     # order 2 over its detection threshold, the largest of all windows; above 1 it is seen
     excess: float
     order2: float  # its size there, over order 1
-    apart: float  # difference of two sensors over its detection threshold; 0 with one sensor
+    # difference of two sensors over its detection threshold; 0 with one sensor, or where two modes
+    # of a sound beam describe it
+    apart: float
     strikes: Strikes
     sensors: int
     # level of the base, m/s2
@@ -80,7 +82,7 @@ class Findings:
     def no_opening_conditions(self) -> list[Condition]:
         """Return the conditions of "no opening seen"."""
         most, heard = 100.0 * self.settings.hidden, self.strikes.word()
-        alone = " Two modes of a sound beam make sensors differ too."
+        alone = " Two modes of a sound beam do not describe how the sensors differ."
         return [
             Condition(
                 self.excess <= 1.0 and self.apart <= 1.0,

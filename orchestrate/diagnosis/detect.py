@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..fmu import finder
+from ..laboratory.analysis.channels import Channels
 from ..laboratory.record_checks import clipped_share
 from ..lazy import Unpack, xr
 from ..model import Structure
@@ -28,8 +29,15 @@ from .evidence import Participation
 from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 from .impact_timing import strikes
-from .order_windows import RecordOrders
-from .search_job import RecordData, SearchJob, bonded_even, cached_evidence, cached_orders
+from .search_job import (
+    RecordData,
+    SearchJob,
+    bonded_even,
+    cached_channels,
+    cached_evidence,
+    cached_orders,
+    faces_apart,
+)
 from .settings import Changes, Settings, checked_settings
 from .wiring import WiringSettings, wiring_notes
 
@@ -268,10 +276,10 @@ class DetectJob(SearchJob):
     def dataset(self, table: Table) -> xr.Dataset:
         results, beam = Results.from_table(self, table), self.beam()
         findings, even = beam.records[len(self.others[0])], results.even
-        whole = cached_orders(self.data)
+        whole, channels = cached_orders(self.data), cached_channels(self.data)
         every, coordinates = results.comparison()
         same = WiringSettings(clipped=findings.settings.clipped)
-        wiring = "; ".join(note.text for note in wiring_notes(whole.channels, same))
+        wiring = "; ".join(note.text for note in wiring_notes(channels, same))
         ratio = results.misfit[: len(self.sound)].min() / results.misfit[len(self.sound) :].min()
         words = [beam.words[one] for one in beam.records]
         scalars = {
@@ -285,7 +293,7 @@ class DetectJob(SearchJob):
             **{
                 name: variable((), getattr(findings, of), *at) for name, (of, *at) in STATED.items()
             },
-            **record_variables(whole),
+            **record_variables(channels, whole.windows.frequency),
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
@@ -317,11 +325,10 @@ def halves_around(resonance: float, settings: Settings) -> Structure:
     return Structure.from_halves(m1=1.0, m2=1.0, f1=f1, f2=f2, zeta1=zeta, zeta2=zeta, e=e)
 
 
-def record_variables(orders: RecordOrders) -> dict[str, Variable]:
+def record_variables(channels: Channels, frequency: NDArray[np.float64]) -> dict[str, Variable]:
     """Return sampling rate, duration, and the frequencies over which the base moves as a sine."""
-    channels, windows = orders.channels, orders.windows
     rate, count = channels.sample_rate, len(channels.time)
-    low, high = float(windows.frequency.min()), float(windows.frequency.max())
+    low, high = float(frequency.min()), float(frequency.max())
     return {
         "sample_rate": variable((), rate, "Hz", "sampling rate of the record"),
         "record_duration": variable((), (count - 1) / rate, "s", "duration of the record"),
@@ -354,7 +361,7 @@ def stated_hypotheses(results: Results, verdict: str) -> NDArray[np.bool_]:
 @lru_cache(maxsize=4)
 def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Findings:
     """Collect the quantities that the decision rule needs from a record."""
-    evidence, whole, even = cached_evidence(data), cached_orders(data), bonded_even(data)
+    evidence, channels, even = cached_evidence(data), cached_channels(data), bonded_even(data)
     shut = math.sqrt((guess.k1 + guess.k2) / (guess.m1 + guess.m2)) / TURN
     opening = smallest_openings(evidence, guess.m1, guess.m2)
     observed = evidence.frequency[np.isfinite(opening)]
@@ -363,8 +370,8 @@ def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Fin
     return Findings(
         excess=even.excess,
         order2=even.largest,
-        apart=even.moved_apart,
-        strikes=strikes(whole.channels, shut if is_guessed else math.nan),
+        apart=faces_apart(data),
+        strikes=strikes(channels, shut if is_guessed else math.nan),
         sensors=len(evidence.masses),
         low=float(evidence.level.min()),
         high=float(evidence.level.max()),
@@ -372,7 +379,7 @@ def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Fin
         last=float(observed.max()),
         smallest=float(np.nanmax(opening)),
         hidden=float(np.nanmax(np.fmin.reduce(thresholds(evidence), axis=0))),
-        clipped=max(clipped_share(row) for row in whole.channels.values),
+        clipped=max(clipped_share(row) for row in channels.values),
         end_response=float(max(response[0], response[-1]) / response.max()),
         resonance=evidence.resonance,
         guessed=(low, high),

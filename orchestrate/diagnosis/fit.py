@@ -27,8 +27,8 @@ from .decision_rule import factor_outside
 from .even_orders import EvenOrders, even_orders
 from .evidence import FITTED_ORDERS, Evidence, Participation, checked_participation
 from .hypotheses import FREE, REPORTED, Hypothesis
-from .order_windows import channel_orders, checked_channels
-from .search_job import RecordData, SearchJob
+from .order_windows import checked_channels
+from .search_job import RecordData, SearchJob, cached_orders
 from .settings import SETTINGS, Changes, Settings, checked_settings
 from .wiring import WiringSettings, wiring_notes
 
@@ -172,8 +172,9 @@ def checked_data(
     """Check that a record's base moves as a sine, and return its channels for a job."""
     channels = checked_channels(record)
     factors = checked_participation(participation, [one for one in channels.names if one != BOX])
+    data = RecordData.from_channels(channels, factors, settings)
     try:
-        resonance = channel_orders(channels).resonance
+        resonance = cached_orders(data).resonance
     except InputError as error:
         notes = wiring_notes(channels, WiringSettings(clipped=settings.clipped))
         raise InputError("; ".join([str(error), *(note.text for note in notes)])) from None
@@ -184,7 +185,7 @@ def checked_data(
             text = f"a factor of {factor:.3g} from the guess's {low:.3g} to {high:.3g} Hz"
             text = f"record: the response is largest at {resonance:.3g} Hz, {text}: are the times"
             warnings.warn(f"{text} in s, and is the guess one of this beam?", stacklevel=3)
-    return RecordData.from_channels(channels, factors, settings)
+    return data
 
 
 def check_tones(job: FitJob) -> None:

@@ -210,7 +210,7 @@ def timed_windows(
         if end - begin < 6 * order:
             continue
         here, base, part = phase[begin:end], channels.box[begin:end], slice(begin, end)
-        waves = np.exp(-1j * np.outer(ORDERS, here))
+        waves = np.cumprod(np.tile(np.exp(-1j * here), (len(ORDERS), 1)), axis=0)
         size = amplitudes(moved[part], waves)
         # a displacement is opposite to its acceleration: the top of the stroke is at 0
         own = here + np.angle(-size[0])
@@ -263,11 +263,26 @@ def timed_power(
 
 def prediction_error(signal: Floats, order: int) -> Floats:
     """Return what the samples before do not foresee, by weights that serve both directions."""
-    after = np.lib.stride_tricks.sliding_window_view(signal, order + 1)
-    before = after[:, ::-1]
-    products = before.T @ before + after.T @ after
+    products = lagged_products(signal, order)
+    products = products + products[::-1, ::-1]
     products[np.diag_indices(order + 1)] *= 1.0 + 1e-9  # of a signal without noise
     weights = np.linalg.solve(products[1:, 1:], products[1:, 0])
     error = np.zeros(len(signal))
-    error[order:] = before[:, 0] - before[:, 1:] @ weights
+    error[order:] = np.convolve(signal, np.concatenate([[1.0], -weights]), "valid")
     return error
+
+
+def lagged_products(signal: Floats, order: int) -> Floats:
+    """Return the sums of ``x[n-i] x[n-j]`` over n, for i and j up to an order.
+
+    Each row follows from the one before, but for the ends: no product of large matrices, for which
+    the threads of a BLAS would wait.
+    """
+    first = np.correlate(signal, signal[order:], "valid")[::-1]
+    begin, end = signal[order - 1 :: -1], signal[: -order - 1 : -1]
+    ends = np.outer(begin, begin) - np.outer(end, end)
+    found = np.empty((order + 1, order + 1))
+    found[0], found[:, 0] = first, first
+    for row in range(order):
+        found[row + 1, 1:] = found[row, :-1] + ends[row]
+    return found

@@ -296,11 +296,21 @@ def overlapping_windows(channels: Channels, phase: Floats) -> list[Window]:
     return found
 
 
+def usual_frequencies(phase: Floats, channels: Channels) -> Floats:
+    """Return the mean frequency in each twentieth of a record, Hz."""
+    marks = np.linspace(0, len(phase) - 1, 21).astype(int)
+    return np.asarray(np.diff(phase[marks]) / np.diff(marks) * channels.sample_rate / TURN)
+
+
 def median_sweep_rate(phase: Floats, channels: Channels) -> float:
     """Estimate the median size of the frequency's derivative, Hz/s."""
-    marks = np.linspace(0, len(phase) - 1, 21).astype(int)
-    frequency = np.diff(phase[marks]) / np.diff(marks) * channels.sample_rate / TURN
-    return float(np.median(np.abs(np.diff(frequency)))) * 20.0 / channels.duration
+    changes = np.abs(np.diff(usual_frequencies(phase, channels)))
+    return float(np.median(changes)) * 20.0 / channels.duration
+
+
+def highest_frequency(channels: Channels) -> float:
+    """Return a frequency in Hz that no sweep of the base exceeds: it may still rise at the end."""
+    return 1.1 * float(usual_frequencies(measured_phase(channels), channels).max())
 
 
 def assembled_windows(
@@ -321,24 +331,30 @@ def assembled_windows(
 
 def least_squares_matrix(one: Window, sample_rate: float) -> Complexes:
     """Compute the least-squares matrix of a window, shape (orders, samples)."""
-    orders = (*ORDERS, *OFF_ORDERS)
-    resolved = [n for n in orders if n * one.frequency <= NYQUIST * sample_rate]
-    columns, first = [np.ones_like(one.offset)], {}
-    for n in resolved:
-        sine, cosine = np.sin(n * one.phase), np.cos(n * one.phase)
-        first[n] = len(columns)
-        columns += [sine, cosine]
-        if n.is_integer():
-            columns += [one.offset * sine, one.offset * cosine]
-    basis = np.stack(columns)
+    orders = np.array([*ORDERS, *OFF_ORDERS])
+    resolved = np.flatnonzero(orders * one.frequency <= NYQUIST * sample_rate)
+    waves = waves_of_orders(one.phase)
+    moving = one.offset * waves[[row for row in resolved if orders[row] % 1.0 == 0.0]]
+    waves = waves[resolved]
+    parts = (waves.imag, waves.real, moving.imag, moving.real)
+    basis = np.concatenate([*parts, np.ones((1, len(one.offset)))])
     weighted = basis * one.weights
     # products as small as these wait for the threads of a BLAS, up to 20 times as long as they take
     normal = np.einsum("is,js->ij", weighted, basis)
-    solution = np.einsum("ij,js->is", np.linalg.pinv(normal, hermitian=True), weighted)
+    inverse = np.linalg.pinv(normal, hermitian=True)[: 2 * len(resolved)]
+    sine, cosine = np.einsum("ij,js->is", inverse, weighted).reshape(2, len(resolved), -1)
     found = np.full((len(orders), len(one.offset)), np.nan, dtype=complex)
-    for n, row in first.items():
-        found[orders.index(n)] = solution[row] + 1j * solution[row + 1]
+    found[resolved] = sine + 1j * cosine
     return found
+
+
+def waves_of_orders(phase: Floats) -> Complexes:
+    """Return exp(i n phase) of each of `ORDERS` and `OFF_ORDERS`, by products of two."""
+    half, off = np.exp(1j * np.outer((0.5, 0.37), phase))
+    first = half * half
+    second = first * first
+    third = second * first
+    return np.stack([first, second, third, half, first * off, second * off, third * off.conj()])
 
 
 def referred_to_base(box: Floats, one: Window, solution: Complexes) -> Complexes:

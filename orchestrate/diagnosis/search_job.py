@@ -19,10 +19,24 @@ from ..running.job import Job, Table
 from .curve_evidence import COARSE_SAMPLES, CurveData
 from .even_orders import EvenOrders, even_orders
 from .evidence import Evidence
-from .hypotheses import SOUND, Delaminated, DelaminatedWithClearance, Hypothesis, Onset
+from .hypotheses import (
+    SOUND,
+    Delaminated,
+    DelaminatedWithClearance,
+    Hypothesis,
+    Onset,
+    TwoModes,
+)
 from .linear import misfit
 from .multistart import Search, Solution, difference_step, with_distinct_misfits, without_neighbours
-from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
+from .order_windows import (
+    MIN_WINDOWS,
+    SAMPLES_PER_PERIOD,
+    RecordOrders,
+    channel_orders,
+    decimated,
+    highest_frequency,
+)
 from .settings import SETTINGS, Settings
 from .standard_errors import Estimate, estimate
 
@@ -69,11 +83,17 @@ def cached_evidence(data: RecordData | CurveData) -> Evidence:
 
 
 @lru_cache(maxsize=2)
-def cached_orders(data: RecordData) -> RecordOrders:
-    """Return the orders of the whole record, computed once per process."""
+def cached_channels(data: RecordData) -> Channels:
+    """Return the channels of a record as arrays, made once per process."""
     time = data.begin + np.arange(len(data.channels[0])) / data.sample_rate
-    values = np.array(data.channels)
-    return channel_orders(Channels(time, data.sample_rate, data.names, values, "record"))
+    return Channels(time, data.sample_rate, data.names, np.array(data.channels), "record")
+
+
+@lru_cache(maxsize=2)
+def cached_orders(data: RecordData) -> RecordOrders:
+    """Return the orders of the whole record, thinned to what they need, once per process."""
+    channels = cached_channels(data)
+    return channel_orders(decimated(channels, highest_frequency(channels)))
 
 
 @lru_cache(maxsize=2)
@@ -90,6 +110,18 @@ def bonded_even(data: RecordData | CurveData) -> EvenOrders:
     best = search.minima(SOUND[0].starts(evidence))[0]
     motion = SOUND[0].displacements(best.values, evidence, None)
     return even_orders(evidence, evidence.fitted_orders(motion))
+
+
+@lru_cache(maxsize=8)
+def faces_apart(data: RecordData) -> float:
+    """Return how far two faces differ over the threshold; 0 where two modes of a sound beam do."""
+    even, modes = bonded_even(data), TwoModes()
+    if even.is_order_2_seen or even.moved_apart <= 1.0:
+        return even.moved_apart
+    coarse = Search(modes, cached_coarse_evidence(data))
+    nearest = coarse.minima(modes.starts(coarse.evidence))[0]
+    best = Search(modes, cached_evidence(data)).refine(nearest.values)
+    return 0.0 if best.misfit <= data.settings.sound else even.moved_apart
 
 
 @lru_cache(maxsize=2)

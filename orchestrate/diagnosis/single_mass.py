@@ -47,6 +47,8 @@ class SingleMass:
 
     def displacements(self, cubics: Floats, step: float, bound: float = 1e3) -> Floats:
         """Return the relative displacement, m, at each cubic's beginning and at the end."""
+        if not (self.square or self.cube or self.friction or self.stop):
+            return self.linear_displacements(cubics, step)
         stiffest = self.f * math.sqrt(1.0 + max(self.stop, 0.0))
         parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / MAX_STEP_ANGLE))
         displacement = np.full(len(cubics) + 1, np.nan)
@@ -56,3 +58,20 @@ class SingleMass:
         places = mass.ctypes.data, cubics.ctypes.data
         run(*places, len(cubics), step, parts, bound, displacement.ctypes.data)
         return displacement
+
+    def linear_displacements(self, cubics: Floats, step: float) -> Floats:
+        """Return the same on a linear spring, exactly: a recursion over the displacements."""
+        from scipy.linalg import expm
+        from scipy.signal import lfilter
+
+        w = 2.0 * math.pi * self.f
+        # of displacement, speed, and the base's acceleration with its derivatives
+        rates = np.eye(6, k=1)
+        rates[1, :3] = -w * w, -2.0 * self.zeta * w, -1.0
+        whole = expm(rates * step)
+        moved, sped = whole[:2, 2:] @ cubics.T
+        (own, by_speed), (_, slows) = whole[:2, :2]
+        kicks = np.concatenate([[0.0], moved])
+        kicks[2:] += by_speed * sped[:-1] - slows * moved[:-1]
+        determinant = math.exp(-2.0 * self.zeta * w * step)
+        return np.asarray(lfilter([1.0], [1.0, -own - slows, determinant], kicks))
