@@ -17,7 +17,7 @@ from ..units import Units, with_readable_lengths, with_units
 from .command import Command, Options, Question, option, option_names
 from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
-from .output import Files, digest, importing_matplotlib, result_name, write_result
+from .output import Files, digest, result_name, write_result
 
 UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}
 UNIT_OF_KEY = {  # of a structure's file
@@ -118,14 +118,13 @@ class Asked(Command):
         if len(files) > 1:
             fresh = any(one.fresh for one in files.values())
             common = Files.from_options(self, name, over, fresh)
-        if isinstance(structure, Structure) and not others:
+        alone = isinstance(structure, Structure) and not others
+        if alone:
             print_frequency_notes(self, structure, question)
-        with importing_matplotlib(picture):
-            results = self.compute(states, others, question, files)
+        results = self.compute(states, others, question, files)
         chosen = self.display_units(question)
         asked = {state: with_units(data, chosen) for state, data in results.items()}
         shown = dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
-        alone = isinstance(structure, Structure) and not others
         notes = trivial_notes(structure, question, [*shown.values()][-1]) if alone else ()
         print(*notes, *self.summaries(shown), sep="\n")
         self.print_units_note(*shown.values())

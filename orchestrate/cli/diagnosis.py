@@ -18,7 +18,7 @@ from . import grammar, output, printing
 from .answer import Asked
 from .command import Command, Options, Question, option
 from .options import OfSensors, OfStructure
-from .output import Files, InColumns, Reading, digest, file_checksum, unit_note
+from .output import Files, Reading, digest, file_checksum, unit_note
 
 log = logging.getLogger(__name__)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
@@ -65,7 +65,7 @@ class DiagnosedRecords(Options):
     )
 
 
-class Diagnose(DiagnosedRecords, OfStructure, InColumns, Reading, Command, output.Results):
+class Diagnose(DiagnosedRecords, OfStructure, Reading, Command, output.Results):
     """Whether a measured beam is delaminated: a verdict, its evidence, a report."""
 
     structure: Any = option(
@@ -151,7 +151,7 @@ what it gives:
 
     def read_one_record(self, path: Path) -> xr.Dataset:
         """Read a record from a file; raise if it has no acceleration of either face."""
-        record = orchestrate.read_record(path, **self.given(InColumns, Reading))
+        record = orchestrate.read_record(path, **self.given(Reading))
         if "acceleration1" not in record and "acceleration2" not in record:
             taken = record.attrs.get("columns", "no columns")
             text = "expected a face's too: name its column by --channels, as base=Table,face1=Beam"

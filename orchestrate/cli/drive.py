@@ -119,27 +119,6 @@ class Stepped(Options):
     )
 
 
-class Held(Options):
-    """The option of held voltages."""
-
-    hold: float | None = option(
-        "longest time for which a voltage is held until the speed settles, 0 for none, in 1/omega "
-        "(default: 4000 and 200 times the rotor's own)",
-        value="TIME",
-    )
-
-
-class OfVoltage(Options):
-    """Options of one voltage."""
-
-    heading, rank = "the motor's voltage", 1
-    eta0: float | None = option(
-        "voltage as no-load speed over omega (default: 1.53 for quick, 1.45 for beam, else between "
-        "the jumps of the averaged theory)"
-    )
-    voltage: float | None = option("the same in V")
-
-
 class OfRamp(Options):
     """Options of two voltages."""
 
@@ -210,6 +189,11 @@ class OfSchedule(OfRamp):
     )
     settle: float = option("time at the first voltage, in 1/omega", 300.0)
     one_way: bool = option("do not come back")
+    hold: float | None = option(
+        "longest time for which a voltage is held until the speed settles, 0 for none, in 1/omega "
+        "(default: 4000 and 200 times the rotor's own)",
+        value="TIME",
+    )
 
     def ramp_rate(self, structure: Structure, drive: Drive) -> float:
         self.one_of("rate", "volt_rate")

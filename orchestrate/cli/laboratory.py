@@ -21,7 +21,7 @@ from . import grammar, output, printing
 from .answer import Asked, Runs
 from .command import Command, Options, Question, option, option_names
 from .options import Beside, OfSensors, OfStructure
-from .output import Files, InColumns, Reading, digest, unit_note
+from .output import Files, Reading, digest, unit_note
 
 KINDS = {  # of excitation: the class, or the reader, whose arguments are its options
     "swept_sine": "SweptSine",
@@ -284,7 +284,7 @@ class Reported(output.InUnits, output.Formats, output.InFolder):
     """Options of units and files."""
 
 
-class Analyse(AnalysedRecords, OfSensors, InColumns, Reading, Settings, Reported, Command):
+class Analyse(AnalysedRecords, OfSensors, Reading, Settings, Reported, Command):
     """What an analyser shows of a record: responses, spectra, orders, shock spectra."""
 
     examples = """
@@ -309,7 +309,7 @@ class Analyse(AnalysedRecords, OfSensors, InColumns, Reading, Settings, Reported
                 print(f"{paths[label]}: {note}")
         units = self.read_record_units()
         reading: list[Any] = [self.begin, self.to, *self.given(OfSensors).values()]
-        reading += self.given(InColumns, Reading).items()
+        reading += self.given(Reading).items()
         for name in names:
             results = {
                 label: analyse(name, record, paths[label], settings[name])
@@ -387,7 +387,7 @@ class Analyse(AnalysedRecords, OfSensors, InColumns, Reading, Settings, Reported
             )
             units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
             return stored if units <= {"m/s2"} else orchestrate.read_record(path)
-        reading = self.given(InColumns, Reading)
+        reading = self.given(Reading)
         if path.suffix.lower() != ".wav":  # the scale is of the others
             reading.pop("scale", None)
         return orchestrate.read_record(path, **reading)
@@ -396,7 +396,7 @@ class Analyse(AnalysedRecords, OfSensors, InColumns, Reading, Settings, Reported
 Pair = Annotated[Any, grammar.floats("H1,H2, two numbers such as 3,2", ",", (2,))]
 
 
-class Halves(InColumns, Reading, Command):
+class Halves(Reading, Command):
     """Fit a structure to knocks of a hammer on each half, and write it as TOML file."""
 
     calls, takes = "halves", "resolution estimator"
@@ -418,7 +418,7 @@ is a guess: --structure of diagnose, plan and others; complete it by e and clear
     def __call__(self) -> None:
         if len(self.records) > 2:
             raise InputError(f"{self.records[-1]}: expected one record of each half")
-        reading = self.given(InColumns, Reading)
+        reading = self.given(Reading)
         records = [orchestrate.read_record(path, **reading) for path in self.records]
         if len({*map(output.file_checksum, self.records)}) < len(records):
             text = f"the same numbers as {self.records[0]}; expected one record of each half"
@@ -446,7 +446,7 @@ is a guess: --structure of diagnose, plan and others; complete it by e and clear
             print(self.output)
 
 
-class Channels(InColumns, Reading, Command):
+class Channels(Reading, Command):
     """List the columns of a record, and as which channels they are read; write that as a file."""
 
     record: Path = option("as for analyse", position=True, needed=True)
@@ -465,7 +465,7 @@ they are, the last line says what is missing."""
     def __call__(self) -> None:
         from ..laboratory.columns import BY_ORDER
 
-        reading = self.given(InColumns, Reading)
+        reading = self.given(Reading)
         found = orchestrate.channels(self.record, **reading, output=self.output)
         names = ("column", "role", "known", "quantity", "unit")
         rows = {name: found[name].values.tolist() for name in names}

@@ -314,37 +314,25 @@ class Over(Options):
     )
     values: Any = option("its values, FIRST:LAST:STEP or a list A,B,...", value="VALUES")
 
-    def read_over(self) -> tuple[tuple[float, ...], bool] | None:
-        """Return the values of ``--over``, and whether they are a range; None without it."""
-        if (self.over is None) != (self.values is None):
-            raise InputError("--over and --values: expected both, or none of them")
-        return grammar.parse_listed(self.over, self.values) if self.over else None
-
     def over_arguments(self) -> Question:
         """Return the varied parameter and its values as keywords; none without it."""
-        values = self.read_over()
-        return {} if values is None else {"over": self.over, "values": values[0]}
-
-    def varied_arguments(
-        self, structure: Structure, usual: str | None = None, si: bool = False
-    ) -> tuple[Question, bool]:
-        """Return excitation and varied parameter as keywords, and whether a range was given."""
-        if self.over is None and self.has_levels():
-            box = self.excitation_by_level(structure, one=True)
-            return {**box, "over": "level", "values": box.pop("level")}, ":" in self.g
-        if (values := self.read_over()) is not None:
-            self.check_over(self.over)
-            fixed = self.read_excitation(structure, si, one=True)
-            return {**fixed, "over": self.over, "values": values[0]}, values[1]
-        if usual is not None and not self.is_shaken():
-            self.eta = usual
-        excitation = self.read_excitation(structure, si)
-        return excitation, ":" in str(getattr(self, self.frequency_option() or "eta"))
+        if (self.over is None) != (self.values is None):
+            raise InputError("--over and --values: expected both, or none of them")
+        values = self.over and grammar.parse_listed(self.over, self.values)
+        return {"over": self.over, "values": values} if values else {}
 
     def ask_along_parameter(self, si: bool = False) -> tuple[Structure, Question]:
+        """Return structure, keywords, excitation and what varies of it."""
         structure = self.read_structure()
-        excitation, _ = self.varied_arguments(structure, si=si)
-        return structure, {**self.keywords(), **excitation}
+        if self.over is None and self.has_levels():
+            box = self.excitation_by_level(structure, one=True)
+            varied: Question = {**box, "over": "level", "values": box.pop("level")}
+        elif varied := self.over_arguments():
+            self.check_over(self.over)
+            varied = {**self.read_excitation(structure, si, one=True), **varied}
+        else:
+            varied = self.read_excitation(structure, si)
+        return structure, {**self.keywords(), **varied}
 
     def check_over(self, over: str) -> None:
         """Raise unless a parameter of a structure may vary with these options."""

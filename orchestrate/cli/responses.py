@@ -16,7 +16,7 @@ from ..units import Units, is_in_ratios, text_of
 from . import printing
 from .answer import Asked, Overlay, Runs, is_curve
 from .command import Question, option
-from .drive import Driven, OfVoltage
+from .drive import Driven
 from .grammar import parse_changes, parse_listed
 from .options import Beside, OfBox, OfStructure, Over
 from .output import OfBoth, Results, Stored
@@ -117,10 +117,15 @@ def peak_lines(data: xr.Dataset, name: str) -> Iterator[str]:
 CAPTURED = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor is captured by the resonance
 
 
-class Spectra(OfVoltage, OfBox, Driven, Stored, OfBoth):
+class Spectra(OfBox, Driven, Stored, OfBoth):
     """Acceleration spectra, bonded and delaminated (Figure 3)."""
 
     calls = "spectra"
+    eta0: float | None = option(
+        "the motor's voltage as no-load speed over omega (default: 1.53 for quick, 1.45 for beam, "
+        "else between the jumps of the averaged theory)"
+    )
+    voltage: float | None = option("the same in V")
     examples = """
   {program} spectra                      Figure 3: quick, the motor is captured by the resonance
   {program} spectra --drive beam --voltage 6.5
@@ -244,10 +249,12 @@ Repeat the command to resume an interrupted run. A finished result is left as it
     has_picture = staticmethod(is_curve)
 
     def ask(self) -> tuple[Structure, Question]:
-        structure = self.read_structure()
-        excitation, is_range = self.varied_arguments(structure, usual=PAPER_RANGE)
-        direction = self.direction or ("up" if is_range else "given")
-        return structure, {**self.keywords(), **excitation, "direction": direction}
+        if self.over is None and not self.is_shaken():
+            self.eta = PAPER_RANGE
+        texts = (self.values, self.eta, self.hz, self.rpm, self.frequency, self.g)
+        usual = "up" if any(":" in text for text in texts if text) else "given"
+        structure, question = self.ask_along_parameter()
+        return structure, {**question, "direction": self.direction or usual}
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         name = printing.varied_parameter(data)
@@ -300,7 +307,7 @@ Each point starts from rest. The picture has a panel for each quantity."""
         for name, text in zip(self.over, self.values, strict=True):
             if name in excitation or (name == "level" and "amplitude" in excitation):
                 raise InputError(f"--over {name}: twice; expected two parameters")
-            excitation[name] = parse_listed(name, text)[0]
+            excitation[name] = parse_listed(name, text)
         if sum(isinstance(value, tuple) for value in excitation.values()) != 2:
             raise InputError(
                 "map: expected two parameters that vary: a range of frequencies and one of levels "

@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..lazy import np, xr
 from ..model import Drive, Structure
 from ..units import range_text, text_of, units_of, with_units
-from . import drive, printing
+from . import printing
 from .answer import Only, Runs
 from .command import Question, option
 from .drive import ETA0, RESUME, Driven, OfController, OfRamp, OfSchedule, Stepped
@@ -62,7 +62,7 @@ def draw_couple(
     return draw(results, with_units(theory, units), under, title)
 
 
-class Couple(Only, OfSchedule, OfController, Stepped, drive.Held, Driven, OfBoth):
+class Couple(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
     """The weak drive: structure and motor coupled, the voltage up and down (Figure 2)."""
 
     calls, takes = "couple", "tolerance"
@@ -266,7 +266,7 @@ def first_stored_interval(data: xr.Dataset) -> xr.Dataset:
     return data.isel(time=slice(0, int(breaks[0]) + 1)) if breaks.size else data
 
 
-class Passage(Only, OfSchedule, OfController, Stepped, drive.Held, Driven, OfBoth):
+class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
     """A run through the resonance at full resolution: speed, motion, power, waterfall."""
 
     calls, takes = "passage", "around"

@@ -140,8 +140,8 @@ def test_texts_of_options(reader, text, value):
 
 
 def test_the_default_range_has_7901_values_and_both_ends():
-    etas, is_range = grammar.parse_values("--eta", "0.1:8.0:0.001")
-    assert is_range and (len(etas), etas[0], etas[-1]) == (7901, 0.1, 8.0)
+    etas = grammar.parse_values("--eta", "0.1:8.0:0.001")
+    assert (len(etas), etas[0], etas[-1]) == (7901, 0.1, 8.0)
     assert list(etas) == [float(f"{n / 1000:.3f}") for n in range(100, 8001)]
 
 
@@ -151,7 +151,7 @@ def test_a_range_has_its_decimal_values_exactly(first, step, count):
         return f"{n // 10000}.{n % 10000:04d}"
 
     grid = [text(first + k * step) for k in range(count + 1)]
-    values, _ = grammar.parse_values("--eta", f"{grid[0]}:{grid[-1]}:{text(step)}")
+    values = grammar.parse_values("--eta", f"{grid[0]}:{grid[-1]}:{text(step)}")
     assert values == tuple(map(float, grid))
 
 
