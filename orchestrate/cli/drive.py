@@ -124,8 +124,7 @@ class OfRamp(Options):
 
     heading, rank = "the motor's voltage", 1
     eta0: str | None = option(
-        "voltage as no-load speed over omega, downwards too (default: about the jumps of the "
-        "averaged theory)",
+        "voltage as no-load speed over omega (default: about the jumps of the averaged theory)",
         value="FIRST:LAST",
     )
     voltage: str | None = option("the same in V", value="FIRST:LAST")

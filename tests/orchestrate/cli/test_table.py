@@ -44,6 +44,12 @@ def test_every_default_is_that_of_the_function_and_in_the_help():
     assert compared > 40
 
 
+def test_no_two_options_of_a_command_have_one_help():
+    for command, found in cli.COMMANDS.items():
+        texts = [option.help for option, _, _ in found.options().values()]
+        assert {text for text in texts if texts.count(text) > 1} == set(), command
+
+
 def test_an_argument_of_a_function_is_an_option_without_more(monkeypatch):
     def echo(structure, *, eta=None, depth=3, loud=False, mood="calm"):
         """Sound.
