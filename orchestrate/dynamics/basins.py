@@ -311,7 +311,7 @@ def basin(
     """
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
     point = checked_point(structure, eta, frequency, amplitude, **pushes)
-    run = SettlingRun.by(settings, transient=transient, settle=settle, samples=samples)
+    run = SettlingRun.from_settings(settings, transient=transient, settle=settle, samples=samples)
     known: KnownAttractors | None = None
     if x is None or y is None:
         known = find_known_attractors(point, run, running)

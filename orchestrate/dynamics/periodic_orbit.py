@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
-from .closed_form import FREE, INNER, OUTER, ClosedForm, Floats, inwards
+from .closed_form import FREE, INNER, OUTER, ClosedForm, Floats, parting_sign
 
 IMPACT, STICK, RELEASE = range(3)  # kinds of nodes; after STICK follows permanent contact
 ENDS = 3  # kinds: what is added to those of nodes at the outer end
@@ -68,7 +68,7 @@ class ImpactSequence:
         return ImpactSequence(self.periods, (*self.kinds[:before], kind, *self.kinds[before:]))
 
 
-def of_next(rows: NDArray[Any]) -> NDArray[Any]:
+def next_rows(rows: NDArray[Any]) -> NDArray[Any]:
     """Return the rows of the next nodes, the first one after the last; np.roll is slow."""
     return np.concatenate([rows[1:], rows[:1]])
 
@@ -93,7 +93,7 @@ class PeriodicOrbit:
     @cached_property
     def ends(self) -> Floats:
         """Return the phases, rad, at which segments between nodes end."""
-        phases = of_next(self.begins)
+        phases = next_rows(self.begins)
         phases[-1] += TURN * self.sequence.periods
         return phases
 
@@ -119,18 +119,18 @@ class PeriodicOrbit:
     def starts(self) -> Floats:
         """Return the states at the begin of segments, just after impacts (15), shape (k, 4)."""
         if not self.count:
-            return self.form.steady(np.zeros(1), self.modes)
+            return self.form.steady_response(np.zeros(1), self.modes)
         (_, position, velocity, closing), outer = self.nodes.T, self.sequence.outer
         parting = np.where(self.contact | self.sequence.releases, 0.0, self.form.parting(closing))
-        one, two = self.blow * parting
-        far = position + self.form.apart(outer)
+        one, two = self.velocity_gain * parting
+        far = position + self.form.gap_at_end(outer)
         return np.stack([position, far, velocity + one, velocity + two], axis=1)
 
     @cached_property
-    def blow(self) -> Floats:
+    def velocity_gain(self) -> Floats:
         """Return what both velocities gain by a separation speed, at each node, shape (2, k)."""
         one, two = self.form.shares
-        return inwards(self.sequence.outer) * np.array([[-two], [one]])
+        return parting_sign(self.sequence.outer) * np.array([[-two], [one]])
 
     @cached_property
     def flows(self) -> Floats:
@@ -141,23 +141,23 @@ class PeriodicOrbit:
         """Return the states at phases inside given segments, by the closed form, shape (n, 4)."""
         modes, begins = self.modes[segment], self.begins[segment]
         flow = self.form.flow((phase - begins) / self.form.eta, modes)
-        return self.moved(flow, segment, phase)
+        return self.states_in(flow, segment, phase)
 
     @cached_property
     def arrivals(self) -> Floats:
         """Return the states at the end of segments, just before the next node, shape (k, 4)."""
-        return self.moved(self.flows, np.arange(len(self.modes)), self.ends)
+        return self.states_in(self.flows, np.arange(len(self.modes)), self.ends)
 
-    def moved(self, flow: Floats, segment: NDArray[np.int_], phase: Floats) -> Floats:
+    def states_in(self, flow: Floats, segment: NDArray[np.int_], phase: Floats) -> Floats:
         """Return the states at phases inside given segments, by the flow until there."""
-        free = (self.starts - self.form.steady(self.begins, self.modes))[segment]
+        free = (self.starts - self.form.steady_response(self.begins, self.modes))[segment]
         moved: Floats = (flow @ free[:, :, None])[:, :, 0]
-        return moved + self.form.steady(phase, self.modes[segment])
+        return moved + self.form.steady_response(phase, self.modes[segment])
 
     @cached_property
     def reductions(self) -> Floats:
         """Return matrices from states before nodes to gap, centre (x, v) and closing speed."""
-        sign = inwards(of_next(self.sequence.outer))[:, None]
+        sign = parting_sign(next_rows(self.sequence.outer))[:, None]
         matrices = np.zeros((self.count, 4, 4))
         matrices[:, 0, :2] = [-1.0, 1.0]
         matrices[:, [1, 2], [0, 2]] = self.form.shares[0]
@@ -169,13 +169,13 @@ class PeriodicOrbit:
         """Return the residual of the orbit's equations at its nodes, shape (4 k,)."""
         if not self.count:
             return np.zeros(0)
-        after, outer = of_next(self.nodes), of_next(self.sequence.outer)
+        after, outer = next_rows(self.nodes), next_rows(self.sequence.outer)
         residual = (self.reductions @ self.arrivals[:, :, None])[:, :, 0]
-        apart = self.form.apart(outer)
+        apart = self.form.gap_at_end(outer)
         residual[:, 0] -= apart
         residual[:, 1] -= self.form.shares[1] * apart
         residual[:, 1:] -= after[:, 1:]
-        released = of_next(self.sequence.releases)
+        released = next_rows(self.sequence.releases)
         if released.any():
             phase, position, velocity = after[released, :CLOSING].T
             force = self.form.force(phase, position, velocity, outer[released])
@@ -193,16 +193,16 @@ class PeriodicOrbit:
         shift[:, 2:, VELOCITY] = 1.0
         parting = ~(self.contact | sequence.releases)
         rates = form.parting_rate(self.nodes[parting, CLOSING])
-        shift[parting, 2:, CLOSING] = (rates * self.blow[:, parting]).T
+        shift[parting, 2:, CLOSING] = (rates * self.velocity_gain[:, parting]).T
         before = self.reductions @ self.flows @ shift
         after = np.zeros((self.count, 4, 4))
         rates = form.field(self.arrivals, self.ends, self.modes)
         after[:, :, PHASE] = (self.reductions @ rates[:, :, None])[:, :, 0] / form.eta
         after[:, [1, 2, 3], [1, 2, 3]] = -1.0
-        released = of_next(sequence.releases)
-        outer = of_next(sequence.outer)[released]
+        released = next_rows(sequence.releases)
+        outer = next_rows(sequence.outer)[released]
         before[released] *= np.array([0.0, 1.0, 1.0, 0.0])[:, None]
-        after[released, 0] = np.outer(inwards(outer), [0.0, form.force_x, form.force_v, 0.0])
+        after[released, 0] = np.outer(parting_sign(outer), [0.0, form.force_x, form.force_v, 0.0])
         quarter = self.ends[released] + 0.5 * np.pi
         after[released, 0, PHASE] = form.gap_drive(quarter, outer)
         after[released, 3] = [0.0, 0.0, 0.0, 1.0]

@@ -27,7 +27,12 @@ def found(exported):
 
 @pytest.mark.parametrize(("points", "chunks"), [(300, 16), (12, 12), (6000, 50)])
 def test_a_map_of_few_points_is_stored_in_many_parts(points, chunks):
-    grid = {"given": (("eta", tuple(np.linspace(1.0, 2.0, points // 6))), ("e", (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)))}
+    grid = {
+        "given": (
+            ("eta", tuple(np.linspace(1.0, 2.0, points // 6))),
+            ("e", (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)),
+        )
+    }
     job = MapJob(name="map", structure=PAPER, start=(0.0,) * 4, **grid)
     found = job.chunks()
     assert len(found) == chunks and (found[0].start, found[-1].stop) == (0, points)
