@@ -12,7 +12,7 @@ import orchestrate
 
 from ..constants import TURN
 from ..errors import InputError
-from ..lazy import np, xr
+from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.drive import torque_line
 from ..units import Units
@@ -98,16 +98,6 @@ class OfMotor(Options):
             raise InputError(f"{text}; expected one of them")
         voltage, rpm, torque = given.values()
         return dict(zip(names, torque_line(voltage, TURN * rpm / 60.0, torque), strict=True))
-
-    def drive_units(self) -> Units:
-        in_rpm = self.no_load_rpm is not None
-        return self.read_units().with_defaults(Units("rpm" if in_rpm else ""))
-
-    def picture_title(self, results: Runs, words: str) -> str:
-        from ..show.labels import title_from_attributes
-
-        structure = title_from_attributes(list(results.values())[-1])  # delaminated, if it is there
-        return f"{', '.join(self.source_names())}: {words}; {structure}"
 
 
 class Stepped(Options):
@@ -288,16 +278,23 @@ def check_masses(source: str, changes: Mapping[str, Any]) -> None:
 class Driven(OfMotor, Asked):
     """A command on a structure with its motor, in a picture with a title of its own."""
 
-    def words(self, results: Runs, question: Question) -> str:
-        """Return a part of the picture's title: the runs' voltages, rate and controller."""
-        return format_title(results, question["control"])
+    def picture_title(self, results: Runs) -> str:
+        """Return a picture's title: names of the files, and the structure."""
+        from ..show.labels import title_from_attributes
+
+        structure = title_from_attributes(list(results.values())[-1])  # delaminated, if it is there
+        return f"{', '.join(self.source_names())}: {structure}"
 
     def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
-        title = self.picture_title(results, self.words(results, question))
-        return orchestrate.plot(*results.values(), title=title)
+        if not self.drive:  # spectra without a motor
+            return super().draw(results, question)
+        return orchestrate.plot(*results.values(), title=self.picture_title(results))
 
     def display_units(self, question: Question) -> Units:
-        return self.drive_units()
+        """Return the display units; rpm by default if the motor's speed is in rpm."""
+        if not self.drive:
+            return super().display_units(question)
+        return self.read_units().with_defaults(Units("rpm" if self.no_load_rpm else ""))
 
     def ask_schedule(self) -> tuple[Structure, Drive, Question]:
         """Return structure, drive and keywords of a run under a voltage over time."""
@@ -311,14 +308,3 @@ class Driven(OfMotor, Asked):
         """Return options in 1/omega, such as ``--step``, in s; None where they are not given."""
         times = {name: getattr(self, name) for name in names}
         return {n: None if time is None else time / structure.omega for n, time in times.items()}
-
-
-def format_title(runs: Runs, control: Controller | None = None) -> str:
-    """Format a part of a picture's title: the runs' voltages, rate and controller."""
-    parts = [(data.voltage.values, data.time.values) for data in runs.values()]
-    rates = np.concatenate([np.abs(np.diff(volts) / np.diff(time)) for volts, time in parts])
-    volts = np.concatenate([volts for volts, _ in parts])
-    rate = float(np.median(rates[rates > 0.0])) if (rates > 0.0).any() else 0.0
-    ends = " to ".join(dict.fromkeys(f"{end:.4g} V" for end in (volts.min(), volts.max())))
-    moving = f", {rate:.2g} V/s" if rate and not control else ""
-    return f"{ends}{moving}{f', {type(control).__name__}' if control else ''}"

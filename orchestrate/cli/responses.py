@@ -6,15 +6,13 @@ import itertools
 from collections.abc import Iterator
 from typing import Any, Literal
 
-import orchestrate
-
 from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
 from ..model import Drive, Structure
-from ..units import Units, is_in_ratios, text_of
+from ..units import is_in_ratios, text_of
 from . import printing
-from .answer import Asked, Overlay, Runs, is_curve
+from .answer import Asked, Overlay, is_curve
 from .command import Question, option
 from .drive import Driven
 from .grammar import parse_changes, parse_listed
@@ -154,9 +152,6 @@ class Spectra(OfBox, Driven, Stored, OfBoth):
             voltage = eta0 * motor.volts(structure)
         return structure, motor, {"voltage": voltage}
 
-    def display_units(self, question: Question) -> Units:
-        return self.drive_units() if self.drive else Asked.display_units(self, question)
-
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         first = data.acceleration.sel(mass=1)
         others = [str(dim) for dim in first.dims if dim not in ("order", "kind")]
@@ -170,12 +165,6 @@ class Spectra(OfBox, Driven, Stored, OfBoth):
                 f"{values[-1]} at {where[0]}: largest line {line}, {share:.2g} of it above the "
                 "excitation"
             )
-
-    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
-        title = str(results[""].attrs["title"])
-        title = f"{self.source_names()[0]}: {title[0].lower()}{title[1:]}"
-        words = f"{title}, absolute acceleration of mass 1" if self.drive else ""
-        return orchestrate.plot(results[""], title=words)
 
 
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6

@@ -127,7 +127,7 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
     def summaries(self, results: Runs) -> Iterator[str]:
         """Yield revolutions and speeds of each run, a table of jumps, and the runs' accuracy."""
         if self.stationary is not None:
-            yield from drive_branch_lines(with_units(self.stationary, self.drive_units()))
+            yield from drive_branch_lines(with_units(self.stationary, self.display_units({})))
         rows: list[tuple[str, ...]] = []
         volts = self.job.drive.volts(self.job.structure)
         for name, data in results.items():
@@ -149,12 +149,11 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         yield from printing.table(dict(zip(titles, zip(*rows, strict=True), strict=True)))
 
     def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
-        title = self.picture_title(results, self.words(results, question))
-        return draw_couple(title, results, self.job, self.stationary)
+        return draw_couple(self.picture_title(results), results, self.job, self.stationary)
 
     def write_more(self, files: Files, question: Question, shown: Runs, results: Runs) -> None:
         if any(data.jumps.notnull().any() for data in results.values()):
-            title = self.picture_title(shown, self.words(shown, question))
+            title = self.picture_title(shown)
             draw = partial(orchestrate.plot, *shown.values(), part="jumps", title=title)
             files.write_pictures(draw, "jumps")
 
@@ -230,11 +229,6 @@ The motor is switched on at once and followed until its speed has settled.
         control = self.make_controller(structure, motor)
         return structure, motor, {**question, **varied, "control": control}
 
-    def words(self, results: Runs, question: Question) -> str:
-        control = question["control"]
-        switched = f"controlled by {type(control).__name__}" if control else "switched on from rest"
-        return "{}, {:.4g} V to {:.4g} V".format(switched, *question["voltage"])
-
     def summaries(self, results: Runs) -> Iterator[str]:
         rows: list[dict[str, str]] = []
         notes: list[str] = []
@@ -295,7 +289,7 @@ class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
         shown = {state: first_stored_interval(data) for state, data in results.items()}
         spectra = {"revolutions": self.revolutions, "mass": self.mass}
         falls = {state: orchestrate.waterfall(data, **spectra) for state, data in shown.items()}
-        return draw(shown, falls, self.picture_title(results, self.words(shown, question)))
+        return draw(shown, falls, self.picture_title(results))
 
     def summaries(self, results: Runs) -> Iterator[str]:
         from ..show.passage import format_jumps
@@ -331,11 +325,6 @@ class JumpVoltages(OfRamp, Over, Stepped, Driven, Stored, OfBoth):
             **self.over_arguments(),
         }
         return structure, motor, question
-
-    def words(self, results: Runs, question: Question) -> str:
-        ends = "{:.4g} V to {:.4g} V".format(*question["voltage"])
-        rates = dict.fromkeys(f"{end(question['rates']):.2g} V/s" for end in (min, max))
-        return f"{ends}, {' to '.join(rates)}, and at rate 0"
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         # a direction in which no ramp went has not been decided
@@ -405,7 +394,3 @@ Branches go round their folds. Repeat the command to resume an interrupted run."
 
     def ask(self) -> tuple[Structure, Drive, Question]:
         return *self.read_structure_and_drive(), self.keywords()
-
-    def words(self, results: Runs, question: Question) -> str:
-        voltage = results[""].voltage
-        return f"stationary motions, {float(voltage.min()):.4g} V to {float(voltage.max()):.4g} V"
