@@ -225,7 +225,7 @@ PlanEnds = Annotated[Any, grammar.floats("FIRST:LAST in Hz, such as 30:60", "[:,
 class Plan(OfStructure, OfSensors, Asked, output.Results):
     """Plan a test: rehearse it, and recommend the lowest level at which the verdict is right."""
 
-    calls, stores = "plan_test", False
+    calls, named, stores = "plan_test", "plan", False
     hz: PlanEnds = option(
         "the sweep's ends in Hz (default: 0.65 to 1.4 times the bonded resonance)",
         value="FIRST:LAST",

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 import orchestrate
 
-from ..constants import TURN
+from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from ..lazy import np, xr
 from ..model import PARAMETERS, Structure
@@ -18,7 +18,7 @@ from ..units import is_in_ratios, number_of, range_text, units_of, with_units
 from . import printing
 from .answer import Asked, Runs, is_curve
 from .command import Question, option
-from .grammar import plain_int, reads
+from .grammar import plain_int, positive_number, reads
 from .options import CONTINUED, OfBox, OfPushes, OfStored, OfStructure, Over, parse_varied
 from .output import Files, Results, Stored, result_name
 
@@ -302,18 +302,16 @@ The excitation says where a first orbit is looked for; without it that is the lo
 
     def hold_amplitude(self, structure: Structure, first: float) -> None:
         """Replace ``--g`` by the amplitude that it is at the start of a branch over frequency."""
-        usual = self.frequency_option() is None
-        if usual:
-            self.frequency = repr(first)
-        box = self.read_excitation(structure, one=True)
-        frequency, amplitude = box["frequency"], float(f"{box['amplitude']:.6g}")
+        frequency = first
+        if self.frequency_option() is not None:
+            frequency = self.read_excitation(structure, one=True)["frequency"]
+        level = positive_number("--g", self.g) * GRAVITY
+        amplitude = float(f"{level / frequency**2:.6g}")
         text = f"--g {self.g}: is --amplitude {amplitude:g} at {frequency / TURN:.5g} Hz"
         if structure.has_scale:
             raise InputError(f"{text}; a branch over the frequency has one amplitude: expected it")
         print(f"{text}, constant along the branch; its bifurcations are those of any amplitude")
         self.g, self.amplitude = None, amplitude
-        if usual:
-            self.frequency = None
 
     def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Question:
         """Return the excitation at which the first orbit is searched, as keywords."""

@@ -126,8 +126,12 @@ class HowRun(Options):
         return running if store is None else {**running, "store": store}
 
 
-class Results(InUnits, Formats, InFolder, HowRun):
-    """Options of units, files and running, which end most commands' options."""
+class Shown(InUnits, Formats, InFolder):
+    """Options of units and files."""
+
+
+class Results(Shown, HowRun):
+    """The same and how it is run, which end most commands' options."""
 
 
 class OfBoth(Results):

@@ -72,7 +72,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
         structure, question = self.read_structure(), self.keywords()
         if self.has_levels():
             self.calls = "resonance_levels"
-            return structure, {**question, **self.excitation_by_level(structure)}
+            return structure, {**question, **self.read_excitation(structure, by_level=True)}
         return structure, {**question, **self.read_excitation(structure, si=True)}
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
@@ -291,8 +291,8 @@ Each point starts from rest. The picture has a panel for each quantity."""
             raise InputError("--over and --values: give exactly one --values for each --over")
         for name in self.over:
             self.check_over(name)
-        chosen = self.excitation_by_level if self.g is not None else self.read_excitation
-        excitation: Question = chosen(structure, one=len(self.over) == 2)
+        twice, by_level = len(self.over) == 2, self.g is not None
+        excitation = self.read_excitation(structure, one=twice, by_level=by_level)
         for name, text in zip(self.over, self.values, strict=True):
             if name in excitation or (name == "level" and "amplitude" in excitation):
                 raise InputError(f"--over {name}: twice; expected two parameters")

@@ -79,7 +79,7 @@ def test_three_records_in_one_picture(ask, tmp_path, files):
         *("--format", "nc,csv", "--resolution", "2"),
     ).success()
     for label in ("delaminated", "bonded", "measured"):
-        assert f"{label}: frequency response" in done.out
+        assert f"{label}:\nfrequency response" in done.out
     assert done.out.count("mass 2") == 2 and done.out.count("mass 1") == 3
     folder = tmp_path / "results"
     (picture,) = folder.glob("*.png")

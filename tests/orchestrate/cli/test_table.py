@@ -169,17 +169,17 @@ def test_other_names_of_parameters():
 def test_levels_of_the_box_are_a_number_or_several():
     """Held as peak accelerations; where a command does not take several, one is expected."""
     beam, sweep = Structure.from_file("beam"), cli.COMMANDS["sweep"]
-    levels = sweep(hz="12", g="0.1:2:0.05").excitation_by_level(beam)
+    levels = sweep(hz="12", g="0.1:2:0.05").read_excitation(beam, by_level=True)
     assert isinstance(levels["frequency"], float) and len(levels["level"]) == 39
     single = sweep(hz="12", g="0.1").read_excitation(beam)
     assert levels["level"][0] == pytest.approx(single["amplitude"] * single["frequency"] ** 2)
-    own = sweep(hz="12Hz", g="0.1 g:2g:0.05g").excitation_by_level(beam)
+    own = sweep(hz="12Hz", g="0.1 g:2g:0.05g").read_excitation(beam, by_level=True)
     assert own["frequency"] == levels["frequency"] and own["level"] == levels["level"]
     for text in ("12s", "12g", "Hz"):
         with pytest.raises(InputError, match=f"--hz {text}: not numbers"):
-            sweep(hz=text, g="0.1").excitation_by_level(beam)
+            sweep(hz=text, g="0.1").read_excitation(beam, by_level=True)
     with pytest.raises(InputError, match="--hz 12:14:1: 3 values; expected one"):
-        sweep(hz="12:14:1", g="0.1,0.2").excitation_by_level(beam, one=True)
+        sweep(hz="12:14:1", g="0.1,0.2").read_excitation(beam, one=True, by_level=True)
 
 
 # -- names and ranges -----------------------------------------------------------------------------
