@@ -121,7 +121,11 @@ class OfRamp(Options):
 
     def parse_voltages(self, structure: Structure, drive: Drive) -> tuple[float, ...]:
         """Return one voltage or a ramp's first and last one, V; by default around the jumps."""
+        from ..weak_drive.couple import require_motor
+        from ..weak_drive.couple_all import voltage_range
+
         self.one_of("eta0", "voltage")
+        require_motor(drive)
         volts = drive.volts(structure)
         for name, unit in (("voltage", 1.0), ("eta0", volts)):
             if text := getattr(self, name):
@@ -134,8 +138,8 @@ class OfRamp(Options):
         if self.drive in USUAL and not has_own_parameters:
             first, last = parse_ends("--eta0", USUAL[self.drive][0])
             return first * volts, last * volts
-        down, up = self.averaged_jump_voltages(structure, drive)
-        return 0.88 * down, 1.06 * up
+        first, last = voltage_range(structure.as_bonded(), drive)
+        return first * volts, last * volts
 
     def parse_ramp_ends(self, structure: Structure, drive: Drive) -> tuple[float, ...]:
         """Return the first and the last voltage of a ramp, V; raise if only one is given."""
@@ -144,21 +148,6 @@ class OfRamp(Options):
             name = "voltage" if self.voltage else "eta0"
             parse_ends(f"--{name}", getattr(self, name))
         return voltages
-
-    def averaged_jump_voltages(self, structure: Structure, drive: Drive) -> tuple[float, float]:
-        """Return the averaged theory's jump voltages, down then up, V; raise without jumps."""
-        from ..weak_drive import averaged
-        from ..weak_drive.couple import require_motor
-
-        require_motor(drive)
-        folds = averaged.folds(structure, drive)
-        if not folds:
-            raise InputError(
-                f"--drive {self.drive}: by the averaged theory its speed does not jump; expected "
-                "--eta0 or --voltage with it"
-            )
-        volts = drive.volts(structure)
-        return folds[-1].eta0 * volts, folds[0].eta0 * volts
 
 
 class OfSchedule(OfRamp):

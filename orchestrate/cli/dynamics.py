@@ -11,7 +11,7 @@ import orchestrate
 
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
-from ..lazy import np, xr
+from ..lazy import xr
 from ..model import PARAMETERS, Structure
 from ..model.ranges import PUSHES
 from ..units import is_in_ratios, number_of, range_text, units_of, with_units
@@ -331,19 +331,6 @@ The excitation says where a first orbit is looked for; without it that is the lo
         return excitation
 
 
-def is_on_curve(curve: xr.Dataset, question: Question, near: float = 1e-3) -> bool:
-    """Return whether a curve of a bifurcation's kind passes it, within a part of the range."""
-    start, (across, along) = question["start"], question["over"]
-    found = start.isel(bifurcation=question["bifurcation"])
-    level = Structure.from_attributes(start.attrs).parameters().get(along, np.nan)
-    x, y = curve[across].values - float(found.bifurcation_value), curve[along].values - level
-    at = np.flatnonzero((y[:-1] * y[1:] <= 0.0) & (y[:-1] != y[1:]))
-    passes = x[at] - y[at] * (x[at + 1] - x[at]) / (y[at + 1] - y[at])
-    reach = near * np.ptp(question["limits"][0])
-    same = curve.attrs["kind"] == printing.flag_word(found.bifurcation_kind)
-    return bool(same and (np.abs(passes) < reach).any())
-
-
 parse_bifurcation = reads(
     "a number, or all", lambda text: text if text == "all" else plain_int(text)
 )
@@ -384,12 +371,14 @@ structure and excitation are those of that branch."""
         if question["bifurcation"] != "all":
             self.answer(structure, question)
             return
+        from ..dynamics.borders import lies_on_curve
+
         if self.store is not None:
             raise InputError("--store: of one bifurcation; expected it without --bifurcation all")
         curves: list[xr.Dataset] = []
         for number in range(question["start"].sizes.get("bifurcation", 0)):
             one = {**question, "bifurcation": number}
-            if any(is_on_curve(curve, one) for curve in curves):
+            if any(lies_on_curve(curve, one) for curve in curves):
                 print(f"number {number} is on a curve that was followed")
                 continue
             try:

@@ -43,23 +43,9 @@ def draw_couple(
     if job.control or not isinstance(job.schedule, Ramp):
         resonance = own_resonance.dividing_speed(*system) * job.structure.omega
         return draw_run(results, resonance, title)
-    Omega = np.linspace(0.3, 3.0, 20001)
-    volts = averaged.no_load_speed(*system, Omega) * job.drive.volts(job.structure)
-    points, stable = averaged.branch_stability(*system)
-    part = np.searchsorted([point.Omega for point in points], Omega)
-    amplitude = averaged.amplitude(*system, Omega) * job.drive.length
-    theory = xr.Dataset(
-        {
-            "voltage": ("speed", volts),
-            "amplitude": ("speed", amplitude, {"units": "m"}),
-            "stable": ("speed", np.array(stable)[part]),
-        },
-        {"speed": ("speed", Omega * job.structure.omega, {"units": "rad/s"})},
-        job.structure.parameters(),
-    )
     units = units_of(next(iter(results.values())))
     under = None if branches is None else with_units(branches, units)
-    return draw(results, with_units(theory, units), under, title)
+    return draw(results, with_units(averaged.stationary_curve(*system), units), under, title)
 
 
 class Couple(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
@@ -220,11 +206,7 @@ The motor is switched on at once and followed until its speed has settled.
     def ask(self) -> tuple[Structure, Drive, Question]:
         structure, motor = self.read_structure_and_drive()
         varied = self.over_arguments()
-        if self.eta0 or self.voltage:
-            ends = self.parse_ramp_ends(structure, motor)
-        else:
-            down, up = self.averaged_jump_voltages(structure, motor)
-            ends = down, 1.06 * up
+        ends = self.parse_ramp_ends(structure, motor)
         question = {**self.keywords(), **self.in_seconds(structure, "step"), "voltage": ends}
         control = self.make_controller(structure, motor)
         return structure, motor, {**question, **varied, "control": control}
