@@ -84,12 +84,10 @@ class Diagnose(DiagnosedRecords, OfStructure, Reading, Command, output.Results):
   {program} diagnose laser.csv --unit face=mm/s --sensitivity "base=100 mV/g" --structure beam.toml
 
 what it needs:
-  a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
-  table, the clamp; in Python and in files of this package box_acceleration) and of one face of
-  the beam, or of both faces (acceleration1, acceleration2); and better with a guess of the beam
-  in a file, within some 10 %: masses and natural frequencies of both halves, see 'quantities'.
-  Several records are of several beams, those of --other of the same one; several sweeps in a file
-  give a verdict each, and the signs compare their levels.
+  a record of a swept sine over the beam's resonance: the acceleration of its base (shaker's table,
+  clamp) and of one face or both (acceleration1, acceleration2); better with a guess of the beam,
+  within some 10 %: masses and natural frequencies of both halves, see 'quantities'. Several sweeps
+  in a file give a verdict each, and the signs compare their levels.
 what it gives:
   delaminated      the faces part and strike each other
   no opening seen  up to the level and over the frequencies of the record; never "intact"

@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 USUAL = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 5e-6), "rig": ("0.95:1.24", 5e-5)}
 USUAL_RATES = ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
 RATE = 1e-4  # of eta0, in a time 1/omega
-ETA0 = """eta0 = U/(K omega) is the voltage U as no-load speed over omega = sqrt(k1/m1): the speed,
-in omega, at which the motor turns at this voltage without a load; K is motor_constant."""
-RESUME = "Repeat the command to resume an interrupted run. A finished result is left as it is."
 CONTROLS = {  # options of controllers, with their settings
     "speed_control": ("gain", "reset_time", "speed_rise"),
     "speed_gradient": ("filter_time", "low"),

@@ -184,8 +184,7 @@ class Paper(InFolder, HowRun, Command):
   {program} paper                     all at the paper's resolution, into results/paper/
   {program} paper --quick             on fewer periods and points, in a minute or two
   {program} paper --figures 5,7       some of it
-  {program} paper --cluster tcp://HOST:8786      on the workers of a running Dask scheduler
-Repeat the command to resume an interrupted run. Finished data is left as it is."""
+  {program} paper --cluster tcp://HOST:8786      on the workers of a running Dask scheduler"""
 
     def __call__(self) -> None:
         from ..paper.reproduce import reproduce

@@ -233,8 +233,7 @@ class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
   {program} sweep --eta 1.0:1.5:0.0005 --direction both     up and down: non-unique responses
   {program} sweep --over e --values 0.05:0.95:0.003 --eta 1.2
   {program} sweep --structure beam --hz 8:20:0.05 --g 0.02 --format nc,csv
-  {program} sweep --eta 2.4:2.8:0.002 --overlay branch.nc   with what branch has written
-Repeat the command to resume an interrupted run. A finished result is left as it is."""
+  {program} sweep --eta 2.4:2.8:0.002 --overlay branch.nc   with what branch has written"""
     has_picture = staticmethod(is_curve)
 
     def ask(self) -> tuple[Structure, Question]:

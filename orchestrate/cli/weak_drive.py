@@ -18,7 +18,7 @@ from ..units import range_text, text_of, units_of, with_units
 from . import printing
 from .answer import Only, Runs
 from .command import Question, option
-from .drive import ETA0, RESUME, Driven, OfController, OfRamp, OfSchedule, Stepped
+from .drive import Driven, OfController, OfRamp, OfSchedule, Stepped
 from .grammar import parse_rates
 from .options import Over
 from .output import Files, OfBoth, Stored, digest, user_fmus
@@ -57,17 +57,15 @@ class Couple(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
     )
     ssp: Path | None = option("write the coupled system for other tools instead")
     ssp_version: Literal["1.0", "2.0"] = option("of SSP", "1.0")
-    examples = f"""
-  {{program}} couple                               quick: bonded, delaminated, up and down
-  {{program}} couple --drive beam                  a delaminated beam on a small motor
-  {{program}} couple --eta0 1.4:1.62 --rate 1e-5   a slower ramp over less
-  {{program}} couple --drive beam --voltage 5.6:7.2 --volt-rate 0.01
-  {{program}} couple --drive beam --voltage 6.5 --duration 10 --speed-control 110
-  {{program}} couple --course voltage.csv          any course of the voltage
-  {{program}} couple --ssp weak_drive.ssp          the coupled system as a package for other tools
-{ETA0}
-A ramp shows its jumps late: voltages are those of rate 0, at which the motion is lost.
-{RESUME}"""
+    examples = """
+  {program} couple                               quick: bonded, delaminated, up and down
+  {program} couple --drive beam                  a delaminated beam on a small motor
+  {program} couple --eta0 1.4:1.62 --rate 1e-5   a slower ramp over less
+  {program} couple --drive beam --voltage 5.6:7.2 --volt-rate 0.01
+  {program} couple --drive beam --voltage 6.5 --duration 10 --speed-control 110
+  {program} couple --course voltage.csv          any course of the voltage
+  {program} couple --ssp weak_drive.ssp          the coupled system as a package for other tools
+A ramp shows its jumps late: voltages are those of rate 0, at which the motion is lost."""
 
     def __call__(self) -> None:
         if self.ssp:
@@ -158,17 +156,12 @@ def jump_cells(at: xr.Dataset, volts: float) -> tuple[str, ...]:
     """Return the cells of a jump: direction, voltage, eta0, the ramp's voltage, how decided."""
     voltage, direction, decided = float(at.jumps), str(at.jump.item()), str(at.decided.item())
     if not math.isfinite(voltage):
-        word = "undecided" if decided == "undecided" else "none"
-        return (
-            direction,
-            word,
-            "",
-            "",
-            str(at.no_jump.item()).replace("longer hold", "longer --hold"),
-        )
+        reason = str(at.no_jump.item()).replace("longer hold", "longer --hold")
+        return direction, "undecided" if decided == "undecided" else "none", "", "", reason
     error = 0.5 * abs(float(at.jump_high) - float(at.jump_low))
     (jump,) = printing.with_error(voltage, error, ".5f", ".5f")
-    return direction, jump, f"{voltage / volts:.5f}", f"{float(at.ramp_voltage):.4f}", decided
+    shown = f"{float(at.ramp_voltage):.4f}".replace("nan", "not reached")
+    return direction, jump, f"{voltage / volts:.5f}", shown, decided
 
 
 REASONS = {
@@ -194,14 +187,12 @@ class Capture(Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
     """Voltages switched on from rest: which pass the resonance, which are captured."""
 
     calls = "capture"
-    examples = f"""
-  {{program}} capture                                       quick, bonded and delaminated
-  {{program}} capture --drive beam --voltage 6.1:6.9
-  {{program}} capture --over rotor_inertia --values 600:1600:200
-  {{program}} capture --drive beam --set armature_resistance=120 --voltage 7:10 --speed-gradient
-{ETA0}
-The motor is switched on at once and followed until its speed has settled.
-{RESUME}"""
+    examples = """
+  {program} capture                                       quick, bonded and delaminated
+  {program} capture --drive beam --voltage 6.1:6.9
+  {program} capture --over rotor_inertia --values 600:1600:200
+  {program} capture --drive beam --set armature_resistance=120 --voltage 7:10 --speed-gradient
+The motor is switched on at once and followed until its speed has settled."""
 
     def ask(self) -> tuple[Structure, Drive, Question]:
         structure, motor = self.read_structure_and_drive()
@@ -248,12 +239,10 @@ class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
     calls, takes = "passage", "around"
     revolutions: int = option("revolutions of each spectrum of the waterfall", 8)
     mass: Literal[1, 2] = option("whose acceleration the spectra are of", 1)
-    examples = f"""
-  {{program}} passage --eta0 1.4:1.65 --one-way               quick through its resonance
-  {{program}} passage --drive rig --one-way --around 3
-  {{program}} passage --drive beam --voltage 6.5 --duration 10 --speed-control 110
-{ETA0}
-{RESUME}"""
+    examples = """
+  {program} passage --eta0 1.4:1.65 --one-way               quick through its resonance
+  {program} passage --drive rig --one-way --around 3
+  {program} passage --drive beam --voltage 6.5 --duration 10 --speed-control 110"""
 
     def ask(self) -> tuple[Structure, Drive, Question]:
         from ..weak_drive.schedule import Constant
@@ -289,12 +278,10 @@ class JumpVoltages(OfRamp, Over, Stepped, Driven, Stored, OfBoth):
     rate: str = option("change of eta0 in a time 1/omega, a list", "1e-4,5e-5,2.5e-5", "A,B,...")
     settle: float = option("time at the first voltage, in 1/omega", 300.0)
     one_way: bool = option("do not come back: jumps up only")
-    examples = f"""
-  {{program}} jump-voltages                                 quick, up and down
-  {{program}} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
-  {{program}} jump-voltages --over clearance --values 0,1e-5,3e-5 --drive beam --one-way
-{ETA0}
-{RESUME}"""
+    examples = """
+  {program} jump-voltages                                 quick, up and down
+  {program} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
+  {program} jump-voltages --over clearance --values 0,1e-5,3e-5 --drive beam --one-way"""
 
     def ask(self) -> tuple[Structure, Drive, Question]:
         structure, motor = self.read_structure_and_drive()
@@ -371,7 +358,7 @@ class DriveBranch(Driven, Stored, OfBoth):
     examples = """
   {program} drive-branch                              quick, bonded and delaminated
   {program} drive-branch --drive beam --speed 92:110
-Branches go round their folds. Repeat the command to resume an interrupted run."""
+Branches go round their folds."""
     summary = staticmethod(drive_branch_lines)
 
     def ask(self) -> tuple[Structure, Drive, Question]:
