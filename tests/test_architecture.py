@@ -49,7 +49,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     | {"response", "dynamics", "laboratory", "diagnosis", "weak_drive", "show"},
     "explorer": BELOW_ANSWERS | {"response", "dynamics", "laboratory", "weak_drive"},
     "cli": BELOW_ANSWERS
-    | {"__init__", "laboratory", "weak_drive", "diagnosis", "show", "paper"}
+    | {"__init__", "dynamics", "laboratory", "weak_drive", "diagnosis", "show", "paper"}
     | {"explorer"},
     "__main__": {"cli", "errors"},
 }

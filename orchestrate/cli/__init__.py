@@ -55,6 +55,13 @@ EXAMPLES = """examples:
 sets of parameters that come with the package, for --structure and --drive:
 {sets}"""
 
+REMARKS = {  # below the help of commands that have an option
+    "--eta0": """
+eta0 = U/(K omega) is the voltage U as no-load speed over omega = sqrt(k1/m1): the speed, in omega,
+at which the motor turns at this voltage without a load; K is motor_constant.""",
+    "--force": "\nRepeat the command to resume an interrupted run; a finished result stays.",
+}
+
 
 def program_name() -> str:
     """Return the name to show in help texts: ``vibroimpact`` or ``python -m orchestrate``."""
@@ -91,8 +98,10 @@ def epilogue(name: str) -> str:
     if name not in COMMANDS:
         return EXAMPLES.format(program=program, sets=list_shipped_sets())
     command = COMMANDS[name]
-    quantities = QUANTITIES if "--structure" in command.flags() else ""
-    return f"{quantities}examples:{command.examples.replace('{program}', program)}"
+    flags, examples = command.flags(), command.examples.replace("{program}", program)
+    quantities = QUANTITIES if "--structure" in flags else ""
+    more = "".join(text for flag, text in REMARKS.items() if flag in flags)
+    return f"{quantities}examples:{examples}{more}"
 
 
 def join_negative_values(arguments: Sequence[str]) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
@@ -17,7 +18,7 @@ from ..units import Units, with_readable_lengths, with_units
 from .command import Command, Options, Question, option, option_names
 from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
-from .output import Files, digest, importing_matplotlib, result_name, write_result
+from .output import Files, digest, result_name, write_result
 
 UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}
 UNIT_OF_KEY = {  # of a structure's file
@@ -44,6 +45,7 @@ class Only(Options):
 class Asked(Command):
     """A command that asks its public function and shows the result."""
 
+    named = ""  # how the names of results begin, if not by the function
     stores = True  # whether the function itself writes the result
 
     def ask(self) -> tuple[Any, ...]:
@@ -110,26 +112,28 @@ class Asked(Command):
         self.check_known(question)
         states, branches = self.states(structure), self.read_overlay(structure, question)
         over = f"over_{digest(*branches)}" if branches else ""
-        name = result_name(self.calls, self.source_names(), structure, *others, question)
-        named = {state: f"{name}_{state}" if state else name for state in states}
-        files = {state: Files.from_options(self, one, over) for state, one in named.items()}
+        asked, fresh = (structure, *others, question), None if self.stores else True
+        name = result_name(self.named or self.calls, self.source_names(), *asked)
+        files = {}
+        for state in states:
+            word = re.sub(r"[^\w]", "-", f"_{state}" if state else "")
+            files[state] = Files.from_options(self, f"{name}{word}", over, fresh)
         picture = picture and self.has_picture(question)
         common = next(iter(files.values()))
         if len(files) > 1:
             fresh = any(one.fresh for one in files.values())
             common = Files.from_options(self, name, over, fresh)
-        if isinstance(structure, Structure) and not others:
-            print_frequency_notes(self, structure, question)
-        with importing_matplotlib(picture):
-            results = self.compute(states, others, question, files)
-        chosen = self.display_units(question)
-        asked = {state: with_units(data, chosen) for state, data in results.items()}
-        shown = dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
         alone = isinstance(structure, Structure) and not others
+        if alone:
+            print_frequency_notes(self, structure, question)
+        results = self.compute(states, others, question, files)
+        chosen = self.display_units(question)
+        in_units = {state: with_units(data, chosen) for state, data in results.items()}
+        shown = dict(zip(in_units, with_readable_lengths(*in_units.values()), strict=True))
         notes = trivial_notes(structure, question, [*shown.values()][-1]) if alone else ()
         print(*notes, *self.summaries(shown), sep="\n")
         self.print_units_note(*shown.values())
-        for state, data in asked.items():
+        for state, data in in_units.items():
             if not self.stores:
                 write_result(files[state], results[state])
             files[state].write(data)

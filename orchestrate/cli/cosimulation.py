@@ -17,7 +17,7 @@ from .command import Options, Question, option
 from .grammar import plain_float, read_pairs
 from .options import OfStructure
 from .output import Results, Stored
-from .printing import extents
+from .printing import extents, table
 
 LISTED = ("parameter", "structuralParameter", "input", "output")
 PAIR = "NAME=VALUE"
@@ -49,12 +49,20 @@ def variable_lines(drive: Path) -> Iterator[str]:
 
     description = describe(drive)
     yield f"{description.name}, FMI {description.fmi_version}"
-    for causality in LISTED:
-        for name, variable in description.variables.items():
-            if variable.causality == causality:
-                value = "" if variable.start is None else str(variable.start)
-                about = f"{value:>8} {variable.unit or 'no unit':10} {variable.description or ''}"
-                yield f"  {causality:10} {name:28} {about}".rstrip()
+    listed = [
+        (
+            one.causality,
+            name,
+            "" if one.start is None else str(one.start),
+            one.unit or "no unit",
+            one.description or "",
+        )
+        for name, one in description.variables.items()
+        if one.causality in LISTED
+    ]
+    listed.sort(key=lambda row: LISTED.index(row[0]))
+    titles = ("causality", "name", "start", "unit", "description")
+    yield from table(dict(zip(titles, zip(*listed, strict=True), strict=True)), len(listed))
     if likely := proposals(description):
         links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
         yield f"likely: --connect {links}   (a run checks the sign of the force)"

@@ -18,7 +18,7 @@ from . import grammar, output, printing
 from .answer import Asked
 from .command import Command, Options, Question, option
 from .options import OfSensors, OfStructure
-from .output import Files, InColumns, Reading, digest, file_checksum, unit_note
+from .output import Files, Reading, digest, file_checksum, unit_note
 
 log = logging.getLogger(__name__)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
@@ -65,7 +65,7 @@ class DiagnosedRecords(Options):
     )
 
 
-class Diagnose(DiagnosedRecords, OfStructure, InColumns, Reading, Command, output.Results):
+class Diagnose(DiagnosedRecords, OfStructure, Reading, Command, output.Results):
     """Whether a measured beam is delaminated: a verdict, its evidence, a report."""
 
     structure: Any = option(
@@ -84,12 +84,10 @@ class Diagnose(DiagnosedRecords, OfStructure, InColumns, Reading, Command, outpu
   {program} diagnose laser.csv --unit face=mm/s --sensitivity "base=100 mV/g" --structure beam.toml
 
 what it needs:
-  a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
-  table, the clamp; in Python and in files of this package box_acceleration) and of one face of
-  the beam, or of both faces (acceleration1, acceleration2); and better with a guess of the beam
-  in a file, within some 10 %: masses and natural frequencies of both halves, see 'quantities'.
-  Several records are of several beams, those of --other of the same one; several sweeps in a file
-  give a verdict each, and the signs compare their levels.
+  a record of a swept sine over the beam's resonance: the acceleration of its base (shaker's table,
+  clamp) and of one face or both (acceleration1, acceleration2); better with a guess of the beam,
+  within some 10 %: masses and natural frequencies of both halves, see 'quantities'. Several sweeps
+  in a file give a verdict each, and the signs compare their levels.
 what it gives:
   delaminated      the faces part and strike each other
   no opening seen  up to the level and over the frequencies of the record; never "intact"
@@ -151,7 +149,7 @@ what it gives:
 
     def read_one_record(self, path: Path) -> xr.Dataset:
         """Read a record from a file; raise if it has no acceleration of either face."""
-        record = orchestrate.read_record(path, **self.given(InColumns, Reading))
+        record = orchestrate.read_record(path, **self.given(Reading))
         if "acceleration1" not in record and "acceleration2" not in record:
             taken = record.attrs.get("columns", "no columns")
             text = "expected a face's too: name its column by --channels, as base=Table,face1=Beam"
@@ -225,7 +223,7 @@ PlanEnds = Annotated[Any, grammar.floats("FIRST:LAST in Hz, such as 30:60", "[:,
 class Plan(OfStructure, OfSensors, Asked, output.Results):
     """Plan a test: rehearse it, and recommend the lowest level at which the verdict is right."""
 
-    calls, stores = "plan_test", False
+    calls, named, stores = "plan_test", "plan", False
     hz: PlanEnds = option(
         "the sweep's ends in Hz (default: 0.65 to 1.4 times the bonded resonance)",
         value="FIRST:LAST",

@@ -12,7 +12,7 @@ import orchestrate
 
 from ..constants import TURN
 from ..errors import InputError
-from ..lazy import np, xr
+from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.drive import torque_line
 from ..units import Units
@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 USUAL = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 5e-6), "rig": ("0.95:1.24", 5e-5)}
 USUAL_RATES = ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
 RATE = 1e-4  # of eta0, in a time 1/omega
-ETA0 = """eta0 = U/(K omega) is the voltage U as no-load speed over omega = sqrt(k1/m1): the speed,
-in omega, at which the motor turns at this voltage without a load; K is motor_constant."""
-RESUME = "Repeat the command to resume an interrupted run. A finished result is left as it is."
 CONTROLS = {  # options of controllers, with their settings
     "speed_control": ("gain", "reset_time", "speed_rise"),
     "speed_gradient": ("filter_time", "low"),
@@ -99,16 +96,6 @@ class OfMotor(Options):
         voltage, rpm, torque = given.values()
         return dict(zip(names, torque_line(voltage, TURN * rpm / 60.0, torque), strict=True))
 
-    def drive_units(self) -> Units:
-        in_rpm = self.no_load_rpm is not None
-        return self.read_units().with_defaults(Units("rpm" if in_rpm else ""))
-
-    def picture_title(self, results: Runs, words: str) -> str:
-        from ..show.labels import title_from_attributes
-
-        structure = title_from_attributes(list(results.values())[-1])  # delaminated, if it is there
-        return f"{', '.join(self.source_names())}: {words}; {structure}"
-
 
 class Stepped(Options):
     """The option of the communication step."""
@@ -119,41 +106,23 @@ class Stepped(Options):
     )
 
 
-class Held(Options):
-    """The option of held voltages."""
-
-    hold: float | None = option(
-        "longest time for which a voltage is held until the speed settles, 0 for none, in 1/omega "
-        "(default: 4000 and 200 times the rotor's own)",
-        value="TIME",
-    )
-
-
-class OfVoltage(Options):
-    """Options of one voltage."""
-
-    heading, rank = "the motor's voltage", 1
-    eta0: float | None = option(
-        "voltage as no-load speed over omega (default: 1.53 for quick, 1.45 for beam, else between "
-        "the jumps of the averaged theory)"
-    )
-    voltage: float | None = option("the same in V")
-
-
 class OfRamp(Options):
     """Options of two voltages."""
 
     heading, rank = "the motor's voltage", 1
     eta0: str | None = option(
-        "voltage as no-load speed over omega, downwards too (default: about the jumps of the "
-        "averaged theory)",
+        "voltage as no-load speed over omega (default: about the jumps of the averaged theory)",
         value="FIRST:LAST",
     )
     voltage: str | None = option("the same in V", value="FIRST:LAST")
 
     def parse_voltages(self, structure: Structure, drive: Drive) -> tuple[float, ...]:
         """Return one voltage or a ramp's first and last one, V; by default around the jumps."""
+        from ..weak_drive.couple import require_motor
+        from ..weak_drive.couple_all import voltage_range
+
         self.one_of("eta0", "voltage")
+        require_motor(structure, drive)
         volts = drive.volts(structure)
         for name, unit in (("voltage", 1.0), ("eta0", volts)):
             if text := getattr(self, name):
@@ -166,8 +135,8 @@ class OfRamp(Options):
         if self.drive in USUAL and not has_own_parameters:
             first, last = parse_ends("--eta0", USUAL[self.drive][0])
             return first * volts, last * volts
-        down, up = self.averaged_jump_voltages(structure, drive)
-        return 0.88 * down, 1.06 * up
+        first, last = voltage_range(structure.as_bonded(), drive)
+        return first * volts, last * volts
 
     def parse_ramp_ends(self, structure: Structure, drive: Drive) -> tuple[float, ...]:
         """Return the first and the last voltage of a ramp, V; raise if only one is given."""
@@ -176,21 +145,6 @@ class OfRamp(Options):
             name = "voltage" if self.voltage else "eta0"
             parse_ends(f"--{name}", getattr(self, name))
         return voltages
-
-    def averaged_jump_voltages(self, structure: Structure, drive: Drive) -> tuple[float, float]:
-        """Return the averaged theory's jump voltages, down then up, V; raise without jumps."""
-        from ..weak_drive import averaged
-        from ..weak_drive.couple import require_motor
-
-        require_motor(structure, drive)
-        folds = averaged.folds(structure, drive)
-        if not folds:
-            raise InputError(
-                f"--drive {self.drive}: by the averaged theory its speed does not jump; expected "
-                "--eta0 or --voltage with it"
-            )
-        volts = drive.volts(structure)
-        return folds[-1].eta0 * volts, folds[0].eta0 * volts
 
 
 class OfSchedule(OfRamp):
@@ -210,6 +164,11 @@ class OfSchedule(OfRamp):
     )
     settle: float = option("time at the first voltage, in 1/omega", 300.0)
     one_way: bool = option("do not come back")
+    hold: float | None = option(
+        "longest time for which a voltage is held until the speed settles, 0 for none, in 1/omega "
+        "(default: 4000 and 200 times the rotor's own)",
+        value="TIME",
+    )
 
     def ramp_rate(self, structure: Structure, drive: Drive) -> float:
         self.one_of("rate", "volt_rate")
@@ -305,16 +264,23 @@ def check_masses(source: str, changes: Mapping[str, Any]) -> None:
 class Driven(OfMotor, Asked):
     """A command on a structure with its motor, in a picture with a title of its own."""
 
-    def words(self, results: Runs, question: Question) -> str:
-        """Return a part of the picture's title: the runs' voltages, rate and controller."""
-        return format_title(results, question["control"])
+    def picture_title(self, results: Runs) -> str:
+        """Return a picture's title: names of the files, and the structure."""
+        from ..show.labels import title_from_attributes
+
+        structure = title_from_attributes(list(results.values())[-1])  # delaminated, if it is there
+        return f"{', '.join(self.source_names())}: {structure}"
 
     def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
-        title = self.picture_title(results, self.words(results, question))
-        return orchestrate.plot(*results.values(), title=title)
+        if not self.drive:  # spectra without a motor
+            return super().draw(results, question)
+        return orchestrate.plot(*results.values(), title=self.picture_title(results))
 
     def display_units(self, question: Question) -> Units:
-        return self.drive_units()
+        """Return the display units; rpm by default if the motor's speed is in rpm."""
+        if not self.drive:
+            return super().display_units(question)
+        return self.read_units().with_defaults(Units("rpm" if self.no_load_rpm else ""))
 
     def ask_schedule(self) -> tuple[Structure, Drive, Question]:
         """Return structure, drive and keywords of a run under a voltage over time."""
@@ -328,14 +294,3 @@ class Driven(OfMotor, Asked):
         """Return options in 1/omega, such as ``--step``, in s; None where they are not given."""
         times = {name: getattr(self, name) for name in names}
         return {n: None if time is None else time / structure.omega for n, time in times.items()}
-
-
-def format_title(runs: Runs, control: Controller | None = None) -> str:
-    """Format a part of a picture's title: the runs' voltages, rate and controller."""
-    parts = [(data.voltage.values, data.time.values) for data in runs.values()]
-    rates = np.concatenate([np.abs(np.diff(volts) / np.diff(time)) for volts, time in parts])
-    volts = np.concatenate([volts for volts, _ in parts])
-    rate = float(np.median(rates[rates > 0.0])) if (rates > 0.0).any() else 0.0
-    ends = " to ".join(dict.fromkeys(f"{end:.4g} V" for end in (volts.min(), volts.max())))
-    moving = f", {rate:.2g} V/s" if rate and not control else ""
-    return f"{ends}{moving}{f', {type(control).__name__}' if control else ''}"

@@ -9,16 +9,16 @@ from typing import Annotated, Any, Literal
 
 import orchestrate
 
-from ..constants import TURN
+from ..constants import GRAVITY, TURN
 from ..errors import InputError
-from ..lazy import np, xr
+from ..lazy import xr
 from ..model import PARAMETERS, Structure
 from ..model.ranges import PUSHES
 from ..units import is_in_ratios, number_of, range_text, units_of, with_units
 from . import printing
 from .answer import Asked, Runs, is_curve
 from .command import Question, option
-from .grammar import plain_int, reads
+from .grammar import plain_int, positive_number, reads
 from .options import CONTINUED, OfBox, OfPushes, OfStored, OfStructure, Over, parse_varied
 from .output import Files, Results, Stored, result_name
 
@@ -302,18 +302,16 @@ The excitation says where a first orbit is looked for; without it that is the lo
 
     def hold_amplitude(self, structure: Structure, first: float) -> None:
         """Replace ``--g`` by the amplitude that it is at the start of a branch over frequency."""
-        usual = self.frequency_option() is None
-        if usual:
-            self.frequency = repr(first)
-        box = self.read_excitation(structure, one=True)
-        frequency, amplitude = box["frequency"], float(f"{box['amplitude']:.6g}")
+        frequency = first
+        if self.frequency_option() is not None:
+            frequency = self.read_excitation(structure, one=True)["frequency"]
+        level = positive_number("--g", self.g) * GRAVITY
+        amplitude = float(f"{level / frequency**2:.6g}")
         text = f"--g {self.g}: is --amplitude {amplitude:g} at {frequency / TURN:.5g} Hz"
         if structure.has_scale:
             raise InputError(f"{text}; a branch over the frequency has one amplitude: expected it")
         print(f"{text}, constant along the branch; its bifurcations are those of any amplitude")
         self.g, self.amplitude = None, amplitude
-        if usual:
-            self.frequency = None
 
     def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Question:
         """Return the excitation at which the first orbit is searched, as keywords."""
@@ -331,19 +329,6 @@ The excitation says where a first orbit is looked for; without it that is the lo
             )
             raise InputError(f"--over {over}: expected {expected} with it")
         return excitation
-
-
-def is_on_curve(curve: xr.Dataset, question: Question, near: float = 1e-3) -> bool:
-    """Return whether a curve of a bifurcation's kind passes it, within a part of the range."""
-    start, (across, along) = question["start"], question["over"]
-    found = start.isel(bifurcation=question["bifurcation"])
-    level = Structure.from_attributes(start.attrs).parameters().get(along, np.nan)
-    x, y = curve[across].values - float(found.bifurcation_value), curve[along].values - level
-    at = np.flatnonzero((y[:-1] * y[1:] <= 0.0) & (y[:-1] != y[1:]))
-    passes = x[at] - y[at] * (x[at + 1] - x[at]) / (y[at + 1] - y[at])
-    reach = near * np.ptp(question["limits"][0])
-    same = curve.attrs["kind"] == printing.flag_word(found.bifurcation_kind)
-    return bool(same and (np.abs(passes) < reach).any())
 
 
 parse_bifurcation = reads(
@@ -386,12 +371,14 @@ structure and excitation are those of that branch."""
         if question["bifurcation"] != "all":
             self.answer(structure, question)
             return
+        from ..dynamics.borders import lies_on_curve
+
         if self.store is not None:
             raise InputError("--store: of one bifurcation; expected it without --bifurcation all")
         curves: list[xr.Dataset] = []
         for number in range(question["start"].sizes.get("bifurcation", 0)):
             one = {**question, "bifurcation": number}
-            if any(is_on_curve(curve, one) for curve in curves):
+            if any(lies_on_curve(curve, one) for curve in curves):
                 print(f"number {number} is on a curve that was followed")
                 continue
             try:

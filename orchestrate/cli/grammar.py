@@ -263,44 +263,39 @@ def with_option_names(message: str, chosen: Any) -> str:
 # -- ranges and lists -----------------------------------------------------------------------------
 
 
-def parse_values(option: str, text: str, zero: bool = False) -> tuple[tuple[float, ...], bool]:
-    """Parse ``FIRST:LAST:STEP`` or ``A,B,...``; return the numbers, and whether it was a range."""
-    is_range = ":" in text
-    parts = without_own_unit(option, text).split(":" if is_range else ",")
+def parse_values(option: str, text: str, zero: bool = False) -> tuple[float, ...]:
+    """Parse ``FIRST:LAST:STEP`` or ``A,B,...``; with ``zero`` numbers may be zero."""
+    parts = without_own_unit(option, text).split(":" if ":" in text else ",")
     try:
         numbers = [plain_float(part.strip(), Decimal) for part in parts]
     except (InvalidOperation, ValueError):
         raise InputError(f"{option} {text}: not numbers; {RANGE}") from None
     finite = all(number.is_finite() for number in numbers)
-    wrong = not finite or (is_range and len(numbers) != 3) or min(numbers) < 0
+    wrong = not finite or (":" in text and len(numbers) != 3) or min(numbers) < 0
     if wrong or (not zero and min(numbers) == 0):
         raise InputError(f"{option} {text}: {RANGE}")
-    if is_range:
+    if ":" in text:
         first, last, step = numbers
         if last < first:
             raise InputError(f"{option} {text}: {first} > {last}; {RANGE}")
         if step == 0 or (last - first) > MAX_VALUES * step:
             raise InputError(f"{option} {text}: {RANGE}, and at most {MAX_VALUES} values")
         numbers = [first + i * step for i in range(int((last - first) / step) + 1)]
-    return tuple(map(float, numbers)), is_range
+    return tuple(map(float, numbers))
 
 
-def parse_list(option: str, text: str) -> tuple[float, ...]:
-    return parse_values(option, text)[0]
+Listed = Annotated[tuple[float, ...] | None, parse_values]
 
 
-Listed = Annotated[tuple[float, ...] | None, parse_list]
-
-
-def parse_listed(name: str, text: str) -> tuple[tuple[float, ...], bool]:
-    """Parse a parameter's values, units in a list; return them, and whether it was a range."""
+def parse_listed(name: str, text: str) -> tuple[float, ...]:
+    """Parse a parameter's values, with units or without."""
     if ":" in text:
         with suppress(ValueError):  # what is no number is said below
             pairs = [(one, ranges.number_with_unit(name, one.strip())) for one in text.split(":")]
             text = ":".join(one if number is None else repr(number) for one, number in pairs)
         return parse_values("--values", text, zero=True)
     option = f"--over {name} --values "
-    return tuple(parse_with_unit(option, name, one.strip()) for one in text.split(",")), False
+    return tuple(parse_with_unit(option, name, one.strip()) for one in text.split(","))
 
 
 def is_single_number(text: str) -> bool:
@@ -309,7 +304,7 @@ def is_single_number(text: str) -> bool:
 
 def parse_one_or_more(option: str, text: str, one: bool = False) -> float | tuple[float, ...]:
     """Parse one number as float, a range or list as tuple; with ``one``, one number only."""
-    values, _ = parse_values(option, text)
+    values = parse_values(option, text)
     if one and len(values) != 1:
         raise InputError(
             f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2 (sweep "

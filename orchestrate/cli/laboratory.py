@@ -6,7 +6,6 @@ import inspect
 import math
 import warnings
 from collections.abc import Iterator, Mapping
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,12 +15,12 @@ from ..constants import GRAVITY
 from ..errors import InputError
 from ..lazy import xr
 from ..model import Shaker, Structure
-from ..units import text_of, with_units
+from ..units import Units, text_of
 from . import grammar, output, printing
 from .answer import Asked, Runs
 from .command import Command, Options, Question, option, option_names
 from .options import Beside, OfSensors, OfStructure
-from .output import Files, InColumns, Reading, digest, unit_note
+from .output import Files, Reading, digest, unit_note
 
 KINDS = {  # of excitation: the class, or the reader, whose arguments are its options
     "swept_sine": "SweptSine",
@@ -241,15 +240,6 @@ def columns_of_analysis(name: str, data: xr.Dataset) -> printing.Columns:
     return columns | printing.columns_of(data, others)
 
 
-def analyse(name: str, record: xr.Dataset, path: Path, settings: Mapping[str, Any]) -> xr.Dataset:
-    """Call the public function of an analysis on a record; errors begin with the file's name."""
-    try:
-        result: xr.Dataset = getattr(orchestrate, ANALYSES[name][0])(record, **settings)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
-    return result
-
-
 class Settings(Options):
     """Settings of analyses."""
 
@@ -280,13 +270,10 @@ class AnalysedRecords(Options):
     to: float | None = option("time it ends at, s")
 
 
-class Reported(output.InUnits, output.Formats, output.InFolder):
-    """Options of units and files."""
-
-
-class Analyse(AnalysedRecords, OfSensors, InColumns, Reading, Settings, Reported, Command):
+class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked):
     """What an analyser shows of a record: responses, spectra, orders, shock spectra."""
 
+    stores = False
     examples = """
   {program} analyse results/shake.nc --show frf,psd --resolution 0.5
   {program} analyse swept.nc --label delaminated --beside bonded=whole.nc --show orders,harmonics
@@ -295,42 +282,52 @@ class Analyse(AnalysedRecords, OfSensors, InColumns, Reading, Settings, Reported
   {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv"""
 
     def __call__(self) -> None:
-        from ..show.analysis import draw
-
         names = output.parse_endings("--show", self.show, tuple(ANALYSES))
         Files.from_options(self, "", fresh=True)  # before records are read
         settings = self.settings_by_analysis(names)
-        paths = self.paths_by_label()
-        whole = {label: self.read_record_file(path) for label, path in paths.items()}
+        self.paths = self.paths_by_label()
+        whole = {label: self.read_record_file(path) for label, path in self.paths.items()}
         self.warn_without_sensor(whole)
-        records = {label: self.cut(record, paths[label]) for label, record in whole.items()}
-        for label, record in records.items():
+        self.records = {label: self.cut(one, self.paths[label]) for label, one in whole.items()}
+        for label, record in self.records.items():
             if note := unit_note(record.attrs):
-                print(f"{paths[label]}: {note}")
-        units = self.read_record_units()
-        reading: list[Any] = [self.begin, self.to, *self.given(OfSensors).values()]
-        reading += self.given(InColumns, Reading).items()
-        for name in names:
-            results = {
-                label: analyse(name, record, paths[label], settings[name])
-                for label, record in records.items()
-            }
-            shown = {label: with_units(data, units) for label, data in results.items()}
-            for label, data in shown.items():
-                print(f"{f'{label}: ' if label else ''}{ANALYSES[name][1]}")
-                print(*printing.table(columns_of_analysis(name, data)), sep="\n")
-            self.print_units_note(*shown.values())
-            read = {label: str(path) for label, path in paths.items()}
-            stem = f"analyse_{name}_{self.record.stem}_{digest(read, settings[name], *reading)}"
-            for label, data in results.items():
-                words = "".join(letter if letter.isalnum() else "-" for letter in label)
-                ending = f"_{words}" if len(results) > 1 else ""
-                files = Files.from_options(self, f"{stem}{ending}", fresh=True)
-                output.write_result(files, data)
-                files.write(shown[label])
-            (label, first), *others = shown.items()
-            picture = Files.from_options(self, stem, fresh=True)
-            picture.write_pictures(partial(draw, first, label, dict(others)))
+                print(f"{self.paths[label]}: {note}")
+        read = {label: str(path) for label, path in self.paths.items()}
+        reading = [self.begin, self.to, *self.given(OfSensors).values()]
+        reading += self.given(Reading).items()
+        for self.analysis in names:
+            self.calls, self.named = ANALYSES[self.analysis][0], f"analyse_{self.analysis}"
+            self.answer([read, reading], settings[self.analysis])
+
+    def source_names(self) -> list[str]:
+        return [self.record.stem]
+
+    def states(self, structure: Any) -> dict[str, Any]:
+        return self.records
+
+    def compute(
+        self, states: Mapping[str, Any], others: Any, question: Question, files: Mapping[str, Files]
+    ) -> dict[str, xr.Dataset]:
+        results = {}
+        for label, record in states.items():
+            try:
+                results[label] = getattr(orchestrate, self.calls)(record, **question)
+            except InputError as error:
+                raise InputError(f"{self.paths[label]}: {error}") from None
+        return results
+
+    def display_units(self, question: Question) -> Units:
+        return self.read_record_units()
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield ANALYSES[self.analysis][1]
+        yield from printing.table(columns_of_analysis(self.analysis, data))
+
+    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
+        from ..show.analysis import draw
+
+        (label, first), *others = results.items()
+        return draw(first, label, dict(others))
 
     def warn_without_sensor(self, records: Mapping[str, xr.Dataset]) -> None:
         """Warn if simulated accelerations without impulses are compared with measured ones.
@@ -387,7 +384,7 @@ class Analyse(AnalysedRecords, OfSensors, InColumns, Reading, Settings, Reported
             )
             units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
             return stored if units <= {"m/s2"} else orchestrate.read_record(path)
-        reading = self.given(InColumns, Reading)
+        reading = self.given(Reading)
         if path.suffix.lower() != ".wav":  # the scale is of the others
             reading.pop("scale", None)
         return orchestrate.read_record(path, **reading)
@@ -396,7 +393,7 @@ class Analyse(AnalysedRecords, OfSensors, InColumns, Reading, Settings, Reported
 Pair = Annotated[Any, grammar.floats("H1,H2, two numbers such as 3,2", ",", (2,))]
 
 
-class Halves(InColumns, Reading, Command):
+class Halves(Reading, Command):
     """Fit a structure to knocks of a hammer on each half, and write it as TOML file."""
 
     calls, takes = "halves", "resolution estimator"
@@ -418,7 +415,7 @@ is a guess: --structure of diagnose, plan and others; complete it by e and clear
     def __call__(self) -> None:
         if len(self.records) > 2:
             raise InputError(f"{self.records[-1]}: expected one record of each half")
-        reading = self.given(InColumns, Reading)
+        reading = self.given(Reading)
         records = [orchestrate.read_record(path, **reading) for path in self.records]
         if len({*map(output.file_checksum, self.records)}) < len(records):
             text = f"the same numbers as {self.records[0]}; expected one record of each half"
@@ -446,7 +443,7 @@ is a guess: --structure of diagnose, plan and others; complete it by e and clear
             print(self.output)
 
 
-class Channels(InColumns, Reading, Command):
+class Channels(Reading, Command):
     """List the columns of a record, and as which channels they are read; write that as a file."""
 
     record: Path = option("as for analyse", position=True, needed=True)
@@ -465,7 +462,7 @@ they are, the last line says what is missing."""
     def __call__(self) -> None:
         from ..laboratory.columns import BY_ORDER
 
-        reading = self.given(InColumns, Reading)
+        reading = self.given(Reading)
         found = orchestrate.channels(self.record, **reading, output=self.output)
         names = ("column", "role", "known", "quantity", "unit")
         rows = {name: found[name].values.tolist() for name in names}

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 import textwrap
 from collections.abc import Callable, Mapping
-from copy import copy
 from typing import Any
 
 import orchestrate
@@ -230,31 +228,39 @@ class OfBox(OfPushes):
     g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
 
     def read_excitation(
-        self, structure: Structure, si: bool = False, one: bool = False
+        self, structure: Structure, si: bool = False, one: bool = False, by_level: bool = False
     ) -> Question:
-        """Return frequency and amplitude of the box's motion as keywords of the public API."""
-        name, amplitude = self.frequency_option(), self.read_amplitude()
-        if not self.is_shaken() and (described := self.excitation_from_file()):
-            return described
+        """Return frequency and amplitude of the box's motion as keywords of the public API.
+
+        With ``by_level`` the level in place of the amplitude, which may have several values.
+        """
+        self.one_of("amplitude", "g")
+        levels = grammar.parse_one_or_more("--g", self.g) if by_level else ()
+        name, amplitude = self.frequency_option(), None if by_level else self.read_amplitude()
+        if name is amplitude is None and not by_level and (own := self.excitation_from_file()):
+            return own
         if name is None:
             text = f"expected one of {option_names(FREQUENCIES)}"
             raise InputError(f"frequency: nothing given; {text}")
         text = getattr(self, name)
         values = grammar.parse_one_or_more(f"--{name}", text, one)
-        if name == "eta" and amplitude is None:
+        to_rad_s = TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * structure.omega
+        frequencies = apply_to_each(to_rad_s, values)
+        if by_level:
+            level = apply_to_each(lambda peak: peak * GRAVITY, levels)
+            return {"frequency": frequencies, "level": level, **self.pushes()}
+        if amplitude is None and name != "eta":
+            raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
+        if amplitude is None:
             if si and not math.isclose(structure.omega, 1.0):
                 raise InputError(
                     f"--eta {text}: omega is {structure.omega:g} rad/s; expected --amplitude in m "
                     "or --g with it (1/eta^2 m is the paper's, for omega = 1 rad/s)"
                 )
             return {"eta": values, **self.pushes()}
-        if amplitude is None:
-            raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
-        to_rad_s = TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * structure.omega
-        frequencies = apply_to_each(to_rad_s, values)
         if self.g is not None:
-            level = amplitude * GRAVITY
-            amplitude = apply_to_each(lambda value: level / (value * value), frequencies)
+            peak = amplitude * GRAVITY
+            amplitude = apply_to_each(lambda value: peak / (value * value), frequencies)
         return {"frequency": frequencies, "amplitude": amplitude, **self.pushes()}
 
     def excitation_from_file(self) -> Question | None:
@@ -265,13 +271,8 @@ class OfBox(OfPushes):
         if getattr(self, "phase", None) == 0.0:
             self.phase = excitation.phase
         pushes = {name: getattr(excitation, name) for name in PUSHES if getattr(excitation, name)}
-        pushes |= self.pushes()
-        called: str = getattr(self, "calls")  # noqa: B009 (of the command, which has this group)
-        known = inspect.signature(getattr(orchestrate, called)).parameters
-        if unknown := [name for name in pushes if name not in known]:
-            text = f"{called} does not know it yet; expected only the box's motion"
-            raise InputError(f"{self.structure}: excitation.{unknown[0]}: {text}")
-        return {"frequency": excitation.frequency, "amplitude": excitation.amplitude, **pushes}
+        box = {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
+        return {**box, **pushes, **self.pushes()}
 
     def frequency_option(self) -> str | None:
         return self.one_of(*FREQUENCIES)
@@ -286,16 +287,6 @@ class OfBox(OfPushes):
 
     def has_levels(self) -> bool:
         return self.g is not None and not grammar.is_single_number(self.g)
-
-    def excitation_by_level(self, structure: Structure, one: bool = False) -> Question:
-        """Return the box's frequency and its level (m/s2), each a number or a tuple."""
-        self.one_of("amplitude", "g")
-        levels = grammar.parse_one_or_more("--g", self.g)
-        plain = copy(self)
-        plain.g, plain.amplitude = None, 1.0
-        frequency = plain.read_excitation(structure, one=one)["frequency"]
-        level = apply_to_each(lambda peak: peak * GRAVITY, levels)
-        return {"frequency": frequency, "level": level, **self.pushes()}
 
 
 def apply_to_each(change: Callable[[float], float], values: float | tuple[float, ...]) -> Any:
@@ -314,37 +305,25 @@ class Over(Options):
     )
     values: Any = option("its values, FIRST:LAST:STEP or a list A,B,...", value="VALUES")
 
-    def read_over(self) -> tuple[tuple[float, ...], bool] | None:
-        """Return the values of ``--over``, and whether they are a range; None without it."""
-        if (self.over is None) != (self.values is None):
-            raise InputError("--over and --values: expected both, or none of them")
-        return grammar.parse_listed(self.over, self.values) if self.over else None
-
     def over_arguments(self) -> Question:
         """Return the varied parameter and its values as keywords; none without it."""
-        values = self.read_over()
-        return {} if values is None else {"over": self.over, "values": values[0]}
-
-    def varied_arguments(
-        self, structure: Structure, usual: str | None = None, si: bool = False
-    ) -> tuple[Question, bool]:
-        """Return excitation and varied parameter as keywords, and whether a range was given."""
-        if self.over is None and self.has_levels():
-            box = self.excitation_by_level(structure, one=True)
-            return {**box, "over": "level", "values": box.pop("level")}, ":" in self.g
-        if (values := self.read_over()) is not None:
-            self.check_over(self.over)
-            fixed = self.read_excitation(structure, si, one=True)
-            return {**fixed, "over": self.over, "values": values[0]}, values[1]
-        if usual is not None and not self.is_shaken():
-            self.eta = usual
-        excitation = self.read_excitation(structure, si)
-        return excitation, ":" in str(getattr(self, self.frequency_option() or "eta"))
+        if (self.over is None) != (self.values is None):
+            raise InputError("--over and --values: expected both, or none of them")
+        values = self.over and grammar.parse_listed(self.over, self.values)
+        return {"over": self.over, "values": values} if values else {}
 
     def ask_along_parameter(self, si: bool = False) -> tuple[Structure, Question]:
+        """Return structure, keywords, excitation and what varies of it."""
         structure = self.read_structure()
-        excitation, _ = self.varied_arguments(structure, si=si)
-        return structure, {**self.keywords(), **excitation}
+        if self.over is None and self.has_levels():
+            box = self.read_excitation(structure, one=True, by_level=True)
+            varied: Question = {**box, "over": "level", "values": box.pop("level")}
+        elif varied := self.over_arguments():
+            self.check_over(self.over)
+            varied = {**self.read_excitation(structure, si, one=True), **varied}
+        else:
+            varied = self.read_excitation(structure, si)
+        return structure, {**self.keywords(), **varied}
 
     def check_over(self, over: str) -> None:
         """Raise unless a parameter of a structure may vary with these options."""

@@ -6,9 +6,7 @@ import hashlib
 import json
 import os
 import re
-import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,17 +36,6 @@ class Reading(Options):
     heading = "how to read records"
     takes = "read_record: unit sensitivity sample_rate scale delay resample"
     if_given = True
-
-    def read_record_units(self) -> Units:
-        """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
-        own = self.unit if self.unit in FACTORS["acceleration"] else ""
-        return self.read_units().with_defaults(Units(acceleration=own))
-
-
-class InColumns(Options):
-    """The option of a record's columns."""
-
-    heading = "how to read records"
     channels: str | None = option(
         "columns by name or number from 0: CHANNEL=COLUMN,... with the channels time, base, face1, "
         "face2, force1, force2; A,B,... in that order without forces; or the file that the command "
@@ -56,6 +43,11 @@ class InColumns(Options):
         value="FILE.toml|A=X,...|X,...",
         also="--columns",
     )
+
+    def read_record_units(self) -> Units:
+        """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
+        own = self.unit if self.unit in FACTORS["acceleration"] else ""
+        return self.read_units().with_defaults(Units(acceleration=own))
 
 
 class InUnits(Options):
@@ -134,8 +126,12 @@ class HowRun(Options):
         return running if store is None else {**running, "store": store}
 
 
-class Results(InUnits, Formats, InFolder, HowRun):
-    """Options of units, files and running, which end most commands' options."""
+class Shown(InUnits, Formats, InFolder):
+    """Options of units and files."""
+
+
+class Results(Shown, HowRun):
+    """The same and how it is run, which end most commands' options."""
 
 
 class OfBoth(Results):
@@ -304,27 +300,6 @@ def write_result(files: Files, data: xr.Dataset) -> None:
 
     open_folder(files.result.parent)
     write_netcdf(data, files.result)
-
-
-@contextmanager
-def importing_matplotlib(needed: bool) -> Iterator[None]:
-    """Import the drawing code in a thread while the ``with`` block computes."""
-
-    def prepare() -> None:
-        with suppress(Exception):  # it comes again where the picture is drawn
-            from ..show.figure_files import warm_up_matplotlib
-
-            warm_up_matplotlib()
-
-    timer = threading.Timer(2.0, prepare)  # a shorter computation is not disturbed
-    if needed:
-        timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
-    if needed:
-        timer.join()
 
 
 def existing_files(path: Path) -> list[Path]:

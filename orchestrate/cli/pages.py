@@ -13,7 +13,7 @@ from ..lazy import xr
 from .command import Command, option, option_names
 from .grammar import read_earlier_result
 from .options import OfStored, print_difference, structure_of
-from .output import HowRun, InColumns, InFolder, InUnits, Reading, check_output
+from .output import HowRun, InFolder, InUnits, Reading, check_output
 
 
 class Build(Command):
@@ -61,7 +61,7 @@ class Build(Command):
             print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
 
 
-class Explore(OfStored, InColumns, Reading, InUnits, Command):
+class Explore(OfStored, Reading, InUnits, Command):
     """Open a page that shows orbit diagrams and motions, computed in the browser."""
 
     result: Path | None = option(
@@ -106,7 +106,7 @@ class Explore(OfStored, InColumns, Reading, InUnits, Command):
             webbrowser.open(page.resolve().as_uri())
 
     def read_record(self) -> xr.Dataset | None:
-        reading = self.given(InColumns, Reading)
+        reading = self.given(Reading)
         if self.record is not None:
             return orchestrate.read_record(self.record, **reading)
         if reading:
@@ -184,8 +184,7 @@ class Paper(InFolder, HowRun, Command):
   {program} paper                     all at the paper's resolution, into results/paper/
   {program} paper --quick             on fewer periods and points, in a minute or two
   {program} paper --figures 5,7       some of it
-  {program} paper --cluster tcp://HOST:8786      on the workers of a running Dask scheduler
-Repeat the command to resume an interrupted run. Finished data is left as it is."""
+  {program} paper --cluster tcp://HOST:8786      on the workers of a running Dask scheduler"""
 
     def __call__(self) -> None:
         from ..paper.reproduce import reproduce

@@ -6,17 +6,15 @@ import itertools
 from collections.abc import Iterator
 from typing import Any, Literal
 
-import orchestrate
-
 from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
 from ..model import Drive, Structure
-from ..units import Units, is_in_ratios, text_of
+from ..units import is_in_ratios, text_of
 from . import printing
-from .answer import Asked, Overlay, Runs, is_curve
+from .answer import Asked, Overlay, is_curve
 from .command import Question, option
-from .drive import Driven, OfVoltage
+from .drive import Driven
 from .grammar import parse_changes, parse_listed
 from .options import Beside, OfBox, OfStructure, Over
 from .output import OfBoth, Results, Stored
@@ -74,7 +72,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
         structure, question = self.read_structure(), self.keywords()
         if self.has_levels():
             self.calls = "resonance_levels"
-            return structure, {**question, **self.excitation_by_level(structure)}
+            return structure, {**question, **self.read_excitation(structure, by_level=True)}
         return structure, {**question, **self.read_excitation(structure, si=True)}
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
@@ -117,10 +115,15 @@ def peak_lines(data: xr.Dataset, name: str) -> Iterator[str]:
 CAPTURED = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor is captured by the resonance
 
 
-class Spectra(OfVoltage, OfBox, Driven, Stored, OfBoth):
+class Spectra(OfBox, Driven, Stored, OfBoth):
     """Acceleration spectra, bonded and delaminated (Figure 3)."""
 
     calls = "spectra"
+    eta0: float | None = option(
+        "the motor's voltage as no-load speed over omega (default: 1.53 for quick, 1.45 for beam, "
+        "else between the jumps of the averaged theory)"
+    )
+    voltage: float | None = option("the same in V")
     examples = """
   {program} spectra                      Figure 3: quick, the motor is captured by the resonance
   {program} spectra --drive beam --voltage 6.5
@@ -149,9 +152,6 @@ class Spectra(OfVoltage, OfBox, Driven, Stored, OfBoth):
             voltage = eta0 * motor.volts(structure)
         return structure, motor, {"voltage": voltage}
 
-    def display_units(self, question: Question) -> Units:
-        return self.drive_units() if self.drive else Asked.display_units(self, question)
-
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         first = data.acceleration.sel(mass=1)
         others = [str(dim) for dim in first.dims if dim not in ("order", "kind")]
@@ -165,12 +165,6 @@ class Spectra(OfVoltage, OfBox, Driven, Stored, OfBoth):
                 f"{values[-1]} at {where[0]}: largest line {line}, {share:.2g} of it above the "
                 "excitation"
             )
-
-    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
-        title = str(results[""].attrs["title"])
-        title = f"{self.source_names()[0]}: {title[0].lower()}{title[1:]}"
-        words = f"{title}, absolute acceleration of mass 1" if self.drive else ""
-        return orchestrate.plot(results[""], title=words)
 
 
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6
@@ -239,15 +233,16 @@ class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
   {program} sweep --eta 1.0:1.5:0.0005 --direction both     up and down: non-unique responses
   {program} sweep --over e --values 0.05:0.95:0.003 --eta 1.2
   {program} sweep --structure beam --hz 8:20:0.05 --g 0.02 --format nc,csv
-  {program} sweep --eta 2.4:2.8:0.002 --overlay branch.nc   with what branch has written
-Repeat the command to resume an interrupted run. A finished result is left as it is."""
+  {program} sweep --eta 2.4:2.8:0.002 --overlay branch.nc   with what branch has written"""
     has_picture = staticmethod(is_curve)
 
     def ask(self) -> tuple[Structure, Question]:
-        structure = self.read_structure()
-        excitation, is_range = self.varied_arguments(structure, usual=PAPER_RANGE)
-        direction = self.direction or ("up" if is_range else "given")
-        return structure, {**self.keywords(), **excitation, "direction": direction}
+        if self.over is None and not self.is_shaken():
+            self.eta = PAPER_RANGE
+        texts = (self.values, self.eta, self.hz, self.rpm, self.frequency, self.g)
+        usual = "up" if any(":" in text for text in texts if text) else "given"
+        structure, question = self.ask_along_parameter()
+        return structure, {**question, "direction": self.direction or usual}
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         name = printing.varied_parameter(data)
@@ -295,12 +290,12 @@ Each point starts from rest. The picture has a panel for each quantity."""
             raise InputError("--over and --values: give exactly one --values for each --over")
         for name in self.over:
             self.check_over(name)
-        chosen = self.excitation_by_level if self.g is not None else self.read_excitation
-        excitation: Question = chosen(structure, one=len(self.over) == 2)
+        twice, by_level = len(self.over) == 2, self.g is not None
+        excitation = self.read_excitation(structure, one=twice, by_level=by_level)
         for name, text in zip(self.over, self.values, strict=True):
             if name in excitation or (name == "level" and "amplitude" in excitation):
                 raise InputError(f"--over {name}: twice; expected two parameters")
-            excitation[name] = parse_listed(name, text)[0]
+            excitation[name] = parse_listed(name, text)
         if sum(isinstance(value, tuple) for value in excitation.values()) != 2:
             raise InputError(
                 "map: expected two parameters that vary: a range of frequencies and one of levels "

@@ -15,10 +15,10 @@ from ..errors import InputError
 from ..lazy import np, xr
 from ..model import Drive, Structure
 from ..units import range_text, text_of, units_of, with_units
-from . import drive, printing
+from . import printing
 from .answer import Only, Runs
 from .command import Question, option
-from .drive import ETA0, RESUME, Driven, OfController, OfRamp, OfSchedule, Stepped
+from .drive import Driven, OfController, OfRamp, OfSchedule, Stepped
 from .grammar import parse_rates
 from .options import Over
 from .output import Files, OfBoth, Stored, digest, user_fmus
@@ -43,26 +43,12 @@ def draw_couple(
     if job.control or not isinstance(job.schedule, Ramp):
         resonance = own_resonance.dividing_speed(*system) * job.structure.omega
         return draw_run(results, resonance, title)
-    Omega = np.linspace(0.3, 3.0, 20001)
-    volts = averaged.no_load_speed(*system, Omega) * job.drive.volts(job.structure)
-    points, stable = averaged.branch_stability(*system)
-    part = np.searchsorted([point.Omega for point in points], Omega)
-    amplitude = averaged.amplitude(*system, Omega) * job.drive.length
-    theory = xr.Dataset(
-        {
-            "voltage": ("speed", volts),
-            "amplitude": ("speed", amplitude, {"units": "m"}),
-            "stable": ("speed", np.array(stable)[part]),
-        },
-        {"speed": ("speed", Omega * job.structure.omega, {"units": "rad/s"})},
-        job.structure.parameters(),
-    )
     units = units_of(next(iter(results.values())))
     under = None if branches is None else with_units(branches, units)
-    return draw(results, with_units(theory, units), under, title)
+    return draw(results, with_units(averaged.stationary_curve(*system), units), under, title)
 
 
-class Couple(Only, OfSchedule, OfController, Stepped, drive.Held, Driven, OfBoth):
+class Couple(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
     """The weak drive: structure and motor coupled, the voltage up and down (Figure 2)."""
 
     calls, takes = "couple", "tolerance"
@@ -71,17 +57,15 @@ class Couple(Only, OfSchedule, OfController, Stepped, drive.Held, Driven, OfBoth
     )
     ssp: Path | None = option("write the coupled system for other tools instead")
     ssp_version: Literal["1.0", "2.0"] = option("of SSP", "1.0")
-    examples = f"""
-  {{program}} couple                               quick: bonded, delaminated, up and down
-  {{program}} couple --drive beam                  a delaminated beam on a small motor
-  {{program}} couple --eta0 1.4:1.62 --rate 1e-5   a slower ramp over less
-  {{program}} couple --drive beam --voltage 5.6:7.2 --volt-rate 0.01
-  {{program}} couple --drive beam --voltage 6.5 --duration 10 --speed-control 110
-  {{program}} couple --course voltage.csv          any course of the voltage
-  {{program}} couple --ssp weak_drive.ssp          the coupled system as a package for other tools
-{ETA0}
-A ramp shows its jumps late: voltages are those of rate 0, at which the motion is lost.
-{RESUME}"""
+    examples = """
+  {program} couple                               quick: bonded, delaminated, up and down
+  {program} couple --drive beam                  a delaminated beam on a small motor
+  {program} couple --eta0 1.4:1.62 --rate 1e-5   a slower ramp over less
+  {program} couple --drive beam --voltage 5.6:7.2 --volt-rate 0.01
+  {program} couple --drive beam --voltage 6.5 --duration 10 --speed-control 110
+  {program} couple --course voltage.csv          any course of the voltage
+  {program} couple --ssp weak_drive.ssp          the coupled system as a package for other tools
+A ramp shows its jumps late: voltages are those of rate 0, at which the motion is lost."""
 
     def __call__(self) -> None:
         if self.ssp:
@@ -127,7 +111,7 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
     def summaries(self, results: Runs) -> Iterator[str]:
         """Yield revolutions and speeds of each run, a table of jumps, and the runs' accuracy."""
         if self.stationary is not None:
-            yield from drive_branch_lines(with_units(self.stationary, self.drive_units()))
+            yield from drive_branch_lines(with_units(self.stationary, self.display_units({})))
         rows: list[tuple[str, ...]] = []
         volts = self.job.drive.volts(self.job.structure)
         for name, data in results.items():
@@ -149,12 +133,11 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         yield from printing.table(dict(zip(titles, zip(*rows, strict=True), strict=True)))
 
     def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
-        title = self.picture_title(results, self.words(results, question))
-        return draw_couple(title, results, self.job, self.stationary)
+        return draw_couple(self.picture_title(results), results, self.job, self.stationary)
 
     def write_more(self, files: Files, question: Question, shown: Runs, results: Runs) -> None:
         if any(data.jumps.notnull().any() for data in results.values()):
-            title = self.picture_title(shown, self.words(shown, question))
+            title = self.picture_title(shown)
             draw = partial(orchestrate.plot, *shown.values(), part="jumps", title=title)
             files.write_pictures(draw, "jumps")
 
@@ -173,17 +156,12 @@ def jump_cells(at: xr.Dataset, volts: float) -> tuple[str, ...]:
     """Return the cells of a jump: direction, voltage, eta0, the ramp's voltage, how decided."""
     voltage, direction, decided = float(at.jumps), str(at.jump.item()), str(at.decided.item())
     if not math.isfinite(voltage):
-        word = "undecided" if decided == "undecided" else "none"
-        return (
-            direction,
-            word,
-            "",
-            "",
-            str(at.no_jump.item()).replace("longer hold", "longer --hold"),
-        )
+        reason = str(at.no_jump.item()).replace("longer hold", "longer --hold")
+        return direction, "undecided" if decided == "undecided" else "none", "", "", reason
     error = 0.5 * abs(float(at.jump_high) - float(at.jump_low))
     (jump,) = printing.with_error(voltage, error, ".5f", ".5f")
-    return direction, jump, f"{voltage / volts:.5f}", f"{float(at.ramp_voltage):.4f}", decided
+    shown = f"{float(at.ramp_voltage):.4f}".replace("nan", "not reached")
+    return direction, jump, f"{voltage / volts:.5f}", shown, decided
 
 
 REASONS = {
@@ -209,31 +187,20 @@ class Capture(Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
     """Voltages switched on from rest: which pass the resonance, which are captured."""
 
     calls = "capture"
-    examples = f"""
-  {{program}} capture                                       quick, bonded and delaminated
-  {{program}} capture --drive beam --voltage 6.1:6.9
-  {{program}} capture --over rotor_inertia --values 600:1600:200
-  {{program}} capture --drive beam --set armature_resistance=120 --voltage 7:10 --speed-gradient
-{ETA0}
-The motor is switched on at once and followed until its speed has settled.
-{RESUME}"""
+    examples = """
+  {program} capture                                       quick, bonded and delaminated
+  {program} capture --drive beam --voltage 6.1:6.9
+  {program} capture --over rotor_inertia --values 600:1600:200
+  {program} capture --drive beam --set armature_resistance=120 --voltage 7:10 --speed-gradient
+The motor is switched on at once and followed until its speed has settled."""
 
     def ask(self) -> tuple[Structure, Drive, Question]:
         structure, motor = self.read_structure_and_drive()
         varied = self.over_arguments()
-        if self.eta0 or self.voltage:
-            ends = self.parse_ramp_ends(structure, motor)
-        else:
-            down, up = self.averaged_jump_voltages(structure, motor)
-            ends = down, 1.06 * up
+        ends = self.parse_ramp_ends(structure, motor)
         question = {**self.keywords(), **self.in_seconds(structure, "step"), "voltage": ends}
         control = self.make_controller(structure, motor)
         return structure, motor, {**question, **varied, "control": control}
-
-    def words(self, results: Runs, question: Question) -> str:
-        control = question["control"]
-        switched = f"controlled by {type(control).__name__}" if control else "switched on from rest"
-        return "{}, {:.4g} V to {:.4g} V".format(switched, *question["voltage"])
 
     def summaries(self, results: Runs) -> Iterator[str]:
         rows: list[dict[str, str]] = []
@@ -266,18 +233,16 @@ def first_stored_interval(data: xr.Dataset) -> xr.Dataset:
     return data.isel(time=slice(0, int(breaks[0]) + 1)) if breaks.size else data
 
 
-class Passage(Only, OfSchedule, OfController, Stepped, drive.Held, Driven, OfBoth):
+class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
     """A run through the resonance at full resolution: speed, motion, power, waterfall."""
 
     calls, takes = "passage", "around"
     revolutions: int = option("revolutions of each spectrum of the waterfall", 8)
     mass: Literal[1, 2] = option("whose acceleration the spectra are of", 1)
-    examples = f"""
-  {{program}} passage --eta0 1.4:1.65 --one-way               quick through its resonance
-  {{program}} passage --drive rig --one-way --around 3
-  {{program}} passage --drive beam --voltage 6.5 --duration 10 --speed-control 110
-{ETA0}
-{RESUME}"""
+    examples = """
+  {program} passage --eta0 1.4:1.65 --one-way               quick through its resonance
+  {program} passage --drive rig --one-way --around 3
+  {program} passage --drive beam --voltage 6.5 --duration 10 --speed-control 110"""
 
     def ask(self) -> tuple[Structure, Drive, Question]:
         from ..weak_drive.schedule import Constant
@@ -295,7 +260,7 @@ class Passage(Only, OfSchedule, OfController, Stepped, drive.Held, Driven, OfBot
         shown = {state: first_stored_interval(data) for state, data in results.items()}
         spectra = {"revolutions": self.revolutions, "mass": self.mass}
         falls = {state: orchestrate.waterfall(data, **spectra) for state, data in shown.items()}
-        return draw(shown, falls, self.picture_title(results, self.words(shown, question)))
+        return draw(shown, falls, self.picture_title(results))
 
     def summaries(self, results: Runs) -> Iterator[str]:
         from ..show.passage import format_jumps
@@ -313,12 +278,10 @@ class JumpVoltages(OfRamp, Over, Stepped, Driven, Stored, OfBoth):
     rate: str = option("change of eta0 in a time 1/omega, a list", "1e-4,5e-5,2.5e-5", "A,B,...")
     settle: float = option("time at the first voltage, in 1/omega", 300.0)
     one_way: bool = option("do not come back: jumps up only")
-    examples = f"""
-  {{program}} jump-voltages                                 quick, up and down
-  {{program}} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
-  {{program}} jump-voltages --over clearance --values 0,1e-5,3e-5 --drive beam --one-way
-{ETA0}
-{RESUME}"""
+    examples = """
+  {program} jump-voltages                                 quick, up and down
+  {program} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
+  {program} jump-voltages --over clearance --values 0,1e-5,3e-5 --drive beam --one-way"""
 
     def ask(self) -> tuple[Structure, Drive, Question]:
         structure, motor = self.read_structure_and_drive()
@@ -331,11 +294,6 @@ class JumpVoltages(OfRamp, Over, Stepped, Driven, Stored, OfBoth):
             **self.over_arguments(),
         }
         return structure, motor, question
-
-    def words(self, results: Runs, question: Question) -> str:
-        ends = "{:.4g} V to {:.4g} V".format(*question["voltage"])
-        rates = dict.fromkeys(f"{end(question['rates']):.2g} V/s" for end in (min, max))
-        return f"{ends}, {' to '.join(rates)}, and at rate 0"
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         # a direction in which no ramp went has not been decided
@@ -400,12 +358,8 @@ class DriveBranch(Driven, Stored, OfBoth):
     examples = """
   {program} drive-branch                              quick, bonded and delaminated
   {program} drive-branch --drive beam --speed 92:110
-Branches go round their folds. Repeat the command to resume an interrupted run."""
+Branches go round their folds."""
     summary = staticmethod(drive_branch_lines)
 
     def ask(self) -> tuple[Structure, Drive, Question]:
         return *self.read_structure_and_drive(), self.keywords()
-
-    def words(self, results: Runs, question: Question) -> str:
-        voltage = results[""].voltage
-        return f"stationary motions, {float(voltage.min()):.4g} V to {float(voltage.max()):.4g} V"

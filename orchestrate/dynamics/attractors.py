@@ -373,5 +373,7 @@ def attractors(
         starts = 60 if several else 600
     return as_given(
         starts=starts,
-        settings=SettlingRun.by(settings, transient=transient, settle=settle, samples=samples),
+        settings=SettlingRun.from_settings(
+            settings, transient=transient, settle=settle, samples=samples
+        ),
     )

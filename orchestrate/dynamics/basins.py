@@ -262,12 +262,13 @@ def basin(
     structure : Structure
     eta, frequency, amplitude, box_acceleration, force1, force2
         As in :func:`orchestrate.simulate`.
-    x, y : (str, float, float, int), optional
-        Sides of the plane: coordinate, its first and last value, and how many. Coordinates are
+    x : (str, float, float, int), optional
+        A side of the plane: coordinate, its first and last value, and how many. Coordinates are
         ``x1``, ``x2`` in m, ``v1``, ``v2`` in m/s, ``x_rel`` in m, ``v_rel`` in m/s and ``phase``
-        in rad. By default 80 values each of the gap and of its velocity, in which all attractors
-        lie that 24 random starts lead to (:func:`orchestrate.attractors`, ``seed=0``), as far as
-        the motions' largest gap.
+        in rad. By default 80 values of the gap in which all attractors lie that 24 random starts
+        lead to (:func:`orchestrate.attractors`, ``seed=0``), as far as the motions' largest gap.
+    y : (str, float, float, int), optional
+        The other side. By default 80 values of the gap's velocity in which they lie.
     at : array_like or xarray.Dataset, optional
         x1, x2 in m, v1, v2 in m/s: what the coordinates that are not varied are; of a result of
         :func:`orchestrate.attractors` the mean of its states. Where a gap or its velocity is varied
@@ -310,7 +311,7 @@ def basin(
     """
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
     point = checked_point(structure, eta, frequency, amplitude, **pushes)
-    run = SettlingRun.by(settings, transient=transient, settle=settle, samples=samples)
+    run = SettlingRun.from_settings(settings, transient=transient, settle=settle, samples=samples)
     known: KnownAttractors | None = None
     if x is None or y is None:
         known = find_known_attractors(point, run, running)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
+from ..flags import flag_words
 from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
@@ -225,6 +226,22 @@ def border(
     setting = varied_setting(structure, given, names, pairs)
     own = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "kind": kind}
     return as_given(f"_{'_'.join(names)}", values=(value, second), **own)
+
+
+def lies_on_curve(curve: xr.Dataset, question: Mapping[str, Any], near: float = 1e-3) -> bool:
+    """Return whether a border passes another bifurcation of its kind, within a part of the range.
+
+    The bifurcation is that of keywords ``start``, ``bifurcation``, ``over`` and ``limits``.
+    """
+    start, (across, along) = question["start"], question["over"]
+    found = start.isel(bifurcation=question["bifurcation"])
+    level = Structure.from_attributes(start.attrs).parameters().get(along, np.nan)
+    x, y = curve[across].values - float(found.bifurcation_value), curve[along].values - level
+    at = np.flatnonzero((y[:-1] * y[1:] <= 0.0) & (y[:-1] != y[1:]))
+    passes = x[at] - y[at] * (x[at + 1] - x[at]) / (y[at + 1] - y[at])
+    kind = flag_words(found.bifurcation_kind.attrs)[int(found.bifurcation_kind)]
+    reach = near * np.ptp(question["limits"][0])
+    return bool(curve.attrs["kind"] == kind and (np.abs(passes) < reach).any())
 
 
 def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:

@@ -65,8 +65,8 @@ class ClosedForm:
         shares = np.array([0.0, 1.0] if wall else [m1, m2]) / (1.0 if wall else m1 + m2)
         share = float(shares[1])
         eta = excitation.frequency / omega
-        damping = two_and_both(structure.d1 / m1, structure.d2 / m2, share) / (2.0 * omega)
-        stiffness = two_and_both(structure.k1 / m1, structure.k2 / m2, share) / unit
+        damping = of_both_and_common(structure.d1 / m1, structure.d2 / m2, share) / (2.0 * omega)
+        stiffness = of_both_and_common(structure.k1 / m1, structure.k2 / m2, share) / unit
         stiffness[0] = 1.0
         if wall:
             damping[:], stiffness[:] = damping[0], 1.0
@@ -76,10 +76,10 @@ class ClosedForm:
         level = excitation.amplitude * excitation.frequency**2 if shaken else unit * length
         push, force1, force2 = (each / level for each in excitation.pushes)  # m/s2 that is 1 here
         moved = 0.0 if wall else 1.0
-        drive = two_and_both(shaken + force1 / m1, moved * shaken + force2 / m2, share)
+        drive = of_both_and_common(shaken + force1 / m1, moved * shaken + force2 / m2, share)
         with np.errstate(divide="ignore", invalid="ignore"):
             cosine, sine = -loss / reach * drive, detuning / reach * drive
-        pushes = two_and_both(0.0 - push, moved * (0.0 - push), share)
+        pushes = of_both_and_common(0.0 - push, moved * (0.0 - push), share)
         gap_offset = structure.gap_offset / length if structure.gap_offset else 0.0
         limit = structure.stroke / length if structure.stroke else np.inf
         load = gap_offset * stiffness[1] * np.array([0.0, 1.0, share, share])
@@ -123,7 +123,7 @@ class ClosedForm:
             room, swing = min(gap, self.limit - gap), np.hypot(*np.diff(swings)[:, 0])
             return FREE if swing <= room + SAME * np.abs(swings).sum() else -1
         phase = np.array([0.0, 0.5, 1.0]) * np.pi
-        position, _, velocity, _ = self.steady(phase, mode).T
+        position, _, velocity, _ = self.steady_response(phase, mode).T
         force = self.force(phase, position, velocity, mode == OUTER)
         middle = 0.5 * (force[0] + force[2])
         return mode if np.hypot(*(force[:2] - middle)) <= -middle else -1
@@ -173,11 +173,11 @@ class ClosedForm:
         matrices[:, ::2, ::2], matrices[:, 1::2, 1::2] = turned[:, 0], turned[:, 1]
         return matrices
 
-    def steady(self, phase: Floats, mode: Modes = FREE) -> Floats:
+    def steady_response(self, phase: Floats, mode: Modes = FREE) -> Floats:
         """Return the steady-state response (harmonic part of (10)) at phases, shape (n, 4)."""
         return self.tabulate("find_steady", (phase, mode), 4)
 
-    def apart(self, outer: Ends) -> Floats:
+    def gap_at_end(self, outer: Ends) -> Floats:
         """Return the gap at an end: the limit at the outer one."""
         return np.where(outer, self.limit, 0.0)
 
@@ -191,28 +191,28 @@ class ClosedForm:
 
     def gap_drive(self, phase: Floats, outer: Ends = False) -> Floats:
         """Return the difference of the masses' harmonic right-hand sides, towards an end."""
-        return inwards(outer) * float(self.drive[1] - self.drive[0]) * np.sin(phase)
+        return parting_sign(outer) * float(self.drive[1] - self.drive[0]) * np.sin(phase)
 
     def force(
         self, phase: Floats, position: Floats, velocity: Floats, outer: Ends = False
     ) -> Floats:
         """Return the contact force f (18) at phases, from mass 1 at an end; < 0: pressed."""
         constant = float(self.load[1] + (self.push[1] - self.push[0]))
-        at_end = constant - self.stiffness[1] * self.apart(outer)
+        at_end = constant - self.stiffness[1] * self.gap_at_end(outer)
         rate = self.force_rate(position, velocity, outer)
-        return rate + self.gap_drive(phase, outer) + inwards(outer) * at_end
+        return rate + self.gap_drive(phase, outer) + parting_sign(outer) * at_end
 
     def force_rate(self, position: Floats, velocity: Floats, outer: Ends = False) -> Floats:
         """Return what the derivatives of position and velocity add to the contact force's."""
-        return inwards(outer) * (self.force_v * velocity + self.force_x * position)
+        return parting_sign(outer) * (self.force_v * velocity + self.force_x * position)
 
 
-def inwards(outer: Ends) -> Floats:
+def parting_sign(outer: Ends) -> Floats:
     """Return the sign of the gap's acceleration that parts the masses: -1 at the outer end."""
     return np.where(outer, -1.0, 1.0)
 
 
-def two_and_both(one: float, two: float, share: float) -> Floats:
+def of_both_and_common(one: float, two: float, share: float) -> Floats:
     """Return what both masses have, and twice what they have as one, by mass 2's share."""
     both = one + share * (two - one)
     return np.array([one, two, both, both])

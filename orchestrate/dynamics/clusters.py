@@ -76,7 +76,7 @@ class SettlingRun(AttractorSettings):
         checked_integer("samples", self.samples, 4)
 
     @classmethod
-    def by(cls, settings: AttractorSettings | None, **lengths: Any) -> SettlingRun:
+    def from_settings(cls, settings: AttractorSettings | None, **lengths: Any) -> SettlingRun:
         """Return the run by thresholds, or the usual ones, and by its lengths."""
         given = AttractorSettings() if settings is None else settings
         if not isinstance(given, AttractorSettings):
@@ -127,7 +127,7 @@ def run_until_settled(
             rows = np.flatnonzero(chosen)
             points = [point] * len(rows)
             found = responses_from(results.rows(rows), points, tolerance, nearly[rows].tolist())
-            settled |= numbered(left[rows], found, done)
+            settled |= settled_by_number(left[rows], found, done)
         rest = np.flatnonzero(~(repeats | dying))
         left, ends = left[rest], results.ends[rest]
         before, deviation = nearly[rest], results.deviations[rest]
@@ -138,11 +138,11 @@ def run_until_settled(
         points, done = [point] * len(left), done + settings.irregular_samples
         rule = LoopSettings(transient=0, samples=settings.irregular_samples)
         irregular = responses_from(loop.respond(points, ends, rule), points, converged)
-        settled |= numbered(left, irregular, done)
+        settled |= settled_by_number(left, irregular, done)
     return [settled[i] for i in range(len(settled))]
 
 
-def numbered(
+def settled_by_number(
     numbers: NDArray[np.intp], responses: Iterable[Response], periods: int
 ) -> dict[int, SettledResponse]:
     """Return responses that have settled after the transient, by the numbers of their starts."""

@@ -84,12 +84,12 @@ class Saddle:
         return self.multiplier if self.multiplier > 0.0 else self.multiplier**2
 
     @property
-    def room(self) -> float:
+    def relative_gap(self) -> float:
         """Gap at phase 0, over the orbit's size."""
         return float(self.state[1] - self.state[0]) / self.size
 
     @property
-    def opening(self) -> float:
+    def gap_change(self) -> float:
         """By how much a start changes the gap at most, over its distance from the saddle."""
         # starts lie between the distance and its image, where the first piece ends
         return float(self.direction[1] - self.direction[0]) * self.growth_factor
@@ -148,14 +148,14 @@ class ManifoldJob(SingleOrbitQuestion):
             expected = "expected an orbit of this structure"
             raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
         saddle = Saddle.from_orbit(family.orbit(root.unknowns))
-        room, opening = saddle.room, abs(saddle.opening)
-        if self.distance * opening > max(room, 0.0):  # starts would be beyond a closed gap
-            limit = f"expected a distance below {room / opening:.2g}"
-            if room <= 0.0:
+        gap, change = saddle.relative_gap, abs(saddle.gap_change)
+        if self.distance * change > max(gap, 0.0):  # starts would be beyond a closed gap
+            limit = f"expected a distance below {gap / change:.2g}"
+            if gap <= 0.0:
                 limit = "expected an orbit whose gap is open at phase 0"
             raise InputError(
-                f"distance = {self.distance:g}: the gap at phase 0 is {room:.2g} of the orbit's "
-                f"size, and a start takes up to {self.distance * opening:.2g} of it; {limit}"
+                f"distance = {self.distance:g}: the gap at phase 0 is {gap:.2g} of the orbit's "
+                f"size, and a start takes up to {self.distance * change:.2g} of it; {limit}"
             )
         return saddle
 

@@ -70,13 +70,13 @@ def release_node(form: ClosedForm, stick: Floats, until: float, outer: bool) -> 
     phase, position, velocity = stick[PHASE:CLOSING, None]
     span = (until - phase) / form.eta
     end = np.array([outer])
-    start = np.column_stack([position, position + form.apart(end), velocity, velocity])
+    start = np.column_stack([position, position + form.gap_at_end(end), velocity, velocity])
     duration = contact_durations(form, phase, start, span)
     if not np.isfinite(duration).all():
         return None
     mode, released = np.where(end, OUTER, INNER), phase + form.eta * duration
-    free = start - form.steady(phase, mode)
-    state = form.flow(duration, mode)[0] @ free[0] + form.steady(released, mode)[0]
+    free = start - form.steady_response(phase, mode)
+    state = form.flow(duration, mode)[0] @ free[0] + form.steady_response(released, mode)[0]
     return np.array([float(released[0]), state[0], state[2], 0.0])
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
-from .closed_form import FREE, INNER, OUTER, ClosedForm, Floats, inwards
+from .closed_form import FREE, INNER, OUTER, ClosedForm, Floats, parting_sign
 
 IMPACT, STICK, RELEASE = range(3)  # kinds of nodes; after STICK follows permanent contact
 ENDS = 3  # kinds: what is added to those of nodes at the outer end
@@ -73,7 +73,7 @@ class ImpactSequence:
         return ImpactSequence(self.periods, (*self.kinds[:before], kind, *self.kinds[before:]))
 
 
-def of_next(rows: NDArray[Any]) -> NDArray[Any]:
+def next_rows(rows: NDArray[Any]) -> NDArray[Any]:
     """Return the rows of the next nodes, the first one after the last; np.roll is slow."""
     return np.concatenate([rows[1:], rows[:1]])
 
@@ -98,7 +98,7 @@ class PeriodicOrbit:
     @cached_property
     def ends(self) -> Floats:
         """Return the phases, rad, at which segments between nodes end."""
-        phases = of_next(self.begins)
+        phases = next_rows(self.begins)
         phases[-1] += TURN * self.sequence.periods
         return phases
 
@@ -132,7 +132,7 @@ class PeriodicOrbit:
     def starts(self) -> Floats:
         """Return the states at the begin of segments, just after impacts (15), shape (k, 4)."""
         if not self.count:
-            return self.form.steady(np.zeros(1), self.modes)
+            return self.form.steady_response(np.zeros(1), self.modes)
         return self.segments[3]
 
     @property
@@ -144,14 +144,14 @@ class PeriodicOrbit:
         """Return the states at phases inside given segments, by the closed form, shape (n, 4)."""
         modes, begins = self.modes[segment], self.begins[segment]
         flow = self.form.flow((phase - begins) / self.form.eta, modes)
-        free = (self.starts - self.form.steady(self.begins, self.modes))[segment]
+        free = (self.starts - self.form.steady_response(self.begins, self.modes))[segment]
         moved: Floats = (flow @ free[:, :, None])[:, :, 0]
-        return moved + self.form.steady(phase, modes)
+        return moved + self.form.steady_response(phase, modes)
 
     @property
     def reductions(self) -> Floats:
         """Return matrices from states before nodes to gap, centre (x, v) and closing speed."""
-        sign = inwards(of_next(self.sequence.outer))[:, None]
+        sign = parting_sign(next_rows(self.sequence.outer))[:, None]
         matrices = np.zeros((self.count, 4, 4))
         matrices[:, 0, :2] = [-1.0, 1.0]
         matrices[:, [1, 2], [0, 2]] = self.form.shares[0]

@@ -77,13 +77,13 @@ class Motion:
 
     def box(self, times: Floats) -> Floats:
         """Compute the box's acceleration and its derivatives, shape (ORDER, n)."""
-        found = in_order(self.driven("box_acceleration", times))
+        found = padded_to_order(self.driven("box_acceleration", times))
         found[0] += self.steady
         return found
 
     def forces(self, times: Floats) -> Floats:
         """Compute the forces on both masses and their derivatives, shape (ORDER, 2, n)."""
-        return np.stack([in_order(self.driven(name, times)) for name in FORCES], axis=1)
+        return np.stack([padded_to_order(self.driven(name, times)) for name in FORCES], axis=1)
 
     def accelerations(
         self, x: Floats, v: Floats, touching: Flags, forces: ArrayLike = 0.0
@@ -172,7 +172,7 @@ def steady_acceleration(history: xr.Dataset) -> float:
     return float(history.attrs.get("box_acceleration", 0.0))
 
 
-def in_order(taylor: Floats) -> Floats:
+def padded_to_order(taylor: Floats) -> Floats:
     """Return a cubic's derivatives at n times as the first rows of ORDER."""
     found = np.zeros((ORDER, len(taylor)))
     found[:4] = taylor.T

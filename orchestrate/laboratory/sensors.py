@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -249,7 +250,9 @@ def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Piec
     steps = len(history.time) - 1
     rate = steps / float(history.time[-1] - history.time[0])
     drives = driven_channel(history)
-    driven = history[drives].values - (0.0 if drives in FORCES else steady_acceleration(history))
+    driven: Any = history[drives].values - (
+        0.0 if drives in FORCES else steady_acceleration(history)
+    )
     return Sampled(acceleration=driven, sample_rate=rate).pieces()
 
 

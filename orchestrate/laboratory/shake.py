@@ -191,8 +191,10 @@ def shake(
         Of the record, Hz; by default what the excitation needs. The motion does not depend on it.
     box_acceleration : float
         Constant acceleration of the box beside the excitation, m/s2: gravity.
-    force1, force2 : float
-        Amplitudes of harmonic forces on the masses beside it, N: F sin(frequency t).
+    force1 : float
+        Amplitude of a harmonic force F sin(frequency t) on mass 1 besides, N.
+    force2 : float
+        The same on mass 2.
     frequency : float
         Of these forces, rad/s.
     shaker : Shaker, optional

@@ -10,7 +10,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ..files import write_whole
-from .style import XI_REL, make_panels, set_title, style_context
+from .style import set_title, style_context
 
 SLIDE_HEIGHT, SLIDE_PART, SLIDE_PIXELS = 4.2, 0.75, 1920.0  # inches at least, of its own; across
 UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, today and tomorrow
@@ -18,14 +18,6 @@ UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, tod
     "png": {"Software": None},
     "svg": {"Date": None, "Creator": "matplotlib"},
 }
-
-
-def warm_up_matplotlib() -> None:
-    """Draw a small figure so that the first real one does not wait for fonts and formulas."""
-    with style_context():
-        figure, (axes,) = make_panels(1, 1, (1.0, 1.0))
-        axes.set_xlabel(XI_REL)
-        figure.savefig(io.BytesIO(), format="png")
 
 
 def png_bytes(figure: Figure) -> bytes:

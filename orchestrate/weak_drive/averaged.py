@@ -24,6 +24,7 @@ from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
 from ..dynamics import bifurcations
+from ..lazy import xr
 from ..model.drive import Drive
 from ..model.structure import Structure
 
@@ -207,6 +208,22 @@ def branch_stability(
     between = [0.5 * (low + high) for low, high in pairwise(speeds)]
     middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]] if points else [speed]
     return points, [bool(growth_rates(structure, drive, Omega)[0].real < 0.0) for Omega in middles]
+
+
+def stationary_curve(structure: Structure, drive: Drive) -> xr.Dataset:
+    """Return voltage, amplitude and stability of stationary motions over the speed, SI."""
+    Omega = np.linspace(0.3, 3.0, 20001)
+    volts = no_load_speed(structure, drive, Omega) * drive.volts(structure)
+    points, stable = branch_stability(structure, drive)
+    part = np.searchsorted([point.Omega for point in points], Omega)
+    amplitudes = amplitude(structure, drive, Omega) * drive.length
+    curves = {
+        "voltage": ("speed", volts, {"units": "V"}),
+        "amplitude": ("speed", amplitudes, {"units": "m"}),
+        "stable": ("speed", np.array(stable)[part]),
+    }
+    speed = ("speed", Omega * structure.omega, {"units": "rad/s"})
+    return xr.Dataset(curves, {"speed": speed}, structure.parameters())
 
 
 def conjugate_polynomial(polynomial: Polynomial) -> Polynomial:

@@ -94,7 +94,7 @@ def frf(
     12.5
     """
     channels = Channels.from_record(record)
-    driven, drive = what_drives(record, channels)
+    driven, drive = driving_channel(record, channels)
     names, responses = channels.responses()
     if not names:
         raise InputError("record: no acceleration1, m/s2; frf needs it and the excitation")
@@ -122,7 +122,7 @@ def frf(
     return xr.Dataset(made, coordinates, words)
 
 
-def what_drives(record: xr.Dataset, channels: Channels) -> tuple[str, Floats]:
+def driving_channel(record: xr.Dataset, channels: Channels) -> tuple[str, Floats]:
     """Return name and values of the channel that excites: the box's, or a force."""
     if BOX in channels.names and np.ptp(channels.box) > 0.0:
         return BOX, channels.box

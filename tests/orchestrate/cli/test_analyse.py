@@ -79,7 +79,7 @@ def test_three_records_in_one_picture(ask, tmp_path, files):
         *("--format", "nc,csv", "--resolution", "2"),
     ).success()
     for label in ("delaminated", "bonded", "measured"):
-        assert f"{label}: frequency response" in done.out
+        assert f"{label}:\nfrequency response" in done.out
     assert done.out.count("mass 2") == 2 and done.out.count("mass 1") == 3
     folder = tmp_path / "results"
     (picture,) = folder.glob("*.png")
@@ -143,9 +143,11 @@ def test_sensors_read_a_result_of_shake(ask, tmp_path):
 def test_what_sensors_read_of_a_simulated_test_is_a_record(ask, tmp_path):
     shaken = "--structure beam --swept-sine 11:13 --duration 4 --acceleration 1 --plot none"
     sensors = "--sensor 150:400 --noise 30ug --range 9g --format nc,csv"
-    out = ask("shake", *f"{shaken} {sensors}".split()).success().out
+    own = tmp_path / "mine.nc"
+    out = ask("shake", *f"{shaken} {sensors}".split(), "--store", own).success().out
     paths = re.findall("(.*): what the sensors read", out)
-    assert [path[-3:] for path in paths] == [".nc", "csv"]
+    assert paths == [str(tmp_path / f"mine_sensors.{ending}") for ending in ("nc", "csv")]
+    assert re.search(r"acceleration of the box: -1 to 1 m/s2, rms 0\.7\d* m/s2", out), out
     sweep = orchestrate.SweptSine(first=11.0, last=13.0, duration=4.0, acceleration=1.0)
     history = orchestrate.shake(orchestrate.Structure.from_file("beam"), sweep)
     sensor = orchestrate.Sensor(
@@ -156,6 +158,17 @@ def test_what_sensors_read_of_a_simulated_test_is_a_record(ask, tmp_path):
         read = orchestrate.read_record(path).acceleration1.values
         assert read == pytest.approx(felt.acceleration1.values, rel=1e-9, abs=1e-9)
     assert "by its name" in ask("channels", paths[0], output=tmp_path / "setup.toml").out
+
+
+def test_columns_in_their_order_are_a_proposal_and_said_to_be_one(ask, tmp_path):
+    for names, proposed in (("t [s],Ch1 [g],Ch2 [g]", True), ("t [s],base [g],top [g]", False)):
+        path = tmp_path / "run.csv"
+        path.write_text("\n".join([names, *(f"{i / 100},{i % 3},{i % 7}" for i in range(60))]))
+        done = ask("channels", path, output=tmp_path / "setup.toml")
+        assert done.code == 0
+        said = '"Ch1" as base, "Ch2" as face 1; see that it is right'
+        assert any("a proposal by the columns' order" in one for one in done.complaints) == proposed
+        assert not proposed or said in done.complaints[0]
 
 
 @pytest.mark.parametrize(("rate", "few"), [("19", 1), ("21", 0)])

@@ -138,7 +138,6 @@ MISTAKES = {  # options of each command, then what its line says
         --rate 1e-4,5e-5 : --rate 1e-4,5e-5 | expected one | jump-voltages
         --rate 1e-4 --volt-rate 1 : --rate and --volt-rate
         --course a.csv --eta0 1:2 : --course and --eta0
-        --set armature_resistance=1e-3 : does not jump | --eta0 or --voltage
         --speed-control 1.5 --speed-gradient : --speed-control and --speed-gradient
         --gain 2 : --gain 2 | --speed-control with it
     """,

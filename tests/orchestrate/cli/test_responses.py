@@ -16,8 +16,8 @@ import orchestrate
 from orchestrate import InputError, Structure, cli
 from orchestrate.cli import responses
 from orchestrate.cli.diagnosis import Plan
-from orchestrate.cli.dynamics import is_on_curve
 from orchestrate.cli.options import OfBox
+from orchestrate.dynamics.borders import lies_on_curve
 from orchestrate.fmu import OSCILLATOR, find
 from orchestrate.version import __version__
 
@@ -356,7 +356,7 @@ def test_all_bifurcations_of_a_branch_and_a_map_under_them(ask, folder, tmp_path
         "limits": [(2, 3)],
     }
     data = xr.load_dataset(curve)
-    assert is_on_curve(data, of) and not is_on_curve(data.isel(point=slice(2)), of)
+    assert lies_on_curve(data, of) and not lies_on_curve(data.isel(point=slice(2)), of)
     few = ("map", "--eta", "2.6,2.7", "--over", "e", "--values", "0.69,0.71", "--samples", "4")
     ask(*few, "--transient", "5", "--overlay", f"{curve},{curve}").success()
     assert shows_something(next(folder.glob("map_*_over_*.png")))

@@ -81,6 +81,16 @@ def test_without_a_file_it_is_the_paper_s_as_before(ask, asked, command):
     assert done.out == ""
 
 
+def test_an_orbit_begins_with_one_that_is_stored(ask, tmp_path):
+    """Of two orbits at this frequency the unstable one, which a search from rest does not find."""
+    first, near = tmp_path / "first.nc", tmp_path / "near.nc"
+    short = ("--plot", "none", "--store")
+    ask("orbit", "--eta", "3.0", *short, first).success()
+    done = ask("orbit", "--eta", "3.01", "--guess", first, *short, near).success()
+    assert done.out.startswith("unstable") and xr.load_dataset(near).attrs["period"] == 1
+    ask("orbit", "--eta", "3", "--guess", tmp_path / "no.nc").complaint("--guess", "no such file")
+
+
 def test_a_file_without_a_structure_is_refused(ask, tmp_path):
     path = tmp_path / "other.nc"
     xr.Dataset({"x": ("t", [1.0])}, attrs={"call": "analyse(...)"}).to_netcdf(path)

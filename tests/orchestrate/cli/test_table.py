@@ -44,6 +44,12 @@ def test_every_default_is_that_of_the_function_and_in_the_help():
     assert compared > 40
 
 
+def test_no_two_options_of_a_command_have_one_help():
+    for command, found in cli.COMMANDS.items():
+        texts = [option.help for option, _, _ in found.options().values()]
+        assert {text for text in texts if texts.count(text) > 1} == set(), command
+
+
 def test_an_argument_of_a_function_is_an_option_without_more(monkeypatch):
     def echo(structure, *, eta=None, depth=3, loud=False, mood="calm"):
         """Sound.
@@ -140,8 +146,8 @@ def test_texts_of_options(reader, text, value):
 
 
 def test_the_default_range_has_7901_values_and_both_ends():
-    etas, is_range = grammar.parse_values("--eta", "0.1:8.0:0.001")
-    assert is_range and (len(etas), etas[0], etas[-1]) == (7901, 0.1, 8.0)
+    etas = grammar.parse_values("--eta", "0.1:8.0:0.001")
+    assert (len(etas), etas[0], etas[-1]) == (7901, 0.1, 8.0)
     assert list(etas) == [float(f"{n / 1000:.3f}") for n in range(100, 8001)]
 
 
@@ -151,7 +157,7 @@ def test_a_range_has_its_decimal_values_exactly(first, step, count):
         return f"{n // 10000}.{n % 10000:04d}"
 
     grid = [text(first + k * step) for k in range(count + 1)]
-    values, _ = grammar.parse_values("--eta", f"{grid[0]}:{grid[-1]}:{text(step)}")
+    values = grammar.parse_values("--eta", f"{grid[0]}:{grid[-1]}:{text(step)}")
     assert values == tuple(map(float, grid))
 
 
@@ -163,17 +169,17 @@ def test_other_names_of_parameters():
 def test_levels_of_the_box_are_a_number_or_several():
     """Held as peak accelerations; where a command does not take several, one is expected."""
     beam, sweep = Structure.from_file("beam"), cli.COMMANDS["sweep"]
-    levels = sweep(hz="12", g="0.1:2:0.05").excitation_by_level(beam)
+    levels = sweep(hz="12", g="0.1:2:0.05").read_excitation(beam, by_level=True)
     assert isinstance(levels["frequency"], float) and len(levels["level"]) == 39
     single = sweep(hz="12", g="0.1").read_excitation(beam)
     assert levels["level"][0] == pytest.approx(single["amplitude"] * single["frequency"] ** 2)
-    own = sweep(hz="12Hz", g="0.1 g:2g:0.05g").excitation_by_level(beam)
+    own = sweep(hz="12Hz", g="0.1 g:2g:0.05g").read_excitation(beam, by_level=True)
     assert own["frequency"] == levels["frequency"] and own["level"] == levels["level"]
     for text in ("12s", "12g", "Hz"):
         with pytest.raises(InputError, match=f"--hz {text}: not numbers"):
-            sweep(hz=text, g="0.1").excitation_by_level(beam)
+            sweep(hz=text, g="0.1").read_excitation(beam, by_level=True)
     with pytest.raises(InputError, match="--hz 12:14:1: 3 values; expected one"):
-        sweep(hz="12:14:1", g="0.1,0.2").excitation_by_level(beam, one=True)
+        sweep(hz="12:14:1", g="0.1,0.2").read_excitation(beam, one=True, by_level=True)
 
 
 # -- names and ranges -----------------------------------------------------------------------------

@@ -115,8 +115,15 @@ def test_a_motor_of_one_s_own(ask, folder, motor):
     assert any(abs(float(data.voltage[-1]) - 6.0) < 1e-9 for data in found.values())
     assert all(name.startswith("couple_motor_beam_") for name in found)
     command = weak_drive.Couple(drive=motor, structure="beam")
-    title = command.picture_title(found, "6.5 V")
-    assert title.startswith("motor, beam: 6.5 V; $f_1$ = 11.94 Hz") and "clearance 20 µm" in title
+    title = command.picture_title(found)
+    assert title.startswith("motor, beam: $f_1$ = 11.94 Hz") and "clearance 20 µm" in title
+
+
+def test_a_voltage_that_falls_first_is_said(ask):
+    short = ("--rate", "4e-4", "--hold", "0", "--step", "0.4", "--settle", "9", "--one-way")
+    options = ("--only", "bonded", *short, "--plot", "none")
+    assert "the voltage falls first" in ask("couple", "--eta0", "1.41:1.4", *options).success().out
+    assert "falls first" not in ask("couple", "--eta0", "1.4:1.41", *options).success().out
 
 
 @pytest.mark.slow

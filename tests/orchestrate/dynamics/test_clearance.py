@@ -25,11 +25,13 @@ def test_the_closed_form_solves_its_own_equation(clearance, wall):
     form = ClosedForm.from_structure(structure, box)
     phase, step = np.linspace(0.1, 6.0, 7), 1e-5
     for mode in (FREE, INNER, OUTER):
-        ends = [form.steady(phase + sign * step * form.eta, mode) for sign in (1, -1)]
+        ends = [form.steady_response(phase + sign * step * form.eta, mode) for sign in (1, -1)]
         rate = (ends[0] - ends[1]) / (2.0 * step)
-        assert rate == pytest.approx(form.field(form.steady(phase, mode), phase, mode), abs=1e-8)
+        assert rate == pytest.approx(
+            form.field(form.steady_response(phase, mode), phase, mode), abs=1e-8
+        )
     for mode, gap, sign in ((INNER, 0.0, 1.0), (OUTER, form.limit, -1.0)):
-        together = form.steady(phase, mode)
+        together = form.steady_response(phase, mode)
         assert together[:, 1] - together[:, 0] == pytest.approx(gap, abs=1e-15)
         free = form.field(together, phase)
         force = form.force(phase, together[:, 0], together[:, 2], mode == OUTER)
@@ -75,7 +77,7 @@ def test_a_border_begins_where_an_open_structure_touches():
     touching = 2.0 / float(level.threshold_amplitude[0])  # clearance at amplitude 1
     wide = open_structure.replace(clearance=1.2 * touching)
     form = ClosedForm.from_structure(wide, Excitation(**BOX))
-    steady = Point(wide, Excitation(**BOX)).from_faces(form.steady(np.zeros(1)))
+    steady = Point(wide, Excitation(**BOX)).from_faces(form.steady_response(np.zeros(1)))
     apart = orchestrate.orbit(wide, **BOX, guess=steady[0])  # from rest it impacts: another branch
     assert float(apart.impacts_per_period) == 0.0
     limits = (0.9 * touching, 1.4 * touching)

@@ -125,9 +125,9 @@ def test_short_periods_take_more_of_them():
 def test_settings_that_are_given_are_used():
     lengths = {"transient": 30, "settle": 1.0, "samples": 8}
     changed = {"alike": 0.5, "longest": 77, "returns": 1e-4}
-    run = SettlingRun.by(AttractorSettings(**changed), **lengths)
+    run = SettlingRun.from_settings(AttractorSettings(**changed), **lengths)
     assert {name: getattr(run, name) for name in (*lengths, *changed)} == {**lengths, **changed}
-    assert SettlingRun.by(None, **lengths) == SettlingRun(**lengths)
+    assert SettlingRun.from_settings(None, **lengths) == SettlingRun(**lengths)
 
 
 @pytest.mark.parametrize("wrong", [{"alike": 0.0}, {"longest": -1}, {"near": float("nan")}])

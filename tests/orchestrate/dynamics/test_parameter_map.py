@@ -1,11 +1,13 @@
 """Maps: each point is a response from the same start, in whatever unit and order."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from orchestrate.dynamics.lyapunov import lyapunov
 from orchestrate.dynamics.orbits import orbit
-from orchestrate.dynamics.parameter_map import map
+from orchestrate.dynamics.parameter_map import MapJob, map
 from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.model.outcomes import REPEATED, UNDECIDED
@@ -22,6 +24,20 @@ pytestmark = pytest.mark.usefixtures("exported")
 @pytest.fixture(scope="module")
 def found(exported):
     return map(SLOWER, eta=ETAS, e=ES, exponent=True, periods=100)
+
+
+@pytest.mark.parametrize(("points", "chunks"), [(300, 16), (12, 12), (6000, 50)])
+def test_a_map_of_few_points_is_stored_in_many_parts(points, chunks):
+    grid = {
+        "given": (
+            ("eta", tuple(np.linspace(1.0, 2.0, points // 6))),
+            ("e", (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)),
+        )
+    }
+    job = MapJob(name="map", structure=PAPER, start=(0.0,) * 4, **grid)
+    found = job.chunks()
+    assert len(found) == chunks and (found[0].start, found[-1].stop) == (0, points)
+    assert all(one.stop == after.start for one, after in pairwise(found))
 
 
 def test_each_point_is_a_response_from_rest(found):

@@ -159,13 +159,13 @@ def test_short_openings_are_seen_wherever_a_contact_begins(above):
         pressed, Excitation(frequency=0.7, amplitude=level * (1.0 + above))
     )
     phases = np.linspace(0.0, 2.0 * np.pi, 400_001)
-    x, _, v, _ = form.steady(phases, INNER).T
+    x, _, v, _ = form.steady_response(phases, INNER).T
     opened = phases[form.force(phases, x, v) >= 0.0]
     assert 0.0 < np.ptp(opened) < 2.0 * np.pi / 64.0
     begins = np.linspace(0.0, 2.0 * np.pi, 2000)
     begins = begins[(begins < opened[0]) | (begins > opened[-1])]
     spans = np.full(len(begins), period_in_tau(form.eta))
-    found = contact_durations(form, begins, form.steady(begins, INNER), spans)
+    found = contact_durations(form, begins, form.steady_response(begins, INNER), spans)
     expected = (opened[0] - begins) % (2.0 * np.pi) / form.eta
     np.testing.assert_allclose(found, expected, atol=5e-5)
 

@@ -41,9 +41,10 @@ def journal(find, path, monkeypatch) -> Path:
             raise KeyboardInterrupt
         return work(self, fmus, items, previous)
 
-    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt) as ended:
         patch.setattr(Squares, "work", stop)
         answer(JOB, {"store": path, "jobs": 1}, find)
+    assert ended.value.__notes__ == ["what was stored is kept: the same call resumes"]
     return journal_path(path)
 
 
