@@ -2,7 +2,8 @@
 
 Kernel, FMU calls and a sampled solver, measured one after the other in one run on one core; times
 are of this machine, the ratios travel. With ``--before CHECKOUT``, another version's clone with its
-FMUs built, both are asked the same questions in turn; ``--scale 0.1`` asks for a tenth of each.
+FMUs built, both are asked the same questions in turn; ``--scale 0.1`` asks for a tenth of each. A
+question that one of them cannot answer is left out, with the reason.
 """
 
 from __future__ import annotations
@@ -88,6 +89,10 @@ QUESTIONS = {  # the sizes are scaled
 }
 
 
+class Unanswered(Exception):
+    """A question that a checkout does not know, with the reason."""
+
+
 def time_periods(fmu: str | PathLike[str], eta: float, count: int) -> tuple[float, int]:
     """Return the seconds and impacts of ``count`` periods in one step, after some to settle."""
     period = 2.0 * math.pi / eta
@@ -161,7 +166,10 @@ def time_question(checkout: Path, question: str) -> tuple[float, float]:
     """
     code = QUESTION.format(repository=str(checkout), question=question)
     command = [sys.executable, "-W", "ignore", "-c", code]
-    done = subprocess.run(command, cwd=checkout, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, cwd=checkout, capture_output=True, text=True)
+    if done.returncode:
+        line = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+        raise Unanswered(f"left out: {checkout} cannot answer it ({line})")
     busy, elapsed = done.stdout.splitlines()[-1].split()
     return float(busy), float(elapsed)
 
@@ -183,7 +191,11 @@ def compare_versions(before: Path, scale: float, rounds: int, only: str) -> None
     for name, measure in measures.items():
         if only not in name:
             continue
-        times = np.array([[measure(0), measure(1)] for _ in range(rounds)]).min(axis=0)
+        try:
+            times = np.array([[measure(0), measure(1)] for _ in range(rounds)]).min(axis=0)
+        except Unanswered as reason:
+            print(f"{name:36}{reason}", flush=True)
+            continue
         ratios = times[0] / times[1]
         unit, factor = ("s", 1.0) if times[1, 0] > 1e-3 else ("ns", 1e9)
         text = "".join(f"{value * factor:9.3f} {unit:2}" for value in times[:, 0])

@@ -36,6 +36,7 @@ KERNELS = {  # headers that a source may include, translated from Python
         "flow": orbits.flow,
         "steady": orbits.steady,
         "field": orbits.field,
+        "motion": orbits.motion,
         "segments": orbits.segments,
     },
 }

@@ -55,6 +55,19 @@ def field(m, time):
     return 0
 
 
+def motion(m, time):
+    """Write, for rows (phase and mode a motion begins with, a later phase, the state it begins
+    with), the state at the later phase and its rates.
+    """
+    count = int(m[ROWS])
+    for i in range(count):
+        row, to = TABLE + 7 * i, TABLE + 7 * count + 8 * i
+        run(m, m[row], m[row + 1], m[row + 2], row + 3, to, TABLE + 15 * count)
+        sine, _ = sincos_turns(m[row + 2] / TWO_PI)
+        put_rates(m, m[row + 1], sine, to, to + 4)
+    return 0
+
+
 def segments(m, time):
     """Write, for each segment from node to node, the residual of its equations, their derivatives
     by the nodes before and after it, and the states at its beginning and end.
@@ -69,7 +82,7 @@ def segments(m, time):
             following, end = TABLE, m[SPAN]
         end += m[following]
         begin_segment_at(m, node, starts + 4 * i)
-        run_segment(m, node, end, starts + 4 * i, arrivals + 4 * i, spare)
+        run(m, m[node], m[node + 4], end, starts + 4 * i, arrivals + 4 * i, spare)
         put_residual(m, following, arrivals + 4 * i, residual + 4 * i)
         put_before(m, node, following, starts + 4 * i, before + 16 * i, spare)
         put_after(m, node, following, end, arrivals + 4 * i, after + 16 * i, spare)
@@ -162,11 +175,10 @@ def begin_segment_at(m, node, to):
     m[to + 3] = m[node + 2] + m[SHARE_ONE] * speed
 
 
-def run_segment(m, node, end, start, to, flows):
-    """Write the state at a segment's end, and how its free parts turn until there."""
-    mode = m[node + 4]
-    turn_free_parts(m, (end - m[node]) / m[RATIO], mode, flows)
-    sine, cosine = sincos_turns(m[node] / TWO_PI)
+def run(m, phase, mode, end, start, to, flows):
+    """Write the state at an end from that at a phase, and how its free parts turn until there."""
+    turn_free_parts(m, (end - phase) / m[RATIO], mode, flows)
+    sine, cosine = sincos_turns(phase / TWO_PI)
     put_steady(m, mode, cosine, sine, to)
     x1, v1 = m[start] - m[to], m[start + 2] - m[to + 2]
     x2, v2 = m[start + 1] - m[to + 1], m[start + 3] - m[to + 3]

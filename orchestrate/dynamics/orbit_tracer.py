@@ -98,11 +98,8 @@ class OrbitPoint:
         """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
         if kind == Kind.FOLD:
             return float(self.root.tangent[self.family.size])
-        if kind == Kind.FLIP:
-            return scaled_product(-self.multipliers)
-        if kind == Kind.TORUS:
-            products = np.multiply.outer(self.multipliers, self.multipliers)
-            return scaled_product(products[np.triu_indices(4, 1)])
+        if kind in (Kind.FLIP, Kind.TORUS):
+            return scaled_product(self.multipliers, pairs=kind == Kind.TORUS)
         if kind == Kind.GRAZING:
             closing = self.orbit.nodes[~self.orbit.sequence.releases, CLOSING]
             return float(closing.min(initial=np.inf))
@@ -124,9 +121,14 @@ class OrbitPoint:
         return OrbitPoint(self.family, self.root.reversed())
 
 
-def scaled_product(values: NDArray[np.complex128]) -> float:
-    """Return the product of 1 - value over its size, no number for the infinite ones of grazing."""
+def scaled_product(multipliers: NDArray[np.complex128], *, pairs: bool) -> float:
+    """Return the product of 1 + multiplier, or of 1 - two, over their sizes: no number if grazing
+    makes all infinite.
+    """
     with np.errstate(invalid="ignore"):
+        values = -multipliers
+        if pairs:
+            values = np.multiply.outer(values, values)[np.triu_indices(4, 1)]
         return float(np.prod((1.0 - values) / (1.0 + np.abs(values))).real)
 
 

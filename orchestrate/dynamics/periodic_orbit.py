@@ -140,13 +140,15 @@ class PeriodicOrbit:
         """Return the states at the end of segments, just before the next node, shape (k, 4)."""
         return self.segments[4] if self.count else self.starts
 
+    def motion(self, segment: NDArray[np.int_], phase: Floats) -> tuple[Floats, Floats]:
+        """Return the states at phases inside given segments, and their rates, both (n, 4)."""
+        begins, modes, starts = self.begins[segment], self.modes[segment], self.starts[segment]
+        numbers = self.form.tabulate("find_motion", (begins, modes, phase, *starts.T), 8)
+        return numbers[:, :4], numbers[:, 4:]
+
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
         """Return the states at phases inside given segments, by the closed form, shape (n, 4)."""
-        modes, begins = self.modes[segment], self.begins[segment]
-        flow = self.form.flow((phase - begins) / self.form.eta, modes)
-        free = (self.starts - self.form.steady_response(self.begins, self.modes))[segment]
-        moved: Floats = (flow @ free[:, :, None])[:, :, 0]
-        return moved + self.form.steady_response(phase, modes)
+        return self.motion(segment, phase)[0]
 
     @property
     def reductions(self) -> Floats:

@@ -79,8 +79,7 @@ def quantity_derivatives(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return first and second tau derivatives, and values, of displacements or the gap."""
-    state = orbit.states(segment, phase)
-    field = orbit.form.field(state, phase, orbit.modes[segment])
+    state, field = orbit.motion(segment, phase)
     weights = WEIGHTS[quantity]
     rate, curvature = (weights * field[:, :2]).sum(axis=1), (weights * field[:, 2:]).sum(axis=1)
     return rate, curvature, (weights * state[:, :2]).sum(axis=1)
@@ -149,10 +148,10 @@ def pressing_force(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return the contact pressure -f (18) and its first two tau derivatives, at phases."""
-    form, state, modes = orbit.form, orbit.states(segment, phase), orbit.modes[segment]
+    form, modes, (state, rates) = orbit.form, orbit.modes[segment], orbit.motion(segment, phase)
     outer = modes == OUTER
     position, velocity = state[:, 0], state[:, 2]
-    acceleration = form.field(state, phase, modes)[:, 2]
+    acceleration = rates[:, 2]
     jerk = form.drive[2] * form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
     jerk -= form.stiffness[2] * velocity
     first = form.force_rate(velocity, acceleration, outer)

@@ -41,6 +41,24 @@ def test_samples_do_not_change_the_run_and_their_number_may(fmus, form):
     assert found[0] == found[1] == found[2]
 
 
+@forms
+def test_a_saved_state_has_the_samples_of_its_step_and_no_others(fmus, form):
+    """By its handle: also if only one of both has any, or the number of samples is 0 by now."""
+    f, states = open_fmu(FMUS[form]).start(**harmonic(1.13)), []
+    for k, count in enumerate((0, 5, 0, ROOM)):
+        f.set(sample_count=count).step(10.0 * (k + 1))
+        states.append((f.call("getFMUState"), [f.series(f"{name}_sample") for name in SERIES]))
+    for k in (0, 1, 2, 3, 0, 3, 2, 0):
+        state, samples = states[k]
+        f.call("setFMUState", state)
+        assert [f.series(f"{name}_sample") for name in SERIES] == samples, k
+    assert not any(map(any, states[0][1])) and all(map(any, states[1][1]))
+    other = open_fmu(FMUS[form]).start(**harmonic(1.13))
+    for k in (1, 0):
+        other.call("setFMUState", states[k][0])
+        assert [other.series(f"{name}_sample") for name in SERIES] == states[k][1]
+
+
 @pytest.mark.parametrize("count", [-1, ROOM + 1])
 def test_sample_count_out_of_range(native_fmu, count):
     f = open_fmu(native_fmu).start()

@@ -8,4 +8,6 @@ EXPORT void find_steady(double *memory) { kernel_steady(memory, 0.0); }
 
 EXPORT void find_rates(double *memory) { kernel_field(memory, 0.0); }
 
+EXPORT void find_motion(double *memory) { kernel_motion(memory, 0.0); }
+
 EXPORT void find_segments(double *memory) { kernel_segments(memory, 0.0); }

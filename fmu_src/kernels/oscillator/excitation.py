@@ -56,12 +56,12 @@ def renew_cubic(m, place, inputs, known, unit):
             begins = True
     if not begins:
         return
-    cubic = at.CUBIC + 6 * place
+    cubic, scale = at.CUBIC + 6 * place, 1.0 / m[at.OMEGA]
     m[cubic + at.AGE] = 0.0
     m[cubic + at.ON] = 0.0
     for i in range(4):
         m[cubic + i] = m[inputs + i] * unit
-        unit *= 1.0 / m[at.OMEGA]
+        unit *= scale
         if i > 0 and m[inputs + i] != 0.0:
             m[cubic + at.ON] = 1.0
 
@@ -193,6 +193,8 @@ def input_derivative(m, first, order, age):
 
     A constant keeps its bits.
     """
+    if age == 0.0:  # usually
+        return m[first + order] + 0.0
     time = age / m[at.OMEGA]
     value = 0.0
     for i in range(3, order - 1, -1):

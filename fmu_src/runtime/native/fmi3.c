@@ -109,7 +109,8 @@ fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
         size_t first, size = stretch(instance, call, refs[i], &first);
         if (!size) return fmi3Error;
         if (size > value_count - place) return refuse3(instance, call, "nValues: too small for the arrays among the value references");
-        memcpy(values + place, instance->state.memory + first, size * sizeof(double));
+        if (size == 1) values[place] = instance->state.memory[first];
+        else memcpy(values + place, instance->state.memory + first, size * sizeof(double));
         place += size;
     }
     return place == value_count ? fmi3OK : refuse3(instance, call, "nValues: more than the value references have");

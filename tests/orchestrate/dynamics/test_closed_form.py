@@ -16,6 +16,7 @@ ENTRIES = {
     "find_flows": (orbits.flow, 2, 8),
     "find_steady": (orbits.steady, 2, 4),
     "find_rates": (orbits.field, 6, 4),
+    "find_motion": (orbits.motion, 7, 8),
     "find_segments": (orbits.segments, 7, 44),
 }
 
