@@ -200,6 +200,15 @@ def test_the_origin_of_time_keeps_its_low_part():
     assert m[at.ORIGIN] == float(total)
 
 
+def test_a_contact_that_is_written_anew_while_it_is_pressed_goes_on():
+    """Whichever way its force changes there: only where it ends has the force vanished."""
+    m = started(clearance=-1.0, box_amplitude=0.2, box_frequency=1.3)
+    for _ in range(8):
+        m[at.END], m[at.END_KIND] = 0.7, at.END_RENEWAL
+        motion.end_state(m)
+        assert m[at.MODE] == at.CONTACT
+
+
 @pytest.mark.parametrize("values", [{"box_frequency": 0.7, "d1": 0.2}, {"box_frequency": 1.9}])
 def test_a_phase_that_is_rotated_is_computed_anew_before_it_is_off(values):
     """By 32 roundings at most; without that it was off by 5e-14 after 200 impacts."""

@@ -78,17 +78,32 @@ def test_each_threshold_of_a_line_of_the_mains(inside, outside):
     assert mains(**inside) and not mains(**outside)
 
 
-def jumps(turn, noise=0.0, seed=1):
-    """Whether lost samples are named in a sine of 20 Hz whose phase jumps by so much."""
+def jumps(turn, noise=0.0, level=1.0):
+    """Whether lost samples are named in a sine of 20 Hz whose phase jumps by so much at 10 s, where
+    the base moves by a part of what it does elsewhere.
+    """
     time = np.arange(20 * int(RATE)) / RATE
     phase = 40.0 * np.pi * time + turn * (time > 10.0)
-    values = np.sin(phase) + noise * np.random.default_rng(seed).standard_normal(len(time))
-    return bool(list(wiring.lost_sample_notes(record(values, np.full(20, 20.0)), WIRING)))
+    values = np.sin(phase) + noise * np.random.default_rng(1).standard_normal(len(time))
+    orders = record(values, np.full(20, 20.0))
+    orders.level[7:13] = level
+    return bool(list(wiring.lost_sample_notes(orders, WIRING)))
 
 
 def test_each_threshold_of_a_jump_of_the_phase():
     assert [jumps(0.49), jumps(0.44)] == [True, False]  # three quarters of it are seen
     assert [jumps(0.8, noise) for noise in (0.2, 0.25)] == [True, False]  # ten times a usual one
+    assert [jumps(0.8, level=level) for level in (0.51, 0.49)] == [True, False]
+
+
+@pytest.mark.parametrize(("count", "saturated"), [(39_500, True), (40_500, False)])
+def test_one_in_ten_thousand_samples_at_an_extreme_is_a_saturated_channel(count, saturated):
+    """Each of the spikes alone: a sweep has none."""
+    values = np.sin(np.arange(count) * 0.1)
+    values[5000::9000] = 2.0
+    channels = Channels(np.arange(count) / RATE, RATE, (FACE,), values[None], "made")
+    notes = list(wiring.clipped_notes(channels, WIRING.clipped, WIRING.plateau))
+    assert (values == 2.0).sum() == 4 and bool(notes) == saturated
 
 
 @pytest.mark.parametrize(("ratio", "kept"), [(1.9, True), (2.1, False)])
