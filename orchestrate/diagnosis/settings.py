@@ -34,6 +34,7 @@ class Settings:
     clipped: float = CLIPPED  # share of a channel's samples at its extremes: it is saturated
     # response at an end of the sweep over the largest one: above, the resonance is not passed
     end_response: float = 0.7
+    samples: float = 14.0  # in a period at the resonance: orders 6 to 12 show a blow
     guess_factor: float = 2.0  # from the guess's frequencies to a resonance that is another beam's
 
     # -- what counts as seen: see `even_orders` --
@@ -81,6 +82,7 @@ class Settings:
     tolerance: float = 1e-3  # relative: a way downhill that gains less in a step ends
     rounds: int = 7  # of the regressions over clouds that follow
     gain: float = 2e-3  # relative: a round that gains less is one with too large a cloud
+    distinct: float = 1.03  # misfit over another from which both count as two minima
     close: float = 1.3  # misfit over the best, up to which the second best minimum goes on too
     # standard deviation of a guessed frequency's logarithm, and the part of the squared deviations
     # by which a misfit counts more

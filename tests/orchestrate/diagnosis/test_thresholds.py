@@ -30,6 +30,8 @@ UNKNOWN = replace(OPENED, strikes=replace(OPENED.strikes, stiffness=math.nan))
     [
         (OPENED, "end_response", 0.69, 0.71, DELAMINATED),
         (OPENED, "clipped", *(np.array([0.99, 1.01]) * SETTINGS.clipped), DELAMINATED),
+        (OPENED, "samples", 14.1, 13.9, DELAMINATED),
+        (QUIET, "samples", 14.1, 13.9, NOT_SEEN),
         (OPENED, "resonance", 2.01 * 42.0 / 4.0, 1.99 * 42.0 / 4.0, DELAMINATED),
         (OPENED, "resonance", 1.99 * 52.0, 2.01 * 52.0, DELAMINATED),
         (QUIET, "excess", 0.99, 1.01, NOT_SEEN),
