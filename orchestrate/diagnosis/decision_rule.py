@@ -83,7 +83,7 @@ class Findings:
             Condition(
                 factor <= self.settings.guess_factor,
                 f"The response is largest at {self.resonance:.3g} Hz, {away}.",
-                "None yet: are the times of the record in s, and is the guess one of this beam?",
+                "A tighter clamp, or a guess of this beam; are the times of the record in s?",
             ),
         ]
 

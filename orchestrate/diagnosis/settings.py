@@ -35,7 +35,9 @@ class Settings:
     # response at an end of the sweep over the largest one: above, the resonance is not passed
     end_response: float = 0.7
     samples: float = 14.0  # in a period at the resonance: orders 6 to 12 show a blow
-    guess_factor: float = 2.0  # from the guess's frequencies to a resonance that is another beam's
+    # from the guess's frequencies to a resonance that is another beam's: none is softer than its
+    # slower half, and loose clamps make up to 1.7
+    guess_factor: float = 1.2
 
     # -- what counts as seen: see `even_orders` --
     # order 2 over the noise, over the floor between the orders (which impacts raise too), and over
