@@ -49,6 +49,7 @@ class Findings:
     end_response: float
     resonance: float  # frequency of that largest one, Hz
     guessed: tuple[float, float]  # lower and higher frequency of the guess's halves, Hz
+    samples: float = math.inf  # in a period at the resonance
     settings: Settings = SETTINGS
 
     def record_conditions(self) -> list[Condition]:
@@ -73,9 +74,16 @@ class Findings:
                 "A sweep that passes the resonance, from well below it to well above it.",
             ),
             Condition(
+                self.samples >= self.settings.samples,
+                f"The record has {digits(self.samples, self.settings.samples)} samples in a period "
+                f"of {self.resonance:.3g} Hz, too few to tell what strikes.",
+                "The same sweep with "
+                f"{25.6 * self.resonance:.3g} samples a second or more.",
+            ),
+            Condition(
                 factor <= self.settings.guess_factor,
                 f"The response is largest at {self.resonance:.3g} Hz, {away}.",
-                "None yet: are the times of the record in s, and is the guess one of this beam?",
+                "A tighter clamp, or a guess of this beam; are the times of the record in s?",
             ),
         ]
 
@@ -133,7 +141,8 @@ class Beam:
         """Apply the rule and return one of the four verdicts.
 
         - "undecided" without a usable record: one whose channels are not saturated (`clipped`),
-          whose sweep passes the resonance (`end_response`), which is the guess's (`guess_factor`).
+          whose sweep passes the resonance (`end_response`), which is the guess's (`guess_factor`),
+          with `samples` in its period.
         - "delaminated": in a usable record faces strike (:meth:`.impact_timing.Strikes.word`; with
           one sensor by a guess or two levels, `doubled`); "undecided" if another one, of no lower
           level (`same_level`), contradicts.

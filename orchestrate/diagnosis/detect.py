@@ -126,7 +126,7 @@ def detect(
     Warns
     -----
     UserWarning
-        Where the resonance is a factor of 2 or more from the guess's frequencies.
+        Where the resonance is a factor of 1.2 or more from the guess's frequencies.
 
     Notes
     -----
@@ -142,7 +142,7 @@ def detect(
     >>> import orchestrate
     >>> beam = orchestrate.Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.01)
     >>> sweep = orchestrate.SweptSine(first=40.0, last=56.0, duration=4.0, acceleration=4.0)
-    >>> history = orchestrate.shake(beam.as_bonded(), sweep, sample_rate=600.0)
+    >>> history = orchestrate.shake(beam.as_bonded(), sweep, sample_rate=1200.0)
     >>> answer = orchestrate.detect(history, beam.replace(f1=44.0))
     >>> str(answer.verdict.values)
     'no opening seen'
@@ -189,7 +189,7 @@ def detect_all(
     >>> import orchestrate
     >>> beam = orchestrate.Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.01)
     >>> sweep = orchestrate.SweptSine(first=40.0, last=56.0, duration=6.0, acceleration=4.0)
-    >>> history = orchestrate.shake(beam.as_bonded(), sweep, sample_rate=600.0)
+    >>> history = orchestrate.shake(beam.as_bonded(), sweep, sample_rate=1200.0)
     >>> answers = orchestrate.detect_all({"left": history}, beam.replace(f1=44.0))
     >>> str(answers["left"].verdict.values)
     'no opening seen'
@@ -383,5 +383,6 @@ def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Fin
         end_response=float(max(response[0], response[-1]) / response.max()),
         resonance=evidence.resonance,
         guessed=(low, high),
+        samples=channels.sample_rate / evidence.resonance,
         settings=data.settings,
     )

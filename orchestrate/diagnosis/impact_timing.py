@@ -53,11 +53,10 @@ class TimingSettings:
     opposite: float = -0.95
     together: float = 0.0
     order2: float = 0.045  # over order 1: parts of a percent of the mass make 0.042
-    # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.54 or less;
-    # halves that meet at the stroke's end -1, and a slow one that a moving one strikes up to 2
+    # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.54 or less
+    # before `at_end` of the stroke; a slow half that a moving one strikes up to 2
     softens: float = -0.5
-    softens_end: float = -1.0
-    at_end: float = 0.9  # of the stroke
+    at_end: float = 0.9
     stiffens: float = 0.5
     stiffens_moving: float = 2.0
     spread: float = 0.35  # range of the place, over the stroke: play makes 0.31
@@ -103,7 +102,7 @@ class Strikes:
           strikes" with an order 2 below `order2`.
         - "stop" if the stiffness grows with the stroke, over order 2, by more than `stiffens`
           (`stiffens_moving` where the place moves by `spread`), other than to that of shut faces,
-          or falls by more than `softens` (`softens_end` where it strikes `at_end` of the stroke).
+          or falls by more than `softens` (but where it strikes `at_end` of the stroke: no stop).
         - "faces strike" with a known frequency, up to `stiffer`, unless two sensors hear blows that
           are `together`; else "stop or softer face".
         """
@@ -114,15 +113,14 @@ class Strikes:
             return "base strikes"
         if is_locked and is_blow and self.opposite < settings.opposite:
             return FACES
-        is_end, moves = abs(self.place) >= settings.at_end, self.spread >= settings.spread
-        softens = settings.softens_end if is_end else settings.softens
+        moves, is_end = self.spread >= settings.spread, abs(self.place) >= settings.at_end
         stiffens = settings.stiffens_moving if moves else settings.stiffens
         limits = {
             FAINT: self.heard > settings.heard,
             "not locked": is_locked and self.one_sided >= settings.one_sided,
             "kinks": is_blow,
             "something small strikes": self.order2 >= settings.order2,
-            STOP: softens <= self.stiffens <= stiffens,
+            STOP: (is_end or settings.softens <= self.stiffens) and self.stiffens <= stiffens,
             SOFTER: self.stiffness <= settings.stiffer and not self.opposite > settings.together,
         }
         return next((word for word, holds in limits.items() if not holds), FACES)

@@ -134,11 +134,11 @@ def difference_step(search: Search, name: str) -> float:
     return STEPS[name] * (search.evidence.resonance if name in ("f", "common") else 1.0)
 
 
-def with_distinct_misfits(solutions: Sequence[Solution]) -> list[Solution]:
+def with_distinct_misfits(solutions: Sequence[Solution], ratio: float) -> list[Solution]:
     """Return the minima whose misfits differ, the best first."""
     found: list[Solution] = []
     for one in sorted(solutions, key=lambda solution: solution.misfit):
-        if not found or one.misfit > 1.03 * found[-1].misfit:
+        if not found or one.misfit > ratio * found[-1].misfit:
             found.append(one)
     return found
 

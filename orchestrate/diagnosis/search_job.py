@@ -303,7 +303,7 @@ class SearchJob(Job):
             covariance[: len(values), : len(values)] = known.covariance
         factors = participations_with_errors(search, values, motion, known)
         levels = np.full(MAX_MINIMA, np.nan)
-        different = with_distinct_misfits(found)[:MAX_MINIMA]
+        different = with_distinct_misfits(found, self.data.settings.distinct)[:MAX_MINIMA]
         levels[: len(different)] = [one.misfit for one in different]
         return {
             "end_values": numbers,

@@ -34,7 +34,10 @@ class Settings:
     clipped: float = CLIPPED  # share of a channel's samples at its extremes: it is saturated
     # response at an end of the sweep over the largest one: above, the resonance is not passed
     end_response: float = 0.7
-    guess_factor: float = 2.0  # from the guess's frequencies to a resonance that is another beam's
+    samples: float = 14.0  # in a period at the resonance: orders 6 to 12 show a blow
+    # from the guess's frequencies to a resonance that is another beam's: none is softer than its
+    # slower half, and loose clamps make up to 1.7
+    guess_factor: float = 1.2
 
     # -- what counts as seen: see `even_orders` --
     # order 2 over the noise, over the floor between the orders (which impacts raise too), and over
@@ -81,6 +84,7 @@ class Settings:
     tolerance: float = 1e-3  # relative: a way downhill that gains less in a step ends
     rounds: int = 7  # of the regressions over clouds that follow
     gain: float = 2e-3  # relative: a round that gains less is one with too large a cloud
+    distinct: float = 1.03  # misfit over another from which both count as two minima
     close: float = 1.3  # misfit over the best, up to which the second best minimum goes on too
     # standard deviation of a guessed frequency's logarithm, and the part of the squared deviations
     # by which a misfit counts more

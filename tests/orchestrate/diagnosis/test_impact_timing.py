@@ -17,6 +17,7 @@ from orchestrate.diagnosis.impact_timing import (
     timed_power,
 )
 from orchestrate.diagnosis.order_windows import checked_channels
+from orchestrate.laboratory.analysis.channels import Channels
 from tests.benches import recipe
 from tests.benches.strikers import STRIKERS
 
@@ -40,7 +41,7 @@ WORDS = {  # on both sides of each threshold
         {"stiffens": 2.01, "spread": 0.36},
         {"stiffens": -0.51},
         {"stiffens": -0.51, "place": -0.89},
-        {"stiffens": -1.01, "place": -0.91},
+        {"stiffens": 0.51, "place": -0.91},
         {"stiffens": 0.8, "base": 14.9},
         {"stiffens": 0.8, "stiffness": math.nan, "opposite": 0.9},
     ],
@@ -54,7 +55,7 @@ WORDS = {  # on both sides of each threshold
         {"heard": 10.1, "base": 2.9, "locked": 0.71, "one_sided": 0.51, "blow": 0.18},
         {"order2": 0.046, "stiffens": 0.49, "stiffness": 1.05},
         {"stiffens": -0.49, "stiffness": 0.7},
-        {"stiffens": -0.99, "place": -0.91},
+        {"stiffens": -9.0, "place": -0.91},
         {"stiffens": 1.99, "spread": 0.36},
         {"opposite": -0.01},
         {"heard": 3.5, "opposite": -0.96, "stiffens": 0.8, "order2": 0.01, "stiffness": math.nan},
@@ -88,6 +89,27 @@ def test_noise_alone_is_far_below_a_strike(tail, expected):
     rises = [timed_power([rng.standard_normal(1024)], phase, settings)[0] for _ in range(500)]
     assert np.median(rises) == pytest.approx(expected, abs=0.02)
     assert max(rises) < 0.7 * TIMING.faint
+
+
+def test_lengths_are_parts_of_the_period(monkeypatch):
+    """A blow in each of 62 periods of 100 samples: predicted from 27, in windows of ten, 32 bins."""
+    turns = np.arange(6200) / 100.0
+    face = 2.0 * np.sin(TURN * turns)
+    face[31::100] += 1.0
+    lengths, predicted = [], impact_timing.prediction_error
+
+    def prediction(signal, order):
+        lengths.append((len(signal), order))
+        return predicted(signal, order)
+
+    monkeypatch.setattr(impact_timing, "prediction_error", prediction)
+    names = ("box_acceleration", "acceleration1")
+    values = np.array([np.sin(TURN * turns), face])
+    found = strikes_at(Channels(turns / 45.0, 4500.0, names, values, ""), [1], 45.0, TIMING)
+    assert {order for _, order in lengths} == {27}
+    assert [length for length, _ in lengths] == pytest.approx([1000] * 2 * 5, abs=2)
+    own = (0.31 - 0.75) % 1.0  # of a period after the top of the stroke
+    assert found.place == pytest.approx(math.cos((math.floor(32 * own) + 0.5) / 32 * TURN), abs=0.005)
 
 
 @pytest.mark.parametrize("word", WORDS)
