@@ -111,7 +111,8 @@ class OfRamp(Options):
 
     heading, rank = "the motor's voltage", 1
     eta0: str | None = option(
-        "voltage as no-load speed over omega (default: about the jumps of the averaged theory)",
+        "voltage as no-load speed over omega (default: from below the resonance to past the jump "
+        "up, by the averaged theory)",
         value="FIRST:LAST",
     )
     voltage: str | None = option("the same in V", value="FIRST:LAST")

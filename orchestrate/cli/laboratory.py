@@ -126,14 +126,13 @@ class OfExcitation(Options):
 
     def read_level(self) -> Any:
         """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
-        chosen = [name for name in LEVELS if getattr(self, name) is not None]
-        if len(chosen) != 1:
-            words = option_names(chosen, " and ") or "nothing"
-            raise InputError(f"level: {words} given; expected one of --g and --acceleration")
-        text, unit = getattr(self, chosen[0]), GRAVITY if chosen[0] == "g" else 1.0
+        chosen = self.one_of(*LEVELS)
+        if chosen is None:
+            raise InputError("level: nothing given; expected one of --g and --acceleration")
+        text, unit = getattr(self, chosen), GRAVITY if chosen == "g" else 1.0
         if ":" not in text:
-            return unit * grammar.positive_number(f"--{chosen[0]}", text)
-        pairs = grammar.parse_breakpoints(f"--{chosen[0]}", text)
+            return unit * grammar.positive_number(f"--{chosen}", text)
+        pairs = grammar.parse_breakpoints(f"--{chosen}", text)
         return tuple((frequency, unit * value) for frequency, value in pairs)
 
 

@@ -139,12 +139,12 @@ class OfStored(OfStructure):
 
 def structure_of(flag: str, path: Any, data: xr.Dataset) -> Structure:
     """Return the structure in a stored result's attributes; raise ``InputError`` if none is."""
-    from ..running.provenance import what_it_is
+    from ..running.provenance import describe_dataset
 
     try:
         return Structure.from_attributes(dict(data.attrs))
     except (KeyError, TypeError, ValueError):
-        text = f"{what_it_is(data)}, without a structure; expected an orbit or a branch"
+        text = f"{describe_dataset(data)}, without a structure; expected an orbit or a branch"
         raise InputError(f"{flag} {path}: {text}") from None
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
-from ..laboratory.analysis.order_tracking import dwells
+from ..laboratory.analysis.order_tracking import dwell_windows
 from ..laboratory.pieces import Floats
 from ..laboratory.resonance_curve import CURVE_ORDERS, FACES, FEWEST_POINTS
 from ..laboratory.sampled import Sampled
@@ -198,7 +198,7 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
 def settled_windows(channels: Channels, sine: SteppedSine) -> OrderWindows:
     """Return the windows of a stepped sine in which the motion has settled, one a frequency."""
     phase = sine.phase(channels.time)
-    found = list(dwells(channels, sine, phase))[1:]
+    found = list(dwell_windows(channels, sine, phase))[1:]
     solutions = [
         referred_to_base(channels.box, one, least_squares_matrix(one, channels.sample_rate))
         for one in found

@@ -39,7 +39,7 @@ from ..response.questions import (
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
-from ..running.provenance import what_it_is
+from ..running.provenance import describe_dataset
 from .attractors import (
     ABSENT_ROW,
     ATTRACTOR,
@@ -342,7 +342,7 @@ def mean_state(found: xr.Dataset, frequency: float) -> Floats:
         found.sizes[name] > 1 for name in over if name != "attractor"
     ):
         raise InputError(
-            f"at: {what_it_is(found)}; expected a result of attractors at one frequency"
+            f"at: {describe_dataset(found)}; expected a result of attractors at one frequency"
         )
     there = float(np.ravel(found.frequency)[0])
     if not math.isclose(there, frequency, rel_tol=1e-6):

@@ -21,7 +21,7 @@ from ..response.questions import OF_EXCITATION, Question, excitation_numbers, re
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
-from ..running.provenance import what_it_is
+from ..running.provenance import describe_dataset
 from .bifurcations import KINDS
 from .branch_switching import leaving_branch
 from .continuation import SOLVER_ERRORS
@@ -244,7 +244,7 @@ def require_orbit_dataset(start: Any, several: bool) -> None:
             "is given by its name, as eta=1.5"
         )
     if "node_kind" not in start:
-        raise InputError(f"start: {what_it_is(start)}; expected a dataset of orbit or branch")
+        raise InputError(f"start: {describe_dataset(start)}; expected a dataset of orbit or branch")
     if start["node_kind"].ndim != 1 and not several:
         raise InputError(
             "start: several orbits; expected one (in Python branch.isel(point=0)), or switch="

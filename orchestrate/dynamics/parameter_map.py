@@ -38,7 +38,7 @@ from ..response.respond import DecidedResponse, Response, decisions_from, respon
 from ..response.response_loop import LoopSettings, response_loop
 from ..response.signatures import as_given, question
 from ..response.sweep import HOW_DECIDED
-from ..running.job import FAMILY, Chunk, Fmus, Table, plain
+from ..running.job import FAMILY, Chunk, Fmus, Table, json_data
 from ..running.options import RunOptions
 from .clusters import transient_periods
 from .impacts_after_transient import follow_impacts
@@ -84,7 +84,7 @@ class MapJob(Question):
         """Return the job's parameters for its identity, map parameters under their own names."""
         others = super().parameters()
         del others["given"]
-        return {**{name: plain(value) for name, value in self.given}, **others}
+        return {**{name: json_data(value) for name, value in self.given}, **others}
 
     def items(self) -> Sequence[Point]:
         return self.points

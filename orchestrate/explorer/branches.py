@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
-from ..running.provenance import what_it_is
+from ..running.provenance import describe_dataset
 from .sweep_data import READING
 
 
@@ -21,7 +21,7 @@ def branch_json(found: xr.Dataset | None) -> dict[str, Any]:
         return {"branches": [], "bifurcations": []}
     if found.attrs.get("over") != "eta":
         over = f" over {found.attrs['over']}" if "over" in found.attrs else ""
-        text = f"{what_it_is(found)}{over}; expected a result of orchestrate.branch over eta"
+        text = f"{describe_dataset(found)}{over}; expected a result of orchestrate.branch over eta"
         raise InputError(f"branches: {text}")
     try:
         drawn = {"branches": branch_lines(found), "bifurcations": bifurcation_points(found)}

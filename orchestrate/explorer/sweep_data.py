@@ -19,7 +19,7 @@ from ..lazy import xr
 from ..model import Excitation, Structure
 from ..model.ranges import PUSHES
 from ..running.job import refuse_unknown
-from ..running.provenance import what_it_is
+from ..running.provenance import describe_dataset
 from ..running.store import load
 from ..units import Units
 
@@ -165,7 +165,7 @@ def check_sweep(data: xr.Dataset) -> str:
     missing = needed - {str(name) for name in data.variables}
     direction = str(data.attrs.get("direction"))
     if missing or not {*SETTINGS, "start", "m1"} <= set(data.attrs):
-        raise InputError(f"result: {what_it_is(data)}; {EXPECTED}")
+        raise InputError(f"result: {describe_dataset(data)}; {EXPECTED}")
     if not set(SWEPT) & {str(name) for name in data.impacts_per_period.dims}:
         raise InputError(f"sweep over {data.impacts_per_period.dims[-1]}: {EXPECTED}")
     if direction not in ("up", "down", "both", "given"):

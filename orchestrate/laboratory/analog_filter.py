@@ -184,7 +184,7 @@ def anti_aliasing(sample_rate: float) -> tuple[Complexes, Complexes]:
     return np.asarray(zeros, complex), np.asarray(poles, complex)
 
 
-def in_series(parts: Sequence[tuple[Complexes, Complexes]]) -> AnalogFilter:
+def filters_in_series(parts: Sequence[tuple[Complexes, Complexes]]) -> AnalogFilter:
     """Return one analog filter that acts as filters one after another."""
     zeros, poles = (np.concatenate(found) for found in zip(*parts, strict=True))
     return AnalogFilter.from_zpk(zeros, poles)

@@ -28,7 +28,7 @@ from .conversion import (
     plain_unit,
 )
 from .record import CHANNELS, SHORT_NAMES
-from .record_checks import ascends
+from .record_checks import is_ascending
 from .record_files import read_columns
 
 NOT_READ = "not read"
@@ -155,7 +155,7 @@ def quantity_of(values: Any, text: str, unit: str, role: str) -> str:
         return "time"
     plain = plain_unit(unit)
     known = [name for name, units in QUANTITIES.items() if plain in units]
-    return known[0] if known else "counter" if ascends(values) else "unknown"
+    return known[0] if known else "counter" if is_ascending(values) else "unknown"
 
 
 def write_setup(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:

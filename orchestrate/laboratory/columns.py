@@ -32,7 +32,7 @@ from .conversion import (
 from .missing_units import check_units, check_volts, option_of
 from .pieces import Floats
 from .record import CHANNELS, FORCES, SHORT_NAMES
-from .record_checks import ascends, first_hole, implausible_times
+from .record_checks import first_skipped_row, implausible_times, is_ascending
 from .signals import HERTZ, checked
 
 Named: TypeAlias = "Mapping[str, str | int] | Sequence[str | int] | None"  # columns by a caller
@@ -360,7 +360,7 @@ def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
     if "time" in wanted:
         numbers = sorted({0, *numbers})  # a time that is a text is refused later
     else:
-        numbers = [i for i in numbers if not ascends(table.columns[i].values)]
+        numbers = [i for i in numbers if not is_ascending(table.columns[i].values)]
     names = (table.columns[i].name.lower() for i in numbers)
     stems = [name[:-1] for name in names if name.endswith(("x", "y", "z"))]
     some = dict(zip(wanted, (one.name for one in table.columns), strict=False))
@@ -377,7 +377,7 @@ def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
 def check_counters(table: Columns, places: Mapping[str, int]) -> None:
     """Check that no other column is a counter that misses samples."""
     for i, column in enumerate(table.columns):
-        row = None if i in places.values() or column.text else first_hole(column.values)
+        row = None if i in places.values() or column.text else first_skipped_row(column.values)
         if row is not None:
             text = f"{column.values[row]:.9g} after {column.values[row - 1]:.9g}"
             expected = "expected equal steps: samples are lost, cut the record there"
@@ -412,7 +412,7 @@ def unread_columns(table: Columns, places: Mapping[str, int]) -> list[int]:
     return [
         i
         for i, one in enumerate(table.columns)
-        if not (i in places.values() or one.text or ascends(one.values))
+        if not (i in places.values() or one.text or is_ascending(one.values))
         and plain_unit(one.unit) in units
     ]
 

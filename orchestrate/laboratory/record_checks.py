@@ -78,13 +78,13 @@ def constant_part(values: Floats, other: Floats) -> slice | None:
     return part if other[part].std() > 0.1 * other.std() else None
 
 
-def ascends(values: Floats) -> bool:
+def is_ascending(values: Floats) -> bool:
     """Return whether values ascend from first to last, as times and counters do."""
     steps = np.diff(values)
     return bool((steps >= 0.0).all() and (steps > 0.0).any())
 
 
-def first_hole(values: Floats) -> int | None:
+def first_skipped_row(values: Floats) -> int | None:
     """Return the row where a counter (nine equal steps of ten) skips numbers, or None."""
     steps = np.diff(values)
     usual = float(np.median(steps)) if len(steps) else 0.0

@@ -291,10 +291,12 @@ def read_columns(path: Path, *arguments: object) -> Columns:
     check_file(path)
     reader, keep = READERS[kind], kind not in COMPILED
     content = read_in_process(reader, path, *arguments, expected=EXPECTED[kind], keep=keep)
-    columns = [Column(**{n: plain(one) for n, one in each.items()}) for each in content["columns"]]
+    columns = [
+        Column(**{n: in_one_line(one) for n, one in each.items()}) for each in content["columns"]
+    ]
     return Columns(**content | {"path": str(path), "columns": columns})
 
 
-def plain(value: Any) -> Any:
+def in_one_line(value: Any) -> Any:
     """Return a text as a short line without control characters, anything else as it is."""
     return printable(value, MOST_LETTERS) if isinstance(value, str) else value

@@ -13,9 +13,9 @@ from ..errors import InputError
 from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer, checked_word
-from ..model.ranges import ADDED, STRUCTURE, Quantity, plain
+from ..model.ranges import ADDED, STRUCTURE, Quantity, as_scalar
 from ..running.job import refuse_family, refuse_unknown
-from .analog_filter import AnalogFilter, Cells, Floats, anti_aliasing, in_series, low_pass
+from .analog_filter import AnalogFilter, Cells, Floats, anti_aliasing, filters_in_series, low_pass
 from .pieces import Pieces
 from .reconstruction import Motion, SmoothParts, smooth_parts, steady_acceleration
 from .record import ACCELERATIONS, CHANNELS, FORCES, record
@@ -95,7 +95,7 @@ class Sensor:
             resolution=Quantity("resolution", "m/s2", "", 0.0, 1e12),
         )
         put(self, "participation", PARTICIPATION.check(self.participation))
-        if not isinstance(plain(self.antialiasing), (bool, np.bool_)):
+        if not isinstance(as_scalar(self.antialiasing), (bool, np.bool_)):
             text = "expected true or false"
             raise InputError(f"antialiasing = {self.antialiasing!r}: {text}")
 
@@ -124,7 +124,7 @@ class Sensor:
         parts = [low_pass(self.kind, self.order, self.bandwidth)]
         if self.antialiasing:
             parts.append(anti_aliasing(self.rate))
-        return in_series(parts)
+        return filters_in_series(parts)
 
     def digitised(self, values: Floats, channel: int) -> Floats:
         """Add a channel's own noise to filtered values, m/s2; limit and round them."""
@@ -223,13 +223,19 @@ def sensor_reading(parts: SmoothParts, motion: Motion, name: str, sensor: Sensor
     if motion.drives in FORCES:  # the box is at rest
         box = replace(box, derivatives=0.0 * box.derivatives)
     if name == "acceleration1":
-        cells, jumps = at_place(parts.mass1, box, share), -motion.impulses / structure.m1
+        cells, jumps = (
+            at_sensor(parts.mass1, box, share),
+            -motion.impulses / structure.m1,
+        )
     else:
-        cells, jumps = at_place(parts.mass2, box, share), motion.impulses / structure.m2
+        cells, jumps = (
+            at_sensor(parts.mass2, box, share),
+            motion.impulses / structure.m2,
+        )
     return sensor.analog_filter().respond(cells, motion.impact_times, share * jumps, parts.times)
 
 
-def at_place(mass: Cells, box: Cells, participation: float) -> Cells:
+def at_sensor(mass: Cells, box: Cells, participation: float) -> Cells:
     """Return the acceleration at a sensor's place: that of the box and a part of the mass's."""
     if participation == 1.0:
         return mass

@@ -60,7 +60,7 @@ class Quantity:
 
     def check(self, value: Any) -> float:
         """Return ``value`` as a float; raise ``InputError`` if it is no number or out of range."""
-        number = plain(value)
+        number = as_scalar(value)
         if isinstance(number, str):
             with suppress(ValueError):
                 number = number_with_unit(self.name, number)
@@ -96,14 +96,14 @@ def number_with_unit(name: str, text: str) -> float | None:
         raise ValueError(text) from None
 
 
-def plain(value: Any) -> Any:
+def as_scalar(value: Any) -> Any:
     """Return a zero-dimensional array's value as a Python scalar; anything else unchanged."""
     return value.item() if getattr(value, "shape", None) == () else value
 
 
 def checked_flag(name: str, value: Any) -> bool:
     """Return ``value`` as True or False; raise ``InputError`` naming it if it is neither."""
-    flag = plain(value)
+    flag = as_scalar(value)
     if not isinstance(flag, bool):
         raise InputError(f"{name} = {value!r}: expected true or false")
     return flag

@@ -79,7 +79,7 @@ SIGNS = {"+-": "±", "<=": "≤", ">=": "≥"}
 MEANT = {"nan": "not found", "True": "yes", "False": "no", "inf": "without bound"}
 
 
-def plain(text: str) -> str:
+def in_words(text: str) -> str:
     """Return a sentence with nan, True, inf and +- replaced by words and signs."""
     text = re.sub(rf"\b({'|'.join(MEANT)})\b", lambda match: MEANT[match[0]], text)
     for sign, better in SIGNS.items():

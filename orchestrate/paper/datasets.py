@@ -268,7 +268,7 @@ class Datasets:
     def basin(self) -> xr.Dataset:
         """Return the basins in gap and gap velocity around the two attractors of a frequency."""
         found = between(self.attractors(), 1.07, 1.37)
-        at = found.isel(eta=most_even(found))
+        at = found.isel(eta=index_of_most_even_shares(found))
         middle = np.nanmean(at.state.values[np.argsort(-at.share.values, kind="stable")[:2]], 0)
         eta, side = float(at.eta), self.size.basin
         reach = 3.0 * float(self.up("elastic").xi_rel_max.sel(eta=eta, method="nearest"))
@@ -304,7 +304,7 @@ class Datasets:
 ALIKE = ((1, 1), (2, 2), (2, 2.2))  # mu, kappa
 
 
-def most_even(data: xr.Dataset, apart: float = 0.2) -> int:
+def index_of_most_even_shares(data: xr.Dataset, apart: float = 0.2) -> int:
     """Return the index of the eta at which two periodic attractors share starts most evenly."""
     frequent = np.argsort(-data.share.values, axis=1, kind="stable")[:, :2]
     names = "share", "impacts_per_period", "multiplicity"

@@ -142,7 +142,7 @@ class Series:
     @cached_property
     def units(self) -> NDArray[np.float64]:
         """Return the units of displacements and velocities at each point, shape (n, 2)."""
-        return table_of(self.points, lambda point: point.scale[[0, -1]], 2)
+        return point_rows(self.points, lambda point: point.scale[[0, -1]], 2)
 
     @property
     def scales(self) -> NDArray[np.float64]:
@@ -184,14 +184,18 @@ def make_series(
     points = Points(make, np.arange(len(varied[name])))
     given = varied.get("eta") or excitation.get("eta")
     if given is None:
-        etas = table_of(points, lambda point: (point.excitation.eta(point.structure),), 1)[:, 0]
+        etas = point_rows(points, lambda point: (point.excitation.eta(point.structure),), 1)[:, 0]
     else:
         etas = np.full(len(points), given)
-    pairs = table_of(points, lambda each: (each.excitation.frequency, each.excitation.amplitude), 2)
+    pairs = point_rows(
+        points, lambda each: (each.excitation.frequency, each.excitation.amplitude), 2
+    )
     return Series(name, varied[name], points, etas, *pairs.T)
 
 
-def table_of(points: Points, row: Callable[[Point], ArrayLike], width: int) -> NDArray[np.float64]:
+def point_rows(
+    points: Points, row: Callable[[Point], ArrayLike], width: int
+) -> NDArray[np.float64]:
     """Return ``row`` of each point as an array, shape (n, width)."""
     return np.fromiter(map(row, points), np.dtype((float, (width,))), len(points))
 

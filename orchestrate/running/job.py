@@ -114,7 +114,7 @@ class Job(ABC):
     def parameters(self) -> dict[str, Any]:
         """Return the job's fields as JSON data for its identity; long lists summarized."""
         return {
-            field.name: plain(getattr(self, field.name))
+            field.name: json_data(getattr(self, field.name))
             for field in fields(self)
             if field.name != "name"
         }
@@ -158,12 +158,12 @@ def last_entries(table: Table) -> Table:
     return {name: values[-1:].copy() for name, values in table.items()}
 
 
-def plain(value: Any) -> Any:
+def json_data(value: Any) -> Any:
     """Convert a value to JSON data recursively; long number lists become ends, count and digest."""
     if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+        return {field.name: json_data(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
-        return {str(key): plain(part) for key, part in value.items()}
+        return {str(key): json_data(part) for key, part in value.items()}
     if isinstance(value, np.generic):
         return value.item()
     if isinstance(value, (tuple, list, np.ndarray)):
@@ -177,7 +177,7 @@ def summarize_list(values: Any) -> Any:
     if len(parts) <= MAX_LISTED or not all(
         isinstance(part, (int, float, np.number)) for part in parts
     ):
-        return [plain(part) for part in parts]
+        return [json_data(part) for part in parts]
     numbers = np.asarray(parts, dtype=float)
     summary = {"first": float(numbers[0]), "last": float(numbers[-1]), "count": len(numbers)}
     steps = np.diff(numbers)

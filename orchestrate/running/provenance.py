@@ -30,7 +30,7 @@ def with_provenance(
     return dataset.assign_attrs({**attributes, **dataset.attrs})
 
 
-def what_it_is(data: xr.Dataset) -> str:
+def describe_dataset(data: xr.Dataset) -> str:
     """Return what a dataset holds, for messages: a result of attractors, or a dataset over time."""
     if kind := data.attrs.get("question") or data.attrs.get("analysis"):
         return f"a result of {kind}"

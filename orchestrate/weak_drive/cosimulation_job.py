@@ -29,7 +29,7 @@ from ..model.arguments import Count, Positive
 from ..response.labels import Variable, variable, yes_or_no
 from ..response.questions import Question
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
-from ..running.job import Chunk, Fmus, Table, brief, plain
+from ..running.job import Chunk, Fmus, Table, brief, json_data
 from .connection import (
     MOTION,
     PUSHES,
@@ -166,7 +166,7 @@ class CosimulateJob(CoupledJob, Question):
         values |= {"parameters": dict(self.start_values)}
         values |= {name: getattr(self, name) for name in ("duration", "step", "record", "start")}
         texts = (f"{name}={value!r}" for name, value in values.items() if value)
-        structure = "None" if self.alone else f"Structure{brief(plain(self.structure))}"
+        structure = "None" if self.alone else f"Structure{brief(json_data(self.structure))}"
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
     def steps(self) -> int:

@@ -12,7 +12,7 @@ from ...errors import InputError
 from ...lazy import xr
 from ...model.arguments import checked_word
 from ...response.labels import Variable, variable
-from ...running.provenance import what_it_is
+from ...running.provenance import describe_dataset
 from ..columns import column_taken
 from ..pieces import Floats
 
@@ -42,7 +42,7 @@ class Channels:
         if not isinstance(record, xr.Dataset) or "time" not in record.coords:
             expected = "expected an xarray.Dataset over time with box_acceleration, acceleration1"
             dataset = isinstance(record, xr.Dataset)
-            what = what_it_is(record) if dataset else type(record).__name__
+            what = describe_dataset(record) if dataset else type(record).__name__
             raise InputError(f"record: {what}, without time; {expected}")
         variables = {name: channel_variable(record, name) for name in NAMES_IN_RESULTS}
         present = {name: array for name, array in variables.items() if array is not None}
@@ -55,7 +55,7 @@ class Channels:
         if time.ndim != 1 or len(time) < 16:
             raise InputError(f"record: {time.size} samples; expected at least 16")
         rate = sample_rate(time, record.attrs.get("sample_rate"))
-        values = np.stack([finite(name, array, time) for name, array in present.items()])
+        values = np.stack([checked_finite(name, array, time) for name, array in present.items()])
         title, box_label = str(record.attrs.get("title", "record")), column_taken(record.attrs, BOX)
         return cls(time, rate, tuple(present), values, title, box_label)
 
@@ -107,7 +107,7 @@ def sample_rate(time: Floats, stated: Any) -> float:
     return number
 
 
-def finite(name: str, array: xr.DataArray, time: Floats) -> Floats:
+def checked_finite(name: str, array: xr.DataArray, time: Floats) -> Floats:
     """Return a channel's values as floats; raise if one is not finite."""
     values = np.asarray(array.values, dtype=float)
     if not np.isfinite(values).all():

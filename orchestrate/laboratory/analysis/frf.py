@@ -19,7 +19,7 @@ from .channels import (
     attributes,
     averaging,
     channel_coordinate,
-    finite,
+    checked_finite,
     frequency_coordinate,
 )
 from .knocks import Knocks
@@ -132,7 +132,7 @@ def driving_channel(record: xr.Dataset, channels: Channels) -> tuple[str, Floats
         lacking = " and ".join(given) or steady
         text = f"expected {BOX} over time, in m/s2, or one of force1 and force2, in N"
         raise InputError(f"record: {lacking}; {text}")
-    return given[0], finite(given[0], record[given[0]], channels.time)
+    return given[0], checked_finite(given[0], record[given[0]], channels.time)
 
 
 def frf_variables(

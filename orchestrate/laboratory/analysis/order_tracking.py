@@ -130,9 +130,9 @@ def fit_windows(
     measured = phase is None
     angle = measured_phase(channels) if measured else given_phase(channels, phase)
     if isinstance(phase, SteppedSine):
-        windows = list(dwells(channels, phase, angle))
+        windows = list(dwell_windows(channels, phase, angle))
     else:
-        windows = list(divide(channels, angle, periods, overlap, smooth=measured))
+        windows = list(sliding_windows(channels, angle, periods, overlap, smooth=measured))
     if not windows:
         turns = abs(float(angle[-1] - angle[0])) / TURN
         raise InputError(
@@ -233,7 +233,7 @@ def moves_as_sine(
 # -- windows --------------------------------------------------------------------------------------
 
 
-def divide(
+def sliding_windows(
     channels: Channels, phase: Floats, periods: float, overlap: float, smooth: bool
 ) -> Iterator[Window]:
     """Yield the windows of a record, `periods` periods each, overlapping by a part of that."""
@@ -249,7 +249,7 @@ def divide(
         yield window(channels, phase, slice(int(begin), int(end)), smooth)
 
 
-def dwells(channels: Channels, stepped: SteppedSine, phase: Floats) -> Iterator[Window]:
+def dwell_windows(channels: Channels, stepped: SteppedSine, phase: Floats) -> Iterator[Window]:
     """Yield a stepped sine's windows: the measured part of each frequency recorded whole."""
     step = 0.5 / channels.sample_rate
     ends = stepped.measured_times()

@@ -108,7 +108,7 @@ def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats,
     # a peak between samples is at most 0.3 % higher
     parts = max(1, math.ceil(40 * frequency / rate))
     # at rest a sample before the record and a sample after it, straight as elsewhere
-    base = straight_between(np.pad(channels.values, ((0, 0), (1, 1))), parts)
+    base = with_interpolated_points(np.pad(channels.values, ((0, 0), (1, 1))), parts)
     end = base.shape[1] - 1
     # one period of the free vibration after the record has its largest value
     padded = np.pad(base, ((0, 0), (0, math.ceil(parts * rate / frequency))))
@@ -116,7 +116,7 @@ def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats,
     return response[:, : end + 1].max(axis=1), response[:, end:].max(axis=1)
 
 
-def straight_between(values: Floats, parts: int) -> Floats:
+def with_interpolated_points(values: Floats, parts: int) -> Floats:
     """Insert points on the straight lines between samples."""
     if parts == 1:
         return values

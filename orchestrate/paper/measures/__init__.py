@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from ..claims import NO, PARTLY, Claim, judge, plain
+from ..claims import NO, PARTLY, Claim, in_words, judge
 from ..datasets import Datasets
 from . import equations, influence, limits, peaks, setup, windows
 
@@ -27,6 +27,9 @@ def check_claims(claims: Iterable[Claim], data: Datasets) -> list[dict[str, str]
         measured = find_measure(claim.measure)(data, claim, **claim.keywords())
         verdict = judge(measured.parts, data.size.decides or not claim.full)
         names = ("section", "text", "printed", "how", "tolerance")
-        row = {**{name: getattr(claim, name) for name in names}, "found": plain(measured.found)}
+        row = {
+            **{name: getattr(claim, name) for name in names},
+            "found": in_words(measured.found),
+        }
         rows.append({**row, "verdict": verdict, "why": claim.why * (verdict in (NO, PARTLY))})
     return rows

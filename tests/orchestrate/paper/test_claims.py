@@ -7,7 +7,16 @@ import pytest
 import xarray as xr
 
 from orchestrate.dynamics.lyapunov import CHAOTIC, PERIODIC
-from orchestrate.paper.claims import NO, PARTLY, UNDECIDED, YES, Claim, judge, plain, read_table
+from orchestrate.paper.claims import (
+    NO,
+    PARTLY,
+    UNDECIDED,
+    YES,
+    Claim,
+    in_words,
+    judge,
+    read_table,
+)
 from orchestrate.paper.curves import CONTACT, FLIGHT
 from orchestrate.paper.measures import check_claims, find_measure, limits
 from orchestrate.paper.resolution import QUICK
@@ -47,7 +56,7 @@ def test_the_rule(parts, expected):
 
 
 def test_what_takes_the_full_resolution_is_not_decided_at_another():
-    assert plain("none: True; width nan +- 0.1") == "none: yes; width not found ± 0.1"
+    assert in_words("none: True; width nan +- 0.1") == "none: yes; width not found ± 0.1"
     numbers = {
         "section": "3",
         "text": "",

@@ -7,7 +7,7 @@ import pytest
 
 from orchestrate.running import identity
 from orchestrate.running.identity import code_digests, difference, imported_names
-from orchestrate.running.job import brief, plain
+from orchestrate.running.job import brief, json_data
 
 from .sums import Squares
 
@@ -74,10 +74,10 @@ def test_an_edit_of_what_decides_numbers_is_seen_and_no_other(ours, file, text, 
 
 def test_a_long_list_is_told_by_its_ends_and_a_digest():
     etas = np.arange(100, 8001) / 1000.0
-    told = plain(tuple(etas))
+    told = json_data(tuple(etas))
     assert (told["first"], told["last"], told["count"], told["step"]) == (0.1, 8.0, 7901, 0.001)
     etas[17] += 1e-15
-    assert plain(etas)["sha256"] != told["sha256"]
+    assert json_data(etas)["sha256"] != told["sha256"]
     assert brief(told) == "0.1 ... 8 by 0.001 (7901 values)"
 
 
@@ -87,7 +87,7 @@ def test_structures_are_told_by_their_fields():
         a: float
         b: tuple
 
-    assert plain(Pair(1.0, (2.0, 3.0))) == {"a": 1.0, "b": [2.0, 3.0]}
+    assert json_data(Pair(1.0, (2.0, 3.0))) == {"a": 1.0, "b": [2.0, 3.0]}
 
 
 def test_the_name_of_a_result_decides_nothing():
