@@ -138,11 +138,6 @@ class ClosedForm:
         """Return the separation speeds e(v) v after impacts (15) by their closing speeds."""
         return self.e * closing / (1.0 + self.e_slope * closing)
 
-    def parting_rate(self, closing: Floats) -> Floats:
-        """Return the derivative of :meth:`parting` by the closing speed, e/(1 + e_slope v)^2."""
-        factor = 1.0 / (1.0 + self.e_slope * closing)
-        return self.e * factor * factor
-
     @cached_property
     def numbers(self) -> Floats:
         """Return the memory of ``kernels.orbits`` up to its tables."""

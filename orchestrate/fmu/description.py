@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import io
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
@@ -15,6 +16,7 @@ from ..errors import InputError
 from .archive import MAX_BYTES, check_identifier, checked_names
 from .unit_names import Unit, unit_by_name
 
+QUIET = 2.0  # s after a change of a file in which its times may not tell of another one
 SI_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -96,6 +98,17 @@ def units_of(xml: Any) -> dict[str, Unit]:
 
 
 _known: dict[str, Description] = {}  # by digest: validation takes long
+_digests: dict[tuple[float, ...], str] = {}  # by what changes with a file
+
+
+def digest_of(path: Path) -> str:
+    """Return the digest of a file's bytes, which are read again if the file may have changed."""
+    seen = path.stat()
+    key = seen.st_dev, seen.st_ino, seen.st_size, seen.st_mtime_ns, seen.st_ctime_ns
+    digest = _digests.get(key) or hashlib.sha256(path.read_bytes()).hexdigest()
+    if time.time() - max(seen.st_mtime, seen.st_ctime) > QUIET:
+        _digests[key] = digest
+    return digest
 
 
 def read_description(path: Path) -> Description:
@@ -103,11 +116,12 @@ def read_description(path: Path) -> Description:
     size = path.stat().st_size
     if size > MAX_BYTES:  # packed, it is smaller than unpacked
         raise ValueError(f"{size} bytes, at most {MAX_BYTES} expected")
-    data = path.read_bytes()
-    digest = hashlib.sha256(data).hexdigest()
+    digest = digest_of(path)
     if digest not in _known:
         import fmpy
 
+        data = path.read_bytes()
+        digest = hashlib.sha256(data).hexdigest()
         names = checked_names(data)
         xml = fmpy.read_model_description(io.BytesIO(data))
         co_simulation = xml.coSimulation

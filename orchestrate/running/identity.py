@@ -99,6 +99,7 @@ def first_difference(a: Any, b: Any, name: str) -> str:
 # -- the code that makes a result -----------------------------------------------------------------
 
 
+@functools.cache
 def code_digests(module: str) -> dict[str, str]:
     """Return digests, by name, of a package's module and of all modules that it imports in turn."""
     digests: dict[str, str] = {}

@@ -1,11 +1,14 @@
 """An FMU is described as it is now, and what is none is refused in one line."""
 
+import os
 import shutil
+import time
 
 import pytest
 
 from orchestrate.errors import InputError
 from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, describe, find
+from orchestrate.fmu.description import QUIET, digest_of
 
 from .altered import altered_fmu
 
@@ -64,3 +67,21 @@ def test_an_fmu_that_changes_is_described_anew(tmp_path, any_fmu):
     assert describe(path).name == OSCILLATOR
     shutil.copy(find(MOTOR_SHAKER, any_fmu.parent.name).path, path)
     assert describe(path).name == MOTOR_SHAKER
+
+
+def test_a_file_is_read_again_only_if_it_may_have_changed(tmp_path, monkeypatch):
+    """Another content of the same size and time is noticed, just after a change or long after."""
+    path, now, clock = tmp_path / "a.fmu", time.time(), [0.0]
+    monkeypatch.setattr(time, "time", lambda: now + clock[0])
+    digests, old = [], now - 100.0
+    for content, later in ((b"one", 0.0), (b"two", 0.0), (b"six", 1e3 * QUIET), (b"ten", 0.0)):
+        clock[0] += later
+        time.sleep(0.02 * bool(clock[0]))  # the clock of files is coarse
+        path.write_bytes(content)
+        os.utime(path, (old, old))
+        digests.append(digest_of(path))
+    assert len(set(digests)) == 4
+    clock[0] += 1e3
+    assert digest_of(path) == digests[-1]
+    monkeypatch.setattr(type(path), "read_bytes", lambda _: pytest.fail("read again"))
+    assert digest_of(path) == digests[-1]

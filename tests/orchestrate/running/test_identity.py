@@ -30,13 +30,18 @@ def package(folder, **sources):
     return folder
 
 
+def forget():
+    """What is read once in a process is read again."""
+    for function in (identity.read_source, identity.source_file, identity.code_digests):
+        function.cache_clear()
+
+
 @pytest.fixture
 def ours(tmp_path, monkeypatch):
     """A small package in place of ours."""
     monkeypatch.setattr(identity, "PACKAGE", tmp_path / "small")
     monkeypatch.setattr(identity, "ROOT", "small")
-    identity.read_source.cache_clear()
-    identity.source_file.cache_clear()
+    forget()
     yield package(
         tmp_path / "small",
         sweep="from . import tools\nfrom .running import pool\n",
@@ -45,8 +50,7 @@ def ours(tmp_path, monkeypatch):
         other="",
         running__pool="",
     )
-    identity.read_source.cache_clear()
-    identity.source_file.cache_clear()
+    forget()
 
 
 def test_code_is_the_closure_of_imports(ours):
@@ -67,7 +71,7 @@ def test_an_edit_of_what_decides_numbers_is_seen_and_no_other(ours, file, text, 
     (ours / "tools.c").write_text("int limit = 1;")
     before = code_digests("small.sweep")
     (ours / file).write_text(text)
-    identity.read_source.cache_clear()
+    forget()
     line = difference({"code": before}, {"code": code_digests("small.sweep")})
     assert line == (f"{told} changed since" if told else "")
 
