@@ -1,47 +1,39 @@
 """Break one module: ``python -m tests.mutation MODULE TABLE.csv --budget 100 --seed 1``.
 
-Each breakage is written into a copy of the tree, where a fork that has loaded the libraries already
-runs the module's tests. What was noticed once stays noticed; what was not is asked again when the
-tests have changed.
+Each breakage is made in a fork that has loaded the module and its tests already, see
+:mod:`.in_memory`; what cannot be made there is "unchanged" and is not judged. What was noticed once
+stays noticed; what was not is asked again when the tests have changed.
 """
 
 import argparse
 import csv
 import hashlib
+import importlib
 import os
 import random
 import resource
-import shutil
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-import hypothesis  # noqa: F401  # what the forks share
-import mpmath  # noqa: F401
-import netCDF4  # noqa: F401
 import pytest
-import scipy.signal  # noqa: F401
-import scipy.stats  # noqa: F401
-import xarray  # noqa: F401
 
 from .breakages import breakages
+from .in_memory import become
 from .subjects import SUBJECTS
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 3.0  # times the unbroken tests' time on a processor
 OPTIONS = ["-x", "-q", "-n", "0", "-p", "no:cacheprovider"]
-OWN = ("tests", "fmu_src", "orchestrate", "tools")
-NOTICED, SURVIVED = "noticed", "survived"
+NOTICED, SURVIVED, UNCHANGED = "noticed", "survived", "unchanged"
+ENDS = {0: SURVIVED, 77: UNCHANGED}  # by how a fork ends
 COLUMNS = ("line", "broken", "outcome", "tests", "by")
 
 
-def copy_of_the_tree(folder):
-    """Copy what the tests need; a broken kernel makes FMUs of its own there."""
-    for name in (*OWN, "examples", "docs", "build"):
-        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("pyproject.toml", "LICENSE", "README.md"):
-        shutil.copy(ROOT / name, folder)
+def loaded(file):
+    """The module of a source file."""
+    return importlib.import_module(file.removesuffix(".py").replace("/", "."))
 
 
 class FirstFailure:
@@ -55,32 +47,34 @@ class FirstFailure:
             os.write(self.heard, report.nodeid.encode())
 
 
-def run_tests(folder, tests, seconds, heard):
-    """Run tests in a folder for so long on a processor; never returns."""
+def run_tests(module, source, tests, seconds, heard):
+    """Run tests on a module with another source, for so long on a processor; never returns."""
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
-    os.chdir(folder)
     quiet = os.open(os.devnull, os.O_WRONLY)
     os.dup2(quiet, 1)
     os.dup2(quiet, 2)
-    sys.dont_write_bytecode = True
-    for name in [name for name in sys.modules if name.split(".")[0] in OWN]:
-        del sys.modules[name]
-    sys.path[:] = [str(folder), *(part for part in sys.path if part not in ("", str(ROOT)))]
-    present = [name for name in tests if Path(name).exists()]
-    os._exit(int(pytest.main([*OPTIONS, *present], plugins=[FirstFailure(heard)])))
+    code = 1
+    try:
+        before = Path(module.__file__).read_text()
+        if source != before and not become(module, before, source):
+            os._exit(77)
+        code = int(pytest.main([*OPTIONS, *tests], plugins=[FirstFailure(heard)]))
+    finally:
+        os._exit(code)
 
 
-def outcome(folder, tests, seconds=1800):
-    """Return whether tests fail in a folder or take too long, their time on a processor, and which
-    test fails first: empty where it is the import, or time runs out.
+def outcome(module, source, tests, seconds=1800):
+    """Return what becomes of a source, its tests' time on a processor, and which test fails first:
+    empty where time runs out.
     """
     with tempfile.TemporaryFile() as heard:
         child = os.fork()
         if child == 0:
-            run_tests(folder, tests, seconds, heard.fileno())
+            run_tests(module, source, tests, seconds, heard.fileno())
         _, status, used = os.wait4(child, 0)
         heard.seek(0)
-        return status != 0, used.ru_utime + used.ru_stime, heard.read().decode()
+        end = ENDS.get(os.waitstatus_to_exitcode(status), NOTICED)
+        return end, used.ru_utime + used.ru_stime, heard.read().decode()
 
 
 def digest(tests):
@@ -108,27 +102,22 @@ def break_module(module, table, budget, seed, seconds, again, thresholds):
     if budget and budget < len(chosen):
         chosen = random.Random(seed).sample(chosen, budget)
     token = digest(tests)
-    with tempfile.TemporaryDirectory() as home:
-        folder = Path(home).resolve()
-        copy_of_the_tree(folder)
-        target = folder / module
-        source = target.read_text()
-        failed, usual, _ = outcome(folder, tests)
-        assert not failed, f"{module}: its tests fail before it is broken"
-        target.write_text(f"raise RuntimeError\n{source}")
-        assert outcome(folder, tests)[0], f"{module}: its tests do not import it"
-        for one in chosen:
-            key = (one.text, one.broken)
-            old = before.get(key)
-            if old and (old["outcome"] == NOTICED or (old["tests"] == token and not again)):
-                continue
-            target.write_text(one.source)
-            failed, _, by = outcome(folder, tests, int(10.0 + PATIENCE * usual))
-            result = NOTICED if failed else SURVIVED
-            before[key] = dict(zip(COLUMNS, (*key, result, token, by), strict=True))
-            write(table, before.values())
-            if seconds and time.monotonic() - begun > seconds:
-                break
+    for name in tests:
+        loaded(name)
+    assert module.removesuffix(".py").replace("/", ".") in sys.modules, f"{module}: not tested"
+    own = loaded(module)
+    end, usual, by = outcome(own, (ROOT / module).read_text(), tests)
+    assert end == SURVIVED, f"{module}: {by} fails before it is broken"
+    for one in chosen:
+        key = (one.text, one.broken)
+        old = before.get(key)
+        if old and (old["outcome"] == NOTICED or (old["tests"] == token and not again)):
+            continue
+        end, _, by = outcome(own, one.source, tests, int(10.0 + PATIENCE * usual))
+        before[key] = dict(zip(COLUMNS, (*key, end, token, by), strict=True))
+        write(table, before.values())
+        if seconds and time.monotonic() - begun > seconds:
+            break
     keys = [(one.text, one.broken) for one in chosen]
     return [before[key]["outcome"] for key in keys if key in before]
 

@@ -20,6 +20,17 @@ def test_a_fit_needs_five_windows_below_seven_tenths_of_the_peak(highest, fitted
     assert (LowResponse.fitted(hertz, response, np.ones(6), WIRING) is not None) == fitted
 
 
+@pytest.mark.parametrize("delay", [-0.011, 0.011])
+def test_a_fit_knows_delays_of_many_milliseconds(delay):
+    hertz = np.linspace(5.0, 40.0, 36)
+    square = (hertz / 40.0) ** 2
+    response = (1.0 + square / (1.02 - square)) * np.exp(-2j * np.pi * hertz * delay)
+    response *= 1.0 + 0.05 * (-1.0) ** np.arange(36)
+    fits = [LowResponse.fitted(hertz, response, np.full(36, level), WIRING) for level in (1.0, 9.0)]
+    assert fits[0].delay == pytest.approx(delay, abs=1e-3)
+    assert [fit.misfit for fit in fits] == pytest.approx([0.05, 0.05], rel=0.1)
+
+
 @pytest.mark.parametrize(
     ("straight", "velocity", "kinds"),
     [
