@@ -13,7 +13,8 @@ loses the first. A steep but continuous branch is not a jump. The rule, for each
   Where disturbances are known to grow (:mod:`.growth`), it is held for `growths` growth times, and
   left out where these are longer than `patience` holds. Unless they are known to decay, it may be
   a transient: it is held for `again` times as long as it took to settle, and for `lives` times the
-  longest time after which it was seen to be lost within the step, up to `patience` holds.
+  longest time after which it was seen to be lost within the step, up to `patience` holds, and on a
+  ramp up to a `budget` of them.
 - It is *lost* over that step where the speed, taken back over it, is `clear` away and stays within
   `same` when it is held `again` times. There is *no* jump where no such step is left but of
   `finest`, over which the speed comes back, and on a way back over all of the ramp the speed is
@@ -21,7 +22,7 @@ loses the first. A steep but continuous branch is not a jump. The rule, for each
 - All else is *undecided*: a ramp's beginning or end, or a way back, that does not settle, two
   motions nearer than `clear`, a step within which nothing settles or after `max_rounds` of this,
   another motion on the way back, and what comes after these or a loss if the speed moves against
-  the voltage, unless a motion known to last comes to one other at `landings` voltages past it.
+  the voltage, unless a motion that had converged comes to one other at `landings` voltages past it.
 
 From differences the `errors` of irregular motions' speeds are taken off, but not on the last way
 back. Non-dimensional: voltages over K omega, speeds over omega, times in 1/omega, in the mirror
@@ -67,6 +68,7 @@ class HysteresisSettings(SettledSettings):
     growths: float = 30.0  # growth times after which a motion is seen to last, or not
     lives: float = 5.0  # of a motion beyond a step: how long that before it has to last
     patience: float = 10.0  # longest holds that these may be
+    budget: float = 40.0  # the same of a ramp's motions together, after which they are left out
     landings: int = 6  # voltages, by `width`, at which one motion follows one that is lost
     max_rounds: int = 150  # of looking at the largest step of a ramp
     errors: float = 3.0  # standard errors that are taken off a difference of speeds
@@ -115,6 +117,8 @@ class HysteresisLoop:
         self.omega, self.volts, self.longest = omega, volts, longest
         self.settings, self.growth = settings or HysteresisSettings(), growth
         self.checkpoints: dict[int, Table] = {}
+        self.left_out: set[float] = set()  # voltages at which a motion does not settle again
+        self.spent = 0.0  # s, for which motions of a ramp were held on
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
         """Store the ramp's saved states by their communication step."""
@@ -203,6 +207,7 @@ class HysteresisLoop:
         if not points:
             return [Jump(UNDECIDED, first.voltage, last)]
         jumps: dict[tuple[float, float], Jump] = {}
+        self.spent = 0.0
         for _ in range(self.settings.max_rounds):
             i = self.largest_step(points, jumps)
             if i is None:
@@ -210,7 +215,10 @@ class HysteresisLoop:
             low, high = points[i : i + 2]
             if low.lasts < self.least(low, high):
                 point = self.lasting(low, high)
-                points[i : i + 1] = [point] if math.isfinite(point.speed) else []
+                if math.isfinite(point.speed):
+                    points[i] = point
+                else:
+                    self.left_out.add(points.pop(i).voltage)
                 continue
             is_wide = abs(high.voltage - low.voltage) > self.settings.width
             if is_wide and self.insert_between(points, i):
@@ -278,11 +286,12 @@ class HysteresisLoop:
         return max(changed, -gained - self.settings.against) - scatter
 
     def lands_surely(self, low: HeldPoint, high: HeldPoint) -> bool:
-        """Return whether a motion known to last comes to one other, wherever past it it is lost."""
+        """Return whether a motion that had converged comes to one other wherever it is lost."""
         step = math.copysign(self.settings.width, high.voltage - low.voltage)
         voltages = [high.voltage + n * step for n in range(1, self.settings.landings + 1)]
-        every = (self.hold_from(low, voltage) for voltage in voltages)
-        return low.lasts == math.inf and all(self.is_same(point, high) for point in every)
+        speeds = (self.hold_from(low, voltage).speed for voltage in voltages)
+        is_one = all(abs(speed - high.speed) < self.settings.clear for speed in speeds)
+        return low.error == 0.0 and is_one
 
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
         """Return whether two motions exist at a step's lower voltage and the first is lost."""
@@ -314,10 +323,12 @@ class HysteresisLoop:
         if rate <= 0.0:
             return point._replace(lasts=math.inf)
         grown = self.settings.growths / rate if rate > 0.0 else 0.0
-        if grown > self.settings.patience * self.longest:
+        is_spent = self.spent > self.settings.budget * self.longest
+        if grown > self.settings.patience * self.longest or is_spent:
             return point._replace(speed=math.nan)
         least = max(grown, self.least(point, high) - point.lasts)
         later = self.hold(point.state, point.voltage, point.voltage, least=least)
+        self.spent += later.time
         lasted = point.lasts + later.time
         if self.distance(later, point) <= self.settings.same:
             return later._replace(time=point.time, lasts=lasted)
@@ -346,8 +357,10 @@ class HysteresisLoop:
         low, high = points[i : i + 2]
         change = high.voltage - low.voltage
         limit = high.speed if abs(change) < 0.5 * self.settings.smallest else None
-        for part in self.settings.parts:
-            point = self.hold_beside(low, low.voltage + part * change, high, limit)
+        for voltage in (low.voltage + part * change for part in self.settings.parts):
+            if voltage in self.left_out:
+                continue
+            point = self.hold_beside(low, voltage, high, limit)
             if math.isfinite(point.speed):
                 points.insert(i + 1, point)
                 return True
