@@ -109,7 +109,9 @@ def test_lengths_are_parts_of_the_period(monkeypatch):
     assert {order for _, order in lengths} == {27}
     assert [length for length, _ in lengths] == pytest.approx([1000] * 2 * 5, abs=2)
     own = (0.31 - 0.75) % 1.0  # of a period after the top of the stroke
-    assert found.place == pytest.approx(math.cos((math.floor(32 * own) + 0.5) / 32 * TURN), abs=0.005)
+    assert found.place == pytest.approx(
+        math.cos((math.floor(32 * own) + 0.5) / 32 * TURN), abs=0.005
+    )
 
 
 @pytest.mark.parametrize("word", WORDS)
