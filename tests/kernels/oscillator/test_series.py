@@ -143,3 +143,17 @@ def test_the_order_of_a_series_goes_by_the_flights_angle(angle, order):
     assert m[at.RATE] == 1.7
     assert series.required_order(m, 0.5, -1.7 / angle) == order
     assert series.required_order(m, 0.5, 0.0) == 4
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_all_that_moves_the_masses_raises_the_bound(sign):
+    """Each part of drive and state by its size, whichever way it acts."""
+    m = flight(0.1, 0.2, 0.1, 0.3, k2=3.0, d1=0.3, d2=0.1, box_acceleration=0.1, box_jerk=0.2)
+    drive = at.OSCILLATOR_1 + at.DRIVE
+    for slot in (drive, drive + 1, at.REST_1, at.SERIES_X, at.SERIES_X + 2, at.PRELOAD):
+        m[slot] = 0.0
+        bounds = []
+        for size in (0.0, 1.0, 2.0):
+            m[slot] = sign * size
+            bounds.append(series.fifth_bound(m))
+        assert 0.0 < bounds[0] < bounds[1] < bounds[2]
