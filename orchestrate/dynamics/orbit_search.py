@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..constants import TURN
 from ..fmu import EventInstance, Impacts, begin
@@ -176,19 +175,15 @@ def check_orbit_in_fmu(
     wanted, kinds = nodes[kinds % ENDS != RELEASE], kinds[kinds % ENDS != RELEASE]
     phases, sticks = point.excitation.frequency * observed.time, observed.sticks
     if len(phases) != len(wanted):
-        here, there = not_grazing(observed.closing), not_grazing(wanted[:, CLOSING])
+        # of the motion's speed the square root of a gap's rounding is 1e-8
+        grazing = 1e-6 * float(np.abs(orbit.arrivals[:, 2:]).max())
+        here, there = observed.closing / point.speed > grazing, wanted[:, CLOSING] > grazing
         phases, sticks = phases[here], sticks[here]
         wanted, kinds = wanted[there], kinds[there]
     if len(phases) != len(wanted):
         return False, away
     near = np.abs(phases - wanted[:, PHASE]).max(initial=0.0) < 1e-6  # rad
     return bool(near and (sticks == (kinds % ENDS == STICK)).all()), away
-
-
-def not_grazing(closing: Floats) -> NDArray[np.bool_]:
-    """Return, for each closing speed, whether the impact is well above grazing."""
-    # the square root of a gap's rounding is 1e-8
-    return np.asarray(closing > 1e-6 * closing.max(initial=0.0))
 
 
 def first_possible_orbit(
