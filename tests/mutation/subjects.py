@@ -21,8 +21,6 @@ SUBJECTS = {
     "fmu_src/kernels/oscillator/series.py": kernel("series", "chattering", "motion"),
     "fmu_src/kernels/oscillator/motion.py": kernel("motion", "chattering", "stepper", "contact"),
     "fmu_src/kernels/repetition.py": ("tests/orchestrate/response/test_multiplicity.py",),
-    "orchestrate/cli/notes.py": ("tests/orchestrate/cli/test_notes.py",),
-    "orchestrate/laboratory/analysis/knocks.py": ("tests/orchestrate/laboratory/test_hammer.py",),
     "orchestrate/weak_drive/hysteresis.py": (f"{DRIVE}/test_hysteresis.py",),
     "orchestrate/weak_drive/steady_speed.py": (f"{DRIVE}/test_steady_speed.py",),
     "orchestrate/dynamics/decision.py": ("tests/orchestrate/dynamics/test_decision.py",),
