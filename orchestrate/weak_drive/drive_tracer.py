@@ -1,8 +1,7 @@
 """Trace one branch of stationary motions of structure and motor by arclength continuation.
 
 A fold is where the voltage turns back along the branch; elsewhere a multiplier leaves the unit
-circle at -1, or a pair of them does. Where an impact or a flight grazes, the branch ends: see
-:mod:`.drive_tracer`.
+circle at -1, or a pair of them does. Where an impact or a flight grazes, the branch ends.
 """
 
 from __future__ import annotations
