@@ -77,8 +77,7 @@ class Findings:
                 self.samples >= self.settings.samples,
                 f"The record has {digits(self.samples, self.settings.samples)} samples in a period "
                 f"of {self.resonance:.3g} Hz, too few to tell what strikes.",
-                "The same sweep with "
-                f"{25.6 * self.resonance:.3g} samples a second or more.",
+                f"The same sweep with {25.6 * self.resonance:.3g} samples a second or more.",
             ),
             Condition(
                 factor <= self.settings.guess_factor,
