@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels
+from ..laboratory.analysis.order_tracking import decimated, integrated
 from ..laboratory.pieces import Floats, Pieces
 from ..laboratory.sampled import Sampled
 from ..laboratory.sensors import PARTICIPATION
-from ..lazy import xr
 from .linear import clipped
 from .order_windows import (
     MIN_WINDOWS,
@@ -26,9 +26,6 @@ from .order_windows import (
     OrderWindows,
     RecordOrders,
     channel_orders,
-    decimated,
-    integrated,
-    record_orders,
 )
 from .settings import SETTINGS, Settings
 
@@ -80,11 +77,6 @@ class Evidence:
     pieces: Pieces  # the base's acceleration, from the first sample on
     participation: tuple[float | None, ...] = ()  # of each sensor; None, or (): to be fitted
     settings: Settings = SETTINGS
-
-    @classmethod
-    def from_record(cls, record: xr.Dataset) -> Evidence:
-        """Compute the evidence of a record; raises as :func:`.order_windows.record_orders`."""
-        return cls.from_orders(record_orders(record))
 
     @classmethod
     def from_orders(

@@ -218,8 +218,6 @@ class TwoModes(Sound):
         first = super().displacements(values, evidence, player)[0]
         other = super().displacements(second, evidence, player)[0]
         found = np.tile(first, (2, 1))
-        if not np.isfinite(first + other).all():
-            return np.full_like(found, np.nan)
         for row, mass in enumerate(evidence.masses):
             found[mass] += self.share(evidence, row, np.stack([first, other])) * other
         return found

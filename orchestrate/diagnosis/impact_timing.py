@@ -20,12 +20,13 @@ from numpy.typing import NDArray
 
 from ..constants import TURN
 from ..laboratory.analysis.channels import BOX, Channels
-from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, measured_phase
+from ..laboratory.analysis.linear_prediction import prediction_error
+from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, integrated, measured_phase
 from ..laboratory.pieces import Floats
-from .order_windows import integrated
 
 ORDERS = np.arange(1, 13)  # of what a window is projected on
 HIGH = slice(5, 12)  # orders 6 to 12
+MIDDLE = (0.8, 0.2)  # quantiles: a window by itself is chance
 MIN_QUIET = 8  # windows in which nothing strikes: of fewer those that move least are taken
 
 PRIOR = 1e-6  # weight of a participation of 1, over that of the windows
@@ -59,7 +60,7 @@ class TimingSettings:
     at_end: float = 0.9
     stiffens: float = 0.5
     stiffens_moving: float = 2.0
-    spread: float = 0.35  # range of the place, over the stroke: play makes 0.31
+    spread: float = 0.15  # of the place, over the stroke: stops and play make 0.07, gaps 0.28
     known: float = 0.03  # error of a frequency that is known
     stiffer: float = 1.06  # frequency while something strikes, over that of the faces shut
 
@@ -82,7 +83,7 @@ class Strikes:
     order2: float  # over order 1, the largest
     stiffens: float  # growth of the stiffness, over order 2: see `stiffness_growth`
     place: float  # where it strikes, over the stroke: -1 or 1 at its ends
-    spread: float  # range of the place over the windows, over the largest stroke
+    spread: float  # of the place in the middle three fifths of the windows, over the stroke
     stiffness: float  # frequency over that of the faces shut; NaN where that is not known
 
     def numbers(self) -> str:
@@ -163,7 +164,7 @@ def strikes_at(
         order2=float(second[loud].max()),
         stiffens=grown[is_known],
         place=float(np.median(turned.real)),
-        spread=float(np.ptp(position)),
+        spread=float(np.subtract(*np.quantile(position, MIDDLE))),
         stiffness=math.sqrt(max(np.median(stiffness[loud]), 0.0)) / shut * (1.0 - settings.known),
     )
 
@@ -257,30 +258,3 @@ def timed_power(
     opposite = float((products / np.outer(sizes, sizes))[0, 1]) if len(errors) > 1 else math.nan
     rise, loudness = power[loudest] / floor / limit, float(above[loudest])
     return rise, loudness, float(middle[loudest]), moment, opposite
-
-
-def prediction_error(signal: Floats, order: int) -> Floats:
-    """Return what the samples before do not foresee, by weights that serve both directions."""
-    products = lagged_products(signal, order)
-    products = products + products[::-1, ::-1]
-    products[np.diag_indices(order + 1)] *= 1.0 + 1e-9  # of a signal without noise
-    weights = np.linalg.solve(products[1:, 1:], products[1:, 0])
-    error = np.zeros(len(signal))
-    error[order:] = np.convolve(signal, np.concatenate([[1.0], -weights]), "valid")
-    return error
-
-
-def lagged_products(signal: Floats, order: int) -> Floats:
-    """Return the sums of ``x[n-i] x[n-j]`` over n, for i and j up to an order.
-
-    Each row follows from the one before, but for the ends: no product of large matrices, for which
-    the threads of a BLAS would wait.
-    """
-    first = np.correlate(signal, signal[order:], "valid")[::-1]
-    begin, end = signal[order - 1 :: -1], signal[: -order - 1 : -1]
-    ends = np.outer(begin, begin) - np.outer(end, end)
-    found = np.empty((order + 1, order + 1))
-    found[0], found[:, 0] = first, first
-    for row in range(order):
-        found[row + 1, 1:] = found[row, :-1] + ends[row]
-    return found

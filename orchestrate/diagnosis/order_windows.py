@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
-from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, Window, measured_phase, window
+from ..laboratory.analysis.order_tracking import (
+    EDGE,
+    NYQUIST,
+    Window,
+    measured_phase,
+    median_sweep_rate,
+    window,
+)
 from ..laboratory.pieces import Floats
 from ..laboratory.record import FORCES, channel_label
 from ..lazy import xr
@@ -156,11 +163,6 @@ class RecordOrders:
         return float(self.windows.frequency[np.argmax(response)])
 
 
-def record_orders(record: xr.Dataset) -> RecordOrders:
-    """Compute the orders of a record of a swept or stepped sine."""
-    return channel_orders(checked_channels(record))
-
-
 def sensor_channels(record: xr.Dataset) -> Channels:
     """Return the channels of a record, and refuse a simulation that no sensor has read."""
     impacts = record.sizes.get("impact", 0) if hasattr(record, "sizes") else 0
@@ -191,7 +193,7 @@ def checked_channels(record: xr.Dataset) -> Channels:
 
 
 def channel_orders(channels: Channels) -> RecordOrders:
-    """Compute the orders of channels and their floors; see :func:`record_orders`."""
+    """Compute the orders of channels of a swept or stepped sine, and their floors."""
     return assembled_orders(channels, *windows_with_order_2(channels, *sine_windows(channels)))
 
 
@@ -222,20 +224,6 @@ def windows_with_order_2(
     if len(kept) == len(windows):
         return windows, amplitude
     return windows.select(kept, len(windows.orders)), amplitude[:, :, kept]
-
-
-def decimated(channels: Channels, highest: float, kept: float = SAMPLES_PER_PERIOD) -> Channels:
-    """Low-pass and decimate channels by a whole factor, if enough samples are left."""
-    from scipy.signal import firwin, resample_poly
-
-    factor = int(channels.sample_rate // (kept * highest))
-    if factor < 2:
-        return channels
-    # 90 dB from the new Nyquist frequency on, flat up to 0.86 of it: order 3 passes
-    low_pass = firwin(80 * factor + 1, 0.93 / factor, window=("kaiser", 9.0))
-    values = resample_poly(channels.values, 1, factor, axis=1, window=low_pass)
-    time, rate = channels.time[::factor], channels.sample_rate / factor
-    return replace(channels, time=time, sample_rate=rate, values=values)
 
 
 def moving_average(values: Floats, width: int = 5) -> Floats:
@@ -296,23 +284,6 @@ def overlapping_windows(channels: Channels, phase: Floats) -> list[Window]:
     return found
 
 
-def usual_frequencies(phase: Floats, channels: Channels) -> Floats:
-    """Return the mean frequency in each twentieth of a record, Hz."""
-    marks = np.linspace(0, len(phase) - 1, 21).astype(int)
-    return np.asarray(np.diff(phase[marks]) / np.diff(marks) * channels.sample_rate / TURN)
-
-
-def median_sweep_rate(phase: Floats, channels: Channels) -> float:
-    """Estimate the median size of the frequency's derivative, Hz/s."""
-    changes = np.abs(np.diff(usual_frequencies(phase, channels)))
-    return float(np.median(changes)) * 20.0 / channels.duration
-
-
-def highest_frequency(channels: Channels) -> float:
-    """Return a frequency in Hz that no sweep of the base exceeds: it may still rise at the end."""
-    return 1.1 * float(usual_frequencies(measured_phase(channels), channels).max())
-
-
 def assembled_windows(
     channels: Channels, windows: list[Window], solutions: list[Complexes]
 ) -> OrderWindows:
@@ -369,13 +340,6 @@ def rms_without_order_1(box: Floats, one: Window, amplitude: Complexes) -> float
     values = box[one.part] - np.average(box[one.part], weights=one.weights)
     power = np.average(values**2, weights=one.weights)
     return float(np.sqrt(max(power - 0.5 * abs(amplitude[0]) ** 2, 0.0)))
-
-
-def integrated(signal: Floats, rate: float, lowest: float, times: int = 1) -> Floats:
-    """Integrate a signal once or twice in time, without what is slower than ``lowest``, rad/s."""
-    spectrum, turns = np.fft.rfft(signal), TURN * np.fft.rfftfreq(len(signal), 1.0 / rate)
-    spectrum[turns < lowest] = 0.0  # drift
-    return np.fft.irfft(spectrum / (1j * np.maximum(turns, lowest)) ** times, len(signal))
 
 
 def split_sweeps(record: xr.Dataset) -> list[xr.Dataset]:

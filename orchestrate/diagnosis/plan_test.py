@@ -23,6 +23,7 @@ from ..laboratory.shake import shake
 from ..laboratory.swept_sine import SweptSine
 from ..lazy import Unpack, xr
 from ..model import Structure
+from ..model.arguments import checked_numbers
 from ..response.labels import variable, yes_or_no
 from ..response.questions import checked_structure
 from ..running.executors import InlineExecutor
@@ -310,13 +311,7 @@ def checked_frequencies(frequencies: ArrayLike) -> Floats:
 
 def checked_positive(name: str, given: ArrayLike, unit: str) -> Floats:
     """Check that all numbers are finite and > 0, and return them as an array."""
-    try:
-        values = np.atleast_1d(np.asarray(given, dtype=float))
-    except (TypeError, ValueError):
-        values = np.array([np.nan])
-    if values.ndim != 1 or not len(values) or not (np.isfinite(values) & (values > 0.0)).all():
-        raise InputError(f"{name} = {given!r}: expected numbers > 0 in {unit}")
-    return values
+    return np.atleast_1d(np.asarray(checked_numbers(name, given, above=f" > 0, in {unit}")))
 
 
 def checked_sensors(sensor: Sensor | dict[str, Sensor]) -> tuple[tuple[str, Sensor], ...]:

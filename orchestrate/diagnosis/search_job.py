@@ -13,30 +13,17 @@ import numpy as np
 
 from ..fmu import OSCILLATOR, Player
 from ..laboratory.analysis.channels import Channels
+from ..laboratory.analysis.order_tracking import decimated, highest_frequency
 from ..laboratory.pieces import Floats
 from ..model import Structure
 from ..running.job import Job, Table
 from .curve_evidence import COARSE_SAMPLES, CurveData
 from .even_orders import EvenOrders, even_orders
 from .evidence import Evidence
-from .hypotheses import (
-    SOUND,
-    Delaminated,
-    DelaminatedWithClearance,
-    Hypothesis,
-    Onset,
-    TwoModes,
-)
+from .hypotheses import SOUND, Delaminated, DelaminatedWithClearance, Hypothesis, Onset
 from .linear import misfit
 from .multistart import Search, Solution, difference_step, with_distinct_misfits, without_neighbours
-from .order_windows import (
-    MIN_WINDOWS,
-    SAMPLES_PER_PERIOD,
-    RecordOrders,
-    channel_orders,
-    decimated,
-    highest_frequency,
-)
+from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
 from .settings import SETTINGS, Settings
 from .standard_errors import Estimate, estimate
 
@@ -93,7 +80,7 @@ def cached_channels(data: RecordData) -> Channels:
 def cached_orders(data: RecordData) -> RecordOrders:
     """Return the orders of the whole record, thinned to what they need, once per process."""
     channels = cached_channels(data)
-    return channel_orders(decimated(channels, highest_frequency(channels)))
+    return channel_orders(decimated(channels, highest_frequency(channels), SAMPLES_PER_PERIOD))
 
 
 @lru_cache(maxsize=2)
@@ -115,7 +102,7 @@ def bonded_even(data: RecordData | CurveData) -> EvenOrders:
 @lru_cache(maxsize=8)
 def faces_apart(data: RecordData) -> float:
     """Return how far two faces differ over the threshold; 0 where two modes of a sound beam do."""
-    even, modes = bonded_even(data), TwoModes()
+    even, modes = bonded_even(data), SOUND[-1]
     if even.is_order_2_seen or even.moved_apart <= 1.0:
         return even.moved_apart
     coarse = Search(modes, cached_coarse_evidence(data))

@@ -27,11 +27,7 @@ Used = Mapping[str, ColumnInFile]  # by channel
 
 
 def check_units(
-    path: str,
-    used: Used,
-    units: Mapping[str, str],
-    stated: Mapping[str, str],
-    setup_file: str,
+    path: str, used: Used, units: Mapping[str, str], stated: Mapping[str, str], setup_file: str
 ) -> None:
     """Raise where columns have no unit, with the option that gives it to each."""
     known = {n: units.get(n, one.unit) or stated.get(n, one.sensitivity) for n, one in used.items()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -200,6 +200,44 @@ def measured_phase(channels: Channels) -> Floats:
     if not angle[-1] > angle[0]:
         raise InputError(f"{channels.box_label}: its phase does not grow; expected a swept sine")
     return np.asarray(angle)
+
+
+def usual_frequencies(phase: Floats, channels: Channels) -> Floats:
+    """Return the mean frequency in each twentieth of a record, Hz."""
+    marks = np.linspace(0, len(phase) - 1, 21).astype(int)
+    return np.asarray(np.diff(phase[marks]) / np.diff(marks) * channels.sample_rate / TURN)
+
+
+def median_sweep_rate(phase: Floats, channels: Channels) -> float:
+    """Estimate the median size of the frequency's derivative, Hz/s."""
+    changes = np.abs(np.diff(usual_frequencies(phase, channels)))
+    return float(np.median(changes)) * 20.0 / channels.duration
+
+
+def highest_frequency(channels: Channels) -> float:
+    """Return a frequency in Hz that no sweep of the base exceeds: it may still rise at the end."""
+    return 1.1 * float(usual_frequencies(measured_phase(channels), channels).max())
+
+
+def integrated(signal: Floats, rate: float, lowest: float, times: int = 1) -> Floats:
+    """Integrate a signal once or twice in time, without what is slower than ``lowest``, rad/s."""
+    spectrum, turns = np.fft.rfft(signal), TURN * np.fft.rfftfreq(len(signal), 1.0 / rate)
+    spectrum[turns < lowest] = 0.0  # drift
+    return np.fft.irfft(spectrum / (1j * np.maximum(turns, lowest)) ** times, len(signal))
+
+
+def decimated(channels: Channels, highest: float, kept: float) -> Channels:
+    """Low-pass and decimate channels by a whole factor, if enough samples are left."""
+    from scipy.signal import firwin, resample_poly
+
+    factor = int(channels.sample_rate // (kept * highest))
+    if factor < 2:
+        return channels
+    # 90 dB from the new Nyquist frequency on, flat up to 0.86 of it: order 3 passes
+    low_pass = firwin(80 * factor + 1, 0.93 / factor, window=("kaiser", 9.0))
+    values = resample_poly(channels.values, 1, factor, axis=1, window=low_pass)
+    time, rate = channels.time[::factor], channels.sample_rate / factor
+    return replace(channels, time=time, sample_rate=rate, values=values)
 
 
 def against_box(channels: Channels, amplitudes: Floats, orders: tuple[float, ...]) -> Floats:

@@ -5,6 +5,8 @@ import functools
 import numpy as np
 
 import orchestrate
+from orchestrate.diagnosis.evidence import Evidence
+from orchestrate.diagnosis.order_windows import channel_orders, checked_channels
 
 HALVES = {"m1": 1.5, "m2": 1.2, "f1": 30.0, "f2": 38.0, "zeta1": 0.02, "zeta2": 0.02, "e": 0.5}
 BEAM = orchestrate.Structure.from_halves(**HALVES)
@@ -44,3 +46,11 @@ def seen_at(one, other=None, structure=BEAM, **options):
 def guess(**changes):
     """The beam, some percent off."""
     return BEAM.replace(f1=31.5, f2=36.5, zeta1=0.03, zeta2=0.015, e=0.6).replace(**changes)
+
+
+def record_orders(record):
+    return channel_orders(checked_channels(record))
+
+
+def record_evidence(record):
+    return Evidence.from_orders(record_orders(record))

@@ -5,13 +5,13 @@ import pytest
 
 import orchestrate
 from orchestrate.diagnosis.even_orders import even_orders, smallest_openings
-from orchestrate.diagnosis.evidence import Evidence
 from tests.benches.bench import Bench
 from tests.benches.excitation import Swept
 from tests.benches.lumped import Faces, Halves
 from tests.benches.sensors import Sensor
 
 from ...sparing import ordinary
+from .records import record_evidence
 
 
 def two_sensors(opposite):
@@ -26,7 +26,7 @@ def two_sensors(opposite):
         noise = 0.005 * rng.standard_normal(len(time))
         rows[f"acceleration{name}"] = gain * (np.sin(phase + 0.4) + order2) + noise
     base = 0.1 * np.sin(2.0 * np.pi * (26.0 + 0.8 * time) * time)
-    return Evidence.from_record(orchestrate.record(time=time, box_acceleration=base, **rows))
+    return record_evidence(orchestrate.record(time=time, box_acceleration=base, **rows))
 
 
 @pytest.mark.parametrize("opposite", [True, False])
@@ -53,7 +53,7 @@ def test_what_would_have_been_seen_is_not_below_an_opening_that_was_not(sensors)
     record, motion = bench.measure(halves.delaminated(faces), seed=3)
     gap = float(motion.largest_gap.max())
     assert gap > 1e-5, "it opened"
-    evidence = Evidence.from_record(record)
+    evidence = record_evidence(record)
     assert not even_orders(evidence, np.zeros_like(evidence.measured)).is_order_2_seen
     stated = smallest_openings(evidence, halves.m1, halves.m2)
     assert gap < np.nanmax(stated) < 5.0 * gap

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.diagnosis.order_windows import ORDERS, record_orders
+from orchestrate.diagnosis.order_windows import ORDERS
+
+from .records import record_orders
 
 RATE = 1000.0
 

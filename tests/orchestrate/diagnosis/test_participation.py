@@ -5,7 +5,6 @@ import pytest
 
 import orchestrate
 from orchestrate.diagnosis.even_orders import sensor_difference, thresholds
-from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.errors import InputError
 from tests.benches.beam import DelaminatedBeam
 from tests.benches.bench import Bench
@@ -13,7 +12,7 @@ from tests.benches.excitation import Swept
 from tests.benches.lumped import TURN, Faces
 from tests.benches.sensors import Sensor
 
-from .records import BEAM, RATE, SWEEP, guess, seen_at
+from .records import BEAM, RATE, SWEEP, guess, record_evidence, seen_at
 
 TIP, MIDDLE = 1.566, 0.532  # of a uniform cantilever: Blevins, Formulas for Natural Frequency
 
@@ -71,14 +70,14 @@ def test_of_a_sound_cantilever_no_opening_is_seen():
 def test_sensors_at_two_places_of_a_sound_beam_do_not_differ():
     apart = []
     for structure in (BEAM.as_bonded(), BEAM):
-        evidence = Evidence.from_record(seen_at(0.8, 0.65, structure))
+        evidence = record_evidence(seen_at(0.8, 0.65, structure))
         apart.append(np.nanmax(sensor_difference(evidence, thresholds(evidence))))
     assert apart[0] < 0.1 and apart[1] > 2.0
 
 
 def test_a_factor_that_is_given_is_kept():
     measured = seen_at(0.6)
-    known = Evidence.from_record(measured)
+    known = record_evidence(measured)
     assert known.given_participation(0) is None
     free = orchestrate.fit(measured, guess(), hypothesis="bonded", jobs=1, progress=False)
     kept = orchestrate.fit(

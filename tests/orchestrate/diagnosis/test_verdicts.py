@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from orchestrate.diagnosis.decision_rule import Beam, Findings, factor_outside
-from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import reported_derivatives
 from orchestrate.diagnosis.hypotheses import Delaminated
 
-from .records import BEAM, record
+from .records import BEAM, record, record_evidence
 from .test_impact_timing import FACES
 
 OPENED = Findings(
@@ -136,7 +135,7 @@ def test_a_number_beyond_its_limit_is_not_written_as_the_limit():
 
 
 def test_numbers_at_their_bounds_are_reported_with_slopes():
-    evidence = Evidence.from_record(record())
+    evidence = record_evidence(record())
     hypothesis = Delaminated(BEAM)
     values = {**hypothesis.values_from_structure(BEAM, evidence), "e": 0.0}
     del values["clearance"]
