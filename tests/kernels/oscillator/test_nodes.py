@@ -1,5 +1,7 @@
 """Phasors from the nodes are those of the closed form, and depend on the age alone."""
 
+import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -44,3 +46,14 @@ def test_they_do_not_depend_on_the_way_to_them(values, ages):
     fresh = [nodes.phasors_at(list(m), age) for age in ages]
     assert [nodes.phasors_at(m, age) for age in ages] == fresh
     assert [nodes.phasors_at(m, age) for age in reversed(ages)] == fresh[::-1]
+
+
+@examples(40)
+@given(structures())
+def test_what_a_quintic_misses_is_bounded_closely(values):
+    """A sixth derivative that stays 1 is missed by s^3 (1 - s)^3 h^6/720, against b_2 and b_3."""
+    m = flight(-0.9, 0.95, 0.7, 0.24, **values)
+    s = np.linspace(0.01, 0.99, 99)
+    missed = (s * (1.0 - s)) ** 3 * m[at.SPACING] ** 6 / 720.0
+    lowered = 10.0 * s**2 * (1.0 - s) ** 3 + 10.0 * s**3 * (1.0 - s) ** 2
+    assert m[at.HERMITE + 2] == pytest.approx((missed / lowered).max(), rel=1e-12, abs=0.0)
