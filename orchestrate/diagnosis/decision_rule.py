@@ -247,16 +247,6 @@ class Beam:
             UNDECIDED: (advice or [f"Sweeps up and down at twice the level, with {other}."])[0],
         }[self.verdict()]
 
-    def seen_up_to(self) -> str:
-        """Describe the range that was measured, and the smallest opening detectable in it."""
-        one = (self.usable or self.records)[0]
-        opening = f"{digits(1e6 * one.smallest)} \u00b5m"
-        return (
-            f"up to {one.high:.3g} m/s\u00b2 from {one.first:.3g} to {one.last:.3g} Hz; "
-            f"faces that touch and part by {opening} at the sensor would have been seen at every "
-            "frequency; away from the sensor, or of faces that never touch, it may be larger"
-        )
-
 
 def digits(value: float, limit: float = math.nan) -> str:
     """Format a number with two significant digits, or with as many as tell it from a limit.

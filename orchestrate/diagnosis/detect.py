@@ -114,7 +114,7 @@ def detect(
         ``participation_error`` over ``channel`` (NaN but of the hypotheses that the verdict is
         about and that describe the record), ``misfit_at`` and the ``fitted`` orders over
         ``window``, next to what is ``measured``. Attributes ``reason``, ``settle``,
-        ``seen_up_to``, ``assumed``, ``direction`` of the sweep and ``wiring``, the doubts about the
+        ``assumed``, ``direction`` of the sweep and ``wiring``, the doubts about the
         channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`); and ``strikes``, what strikes
         with the numbers that decide it (:class:`orchestrate.diagnosis.impact_timing.Strikes`).
 
@@ -310,7 +310,6 @@ class DetectJob(SearchJob):
             title=f"Verdict: {beam.verdict()}",
             reason=" ".join(notes),
             settle="Correct the wiring and diagnose again." if wiring else beam.next_measurement(),
-            seen_up_to=beam.seen_up_to(),
             assumed="; ".join(ASSUMED if self.is_guessed else (WITHOUT_GUESS, *ASSUMED[1:])),
             direction=sweep_direction(whole.windows.frequency),
             wiring=wiring,
