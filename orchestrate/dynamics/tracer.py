@@ -97,7 +97,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         """Return why the branch ends within a step (empty if not), and its last points."""
         return "", ()
 
-    def finish_step(self, step: BranchStep[Point]) -> tuple[Point, Kind | None]:
+    def fit_impacts_to_step(self, step: BranchStep[Point]) -> tuple[Point, Kind | None]:
         """Return the point that a step appends, and the bifurcation there if it ends the branch."""
         return step.after, None
 
@@ -141,7 +141,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                     return step, []
                 located = self.locate(step)
                 if not (located and located[-1].kind in self.ending_kinds):
-                    last, kind = self.finish_step(step)
+                    last, kind = self.fit_impacts_to_step(step)
                     step.end, step.last_points = LIMIT if step.at_limit else "", [last]
                     if kind is not None:
                         located = [*located, LocatedBifurcation(kind, step.length, last)]

@@ -33,7 +33,7 @@ from .missing_units import check_units, check_volts, option_of
 from .pieces import Floats
 from .record import CHANNELS, FORCES, SHORT_NAMES
 from .record_checks import first_skipped_row, implausible_times, is_ascending
-from .signals import HERTZ, checked
+from .signals import HERTZ, checked_quantity
 
 Named: TypeAlias = "Mapping[str, str | int] | Sequence[str | int] | None"  # columns by a caller
 MOST_NAMES = 12  # of columns in a message
@@ -143,7 +143,7 @@ class Columns:
         if sample_rate is None:
             return self
         try:
-            return replace(self, sample_rate=checked(HERTZ, "sample_rate", sample_rate))
+            return replace(self, sample_rate=checked_quantity(HERTZ, "sample_rate", sample_rate))
         except InputError as error:
             raise InputError(f"{self.path}: {error}") from None
 

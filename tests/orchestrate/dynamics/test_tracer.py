@@ -106,7 +106,7 @@ def test_a_step_is_shortened_where_a_bifurcation_cannot_be_located():
     assert tracer.trace(tracer.start).end == NO_CONVERGENCE
 
 
-@pytest.mark.parametrize("method", ["finish_step", "go_on_from", "point"])
+@pytest.mark.parametrize("method", ["fit_impacts_to_step", "go_on_from", "point"])
 @pytest.mark.parametrize("error", [NoConvergenceError, np.linalg.LinAlgError])
 def test_what_was_followed_is_kept_where_an_inner_iteration_fails(method, error):
     """Whatever part of a step it belongs to."""
