@@ -23,7 +23,8 @@ from cyclopts import exceptions
 import orchestrate
 
 from ..errors import InputError
-from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest, did_you_mean
+from ..model.ranges import RATIO_QUANTITIES, STRUCTURE
+from ..model.spelling import closest, did_you_mean
 from . import grammar
 
 LINK = re.compile(r"As (?:in|for) :\w+:`orchestrate\.(\w+)`")

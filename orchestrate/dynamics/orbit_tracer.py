@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .bifurcations import KINDS, Kind
+from .bifurcation_kinds import KINDS, Kind
 from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root
 from .families import Family
@@ -94,7 +94,7 @@ class OrbitPoint:
             return float(np.minimum(-margins, orbit.durations)[orbit.contact].min(initial=1.0))
         return float(margins[~(orbit.contact | orbit.sequence.releases)].min(initial=1.0))
 
-    def test(self, kind: Kind) -> float:
+    def test_function(self, kind: Kind) -> float:
         """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
         if kind == Kind.FOLD:
             return float(self.root.tangent[self.family.size])
@@ -160,11 +160,11 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         orbit = self.stepper.curve.orbit(root.unknowns)
         return bool((orbit.durations[~orbit.contact] > 0.0).all())
 
-    def test(self, point: OrbitPoint, kind: Kind) -> float:
+    def test_function(self, point: OrbitPoint, kind: Kind) -> float:
         """Return a point's test function of a bifurcation kind: it changes sign there."""
-        return point.test(kind)
+        return point.test_function(kind)
 
-    def confirms(self, kind: Kind, point: OrbitPoint, part: float) -> bool:
+    def zero_is_bifurcation(self, kind: Kind, point: OrbitPoint, part: float) -> bool:
         """Return whether a located zero is a true bifurcation, and not the step's own start."""
         return part > 1e-7 and point.zero_is_bifurcation(kind)
 

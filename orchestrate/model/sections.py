@@ -25,9 +25,9 @@ from .ranges import (
     STRUCTURE,
     Quantity,
     checked_flag,
-    expected_one_of,
 )
 from .shaker import Shaker
+from .spelling import expected_one_of
 from .structure import Structure
 from .structure_numbers import FLAGS
 

@@ -17,14 +17,8 @@ from .conversions import (
     warn_of_per_cent,
 )
 from .described import Described
-from .ranges import (
-    ADDED,
-    RATIO_QUANTITIES,
-    STRUCTURE,
-    checked_flag,
-    construct_or_explain,
-    expected_one_of,
-)
+from .ranges import ADDED, RATIO_QUANTITIES, STRUCTURE, checked_flag, construct_or_explain
+from .spelling import expected_one_of
 from .structure_numbers import FLAGS, HALVES, OF_MASS_2, PARAMETERS, RATIOS
 from .structure_text import StructureText
 

@@ -15,7 +15,8 @@ from .conversions import (
     natural_frequency,
     stiffness_from_frequency,
 )
-from .ranges import OF_LENGTH, STRUCTURE, exact_inverse, expected_one_of
+from .ranges import OF_LENGTH, STRUCTURE, exact_inverse
+from .spelling import expected_one_of
 
 if TYPE_CHECKING:
     import numpy as np

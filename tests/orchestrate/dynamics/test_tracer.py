@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate.dynamics.bifurcations import KINDS, Kind
+from orchestrate.dynamics.bifurcation_kinds import KINDS, Kind
 from orchestrate.dynamics.continuation import ArclengthStepper, NoConvergenceError, Root
 from orchestrate.dynamics.tracer import LIMIT, MAX_POINTS, NO_CONVERGENCE, BranchTracer
 
@@ -38,7 +38,7 @@ class CircleTracer(BranchTracer):
     def limits(self):
         return 0, [self.range]
 
-    def test(self, point, kind):
+    def test_function(self, point, kind):
         return float(self.functions[KINDS[kind]](point))
 
     def go_on_from(self, point):
