@@ -47,7 +47,7 @@ ANGLES = {  # in rad
     **dict.fromkeys(("rad", "radian", "radians"), 1.0),
     **dict.fromkeys(("deg", "\u00b0", "degree", "degrees"), TURN / 360.0),
 }
-RATIOS = dict.fromkeys(("1", "-", "g/g", "m/m", "mm/mm", "m/s2/m/s2", "(m/s2)/(m/s2)"), 1.0)
+RATIO_UNITS = dict.fromkeys(("1", "-", "g/g", "m/m", "mm/mm", "m/s2/m/s2", "(m/s2)/(m/s2)"), 1.0)
 TIMES = {  # in s
     **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
     **dict.fromkeys(("ms", "msec"), 1e-3),
@@ -169,7 +169,7 @@ def describe_text(text: str) -> str:
 def is_unit(text: str) -> bool:
     """Return whether a text is a unit that columns of records or resonance curves may have."""
     motions = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, VOLTAGES, FREQUENCIES, ANGLES)
-    known = (*motions, RATIOS, OF_FORCES[0])
+    known = (*motions, RATIO_UNITS, OF_FORCES[0])
     return any(plain_unit(text) in units for units in known)
 
 

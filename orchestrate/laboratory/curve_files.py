@@ -16,7 +16,7 @@ from .columns import (
     BY_USER,
     CURVE_NAMES,
     FREQUENCIES,
-    RATIOS,
+    RATIO_UNITS,
     Assignment,
     Column,
     Columns,
@@ -172,9 +172,9 @@ def base_level(
         raise InputError(f"{table.path}: {text}{given}; {expected}")
     if column is None:
         return float(checked_quantity(LEVEL, "level", level))
-    own = column.unit or (unit if unit and plain_unit(unit) not in RATIOS else "")
+    own = column.unit or (unit if unit and plain_unit(unit) not in RATIO_UNITS else "")
     label = column_label(table, column)
-    ratio = plain_unit(own) in RATIOS  # of a level there is none
+    ratio = plain_unit(own) in RATIO_UNITS  # of a level there is none
     factor = acceleration_factor(label, "" if ratio else own, frequency, frequency)
     return np.asarray(factor * column.values)
 

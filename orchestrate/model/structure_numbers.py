@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SI = tuple(STRUCTURE)
-RATIOS = ("mu", "kappa", "D", "D1", "D2", "omega")
-HALVES = ("f1", "f2", "zeta1", "zeta2")
+RATIO_PARAMETERS = ("mu", "kappa", "D", "D1", "D2", "omega")
+MODAL_PARAMETERS = ("f1", "f2", "zeta1", "zeta2")
 OF_MASS_2 = ("m2", "k2", "d2", "mu", "kappa", "D2", "f2", "zeta2")
 FLAGS = ("bonded", "wall")
-PARAMETERS = (*SI, *RATIOS, *HALVES)
+PARAMETERS = (*SI, *RATIO_PARAMETERS, *MODAL_PARAMETERS)
 Values = TypeVar("Values", float, "NDArray[np.float64]")
 
 
