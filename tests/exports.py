@@ -13,7 +13,7 @@ from filelock import FileLock
 from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
 from orchestrate.errors import InputError
-from orchestrate.fmu.c_library import SOURCES, library
+from orchestrate.fmu.c_library import SOURCES, library_path
 from orchestrate.fmu.webassembly import web_kernel
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -75,7 +75,7 @@ def refresh_model(name, build):
 def refresh_library(source, build):
     """The library of one loop; returns as :func:`refresh`."""
     try:
-        library(source, build)
+        library_path(source, build)
     except InputError as reason:
         return {f"libraries/{source.stem}": reason}
     return {}

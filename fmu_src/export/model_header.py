@@ -54,7 +54,7 @@ def c_variable(variable: Variable, model: Model) -> str:
     return "    {" + ", ".join(cells) + "},"
 
 
-def shim_definitions(model: Model, slots: dict[str, int], real_outputs: bool) -> dict[str, str]:
+def shim_macros(model: Model, slots: dict[str, int], real_outputs: bool) -> dict[str, str]:
     """Return the macros of the model that the C shim uses, value by name."""
     inputs = [
         f"orders 1 to {v.input_derivatives} of {v.name}"
@@ -98,7 +98,7 @@ def model_header(model: Model, token: str, digest: str, real_outputs: bool = Fal
     known = {
         "MODEL_TOKEN": c_string(token),
         "STATE_MAGIC": c_string(f"vibroimpact state {digest}"),
-        **shim_definitions(model, slots, real_outputs),
+        **shim_macros(model, slots, real_outputs),
         **self_test.self_test_definitions(model),
     }
     categories = ", ".join(map(c_string, TAKEN_CATEGORIES))

@@ -10,8 +10,10 @@ COUNT, FREQUENCY, GAP, TOLERANCE, MULTIPLICITY, DECIDED, DEVIATION, LATER, AWAY 
 # of :func:`confirm`: impacts over the samples, over as many periods as it repeats after, and
 # whether no motion without impacts exists
 IMPACTS, OWN_IMPACTS, MUST = range(9, 12)
-# sizes of displacements, gap and its rate; of :func:`nearest` the state whose neighbour is found
-SIZE, SIZE_OF_GAP, SIZE_OF_RATE, GIVEN, HEAD = 12, 13, 14, 15, 19
+SIZE, SIZE_OF_GAP, SIZE_OF_RATE = 12, 13, 14  # of displacements, of the gap and of its rate
+# of :func:`nearest`: the number of the state, its distance, and the state whose neighbour it is
+NEAREST, DISTANCE, GIVEN = 15, 16, 17
+HEAD = 21
 STATE, COLUMNS = 4, 6  # numbers of a state, and of a scaled one: the gap and its rate come last
 IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
 MIN_RELATIVE_GAP = 1.0 / 1048576.0  # of the motion's size: smaller gaps are as large
@@ -123,8 +125,8 @@ def confirm(m, time):
 
 
 def nearest(m, time):
-    """Write the number of the state that is nearest to a given one, in place of a multiplicity, and
-    its distance, in place of a deviation: the largest difference as a part of the motion's size.
+    """Write the number of the state that is nearest to a given one, and its distance: the largest
+    difference as a part of the motion's size.
     """
     scale(m, 0)
     count, rows = int(m[LATER]), scaled_rows(m)
@@ -132,15 +134,15 @@ def nearest(m, time):
     v1, v2 = m[GIVEN + 2] / m[FREQUENCY], m[GIVEN + 3] / m[FREQUENCY]
     gap, rate = (m[GIVEN + 1] - m[GIVEN]) / m[SIZE_OF_GAP], (v2 - v1) / m[SIZE_OF_RATE]
     v1, v2 = v1 / m[SIZE], v2 / m[SIZE]
-    m[DEVIATION] = INFINITE
+    m[DISTANCE] = INFINITE
     for k in range(count):
         at = rows + k
         away = max(abs(m[at] - x1), abs(m[at + count] - x2), abs(m[at + 2 * count] - v1))
         away = max(away, abs(m[at + 3 * count] - v2), abs(m[at + 4 * count] - gap))
         away = max(away, abs(m[at + 5 * count] - rate))
-        if away < m[DEVIATION]:
-            m[DEVIATION] = away
-            m[MULTIPLICITY] = k
+        if away < m[DISTANCE]:
+            m[DISTANCE] = away
+            m[NEAREST] = k
     return 0
 
 

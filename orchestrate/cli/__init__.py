@@ -1,6 +1,27 @@
 """Command line's entry: parse the arguments, run one command, turn errors into exit codes.
 
 A command is a class (:mod:`.command`); the classes stand in one module for each family of commands.
+
+====================  ================================================================
+module                idea
+====================  ================================================================
+:mod:`.command`       a command as a class, whose options are its attributes
+:mod:`.grammar`       texts of options: numbers, lists, ranges, pairs, states
+:mod:`.options`       options that several commands share: structure, the box's motion
+:mod:`.output`        options of results: where they go, how they are computed
+:mod:`.answer`        steps of most commands: call, summary, files
+:mod:`.notes`         notes on trivial questions, warnings of unlikely numbers
+:mod:`.printing`      numbers, ranges and tables as text, in display units
+:mod:`.responses`     simulate, resonance, spectra, sweep, map
+:mod:`.dynamics`      exponents, sections, attractors, basins, orbits, branches
+:mod:`.laboratory`    shake, analyse, channels, halves
+:mod:`.diagnosis`     diagnose, plan
+:mod:`.drive`         options that commands on the weak drive share
+:mod:`.weak_drive`    couple, capture, passage, jump-voltages, drive-branch
+:mod:`.cosimulation`  cosimulate
+:mod:`.pages`         build, explore, report, paper
+:mod:`.safe_output`   standard streams that may be closed, full or not read
+====================  ================================================================
 """
 
 from __future__ import annotations
@@ -19,7 +40,7 @@ import cyclopts
 from cyclopts.exceptions import CycloptsError
 
 from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable
-from ..model.ranges import closest, did_you_mean
+from ..model.spelling import closest, did_you_mean
 from ..version import __version__
 from . import cosimulation, diagnosis, dynamics, laboratory, pages, responses, weak_drive
 from .command import Command, explain

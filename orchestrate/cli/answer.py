@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..model import Structure
 from ..units import Units, with_readable_lengths, with_units
-from .command import Command, Options, Question, option, option_names
+from .command import Command, Keywords, Options, option, option_names
 from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
 from .output import Files, digest, result_name, write_result
@@ -63,10 +63,10 @@ class Asked(Command):
             yield from [f"{state}:"] if state else []
             yield from self.summary(data)
 
-    def has_picture(self, question: Question) -> bool:
+    def has_picture(self, question: Keywords) -> bool:
         return True
 
-    def draw(self, results: Runs, question: Question, *over: xr.Dataset) -> Any:
+    def draw(self, results: Runs, question: Keywords, *over: xr.Dataset) -> Any:
         """Return the figure of the results, with branches over them."""
         return orchestrate.plot(*[*results.values()][::-1], *over)
 
@@ -89,7 +89,7 @@ class Asked(Command):
         return {only: both[only]} if only else both
 
     def compute(
-        self, states: Mapping[str, Any], others: Any, question: Question, files: Mapping[str, Files]
+        self, states: Mapping[str, Any], others: Any, question: Keywords, files: Mapping[str, Files]
     ) -> dict[str, xr.Dataset]:
         function: Callable[..., xr.Dataset] = getattr(orchestrate, self.calls)
         return {
@@ -142,17 +142,17 @@ class Asked(Command):
         self.write_more(common, question, shown, results)
         return results
 
-    def write_more(self, files: Files, question: Question, shown: Runs, results: Runs) -> None:
+    def write_more(self, files: Files, question: Keywords, shown: Runs, results: Runs) -> None:
         """Write what a command has besides results and picture."""
 
-    def check_known(self, question: Question) -> None:
+    def check_known(self, question: Keywords) -> None:
         """Raise for an option that the public function does not take."""
         known = inspect.signature(getattr(orchestrate, self.calls)).parameters
         if "others" not in known and (unknown := [name for name in question if name not in known]):
             text = f"{self.calls} does not know it yet; expected the command without it"
             raise InputError(f"{option_names(unknown[:1])}: {text}")
 
-    def read_overlay(self, structure: Any, question: Question) -> list[xr.Dataset]:
+    def read_overlay(self, structure: Any, question: Keywords) -> list[xr.Dataset]:
         """Return the branches of ``--overlay``; raise for one that does not fit the question."""
         paths = [Path(name) for text in getattr(self, "overlay", []) for name in text.split(",")]
         if not paths:
@@ -178,7 +178,7 @@ class Asked(Command):
                 raise InputError(f"--overlay {path}: {why}")
         return branches
 
-    def display_units(self, question: Question) -> Units:
+    def display_units(self, question: Keywords) -> Units:
         """Return the display units: those of ``--units``, else those of the question's options."""
         varied = str(getattr(self, "over", "")).replace(" ", "").split(",")  # two of a border
         given = [UNIT_OF_OPTION[name] for name in varied if name in UNIT_OF_OPTION]

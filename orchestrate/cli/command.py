@@ -23,7 +23,8 @@ from cyclopts import exceptions
 import orchestrate
 
 from ..errors import InputError
-from ..model.ranges import RATIO_QUANTITIES, STRUCTURE, closest, did_you_mean
+from ..model.ranges import RATIO_QUANTITIES, STRUCTURE
+from ..model.spelling import closest, did_you_mean
 from . import grammar
 
 LINK = re.compile(r"As (?:in|for) :\w+:`orchestrate\.(\w+)`")
@@ -56,7 +57,7 @@ SAID = {  # for options of ours
 OF_BOX = ("eta", "frequency", "amplitude", "level")
 READERS: dict[Any, Callable[[str, str], Any]] = {int: grammar.read_int, float: grammar.read_float}
 STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *grammar.SET_NAMES)
-Question = dict[str, Any]
+Keywords = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -212,7 +213,7 @@ class Command(Debugging, ABC):
     def name(cls) -> str:
         return cyclopts.default_name_transform(cls.__name__)
 
-    def given(self, *groups: type[Options]) -> Question:
+    def given(self, *groups: type[Options]) -> Keywords:
         """Return the values of those options of groups that are given, by name."""
         names = [name for name, (_, _, of) in self.options().items() if of in groups]
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
@@ -222,10 +223,10 @@ class Command(Debugging, ABC):
             raise InputError(f"{option_names([name])} is missing{expected}")
         return value
 
-    def keywords(self) -> Question:
+    def keywords(self) -> Keywords:
         """Return the values of options that are arguments of the public function, by name."""
         arguments = inspect.signature(getattr(orchestrate, self.calls)).parameters
-        found: Question = {}
+        found: Keywords = {}
         for name, (one, kind, of) in self.options().items():
             if of is type(self) and name in arguments:
                 found[name] = getattr(self, name)

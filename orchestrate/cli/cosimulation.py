@@ -13,7 +13,7 @@ from ..lazy import xr
 from ..model import Structure
 from ..units import text_of
 from .answer import Asked
-from .command import Options, Question, option
+from .command import Keywords, Options, option
 from .grammar import plain_float, read_pairs
 from .options import OfStructure
 from .output import Results, Stored
@@ -121,7 +121,7 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
         else:
             super().__call__()
 
-    def ask(self) -> tuple[Structure | None, Question]:
+    def ask(self) -> tuple[Structure | None, Keywords]:
         alone = self.structure == "none"
         if alone and self.set:
             raise InputError("--set: --structure none has no parameters; leave it out")

@@ -16,7 +16,7 @@ from ..model import Structure
 from ..units import Units, range_text, text_of, with_units
 from . import grammar, output, printing
 from .answer import Asked
-from .command import Command, Options, Question, option
+from .command import Command, Keywords, Options, option
 from .options import OfSensors, OfStructure
 from .output import Files, Reading, digest, file_checksum, unit_note
 
@@ -240,7 +240,7 @@ class Plan(OfStructure, OfSensors, Asked, output.Results):
 The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s2)/sqrt(Hz); a wider
 bandwidth (--sensor) takes as many times longer."""
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure, Keywords]:
         structure = self.read_structure()
         from ..diagnosis.plan_test import USUAL_NOISE, usual_ends, usual_sensor
 
@@ -252,7 +252,7 @@ bandwidth (--sensor) takes as many times longer."""
             sensor = {f"acceleration{self.faces}": sensor or usual_sensor(last)}
         return structure, {**self.keywords(), "frequencies": self.hz, "sensor": sensor}
 
-    def display_units(self, question: Question) -> Units:
+    def display_units(self, question: Keywords) -> Units:
         return self.read_units().with_defaults(Units("Hz", acceleration="g"))
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:

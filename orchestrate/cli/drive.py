@@ -17,7 +17,7 @@ from ..model import Drive, Structure
 from ..model.drive import torque_line
 from ..units import Units
 from .answer import Asked, Runs
-from .command import Options, Question, option, option_names
+from .command import Keywords, Options, option, option_names
 from .grammar import Positive, parse_changes, parse_ends, parse_number_or_ends, parse_rate
 from .notes import warn_of_voltage
 from .options import print_assumptions
@@ -272,18 +272,18 @@ class Driven(OfMotor, Asked):
         structure = title_from_attributes(list(results.values())[-1])  # delaminated, if it is there
         return f"{', '.join(self.source_names())}: {structure}"
 
-    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
+    def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         if not self.drive:  # spectra without a motor
             return super().draw(results, question)
         return orchestrate.plot(*results.values(), title=self.picture_title(results))
 
-    def display_units(self, question: Question) -> Units:
+    def display_units(self, question: Keywords) -> Units:
         """Return the display units; rpm by default if the motor's speed is in rpm."""
         if not self.drive:
             return super().display_units(question)
         return self.read_units().with_defaults(Units("rpm" if self.no_load_rpm else ""))
 
-    def ask_schedule(self) -> tuple[Structure, Drive, Question]:
+    def ask_schedule(self) -> tuple[Structure, Drive, Keywords]:
         """Return structure, drive and keywords of a run under a voltage over time."""
         structure, drive = self.read_structure_and_drive()
         control = self.make_controller(structure, drive)
@@ -291,7 +291,7 @@ class Driven(OfMotor, Asked):
         question = {**self.keywords(), **self.in_seconds(structure, "step", "hold")}
         return structure, drive, {**question, "voltage": schedule, "control": control}
 
-    def in_seconds(self, structure: Structure, *names: str) -> Question:
+    def in_seconds(self, structure: Structure, *names: str) -> Keywords:
         """Return options in 1/omega, such as ``--step``, in s; None where they are not given."""
         times = {name: getattr(self, name) for name in names}
         return {n: None if time is None else time / structure.omega for n, time in times.items()}

@@ -17,7 +17,7 @@ from ..model.ranges import PUSHES
 from ..units import is_in_ratios, number_of, range_text, units_of, with_units
 from . import printing
 from .answer import Asked, Runs, is_curve
-from .command import Question, option
+from .command import Keywords, option
 from .grammar import plain_int, positive_number, reads
 from .options import CONTINUED, OfBox, OfPushes, OfStored, OfStructure, Over, parse_varied
 from .output import Files, Results, Stored, result_name
@@ -38,11 +38,11 @@ Chaotic, periodic: the exponent is three standard errors from zero. Neutral: qua
 decided with so few --periods."""
     has_picture = staticmethod(is_curve)
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure, Keywords]:
         structure, question = self.ask_along_parameter()
         if self.follow:
             others = self.keywords()
-            swept: Question = {name: question[name] for name in question if name not in others}
+            swept: Keywords = {name: question[name] for name in question if name not in others}
             swept |= {"direction": self.follow, "samples": 1, "transient": question["transient"]}
             question["start"] = orchestrate.sweep(structure, **swept, **self.running())
         return structure, question
@@ -103,9 +103,23 @@ def motion_of(data: xr.Dataset, state: xr.DataArray, periods: int) -> xr.Dataset
     varied = {name: data[name].item() for name in PARAMETERS if name in data.coords}
     structure = Structure.from_attributes(data.attrs).replace(**varied)
     names = ("frequency", "amplitude", *PUSHES)
-    box: Question = {name: float(number_of(data, name, 0.0)) for name in names}
+    box: Keywords = {name: float(number_of(data, name, 0.0)) for name in names}
     motion = orchestrate.simulate(structure, **box, start=state.values, periods=periods)
     return with_units(motion, units_of(data))
+
+
+def attractor_table(data: xr.Dataset) -> Iterator[str]:
+    """Yield a table of attractors: share, period, impacts, gap, how decided, a state."""
+    data = data.isel(attractor=data.multiplicity.notnull().values)
+    names = "share multiplicity impacts_per_period decided_by"
+    columns = {"number": [str(number) for number in data.attractor.values]}
+    columns |= printing.columns_of(data, names, form=".4g")
+    parts = [data.isel(attractor=i) for i in range(data.sizes["attractor"])]
+    columns["largest gap"] = [printing.format_largest_gap(part) for part in parts]
+    (columns["state at phase 0" + " (SI)" * (not is_in_ratios(data))],) = printing.columns_of(
+        data, "state"
+    ).values()
+    yield from printing.table(columns)
 
 
 class Attractors(OfStructure, OfBox, Over, Asked, Stored, Results):
@@ -120,7 +134,7 @@ Half of the starts lie around zero, half around the response from rest. Every mo
 value is carried to its neighbours, so along a range it is found as far as it exists; random starts
 alone may miss one whose basin is small."""
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure, Keywords]:
         return self.ask_along_parameter(si=True)  # states are printed in m and m/s
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
@@ -130,7 +144,7 @@ alone may miss one whose basin is small."""
                 count, where = int(at.number), printing.format_parameter(data, name, at[name])
                 word = "attractor" if count == 1 else "attractors"
                 yield f"{count} {word} at {where} ({data.sizes['start']} random starts)"
-                yield from printing.attractor_table(at)
+                yield from attractor_table(at)
             yield "few starts overlook small basins: basin, or a range of values, finds them"
             return
         data = data.sortby(name)
@@ -145,7 +159,7 @@ alone may miss one whose basin is small."""
             columns[f"{word} share"] = [f"{share:.1%}" for share in values.values]
         yield from printing.table(columns)
 
-    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
+    def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.planes import draw_motions
 
         data = results[""]
@@ -180,7 +194,7 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
             text = range_text(data, axis.min().item(), axis.max().item(), unit)
             sides.append(f"{axis.name} {printing.without_unit(data, text, unit)}")
         yield f"{data.sizes['attractor']} found, of {started} starts in {', '.join(sides)}"
-        yield from printing.attractor_table(data)
+        yield from attractor_table(data)
         if overlapping:
             yield f"{overlapping} starts left out: there the masses would overlap"
         if data.sizes["attractor"] > 1 and min(labels.shape) >= 32:  # along a side, for entropies
@@ -213,7 +227,7 @@ class Orbit(OfStructure, OfBox, Asked, Stored, Results):
   {program} orbit --structure beam --hz 16.7 --g 0.02
 Floquet multipliers: of a stable orbit all lie inside the unit circle."""
 
-    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
+    def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         data = results[""]
         motion = motion_of(data, data.state.isel(sample=0), int(data.attrs["period"]))
         return orchestrate.plot(motion, title=orbit_title(data, motion))
@@ -247,7 +261,7 @@ class Manifold(OfStored, OfBox, Asked, Stored, Results):
   {program} manifold --structure beam --hz 14 --g 0.02
 What starts next to a saddle with one multiplier outside the unit circle leaves along it."""
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure, Keywords]:
         structure, question = self.read_structure_and_question()
         if self.is_shaken() or question["start"] is None:
             question |= self.read_excitation(structure, si=True, one=True)
@@ -264,6 +278,13 @@ What starts next to a saddle with one multiplier outside the unit circle leaves 
         yield from printing.table({**columns, "breaks": [*map(str, breaks)]})
 
 
+def both_ends(data: xr.Dataset) -> Iterator[str]:
+    """Yield why a branch or a border ends at its first and last point, and what to do."""
+    ends = data.attrs["first_end"], data.attrs["last_end"]
+    yield "first end: {}; last end: {}".format(*ends)
+    yield from printing.end_lines(ends)
+
+
 class Branch(OfStored, OfBox, Asked, Stored, Results):
     """Follow periodic motions along a parameter, stable and unstable, to their bifurcations."""
 
@@ -277,7 +298,7 @@ class Branch(OfStored, OfBox, Asked, Stored, Results):
   {program} branch --start branch.nc --switch 1 --limits 2.4:2.9   the branch that leaves there
 The excitation says where a first orbit is looked for; without it that is the lower limit."""
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure, Keywords]:
         over, limits = parse_varied(self.over, self.needed("limits", "; expected FIRST:LAST"))
         structure, keywords = self.read_structure_and_question()
         if over == "frequency" and self.g is not None:
@@ -298,7 +319,7 @@ The excitation says where a first orbit is looked for; without it that is the lo
             yield from printing.table(columns, count)
         else:
             yield "no bifurcation in this range"
-        yield from printing.both_ends(data)
+        yield from both_ends(data)
 
     def hold_amplitude(self, structure: Structure, first: float) -> None:
         """Replace ``--g`` by the amplitude that it is at the start of a branch over frequency."""
@@ -313,7 +334,7 @@ The excitation says where a first orbit is looked for; without it that is the lo
         print(f"{text}, constant along the branch; its bifurcations are those of any amplitude")
         self.g, self.amplitude = None, amplitude
 
-    def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Question:
+    def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Keywords:
         """Return the excitation at which the first orbit is searched, as keywords."""
         name, amplitude = self.frequency_option(), self.read_amplitude()
         if over == "frequency" and amplitude is None and not begun:
@@ -353,7 +374,7 @@ class Border(OfStored, OfPushes, Asked, Stored, Results):
 --start is what the command branch has written, with the numbers of its bifurcations;
 structure and excitation are those of that branch."""
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure, Keywords]:
         self.needed("start", "; expected a file of the command branch")
         ranges = self.needed("limits", "; expected A:B,C:D").split(",")
         names = [part.strip() for part in self.over.split(",")]
@@ -401,4 +422,4 @@ structure and excitation are those of that branch."""
         if count:
             rows = printing.columns_of(data, f"kind {' '.join(names)}", "codimension_two_")
             yield from printing.table(rows, count)
-        yield from printing.both_ends(data)
+        yield from both_ends(data)

@@ -18,6 +18,7 @@ from ..constants import GRAVITY
 from ..errors import InputError, StoreError
 from ..lazy import xr
 from ..model import ranges
+from ..model.spelling import expected_one_of
 
 Parsed = TypeVar("Parsed")
 Reader = Callable[[str, str], Parsed]
@@ -201,7 +202,7 @@ def read_choice(choices: Collection[Any], option: str, text: str) -> Any:
     for choice in choices:
         if text == str(choice):
             return choice
-    raise InputError(f"{option} {text}: {ranges.expected_one_of(text, map(str, choices))}")
+    raise InputError(f"{option} {text}: {expected_one_of(text, map(str, choices))}")
 
 
 def read_earlier_result(option: str, path: Path) -> xr.Dataset:
@@ -354,5 +355,5 @@ def check_name(name: str) -> None:
 
     known = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)
     if name not in (*known, *ranges.DRIVE):
-        expected = ranges.expected_one_of(SAID.get(name, name), known)
+        expected = expected_one_of(SAID.get(name, name), known)
         raise InputError(f"--set {name}: no parameter; {expected}")

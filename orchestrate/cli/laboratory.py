@@ -18,7 +18,7 @@ from ..model import Shaker, Structure
 from ..units import Units, text_of
 from . import grammar, output, printing
 from .answer import Asked, Runs
-from .command import Command, Options, Question, option, option_names
+from .command import Command, Keywords, Options, option, option_names
 from .options import Beside, OfSensors, OfStructure
 from .output import Files, Reading, digest, unit_note
 
@@ -152,7 +152,7 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
   {program} shake --structure beam --record base.csv --unit g
 --sensor also writes what accelerometers read, a record for diagnose, analyse and channels."""
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure, Keywords]:
         from ..running.job import refuse_family
 
         structure, shaker = self.read_structure(), self.shaker
@@ -168,7 +168,7 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
             "shaker": None if shaker is None else Shaker.from_file(shaker),
         }
 
-    def write_more(self, files: Files, question: Question, shown: Runs, results: Runs) -> None:
+    def write_more(self, files: Files, question: Keywords, shown: Runs, results: Runs) -> None:
         if (sensor := self.read_sensor()) is None:
             return
         excitation = None if self.shaker else question["excitation"]
@@ -305,7 +305,7 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
         return self.records
 
     def compute(
-        self, states: Mapping[str, Any], others: Any, question: Question, files: Mapping[str, Files]
+        self, states: Mapping[str, Any], others: Any, question: Keywords, files: Mapping[str, Files]
     ) -> dict[str, xr.Dataset]:
         results = {}
         for label, record in states.items():
@@ -315,14 +315,14 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
                 raise InputError(f"{self.paths[label]}: {error}") from None
         return results
 
-    def display_units(self, question: Question) -> Units:
+    def display_units(self, question: Keywords) -> Units:
         return self.read_record_units()
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         yield ANALYSES[self.analysis][1]
         yield from printing.table(columns_of_analysis(self.analysis, data))
 
-    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
+    def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.analysis import draw
 
         (label, first), *others = results.items()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,13 +16,13 @@ from ..lazy import np, xr
 from ..model import Structure
 from ..model.ranges import COMPLETE, OF_LENGTH
 from ..units import text_of
+from .command import Keywords
 
 OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
     "frequency": (1.0 / TURN, "rad/s", "--hz"),
     "hz": (TURN, "Hz", "--frequency"),
 }
 log = logging.getLogger(__name__)
-Question = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def mass_note(structure: Structure) -> str:
     return f"{text}: masses are in kg (150 g is 0.15, or 150g)"
 
 
-def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -> Iterator[str]:
+def trivial_notes(structure: Structure, question: Keywords, shown: xr.Dataset) -> Iterator[str]:
     """Yield notes for the user on arguments that make the result trivial, such as bonded."""
     varied = isinstance(question.get("level"), tuple) or question.get("over") == "level"
     if varied and not structure.has_scale:
@@ -70,7 +70,7 @@ def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -
         yield from clearance_notes(structure, question, shown)
 
 
-def box_motion(structure: Structure, question: Question) -> tuple[Any, Any]:
+def box_motion(structure: Structure, question: Keywords) -> tuple[Any, Any]:
     """Return frequencies, rad/s, and amplitudes, m, of all points asked, as arrays."""
     box = {name: np.ravel(question[name]) for name in set().union(*COMPLETE) & question.keys()}
     if "eta" in box:
@@ -81,7 +81,7 @@ def box_motion(structure: Structure, question: Question) -> tuple[Any, Any]:
     return box["frequency"], box["amplitude"]
 
 
-def warn_of_level(structure: Structure, question: Question) -> None:
+def warn_of_level(structure: Structure, question: Keywords) -> None:
     """Warn once if the box's amplitude or acceleration is beyond what shakers have."""
     frequency, amplitude = box_motion(structure, question)
     travel, level = amplitude.max(), (amplitude * frequency**2).max() / GRAVITY
@@ -103,7 +103,7 @@ def warn_of_voltage(text: str, voltages: tuple[float, ...], volts: float) -> Non
         )
 
 
-def print_frequency_notes(arguments: Any, structure: Structure, question: Question) -> None:
+def print_frequency_notes(arguments: Any, structure: Structure, question: Keywords) -> None:
     """Print which structure is used by default; warn if frequencies are far from its own."""
     if question.get("frequency") is None:
         return
@@ -144,7 +144,7 @@ def warn_of_other_unit(arguments: Any, structure: Structure, first: float, last:
             )
 
 
-def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset) -> Iterator[str]:
+def clearance_notes(structure: Structure, question: Keywords, shown: xr.Dataset) -> Iterator[str]:
     """Yield a note if the level is below the threshold at which the gap opens or closes."""
     if question.get("over") == "level":
         question = {**question, "level": question["values"]}
@@ -170,7 +170,7 @@ def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset)
     )
 
 
-def threshold_over_level(structure: Structure, question: Question) -> float:
+def threshold_over_level(structure: Structure, question: Keywords) -> float:
     """Return the smallest ratio of contact threshold to excitation level, of all points asked."""
     frequency, amplitude = box_motion(structure, question)
     level = orchestrate.contact_threshold(structure, frequency=np.unique(frequency))

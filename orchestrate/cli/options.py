@@ -18,7 +18,7 @@ from ..model.ranges import ADDED, PUSHES, STRUCTURE
 from ..model.sections import TO_RAD_S
 from ..model.toml_files import parse
 from . import grammar
-from .command import Options, Question, option, option_names
+from .command import Keywords, Options, option, option_names
 from .notes import SETTINGS, mass_note
 
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
@@ -115,7 +115,7 @@ class OfStored(OfStructure):
         value="SET|FILE",
     )
 
-    def read_structure_and_question(self) -> tuple[Structure, Question]:
+    def read_structure_and_question(self) -> tuple[Structure, Keywords]:
         """Return structure and keywords of a command that may begin with a stored result."""
         if self.start is None:
             self.structure = self.structure or "paper"
@@ -229,7 +229,7 @@ class OfBox(OfPushes):
 
     def read_excitation(
         self, structure: Structure, si: bool = False, one: bool = False, by_level: bool = False
-    ) -> Question:
+    ) -> Keywords:
         """Return frequency and amplitude of the box's motion as keywords of the public API.
 
         With ``by_level`` the level in place of the amplitude, which may have several values.
@@ -263,7 +263,7 @@ class OfBox(OfPushes):
             amplitude = apply_to_each(lambda value: peak / (value * value), frequencies)
         return {"frequency": frequencies, "amplitude": amplitude, **self.pushes()}
 
-    def excitation_from_file(self) -> Question | None:
+    def excitation_from_file(self) -> Keywords | None:
         """Return keywords of the excitation in the structure's file, or None; set ``--phase``."""
         excitation: Any = read(self.structure).get("excitation")
         if excitation is None:
@@ -305,19 +305,19 @@ class Over(Options):
     )
     values: Any = option("its values, FIRST:LAST:STEP or a list A,B,...", value="VALUES")
 
-    def over_arguments(self) -> Question:
+    def over_arguments(self) -> Keywords:
         """Return the varied parameter and its values as keywords; none without it."""
         if (self.over is None) != (self.values is None):
             raise InputError("--over and --values: expected both, or none of them")
         values = self.over and grammar.parse_listed(self.over, self.values)
         return {"over": self.over, "values": values} if values else {}
 
-    def ask_along_parameter(self, si: bool = False) -> tuple[Structure, Question]:
+    def ask_along_parameter(self, si: bool = False) -> tuple[Structure, Keywords]:
         """Return structure, keywords, excitation and what varies of it."""
         structure = self.read_structure()
         if self.over is None and self.has_levels():
             box = self.read_excitation(structure, one=True, by_level=True)
-            varied: Question = {**box, "over": "level", "values": box.pop("level")}
+            varied: Keywords = {**box, "over": "level", "values": box.pop("level")}
         elif varied := self.over_arguments():
             self.check_over(self.over)
             varied = {**self.read_excitation(structure, si, one=True), **varied}
@@ -365,7 +365,7 @@ class OfSensors(Options):
     ) -> orchestrate.Sensor | None:
         """Return the sensor; without ``--sensor`` the ``usual`` one, None without any option."""
         limits = {"noise": self.noise, "range": self.range and GRAVITY * self.range}
-        given: Question = {n: value for n, value in limits.items() if value is not None}
+        given: Keywords = {n: value for n, value in limits.items() if value is not None}
         if self.sensor is not None:
             bandwidth, *rate = self.sensor
             return orchestrate.Sensor(bandwidth=bandwidth, sample_rate=[*rate, None][0], **given)

@@ -1,8 +1,11 @@
-"""Format what commands print: parameters, ranges, counts, tables of a result's variables."""
+"""Format what commands print: numbers, parameters, ranges, shares, tables of variables.
+
+The sentences around them stand with the commands that print them; here are only those that the
+commands of several modules print.
+"""
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
@@ -76,20 +79,6 @@ def extents(data: xr.Dataset, names: str, rms: bool = False) -> Iterator[str]:
             yield f"{meaning}: {without_unit(data, text, unit).removesuffix(' 1')}{ending}"
 
 
-def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
-    """Yield all variables of a result at one parameter value as a table."""
-    yield f"one value, {format_parameter(data, name, data[name][0])}: a table and no picture"
-    shown, order = units.as_shown(data.isel({name: 0})), {"structure", "direction"} & {*data.dims}
-    arrays = {key: one for key, one in shown.data_vars.items() if {*one.dims} <= order}
-    columns = {"": [str(key) for key in arrays]}
-    for case in itertools.product(*(data[dim].values.tolist() for dim in sorted(order)[::-1])):
-        at = dict(zip(sorted(order)[::-1], case, strict=True))
-        cells = [float(one.sel({dim: at[str(dim)] for dim in one.dims})) for one in arrays.values()]
-        columns[" ".join(case) or "value"] = [f"{cell:.6g}" for cell in cells]
-    columns["unit"] = [str(one.attrs.get("units", "1")).strip("1") for one in arrays.values()]
-    yield from table(columns, len(arrays))
-
-
 def impact_lines(data: xr.Dataset) -> Iterator[str]:
     """Yield number and fastest of a motion's impacts, and how many begin permanent contact."""
     count = data.sizes["impact"]
@@ -105,30 +94,9 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
     yield f"{count} impacts, the fastest at {speed} ({hardest}); {sticks} begin permanent contact"
 
 
-def attractor_table(data: xr.Dataset) -> Iterator[str]:
-    """Yield a table of attractors: share, period, impacts, gap, how decided, a state."""
-    data = data.isel(attractor=data.multiplicity.notnull().values)
-    names = "share multiplicity impacts_per_period decided_by"
-    columns = {"number": [str(number) for number in data.attractor.values]}
-    columns |= columns_of(data, names, form=".4g")
-    parts = [data.isel(attractor=i) for i in range(data.sizes["attractor"])]
-    columns["largest gap"] = [format_largest_gap(part) for part in parts]
-    (columns["state at phase 0" + " (SI)" * (not units.is_in_ratios(data))],) = columns_of(
-        data, "state"
-    ).values()
-    yield from table(columns)
-
-
 def end_lines(ends: Collection[str]) -> Iterator[str]:
     """Yield what to do about those ends of branches that need not be one."""
     yield from (f"{end}: {text}" for end, text in ENDS.items() if end in ends)
-
-
-def both_ends(data: xr.Dataset) -> Iterator[str]:
-    """Yield why a branch or a border ends at its first and last point, and what to do."""
-    ends = data.attrs["first_end"], data.attrs["last_end"]
-    yield "first end: {}; last end: {}".format(*ends)
-    yield from end_lines(ends)
 
 
 # -- parameters and ranges ------------------------------------------------------------------------
@@ -189,8 +157,14 @@ def parameter_parts(
     if name == "level":
         shown = data if chosen.acceleration else units.with_units(data, "g")
         return ("", *units.shown_number(shown, value, "m/s2", form))
-    unit = str(data[name].attrs.get("units", "")) if name in data.variables else ""
-    return (name, *units.shown_number(data, value, unit.removeprefix("1"), form))
+    unit = unit_or_nothing(data[name]) if name in data.variables else ""
+    return (name, *units.shown_number(data, value, unit, form))
+
+
+def unit_or_nothing(array: xr.DataArray) -> str:
+    """Return a variable's unit, empty for a ratio (``"1"``)."""
+    unit = str(array.attrs.get("units", "1"))
+    return "" if unit == "1" else unit
 
 
 def flag_word(value: xr.DataArray) -> str:
@@ -240,14 +214,6 @@ def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
     if length is not None and math.isfinite(float(length)) and not units.is_in_ratios(data):
         parts.append(units.text_of(data, ratio * float(length), "m", ".4g"))
     return ", ".join(parts)
-
-
-def largest_gap_line(data: xr.Dataset) -> str:
-    """Format the largest gap of all responses, and the parameters at which it is."""
-    top = data.isel(data.xi_rel_max.argmax(...))
-    names = [str(dim) for dim in data.xi_rel_max.dims if dim != "direction"]
-    where = ", ".join(format_parameter(data, name, top[name]) for name in names)
-    return f"largest gap: {format_largest_gap(top)} at {where}"
 
 
 def with_error(values: Any, errors: Any, form: str = ".5g", error_form: str = ".2g") -> list[str]:

@@ -10,10 +10,10 @@ from ..errors import InputError
 from ..flags import flag_words
 from ..lazy import xr
 from ..model import Drive, Structure
-from ..units import is_in_ratios, text_of
+from ..units import as_shown, is_in_ratios, text_of
 from . import printing
 from .answer import Asked, Overlay, is_curve
-from .command import Question, option
+from .command import Keywords, option
 from .drive import Driven
 from .grammar import parse_changes, parse_listed
 from .options import Beside, OfBox, OfStructure, Over
@@ -68,7 +68,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
   {program} resonance --eta 0.3:4:0.005 --set e=0.3             the paper's structure"""
     has_picture = staticmethod(is_curve)
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure, Keywords]:
         structure, question = self.read_structure(), self.keywords()
         if self.has_levels():
             self.calls = "resonance_levels"
@@ -81,7 +81,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
         else:
             name = printing.varied_parameter(data)
             if data.sizes[name] == 1:
-                yield from printing.table_of_one(data, name)
+                yield from table_of_one(data, name)
                 return
             yield from peak_lines(data, name)
         if "lowest_threshold" in data:
@@ -143,7 +143,7 @@ class Spectra(OfBox, Driven, Stored, OfBoth):
         excitation = self.read_excitation(structure, si=True)
         return structure, {**self.keywords(), **excitation}
 
-    def ask_motor(self) -> tuple[Structure, Drive, Question]:
+    def ask_motor(self) -> tuple[Structure, Drive, Keywords]:
         """Return structure, drive and voltage of a motor-driven structure (Figure 3)."""
         structure, motor = self.read_structure_and_drive()
         eta0 = CAPTURED.get(self.drive) if self.eta0 is None else self.eta0
@@ -173,6 +173,14 @@ UNDECIDED = "; undecided: slow to converge or nearly periodic, --transient 5000 
 WORDS = {"repeated": "repeat", "irregular": "irregular", "undecided": "undecided"}
 
 
+def largest_gap_line(data: xr.Dataset) -> str:
+    """Format the largest gap of all responses, and the parameters at which it is."""
+    top = data.isel(data.xi_rel_max.argmax(...))
+    names = [str(dim) for dim in data.xi_rel_max.dims if dim != "direction"]
+    where = ", ".join(printing.format_parameter(data, name, top[name]) for name in names)
+    return f"largest gap: {printing.format_largest_gap(top)} at {where}"
+
+
 def count_line(data: xr.Dataset) -> str:
     """Format how many responses repeat, are irregular, or are undecided, and permanent contact."""
     decided, size = data.multiplicity_decided, data.multiplicity_decided.size
@@ -181,6 +189,21 @@ def count_line(data: xr.Dataset) -> str:
     counts |= {"with permanent contact": contact} if contact else {}
     shares = [printing.format_share(count, size, word) for word, count in counts.items()]
     return f"{size:,} responses: {', '.join(shares)}"
+
+
+def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
+    """Yield all variables of a result at one parameter value as a table."""
+    where = printing.format_parameter(data, name, data[name][0])
+    yield f"one value, {where}: a table and no picture"
+    shown, order = as_shown(data.isel({name: 0})), {"structure", "direction"} & {*data.dims}
+    arrays = {key: one for key, one in shown.data_vars.items() if {*one.dims} <= order}
+    columns = {"": [str(key) for key in arrays]}
+    for case in itertools.product(*(data[dim].values.tolist() for dim in sorted(order)[::-1])):
+        at = dict(zip(sorted(order)[::-1], case, strict=True))
+        cells = [float(one.sel({dim: at[str(dim)] for dim in one.dims})) for one in arrays.values()]
+        columns[" ".join(case) or "value"] = [f"{cell:.6g}" for cell in cells]
+    columns["unit"] = [printing.unit_or_nothing(one) for one in arrays.values()]
+    yield from printing.table(columns, len(arrays))
 
 
 def window_lines(data: xr.Dataset, name: str) -> Iterator[str]:
@@ -236,7 +259,7 @@ class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
   {program} sweep --eta 2.4:2.8:0.002 --overlay branch.nc   with what branch has written"""
     has_picture = staticmethod(is_curve)
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure, Keywords]:
         if self.over is None and not self.is_shaken():
             self.eta = PAPER_RANGE
         texts = (self.values, self.eta, self.hz, self.rpm, self.frequency, self.g)
@@ -247,9 +270,9 @@ class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         name = printing.varied_parameter(data)
         if data.sizes[name] == 1:
-            yield from printing.table_of_one(data, name)
+            yield from table_of_one(data, name)
             return
-        yield printing.largest_gap_line(data)
+        yield largest_gap_line(data)
         for mass in (1, 2) if not is_in_ratios(data) else ():
             displacement = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
             acceleration = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
@@ -284,7 +307,7 @@ class Map(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
   {program} map --eta 2.4:2.9:0.02 --over e --values 0.6:0.8:0.02 --overlay border.nc
 Each point starts from rest. The picture has a panel for each quantity."""
 
-    def ask(self) -> tuple[Structure, Question]:
+    def ask(self) -> tuple[Structure, Keywords]:
         structure = self.read_structure()
         if len(self.over) != len(self.values):
             raise InputError("--over and --values: give exactly one --values for each --over")
@@ -310,7 +333,7 @@ Each point starts from rest. The picture has a panel for each quantity."""
         counts = [(kinds.count(n), f"after {n} T") for n in sorted({*kinds})[:4]]
         if shares := [printing.format_share(n, len(kinds), words) for n, words in counts]:
             yield f"they repeat: {', '.join(shares)}"
-        yield printing.largest_gap_line(data)
+        yield largest_gap_line(data)
         if "exponent" in data:
             chaotic = int(printing.has_flag(data.verdict, "chaotic").sum())
             yield printing.format_share(chaotic, data.exponent.size, "chaotic")

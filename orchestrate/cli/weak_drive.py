@@ -17,7 +17,7 @@ from ..model import Drive, Structure
 from ..units import range_text, text_of, units_of, with_units
 from . import printing
 from .answer import Only, Runs
-from .command import Question, option
+from .command import Keywords, option
 from .drive import Driven, OfController, OfRamp, OfSchedule, Stepped
 from .grammar import parse_rates
 from .options import Over
@@ -75,10 +75,10 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         else:
             super().__call__()
 
-    def ask(self) -> tuple[Structure, Drive, Question]:
+    def ask(self) -> tuple[Structure, Drive, Keywords]:
         return self.ask_schedule()
 
-    def make_job(self, structure: Structure, motor: Drive, question: Question) -> CoupleJob:
+    def make_job(self, structure: Structure, motor: Drive, question: Keywords) -> CoupleJob:
         from ..weak_drive.couple import couple_job, scheme_from_arguments
 
         control, step = question["control"], question["step"]
@@ -87,7 +87,7 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         return couple_job(structure, motor, question["voltage"], scheme, **more)
 
     def compute(
-        self, states: Mapping[str, Any], others: Any, question: Question, files: Mapping[str, Files]
+        self, states: Mapping[str, Any], others: Any, question: Keywords, files: Mapping[str, Files]
     ) -> dict[str, xr.Dataset]:
         from ..fmu import finder
         from ..running.options import RunOptions
@@ -132,10 +132,10 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         titles = ("structure", "jump", "voltage V", "eta0", "of the ramp V", "decided")
         yield from printing.table(dict(zip(titles, zip(*rows, strict=True), strict=True)))
 
-    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
+    def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         return draw_couple(self.picture_title(results), results, self.job, self.stationary)
 
-    def write_more(self, files: Files, question: Question, shown: Runs, results: Runs) -> None:
+    def write_more(self, files: Files, question: Keywords, shown: Runs, results: Runs) -> None:
         if any(data.jumps.notnull().any() for data in results.values()):
             title = self.picture_title(shown)
             draw = partial(orchestrate.plot, *shown.values(), part="jumps", title=title)
@@ -194,7 +194,7 @@ class Capture(Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
   {program} capture --drive beam --set armature_resistance=120 --voltage 7:10 --speed-gradient
 The motor is switched on at once and followed until its speed has settled."""
 
-    def ask(self) -> tuple[Structure, Drive, Question]:
+    def ask(self) -> tuple[Structure, Drive, Keywords]:
         structure, motor = self.read_structure_and_drive()
         varied = self.over_arguments()
         ends = self.parse_ramp_ends(structure, motor)
@@ -244,7 +244,7 @@ class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
   {program} passage --drive rig --one-way --around 3
   {program} passage --drive beam --voltage 6.5 --duration 10 --speed-control 110"""
 
-    def ask(self) -> tuple[Structure, Drive, Question]:
+    def ask(self) -> tuple[Structure, Drive, Keywords]:
         from ..weak_drive.schedule import Constant
 
         if self.revolutions < 1:
@@ -254,7 +254,7 @@ class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
             question["around"] = 300.0 / structure.omega
         return structure, motor, question
 
-    def draw(self, results: Runs, question: Question, *_: xr.Dataset) -> Any:
+    def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.passage import draw
 
         shown = {state: first_stored_interval(data) for state, data in results.items()}
@@ -283,10 +283,10 @@ class JumpVoltages(OfRamp, Over, Stepped, Driven, Stored, OfBoth):
   {program} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
   {program} jump-voltages --over clearance --values 0,1e-5,3e-5 --drive beam --one-way"""
 
-    def ask(self) -> tuple[Structure, Drive, Question]:
+    def ask(self) -> tuple[Structure, Drive, Keywords]:
         structure, motor = self.read_structure_and_drive()
         unit = motor.volts(structure) * structure.omega
-        question: Question = {
+        question: Keywords = {
             "voltage": self.parse_ramp_ends(structure, motor),
             "rates": [rate * unit for rate in parse_rates("--rate", self.rate)],
             "back": not self.one_way,
@@ -361,5 +361,5 @@ class DriveBranch(Driven, Stored, OfBoth):
 Branches go round their folds."""
     summary = staticmethod(drive_branch_lines)
 
-    def ask(self) -> tuple[Structure, Drive, Question]:
+    def ask(self) -> tuple[Structure, Drive, Keywords]:
         return *self.read_structure_and_drive(), self.keywords()

@@ -22,7 +22,7 @@ from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Table
 from ..running.options import Running
-from ..running.runner import answer, gather
+from ..running.runner import answer, compute_datasets
 from .decision_rule import DELAMINATED, NOT_SEEN, Beam, Findings
 from .even_orders import smallest_openings, thresholds
 from .evidence import Participation
@@ -198,7 +198,7 @@ def detect_all(
         raise InputError("records: expected one record or more, by names")
     rest = guess, checked_free(free), participation, checked_settings(settings)
     jobs = [named_job(name, record, *rest) for name, record in records.items()]
-    return dict(zip(records, gather(jobs, running, finder(running)), strict=True))
+    return dict(zip(records, compute_datasets(jobs, running, finder(running)), strict=True))
 
 
 def named_job(name: str, record: xr.Dataset | Sequence[xr.Dataset], *rest: Any) -> DetectJob:

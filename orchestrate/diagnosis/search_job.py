@@ -136,7 +136,7 @@ class SearchJob(Job):
     free: tuple[str, ...]  # what is fitted of a delaminated structure
     sound: tuple[int, ...] = tuple(range(len(SOUND)))  # which of `SOUND`
     delaminated: bool = True  # whether that is searched too
-    gathers: ClassVar[bool] = True
+    last_item_uses_all: ClassVar[bool] = True
     item_columns: ClassVar[tuple[str, ...]] = ()  # solutions
     last_weight: ClassVar[int] = 40  # refining takes about twice as long as all searches
     item: ClassVar[str] = "step"

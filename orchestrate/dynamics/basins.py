@@ -136,7 +136,7 @@ class BasinJob(Question):
     replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *PUSHES, "phase", *RUN_LENGTHS)
     family: ClassVar[tuple[str, ...]] = FAMILY
     chunk_size: ClassVar[int] = 240
-    gathers: ClassVar[bool] = True
+    last_item_uses_all: ClassVar[bool] = True
     item: ClassVar[str] = "start"
 
     def __post_init__(self) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .bifurcations import KINDS, Kind
+from .bifurcation_kinds import KINDS, Kind
 from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root, leading_component
 from .families import Family, central_difference

@@ -20,7 +20,7 @@ from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
-from .bifurcations import KINDS, Kind
+from .bifurcation_kinds import KINDS, Kind
 from .branches import (
     NODES,
     OF_SETTING,

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..constants import TURN
 from ..errors import InputError
-from .bifurcations import KINDS, Kind
+from .bifurcation_kinds import KINDS, Kind
 from .closed_form import Floats
 from .continuation import ArclengthStepper, Root, fix_sign, newton_correct, unit_vector
 from .families import Family

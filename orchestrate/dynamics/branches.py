@@ -22,7 +22,7 @@ from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from ..running.provenance import describe_dataset
-from .bifurcations import KINDS
+from .bifurcation_kinds import KINDS
 from .branch_switching import leaving_branch
 from .continuation import SOLVER_ERRORS
 from .families import Setting, check_parameters

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from .bifurcation_curve import BifurcationCurve
-from .bifurcations import Kind, NamedKind
+from .bifurcation_kinds import Kind, NamedKind
 from .closed_form import Floats
 from .continuation import (
     SOLVER_ERRORS,

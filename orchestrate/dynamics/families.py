@@ -11,7 +11,8 @@ import numpy as np
 
 from ..errors import InputError
 from ..model import PARAMETERS, Structure
-from ..model.ranges import PUSHES, expected_one_of
+from ..model.ranges import PUSHES
+from ..model.spelling import expected_one_of
 from ..response.questions import QUANTITIES, Point, make_point
 from .closed_form import ClosedForm, Floats
 from .periodic_orbit import POSITION, ImpactSequence, PeriodicOrbit

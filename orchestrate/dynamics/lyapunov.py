@@ -31,7 +31,7 @@ from .lyapunov_spectrum import (
     lyapunov_spectrum,
     spectrum_without_impacts,
 )
-from .variational import call_of, library, period_in_tau
+from .variational import call_of, exponent_library, period_in_tau
 
 PERIODIC, NEUTRAL, CHAOTIC = -1, 0, 1
 WORDS = {PERIODIC: "periodic", NEUTRAL: "neutral", CHAOTIC: "chaotic"}
@@ -61,7 +61,7 @@ def largest_exponent(
         return Exponent(math.nan, math.nan)
     call, found = call_of(impacts, end, point), np.empty(2)
     places = call.memory.ctypes.data, found.ctypes.data
-    library().largest_exponent(*call.span, blocks, batches, *places)
+    exponent_library().largest_exponent(*call.span, blocks, batches, *places)
     return Exponent(float(found[0]), float(found[1]))
 
 
@@ -96,7 +96,7 @@ def decay_rate(damping: float, square: float) -> float:
 def wander_floor(etas: Iterable[float], periods: int, wander: float = WANDER) -> Floats:
     """Return what a deviation that only wanders, by this factor, makes of exponents at most."""
     spans = [periods * period_in_tau(eta) for eta in etas]
-    return np.array([library().wander_floor(wander, span) for span in spans])
+    return np.array([exponent_library().wander_floor(wander, span) for span in spans])
 
 
 def classify_exponents(
@@ -105,7 +105,7 @@ def classify_exponents(
     """Classify: 1 chaotic, -1 periodic, 0 neutral (within `sigmas` errors or `floor`, or NaN)."""
     given = np.broadcast_arrays(exponent, error, floor)
     rows = zip(*(each.ravel().tolist() for each in given), strict=True)
-    verdicts = [library().classify_exponent(*map(float, row), sigmas) for row in rows]
+    verdicts = [exponent_library().classify_exponent(*map(float, row), sigmas) for row in rows]
     return np.array(verdicts, dtype=np.int8).reshape(given[0].shape)
 
 

@@ -17,7 +17,7 @@ from ..fmu import Impacts
 from ..model import Structure
 from ..response.questions import Point
 from .closed_form import Floats
-from .variational import deviations, library
+from .variational import deviations, exponent_library
 
 STATES = 4
 CONTACT_RANK = 2  # of a matrix where permanent contact begins
@@ -43,7 +43,7 @@ def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> Bl
     count, rows = given.shape[:2]
     size = max(1, count // blocks)
     growth = np.empty(-(-count // size))
-    if not library().find_growth(given.ctypes.data, count, rows, size, growth.ctypes.data):
+    if not exponent_library().find_growth(given.ctypes.data, count, rows, size, growth.ctypes.data):
         return None
     return BlockGrowth(growth, np.diff(np.append(times[::size], end)))
 
@@ -52,7 +52,7 @@ def growth_by_batch_means(blocks: BlockGrowth, batches: int) -> tuple[float, flo
     """Return the mean growth per unit of tau, and its standard error by batch means."""
     growth, durations = (np.ascontiguousarray(column) for column in blocks)
     mean, columns = np.empty(2), (growth.ctypes.data, durations.ctypes.data)
-    library().find_average(*columns, len(growth), batches, mean.ctypes.data)
+    exponent_library().find_average(*columns, len(growth), batches, mean.ctypes.data)
     return float(mean[0]), float(mean[1])
 
 

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .bifurcations import KINDS, Kind
+from .bifurcation_kinds import KINDS, Kind
 from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root
 from .families import Family
@@ -94,7 +94,7 @@ class OrbitPoint:
             return float(np.minimum(-margins, orbit.durations)[orbit.contact].min(initial=1.0))
         return float(margins[~(orbit.contact | orbit.sequence.releases)].min(initial=1.0))
 
-    def test(self, kind: Kind) -> float:
+    def test_function(self, kind: Kind) -> float:
         """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
         if kind == Kind.FOLD:
             return float(self.root.tangent[self.family.size])
@@ -160,11 +160,11 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         orbit = self.stepper.curve.orbit(root.unknowns)
         return bool((orbit.durations[~orbit.contact] > 0.0).all())
 
-    def test(self, point: OrbitPoint, kind: Kind) -> float:
+    def test_function(self, point: OrbitPoint, kind: Kind) -> float:
         """Return a point's test function of a bifurcation kind: it changes sign there."""
-        return point.test(kind)
+        return point.test_function(kind)
 
-    def confirms(self, kind: Kind, point: OrbitPoint, part: float) -> bool:
+    def zero_is_bifurcation(self, kind: Kind, point: OrbitPoint, part: float) -> bool:
         """Return whether a located zero is a true bifurcation, and not the step's own start."""
         return part > 1e-7 and point.zero_is_bifurcation(kind)
 
@@ -188,20 +188,20 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         self.stepper.curve, self.stepper.root = family, root
         return point
 
-    def finish_step(self, step: BranchStep[OrbitPoint]) -> tuple[OrbitPoint, Kind | None]:
+    def fit_impacts_to_step(self, step: BranchStep[OrbitPoint]) -> tuple[OrbitPoint, Kind | None]:
         """Return the step's last orbit, with impacts added or removed as chattering (17) needs."""
         # where permanent contact is lost or begins, infinitely many impacts would graze: an end
         after = step.after
         if not after.wrong_contact:
             return after, None
         try:
-            return add_or_remove_impacts(after), None
+            return fit_impacts(after), None
         except NoConvergenceError:  # too far on: go back to where the first impact comes or goes
             lost = after.contact_margin(Kind.CONTACT_LOST) <= -STICK_TOLERANCE
             kind = Kind.CONTACT_LOST if lost else Kind.CONTACT_BEGUN
             position, first = step.solve_for_level(kind, 0.0, step.length, -STICK_TOLERANCE)
         try:
-            changed = add_or_remove_impacts(change_one_impact(first))
+            changed = fit_impacts(add_or_drop_chattering_impacts(first))
         except NoConvergenceError:
             return first, kind
         self.stepper.length = max(position, 2.0 * self.stepper.min_length)
@@ -226,16 +226,16 @@ def is_halved(located: LocatedBifurcation[OrbitPoint], before: OrbitPoint) -> bo
     return least_periods(located.point.orbit, 1e-4) < periods
 
 
-def add_or_remove_impacts(point: OrbitPoint) -> OrbitPoint:
+def fit_impacts(point: OrbitPoint) -> OrbitPoint:
     """Add or remove chattering impacts one by one until (17) holds; return the orbit."""
     for _ in range(10):  # more are no small change of an orbit
         if not point.wrong_contact:
             return point
-        point = change_one_impact(point)
+        point = add_or_drop_chattering_impacts(point)
     raise NoConvergenceError("impacts of a chattering come and go")
 
 
-def change_one_impact(point: OrbitPoint) -> OrbitPoint:
+def add_or_drop_chattering_impacts(point: OrbitPoint) -> OrbitPoint:
     """Return the orbit with one more chattering impact, or without those that (17) excludes."""
     orbit, margins = point.orbit, point.sticking_margins
     kinds, nodes = list(orbit.sequence.kinds), orbit.nodes

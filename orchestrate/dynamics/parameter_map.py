@@ -21,7 +21,7 @@ from ..lazy import xr
 from ..model import PARAMETERS, Structure
 from ..model.arguments import Count, Numbers, Positive, Transient, whole
 from ..model.outcomes import UNDECIDED
-from ..model.ranges import expected_one_of
+from ..model.spelling import expected_one_of
 from ..response.labels import column_variables, flags, make_dataset, parameter_variable
 from ..response.multiplicity import DECIDED, Decision
 from ..response.questions import (

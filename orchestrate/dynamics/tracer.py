@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from .bifurcations import KINDS, Kind
+from .bifurcation_kinds import KINDS, Kind
 from .continuation import SOLVER_ERRORS, AnyCurve, ArclengthStepper, Root, solve_between
 
 LIMIT, NO_CONVERGENCE, MAX_POINTS = "limit", "no convergence", "most points"  # ends of branches
@@ -82,11 +82,11 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         """Return whether a solved root may be the branch's next point; by default yes."""
         return True
 
-    def test(self, point: Point, kind: Kind) -> float:
+    def test_function(self, point: Point, kind: Kind) -> float:
         """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
         raise NotImplementedError
 
-    def confirms(self, kind: Kind, point: Point, part: float) -> bool:
+    def zero_is_bifurcation(self, kind: Kind, point: Point, part: float) -> bool:
         """Return whether a test function's zero at a fraction of a step is a true bifurcation."""
         return True
 
@@ -97,7 +97,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         """Return why the branch ends within a step (empty if not), and its last points."""
         return "", ()
 
-    def finish_step(self, step: BranchStep[Point]) -> tuple[Point, Kind | None]:
+    def fit_impacts_to_step(self, step: BranchStep[Point]) -> tuple[Point, Kind | None]:
         """Return the point that a step appends, and the bifurcation there if it ends the branch."""
         return step.after, None
 
@@ -141,7 +141,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                     return step, []
                 located = self.locate(step)
                 if not (located and located[-1].kind in self.ending_kinds):
-                    last, kind = self.finish_step(step)
+                    last, kind = self.fit_impacts_to_step(step)
                     step.end, step.last_points = LIMIT if step.at_limit else "", [last]
                     if kind is not None:
                         located = [*located, LocatedBifurcation(kind, step.length, last)]
@@ -172,7 +172,9 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         ]
         parts = [each.position / step.length for each in crossings]
         pairs = zip(crossings, parts, strict=True)
-        confirmed = [each for each, part in pairs if self.confirms(each.kind, each.point, part)]
+        confirmed = [
+            each for each, part in pairs if self.zero_is_bifurcation(each.kind, each.point, part)
+        ]
         return sorted(confirmed, key=lambda each: each.position)
 
     def add_step(
@@ -227,34 +229,36 @@ class BranchStep(Generic[Point]):
             self.known[position] = tracer.point(tracer.stepper.root_after(position))
         return self.known[position]
 
-    def test(self, position: float, kind: Kind) -> float:
+    def test_function(self, position: float, kind: Kind) -> float:
         """Return a kind's test function at an arclength into the step; 1 where not finite."""
-        value = self.tracer.test(self.point(position), kind)
+        value = self.tracer.test_function(self.point(position), kind)
         return value if np.isfinite(value) else 1.0
 
     def brackets(self, kind: Kind) -> list[tuple[float, float]]:
         """Return intervals of the step in which a kind's test function changes sign."""
-        before, after = (self.tracer.test(point, kind) for point in (self.before, self.after))
+        before, after = (
+            self.tracer.test_function(point, kind) for point in (self.before, self.after)
+        )
         if before * after < 0.0:
             return [(0.0, self.length)]
         if self.tracer.finds_pairs and self.may_cross_twice(kind):
             from scipy.optimize import minimize_scalar
 
-            sign = np.sign(self.tracer.test(self.before, kind))
+            sign = np.sign(self.tracer.test_function(self.before, kind))
             minimum = minimize_scalar(
-                lambda position: sign * self.test(float(position), kind),
+                lambda position: sign * self.test_function(float(position), kind),
                 bounds=(0.0, self.length),
                 method="bounded",
                 options={"xatol": 1e-6 * self.length},
             )
             middle = float(minimum.x)
-            if before * self.test(middle, kind) < 0.0:
+            if before * self.test_function(middle, kind) < 0.0:
                 return [(0.0, middle), (middle, self.length)]
         return []
 
     def may_cross_twice(self, kind: Kind) -> bool:
         """Return whether a test function may cross zero twice: its size falls, then rises."""
-        value = self.tracer.test(self.before, kind)
+        value = self.tracer.test_function(self.before, kind)
         # it may change twice as fast as in the step before
         reach = 2.0 * abs(self.rates.get(kind, np.inf)) * self.length
         if self.length <= ACCURACY or not abs(value) < reach:
@@ -265,16 +269,18 @@ class BranchStep(Generic[Point]):
 
     def mean_slope(self, kind: Kind) -> float:
         """Return a test function's mean slope over the step; infinite where it is not finite."""
-        after, before = (self.tracer.test(point, kind) for point in (self.after, self.before))
+        after, before = (
+            self.tracer.test_function(point, kind) for point in (self.after, self.before)
+        )
         change = after - before
         return change / self.length if np.isfinite(change) and self.length else np.inf
 
     def slope(self, position: float, kind: Kind) -> float:
         """Return a test function's slope at either end of the step; 0 where not computable."""
         near = position + (1e-3 if position == 0.0 else -1e-3) * self.length
-        tests = self.tracer.test
+        value = self.tracer.test_function
         try:
-            change = tests(self.point(near), kind) - tests(self.point(position), kind)
+            change = value(self.point(near), kind) - value(self.point(position), kind)
         except SOLVER_ERRORS:
             return 0.0
         return change / (near - position) if np.isfinite(change) else 0.0
@@ -284,5 +290,7 @@ class BranchStep(Generic[Point]):
     ) -> tuple[float, Point]:
         """Solve by Brent's method for where a test has a level; return position, point."""
         within = self.tracer.location_tolerances(self.length)
-        position = solve_between(lambda at: self.test(at, kind) - level, low, high, **within)
+        position = solve_between(
+            lambda at: self.test_function(at, kind) - level, low, high, **within
+        )
         return position, self.point(position)

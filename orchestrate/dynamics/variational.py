@@ -21,7 +21,7 @@ from .closed_form import ClosedForm, Floats
 
 
 @functools.cache
-def library() -> Any:
+def exponent_library() -> Any:
     """Return the library of deviations, as ctypes has it, types set."""
     loaded, table = loaded_loop("exponent"), [c_void_p, c_size_t]
     loaded.exponent_size.argtypes, loaded.exponent_size.restype = [c_size_t], c_size_t
@@ -54,7 +54,7 @@ def call_of(impacts: Impacts, end: float, point: Point) -> Call:
     states, omega = point.from_faces(impacts.state), structure.omega
     columns = impacts.time / omega, states, impacts.closing * point.speed, impacts.sticks
     rows, count = np.column_stack(columns).astype(float), len(impacts.time)
-    memory = np.empty(library().exponent_size(count))
+    memory = np.empty(exponent_library().exponent_size(count))
     return Call(
         (numbers.ctypes.data, rows.ctypes.data, count, end / omega), memory, (numbers, rows)
     )
@@ -70,7 +70,7 @@ def deviations(impacts: Impacts, end: float, point: Point) -> tuple[Floats, Floa
     both, and how long permanent contact lasts after each, in tau; 0 without.
     """
     call, count = call_of(impacts, end, point), len(impacts.time)
-    first = library().find_deviations(*call.span, call.memory.ctypes.data)
+    first = exponent_library().find_deviations(*call.span, call.memory.ctypes.data)
     last = first + 16 * count
     return call.memory[first:last].reshape(count, 4, 4), call.memory[last : last + count]
 
@@ -84,12 +84,12 @@ def contact_durations(form: ClosedForm, phase: Floats, states: Floats, spans: Fl
     gaps = float(form.wall), form.gap_offset, stroke
     forces = (form.drive[:2] - 1.0) * [1.0, 0.0 if form.wall else mu]  # beside a shaken box
     numbers = np.array([*half, *gaps, 0.0, eta**-2.0, eta, -form.push[0], *forces])
-    durations, memory = np.empty(len(spans)), np.empty(library().exponent_size(1))
+    durations, memory = np.empty(len(spans)), np.empty(exponent_library().exponent_size(1))
     from_unloaded = states - [0.0, form.gap_offset, 0.0, 0.0]
     columns = phase / eta, from_unloaded, 0.0 * phase, 1.0 + 0.0 * phase
     for i, row in enumerate(np.column_stack(columns)):
         given = numbers.ctypes.data, row.ctypes.data, 1, row[0] + 1.5 * spans[i]
-        durations[i] = memory[library().find_deviations(*given, memory.ctypes.data) + 16]
+        durations[i] = memory[exponent_library().find_deviations(*given, memory.ctypes.data) + 16]
     return np.where(durations <= spans, durations, np.inf)
 
 

@@ -39,7 +39,14 @@ from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_o
 from .impacts import STATE, Impacts
 from .instance import Instance, function_addresses
 from .models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
-from .oscillator import START_VALUES, Oscillator, library, sampled, stroboscopic_samples, traits
+from .oscillator import (
+    START_VALUES,
+    Oscillator,
+    respond_library,
+    sampled,
+    stroboscopic_samples,
+    traits,
+)
 from .play import PLAYED, Player
 from .webassembly import build_web_kernels
 
@@ -73,7 +80,7 @@ __all__ = [
     "four_numbers",
     "function_addresses",
     "gap_between",
-    "library",
+    "respond_library",
     "sampled",
     "stroboscopic_samples",
     "traits",

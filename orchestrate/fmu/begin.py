@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 from ..model import Excitation, Structure
 from .instance import Instance
-from .oscillator import START_PARAMETERS, library, to_rest
+from .oscillator import START_PARAMETERS, respond_library, to_rest
 
 REST = (0.0, 0.0, 0.0, 0.0)
 
@@ -37,7 +37,7 @@ def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDA
     rows, offsets = (np.ascontiguousarray(part, dtype=float) for part in (states, gap_offset))
     gaps = np.empty(rows.shape[:-1])
     places = rows.ctypes.data, gaps.size, offsets.ctypes.data, offsets.size == 1
-    library().find_gaps(*places, gaps.ctypes.data)
+    respond_library().find_gaps(*places, gaps.ctypes.data)
     return gaps
 
 

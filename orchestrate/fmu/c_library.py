@@ -27,7 +27,7 @@ FORM = "libraries"
 SOURCES = tuple(sorted(sources.LOOPS.glob("*.c")))
 
 
-def library(source: Path, folder: str | PathLike[str] | None = None) -> Path:
+def library_path(source: Path, folder: str | PathLike[str] | None = None) -> Path:
     """Return the path of a C source's shared library, compiled if missing or out of date."""
     platform = this_machine()
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
@@ -58,7 +58,7 @@ def loaded_loop(name: str) -> Any:
 
 def loaded_library(source: Path) -> Any:
     """Load a C source's shared library."""
-    path = library(source)
+    path = library_path(source)
     try:
         return ctypes.CDLL(str(path))
     except OSError as reason:  # such as a folder from which nothing may be run

@@ -93,7 +93,7 @@ class ResponseProgress(ctypes.Structure):
 
 
 @functools.cache
-def library() -> Any:
+def respond_library() -> Any:
     """Return the library of responses, as ctypes has it, types set."""
     loaded = loaded_loop("respond")
     loaded.respond.argtypes = [c_void_p, c_void_p, c_void_p, c_size_t]
@@ -154,7 +154,7 @@ class Oscillator:
     def run(self, name: str, *arguments: Any) -> Any:
         """Call a function of the library on the instance; return its answer."""
         self.instance._messages.clear()
-        return getattr(library(), name)(byref(self.calls), *arguments)
+        return getattr(respond_library(), name)(byref(self.calls), *arguments)
 
     def error(self) -> FmuError:
         """Return the error of the call at which a loop stopped."""
@@ -202,12 +202,12 @@ def traits(
     """
     numbers = (getattr(structure, name) for name in TRAITS)
     memory = (c_double * len(TRAIT_NAMES))(*numbers, structure.omega, frequency, amplitude, pushed)
-    library().rest_and_threshold(memory)
+    respond_library().rest_and_threshold(memory)
     return memory
 
 
 def to_rest(structure: Structure, state: Sequence[float]) -> list[float]:
     """Convert a start state from unloaded springs to the FMU's, from rest; all zeros mean rest."""
     numbers, start = (c_double * 4)(*state), (c_double * 4)()
-    library().to_rest(numbers, traits(structure), start)
+    respond_library().to_rest(numbers, traits(structure), start)
     return list(start)

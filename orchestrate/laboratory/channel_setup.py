@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..model.ranges import expected_one_of
+from ..model.spelling import expected_one_of
 from ..model.toml_files import parse
 from .columns import Named
 from .conversion import ByChannel, by_channel

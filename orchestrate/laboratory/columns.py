@@ -33,7 +33,7 @@ from .missing_units import check_units, check_volts, option_of
 from .pieces import Floats
 from .record import CHANNELS, FORCES, SHORT_NAMES
 from .record_checks import first_skipped_row, implausible_times, is_ascending
-from .signals import HERTZ, checked
+from .signals import HERTZ, checked_quantity
 
 Named: TypeAlias = "Mapping[str, str | int] | Sequence[str | int] | None"  # columns by a caller
 MOST_NAMES = 12  # of columns in a message
@@ -47,7 +47,7 @@ ANGLES = {  # in rad
     **dict.fromkeys(("rad", "radian", "radians"), 1.0),
     **dict.fromkeys(("deg", "\u00b0", "degree", "degrees"), TURN / 360.0),
 }
-RATIOS = dict.fromkeys(("1", "-", "g/g", "m/m", "mm/mm", "m/s2/m/s2", "(m/s2)/(m/s2)"), 1.0)
+RATIO_UNITS = dict.fromkeys(("1", "-", "g/g", "m/m", "mm/mm", "m/s2/m/s2", "(m/s2)/(m/s2)"), 1.0)
 TIMES = {  # in s
     **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
     **dict.fromkeys(("ms", "msec"), 1e-3),
@@ -143,7 +143,7 @@ class Columns:
         if sample_rate is None:
             return self
         try:
-            return replace(self, sample_rate=checked(HERTZ, "sample_rate", sample_rate))
+            return replace(self, sample_rate=checked_quantity(HERTZ, "sample_rate", sample_rate))
         except InputError as error:
             raise InputError(f"{self.path}: {error}") from None
 
@@ -169,7 +169,7 @@ def describe_text(text: str) -> str:
 def is_unit(text: str) -> bool:
     """Return whether a text is a unit that columns of records or resonance curves may have."""
     motions = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, VOLTAGES, FREQUENCIES, ANGLES)
-    known = (*motions, RATIOS, OF_FORCES[0])
+    known = (*motions, RATIO_UNITS, OF_FORCES[0])
     return any(plain_unit(text) in units for units in known)
 
 

@@ -16,7 +16,7 @@ from .columns import (
     BY_USER,
     CURVE_NAMES,
     FREQUENCIES,
-    RATIOS,
+    RATIO_UNITS,
     Assignment,
     Column,
     Columns,
@@ -30,7 +30,7 @@ from .conversion import plain_unit, si_factor
 from .pieces import Floats
 from .record_files import file_kind, read_columns
 from .resonance_curve import CurveColumns, acceleration_factor, made_curve
-from .signals import LEVEL, checked
+from .signals import LEVEL, checked_quantity
 
 
 def read_curve(
@@ -171,10 +171,10 @@ def base_level(
         expected = "expected a column, or level= in m/s2, not both"
         raise InputError(f"{table.path}: {text}{given}; {expected}")
     if column is None:
-        return float(checked(LEVEL, "level", level))
-    own = column.unit or (unit if unit and plain_unit(unit) not in RATIOS else "")
+        return float(checked_quantity(LEVEL, "level", level))
+    own = column.unit or (unit if unit and plain_unit(unit) not in RATIO_UNITS else "")
     label = column_label(table, column)
-    ratio = plain_unit(own) in RATIOS  # of a level there is none
+    ratio = plain_unit(own) in RATIO_UNITS  # of a level there is none
     factor = acceleration_factor(label, "" if ratio else own, frequency, frequency)
     return np.asarray(factor * column.values)
 

@@ -9,7 +9,7 @@ from ..model.arguments import checked_integer
 from ..model.ranges import Quantity
 from .pieces import Pieces
 from .shock import Shock
-from .signals import SECONDS, ExcitationSignal, check_fields, checked
+from .signals import SECONDS, ExcitationSignal, check_fields, checked_quantity
 
 LISTENED = 1000.0  # widths from the knock to the end of the record
 
@@ -53,7 +53,7 @@ class Hammer(ExcitationSignal):
         check_fields(self, peak=peak, width=SECONDS, at=at)
         put(self, "half", checked_integer("half", self.half, 1, 2))
         end = self.at + LISTENED * self.width
-        put(self, "duration", checked(SECONDS, "duration", self.duration or end))
+        put(self, "duration", checked_quantity(SECONDS, "duration", self.duration or end))
         if self.duration < self.at + self.width:
             text = f"expected at least at + width = {self.at + self.width:g} s"
             raise InputError(f"duration = {self.duration!r} s: {text}")

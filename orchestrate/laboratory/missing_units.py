@@ -39,7 +39,9 @@ def check_units(
         text = f"no unit; expected one such as {usual}{volts}: give it by unit="
         sections = ", ".join(f"[{words[n]}]" for n in unknown)
         there = f', or in {setup_file} write unit = "..." below {sections}' if setup_file else ""
-        raise InputError(f"{labels(path, used, unknown)}: {text}{option_of(order, units)}{there}")
+        raise InputError(
+            f"{file_and_columns(path, used, unknown)}: {text}{option_of(order, units)}{there}"
+        )
 
 
 def check_volts(path: str, used: Used, units: Mapping[str, str], stated: Mapping[str, str]) -> None:
@@ -52,10 +54,10 @@ def check_volts(path: str, used: Used, units: Mapping[str, str], stated: Mapping
         text = f"in {volts[bare[0]]}, without a sensitivity; expected one such as "
         option = option_of([n for n in used if n in (*stated, *bare)], stated)
         text = f"{text}{', of forces '.join(usual)}: give it by sensitivity={option}"
-        raise InputError(f"{labels(path, used, bare)}: {text}")
+        raise InputError(f"{file_and_columns(path, used, bare)}: {text}")
 
 
-def labels(path: str, used: Used, names: Sequence[str]) -> str:
+def file_and_columns(path: str, used: Used, names: Sequence[str]) -> str:
     """Return file and columns of channels as a text for messages."""
     columns = (f'column "{used[name].name}" ({SHORT_NAMES[name]})' for name in names)
     return f"{path}, {', '.join(columns)}"

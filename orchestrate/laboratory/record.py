@@ -18,7 +18,7 @@ from ..response.labels import variable
 from .conversion import MOTIONS, differentiated
 from .pieces import Floats
 from .record_checks import doubtful_channels
-from .signals import HERTZ, checked
+from .signals import HERTZ, checked_quantity
 from .time_base import checked_times, interpolated
 
 ACCELERATIONS = {  # long names
@@ -113,7 +113,7 @@ def checked_record(
     raw = {name: checked_numbers(name, one, reading.first_row) for name, one in channels.items()}
     if not raw:
         raise InputError(f"record: no channel given; expected one of {', '.join(CHANNELS)}")
-    rate = None if sample_rate is None else checked(HERTZ, "sample_rate", sample_rate)
+    rate = None if sample_rate is None else checked_quantity(HERTZ, "sample_rate", sample_rate)
     if time is not None:
         times = checked_numbers("time", time, reading.first_row)
     elif rate is not None:

@@ -14,7 +14,7 @@ from ..constants import TURN
 from ..errors import InputError
 from ..lazy import xr
 from ..response.labels import variable
-from .columns import RATIOS
+from .columns import RATIO_UNITS
 from .conversion import ACCELERATIONS, LENGTHS, SPEEDS, plain_unit
 from .pieces import Floats
 from .record import plain_numbers
@@ -284,7 +284,7 @@ def power_of(unit: str) -> int:
 def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) -> Floats:
     """Return the factors that convert order 1 of a unit's quantity to m/s2, shape (n,)."""
     plain, power = plain_unit(unit), power_of(unit)
-    if plain in RATIOS:
+    if plain in RATIO_UNITS:
         return level.copy()
     if plain not in QUANTITIES[power]:
         text = f"unit = {unit!r}" if unit else "no unit"

@@ -11,7 +11,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..model.arguments import unmasked
 from .pieces import Pieces
-from .signals import HERTZ, MOST_PIECES, ExcitationSignal, checked
+from .signals import HERTZ, MOST_PIECES, ExcitationSignal, checked_quantity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +50,7 @@ class Sampled(ExcitationSignal):
             text = "expected finite numbers"
             raise InputError(f"acceleration[{wrong}] = {values[wrong]}: {text}")
         put(self, "acceleration", tuple(values.tolist()))
-        put(self, "sample_rate", checked(HERTZ, "sample_rate", self.sample_rate))
+        put(self, "sample_rate", checked_quantity(HERTZ, "sample_rate", self.sample_rate))
         put(self, "duration", (len(values) - 1) / self.sample_rate)
 
     def __repr__(self) -> str:

@@ -11,7 +11,7 @@ from ..errors import InputError
 from ..model.arguments import checked_word
 from ..model.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step
-from .signals import LEVEL, SECONDS, ExcitationSignal, check_fields, checked
+from .signals import LEVEL, SECONDS, ExcitationSignal, check_fields, checked_quantity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +48,7 @@ class Shock(ExcitationSignal):
         check_fields(self, peak=LEVEL, length=SECONDS, delay=delay)
         checked_word("shape", self.shape, ("half-sine", "sawtooth", "trapezoid"))
         end = self.delay + self.length
-        duration = checked(SECONDS, "duration", self.duration or end + 19.0 * self.length)
+        duration = checked_quantity(SECONDS, "duration", self.duration or end + 19.0 * self.length)
         object.__setattr__(self, "duration", duration)
         if self.duration < end:
             text = f"expected at least delay + length = {end:g} s"

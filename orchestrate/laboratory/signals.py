@@ -28,7 +28,7 @@ LEVEL = Quantity("acceleration", "m/s2", "", 0.0, 1e12)
 DENSITY = Quantity("psd", "m2/s4/Hz", "", 0.0, 1e24)
 
 
-def checked(quantity: Quantity, name: str, value: object) -> float:
+def checked_quantity(quantity: Quantity, name: str, value: object) -> float:
     """Return a number; raise, by the user's name for it, if it is outside its quantity's range."""
     own = Quantity(name, quantity.unit, "", quantity.minimum, quantity.maximum)
     return own.check(value)
@@ -37,7 +37,7 @@ def checked(quantity: Quantity, name: str, value: object) -> float:
 def check_fields(signal: object, **quantities: Quantity) -> None:
     """Check fields of a frozen dataclass against their quantities, and store them as numbers."""
     for name, quantity in quantities.items():
-        object.__setattr__(signal, name, checked(quantity, name, getattr(signal, name)))
+        object.__setattr__(signal, name, checked_quantity(quantity, name, getattr(signal, name)))
 
 
 def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
@@ -48,8 +48,8 @@ def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
     except (TypeError, ValueError):
         raise InputError(f"{name} = {given!r}: {expected}") from None
     for f, value in pairs:
-        checked(HERTZ, f"{name}'s frequency", f)
-        checked(quantity, f"{name} at {f:g} Hz", value)
+        checked_quantity(HERTZ, f"{name}'s frequency", f)
+        checked_quantity(quantity, f"{name} at {f:g} Hz", value)
         if value == 0.0:
             raise InputError(f"{name} at {f:g} Hz = 0.0: expected a number > 0 at break points")
     ascending = all(one[0] < other[0] for one, other in pairwise(pairs))
@@ -61,7 +61,7 @@ def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
 def checked_level(name: str, given: object, low: float, high: float) -> float | Profile:
     """Return a peak acceleration, m/s2, or its profile, which must cover ``low`` to ``high``."""
     if not isinstance(given, (tuple, list, np.ndarray)):
-        return checked(LEVEL, name, given)
+        return checked_quantity(LEVEL, name, given)
     profile = checked_profile(name, given, LEVEL)
     if not profile[0][0] <= low <= high <= profile[-1][0]:
         ends = f"{profile[0][0]:g} to {profile[-1][0]:g} Hz"

@@ -13,7 +13,7 @@ from ..constants import TURN
 from ..errors import InputError
 from ..model.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, phase_step, subdivided
-from .signals import HERTZ, Profile, Sine, checked, checked_level
+from .signals import HERTZ, Profile, Sine, checked_level, checked_quantity
 
 CYCLES = Quantity("cycles", "", "", 0.0, 1e6)
 MOST_FREQUENCIES = 100_000
@@ -59,7 +59,7 @@ class SteppedSine(Sine):
         low, high = min(self.frequencies), max(self.frequencies)
         put(self, "acceleration", checked_level("acceleration", self.acceleration, low, high))
         for name, least in (("settle_cycles", 0), ("measured_cycles", 1)):
-            cycles = checked(CYCLES, name, getattr(self, name))
+            cycles = checked_quantity(CYCLES, name, getattr(self, name))
             if cycles != int(cycles) or cycles < least:
                 raise InputError(f"{name} = {cycles!r}: expected a whole number >= {least}")
             put(self, name, int(cycles))
@@ -119,4 +119,6 @@ def checked_frequencies(given: Any) -> tuple[float, ...]:
     if not 1 <= len(values) <= MOST_FREQUENCIES:
         text = f"{len(values)} of them" if several else repr(given)
         raise InputError(f"frequencies: {text}; expected 1 to {MOST_FREQUENCIES} numbers in Hz")
-    return tuple(checked(HERTZ, f"frequencies[{i}]", value) for i, value in enumerate(values))
+    return tuple(
+        checked_quantity(HERTZ, f"frequencies[{i}]", value) for i, value in enumerate(values)
+    )

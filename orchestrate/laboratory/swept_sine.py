@@ -68,7 +68,7 @@ class SweptSine(signals.Sine):
             said = " and ".join(f"{name} = {getattr(self, name)!r}" for name in given)
             raise InputError(f"{said or 'nothing'} given: expected one of duration= and rate=")
         if self.rate:
-            rate = signals.checked(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
+            rate = signals.checked_quantity(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
             put(self, "duration", self._span() / rate)
             put(self, "rate", None)
         signals.check_fields(self, duration=signals.SECONDS)

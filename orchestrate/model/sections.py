@@ -25,9 +25,9 @@ from .ranges import (
     STRUCTURE,
     Quantity,
     checked_flag,
-    expected_one_of,
 )
 from .shaker import Shaker
+from .spelling import expected_one_of
 from .structure import Structure
 from .structure_numbers import FLAGS
 
@@ -39,9 +39,9 @@ TO_RAD_S: dict[str, Callable[[float], float]] = {
 COMMON_NUMBERS = tuple(name for name in STRUCTURE if name not in MECHANICS)
 COMMON_KEYS = (*COMMON_NUMBERS, *FLAGS)
 OMEGAS = tuple(f"omega_{unit}" for unit in TO_RAD_S)
-HALVES = ("f1_hz", "f2_hz", "zeta1", "zeta2")
+MODAL_KEYS = ("f1_hz", "f2_hz", "zeta1", "zeta2")
 OF_ONE_MASS = {"m": "m1", "k": "k1", "d": "d1", "f_hz": "f1_hz", "zeta": "zeta1"}
-RATIOS = ("mu", "kappa", "D", "D1", "D2", *OMEGAS)
+RATIO_KEYS = ("mu", "kappa", "D", "D1", "D2", *OMEGAS)
 FREQUENCIES = (*(f"frequency_{unit}" for unit in TO_RAD_S), "eta")
 AMPLITUDES = ("amplitude", "acceleration_g")
 SI_BOX = tuple(name for name in DRIVE if name.startswith("box_"))
@@ -168,22 +168,22 @@ def read_structure(section: Section) -> Structure:
     if section.values.get("wall") is True:  # one mass, as Structure.one_mass calls its numbers
         own = {OF_ONE_MASS.get(key, key): value for key, value in section.values.items()}
         section = dataclasses.replace(section, values=own)
-    section.allow(*COMMON_KEYS, "preload", *MECHANICS, *HALVES, *RATIOS)
+    section.allow(*COMMON_KEYS, "preload", *MECHANICS, *MODAL_KEYS, *RATIO_KEYS)
     values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
     if section.at_most_one(("clearance", "preload")) == "preload":
         values["clearance"] = -section.number("preload")
     values |= {name: section.flag(name) for name in FLAGS if name in section.values}
-    if section.present(HALVES):
-        section.uses_second_form(HALVES, (*MECHANICS[2:], *RATIOS))
+    if section.present(MODAL_KEYS):
+        section.uses_second_form(MODAL_KEYS, (*MECHANICS[2:], *RATIO_KEYS))
         if wall := values.get("wall", False):
             for key in section.present(("m2", "f2_hz", "zeta2")):
                 raise section.error(key, "mass 2 is a wall; expected it left out")
-        section.need(("f1_hz", "zeta1") if wall else ("m1", "m2", *HALVES))
-        values |= section.numbers(("m1", "m2", *HALVES))
+        section.need(("f1_hz", "zeta1") if wall else ("m1", "m2", *MODAL_KEYS))
+        values |= section.numbers(("m1", "m2", *MODAL_KEYS))
         values = {key.removesuffix("_hz"): value for key, value in values.items()}
         make = Structure().replace if wall else Structure.from_halves
         return section.make(lambda: make(**values))
-    if not section.uses_second_form(MECHANICS[1:], RATIOS):
+    if not section.uses_second_form(MECHANICS[1:], RATIO_KEYS):
         values |= section.numbers(MECHANICS)
         return section.make(lambda: Structure(**values))
     if section.uses_second_form(("D",), ("D1", "D2")):

@@ -17,15 +17,9 @@ from .conversions import (
     warn_of_per_cent,
 )
 from .described import Described
-from .ranges import (
-    ADDED,
-    RATIO_QUANTITIES,
-    STRUCTURE,
-    checked_flag,
-    construct_or_explain,
-    expected_one_of,
-)
-from .structure_numbers import FLAGS, HALVES, OF_MASS_2, PARAMETERS, RATIOS
+from .ranges import ADDED, RATIO_QUANTITIES, STRUCTURE, checked_flag, construct_or_explain
+from .spelling import expected_one_of
+from .structure_numbers import FLAGS, MODAL_PARAMETERS, OF_MASS_2, PARAMETERS, RATIO_PARAMETERS
 from .structure_text import StructureText
 
 ALTERNATIVES = {  # names that set the same value
@@ -461,12 +455,12 @@ class Structure(StructureText, Described):
                     raise InputError(f"{name} and {alternative}: expected one of them")
         ratios = {
             name: RATIO_QUANTITIES[name].check(changes.pop(name))
-            for name in RATIOS
+            for name in RATIO_PARAMETERS
             if name in changes
         }
         halves = {
             name: RATIO_QUANTITIES[name].check(changes.pop(name))
-            for name in HALVES
+            for name in MODAL_PARAMETERS
             if name in changes
         }
         fixed = dataclasses.replace(self, **changes)

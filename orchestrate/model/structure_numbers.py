@@ -15,18 +15,19 @@ from .conversions import (
     natural_frequency,
     stiffness_from_frequency,
 )
-from .ranges import OF_LENGTH, STRUCTURE, exact_inverse, expected_one_of
+from .ranges import OF_LENGTH, STRUCTURE, exact_inverse
+from .spelling import expected_one_of
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
 SI = tuple(STRUCTURE)
-RATIOS = ("mu", "kappa", "D", "D1", "D2", "omega")
-HALVES = ("f1", "f2", "zeta1", "zeta2")
+RATIO_PARAMETERS = ("mu", "kappa", "D", "D1", "D2", "omega")
+MODAL_PARAMETERS = ("f1", "f2", "zeta1", "zeta2")
 OF_MASS_2 = ("m2", "k2", "d2", "mu", "kappa", "D2", "f2", "zeta2")
 FLAGS = ("bonded", "wall")
-PARAMETERS = (*SI, *RATIOS, *HALVES)
+PARAMETERS = (*SI, *RATIO_PARAMETERS, *MODAL_PARAMETERS)
 Values = TypeVar("Values", float, "NDArray[np.float64]")
 
 

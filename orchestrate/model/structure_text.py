@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .ranges import ADDED, STRUCTURE
-from .structure_numbers import FLAGS, HALVES, StructureNumbers
+from .structure_numbers import FLAGS, MODAL_PARAMETERS, StructureNumbers
 
 
 def format_short(value: float) -> str:
@@ -73,7 +73,7 @@ class StructureText(StructureNumbers):
         else:
             masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
             halves = [self._pair(letter) for letter in ("f", "zeta")]
-            own = [name for name in HALVES if name[-1] in self.halves]
+            own = [name for name in MODAL_PARAMETERS if name[-1] in self.halves]
             numbers = self._by_halves({name: self.get(name) for name in own})
             exact = all(getattr(self, name) == value for name, value in numbers.items())
             shorter = exact and len("".join(halves)) < len("".join(si))

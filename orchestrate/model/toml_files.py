@@ -43,7 +43,7 @@ from ..files import read_text, write_whole
 from .described import Described
 from .drive import Drive
 from .excitation import Excitation
-from .ranges import DRIVE, ELECTRODYNAMIC_SHAKER, PUSHES, STRUCTURE, expected_one_of, known_units
+from .ranges import DRIVE, ELECTRODYNAMIC_SHAKER, PUSHES, STRUCTURE, known_units
 from .sections import (
     QUANTITIES,
     Section,
@@ -54,6 +54,7 @@ from .sections import (
     read_structure,
 )
 from .shaker import Shaker
+from .spelling import expected_one_of
 from .structure import Structure
 
 FOLDER = Path(__file__).parent / "sets"

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..fmu import gap_between, library, traits
+from ..fmu import gap_between, respond_library, traits
 from ..model import Excitation, Structure
 from .questions import Point
 
@@ -72,5 +72,5 @@ def absolute_accelerations(
     rows, flags = np.ascontiguousarray(states, dtype=float), np.ascontiguousarray(together)
     felt, numbers = np.empty((len(rows), 2)), traits(structure)
     places = (part.ctypes.data for part in (flags, felt))
-    library().find_accelerations(rows.ctypes.data, len(rows), numbers, *places)
+    respond_library().find_accelerations(rows.ctypes.data, len(rows), numbers, *places)
     return felt

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from fmu_src.kernels import repetition
 from fmu_src.kernels.repetition import MIN_RELATIVE_GAP, lacks_impacts, memory_size
 
-from ..fmu import library
+from ..fmu import respond_library
 from ..model.outcomes import WORDS
 
 __all__ = ["MIN_RELATIVE_GAP", "lacks_impacts", "memory_size"]
@@ -68,8 +68,8 @@ def nearest_state(
     states, near = (np.ascontiguousarray(part, dtype=float) for part in (samples, state))
     memory = np.empty(memory_size(len(states)))
     sizes, places = (frequency, gap), (near.ctypes.data, memory.ctypes.data)
-    distance = library().nearest_state(states.ctypes.data, len(states), *sizes, *places)
-    return int(memory[repetition.MULTIPLICITY]), float(distance)
+    distance = respond_library().nearest_state(states.ctypes.data, len(states), *sizes, *places)
+    return int(memory[repetition.NEAREST]), float(distance)
 
 
 def apply_rule(
@@ -80,5 +80,5 @@ def apply_rule(
     memory = np.zeros(memory_size(len(states)))
     memory[: repetition.MULTIPLICITY] = len(states), *settings
     memory[repetition.HEAD : repetition.HEAD + states.size] = states.ravel()
-    getattr(library(), name)(memory.ctypes.data)
+    getattr(respond_library(), name)(memory.ctypes.data)
     return memory

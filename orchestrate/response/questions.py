@@ -21,14 +21,8 @@ from ..fmu import REST, finder, gap_between
 from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
 from ..model.arguments import Numbers, checked_numbers, unmasked
-from ..model.ranges import (
-    COMPLETE,
-    EXCITATION,
-    LEVEL,
-    PUSHES,
-    RATIO_QUANTITIES,
-    expected_one_of,
-)
+from ..model.ranges import COMPLETE, EXCITATION, LEVEL, PUSHES, RATIO_QUANTITIES
+from ..model.spelling import expected_one_of
 from ..running.job import Job, brief, refuse_family
 from ..running.runner import answer
 from .labels import Variable, parameter_variable, variable

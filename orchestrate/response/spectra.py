@@ -35,7 +35,7 @@ Floats = NDArray[np.float64]
 
 
 @functools.cache
-def library() -> Any:
+def spectrum_library() -> Any:
     """Return the library of spectra, as ctypes has it, types set."""
     loaded = loaded_loop("spectrum")
     loaded.spectrum_size.restype, loaded.spectrum_size.argtypes = c_size_t, [c_size_t]
@@ -52,20 +52,23 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
     """Return frequencies, rad/s, and amplitudes of a sampled signal (Hann window)."""
     rows = np.ascontiguousarray(signal, dtype=float)
     count = rows.shape[-1]
-    memory, lines = np.empty(library().spectrum_size(count)), np.arange(count // 2 + 1)
+    memory, lines = np.empty(spectrum_library().spectrum_size(count)), np.arange(count // 2 + 1)
     amplitudes = np.empty((*rows.shape[:-1], len(lines)))
     for place in np.ndindex(rows.shape[:-1]):
         places = memory.ctypes.data, amplitudes[place].ctypes.data
-        library().amplitude_spectrum(rows[place].ctypes.data, count, *places)
+        spectrum_library().amplitude_spectrum(rows[place].ctypes.data, count, *places)
     return 2.0 * np.pi * lines / (count * interval), amplitudes
 
 
 def acceleration_spectrum(states: Floats, periods: int, excitation: Excitation) -> Floats:
     """Return both masses' spectra, impulses included, from states at equal parts of periods."""
     rows, count = np.ascontiguousarray(states, dtype=float), len(states)
-    memory, amplitudes = np.empty(library().spectrum_size(count)), np.empty((2, count // 2 + 1))
+    memory, amplitudes = (
+        np.empty(spectrum_library().spectrum_size(count)),
+        np.empty((2, count // 2 + 1)),
+    )
     for column, row in enumerate(amplitudes):
-        library().acceleration_spectrum(
+        spectrum_library().acceleration_spectrum(
             *(rows[:, column:].ctypes.data, rows.shape[1], count, periods),
             *(excitation.frequency, excitation.amplitude, memory.ctypes.data, row.ctypes.data),
         )

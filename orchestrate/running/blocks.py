@@ -10,21 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 BLOCK = 2**19  # values in memory at once
-CHUNK = 2**17  # values compressed together in a file, whole rows
+FILE_BLOCK = 2**17  # values compressed together in a file, whole rows
 
 Index = tuple[int | slice, ...]
 
 
-def chunk_rows(shape: tuple[int, ...]) -> int:
-    """Return how many rows along the first axis make up a chunk of a file."""
-    return max(1, CHUNK // max(1, int(np.prod(shape[1:], dtype=float))))
+def file_block_rows(shape: tuple[int, ...]) -> int:
+    """Return how many rows along the first axis make up a block of a file."""
+    return max(1, FILE_BLOCK // max(1, int(np.prod(shape[1:], dtype=float))))
 
 
-def chunk_shape(shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the shape of a file's chunks: some whole rows along the last axis but one."""
+def file_block_shape(shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the shape of a file's blocks: some whole rows along the last axis but one."""
     if len(shape) == 1:
-        return (min(CHUNK, shape[0]),)
-    return (*([1] * (len(shape) - 2)), min(chunk_rows(shape[-2:]), shape[-2]), shape[-1])
+        return (min(FILE_BLOCK, shape[0]),)
+    return (*([1] * (len(shape) - 2)), min(file_block_rows(shape[-2:]), shape[-2]), shape[-1])
 
 
 def blocks(shape: tuple[int, ...]) -> Iterator[Index]:
@@ -38,7 +38,7 @@ def blocks(shape: tuple[int, ...]) -> Iterator[Index]:
             for rest in blocks(shape[1:]):
                 yield (i, *rest)
         return
-    step = BLOCK // CHUNK * chunk_rows(shape)
+    step = BLOCK // FILE_BLOCK * file_block_rows(shape)
     for first in range(0, shape[0], step):
         yield (slice(first, min(first + step, shape[0])),)
 

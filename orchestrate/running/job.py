@@ -47,8 +47,8 @@ class Job(ABC):
     models: ClassVar[tuple[str, ...]] = ("TwoMassImpactOscillator",)
     chunk_size: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
-    gathers: ClassVar[bool] = False  # the last item starts from all others, in a chunk of its own
-    last_weight: ClassVar[int] = 1  # of a gathering job's last item, in the progress bar
+    last_item_uses_all: ClassVar[bool] = False  # and is a chunk of its own
+    last_weight: ClassVar[int] = 1  # of a last item that uses all others, in the progress bar
     warmup_items: ClassVar[int] = 0  # after which a sequential job has forgotten its beginning
     family: ClassVar[tuple[str, ...]] = ()  # those of `FAMILY` with which its rules hold
     in_threads: ClassVar[bool] = False  # whether its work is in the FMU, past Python
@@ -126,14 +126,14 @@ class Job(ABC):
 
     def chunks(self) -> list[Chunk]:
         """Split the items into chunks of ``chunk_size``; return them in order."""
-        count, series = self.count() - self.gathers, self.independent_series()
+        count, series = self.count() - self.last_item_uses_all, self.independent_series()
         chunks: list[Chunk] = []
         for number in range(series):
             begin, end = number * count // series, (number + 1) * count // series
             for first in range(begin, end, self.chunk_size):
                 after = len(chunks) - 1 if self.sequential and first > begin else None
                 chunks.append(Chunk(len(chunks), first, min(first + self.chunk_size, end), after))
-        if self.gathers:
+        if self.last_item_uses_all:
             chunks.append(Chunk(len(chunks), count, count + 1, len(chunks) - 1))
         return chunks
 

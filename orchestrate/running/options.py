@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, TypedDict
 
 from ..errors import InputError
 from ..model.arguments import checked_integer, checked_path
-from ..model.ranges import checked_flag, closest, did_you_mean
+from ..model.ranges import checked_flag
+from ..model.spelling import closest, did_you_mean
 
 if TYPE_CHECKING:
     from distributed import Client

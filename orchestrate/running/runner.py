@@ -23,11 +23,11 @@ import numpy as np
 from ..files import open_folder
 from ..lazy import xr
 from .bar import DELAY, progress_bar, refresh
+from .chunk_schedule import ChunkSchedule, Task
 from .executors import Workers, compute, in_this_process, processes, threads
 from .identity import Fmu, identity_of
 from .job import Job, Table
 from .options import RunOptions
-from .progress import Progress, Task
 from .store import open_store
 
 log = logging.getLogger(__name__)
@@ -65,8 +65,8 @@ class Runner:
         self.fmus: dict[str, Fmu] = {model: find(model) for job in jobs for model in job.models}
         others = (str(fmu.path.resolve()) for fmu in self.fmus.values() if options.fmu is not None)
         self.foreign = ",".join(filter(None, [foreign, *others]))  # FMUs of somebody else
-        self.states: dict[str, Progress] = {}
-        self.futures: dict[Future[tuple[bytes, Table]], tuple[Progress, Task]] = {}
+        self.schedules: dict[str, ChunkSchedule] = {}
+        self.futures: dict[Future[tuple[bytes, Table]], tuple[ChunkSchedule, Task]] = {}
         self.start_time = time.perf_counter()
         self.computed_items = 0  # items computed by this call
 
@@ -76,7 +76,7 @@ class Runner:
             self.open()
             if not self.finished():
                 self.compute_all()
-            results = ((name, state.result) for name, state in self.states.items())
+            results = ((name, schedule.result) for name, schedule in self.schedules.items())
             return {name: result for name, result in results if result is not None}
         except KeyboardInterrupt as ended:
             kept = "what was stored is kept: the same call resumes" if self.options.store else ""
@@ -85,8 +85,8 @@ class Runner:
         finally:
             for future in self.futures:  # of a call that is interrupted or fails
                 future.cancel()
-            for state in self.states.values():
-                state.store.close()
+            for schedule in self.schedules.values():
+                schedule.store.close()
 
     def open(self) -> None:
         """Open the store of each job and read which results and chunks it already has."""
@@ -95,14 +95,14 @@ class Runner:
             identity = identity_of(job, fmus)
             store = open_store(job.name, identity, self.options)
             try:
-                self.states[job.name] = Progress(job, store, identity, fmus)
+                self.schedules[job.name] = ChunkSchedule(job, store, identity, fmus)
             except BaseException:
                 store.close()
                 raise
 
     def finished(self) -> bool:
         """Return whether every job has its final dataset."""
-        return all(state.complete for state in self.states.values())
+        return all(schedule.complete for schedule in self.schedules.values())
 
     def compute_all(self) -> None:
         """Compute all jobs: in this process while little is left, then with parallel workers."""
@@ -130,23 +130,25 @@ class Runner:
 
     def done(self) -> int:
         """Return how far the progress bar is, over all jobs together."""
-        return sum(state.done() for state in self.states.values())
+        return sum(schedule.done() for schedule in self.schedules.values())
 
     def little_left(self) -> bool:
         """Return whether the rest is too short, by time or tasks, to be worth parallel workers."""
         if self.options.processes == 1 or not self.computed_items:
             return True
-        left = sum(state.job.total() for state in self.states.values()) - self.done()
+        left = sum(schedule.job.total() for schedule in self.schedules.values()) - self.done()
         seconds = (time.perf_counter() - self.start_time) / self.computed_items * left
         return seconds < MIN_PARALLEL_SECONDS or self.busy_workers() < 2
 
     def busy_workers(self) -> int:
         """Return how many workers could compute chunks now, an estimate over all jobs."""
-        return sum(state.open_tasks() for state in self.states.values() if self.ready(state))
+        return sum(
+            schedule.open_tasks() for schedule in self.schedules.values() if self.ready(schedule)
+        )
 
     def bar(self) -> Any:
         """Return a progress bar over the items of all jobs."""
-        total = sum(state.job.total() for state in self.states.values())
+        total = sum(schedule.job.total() for schedule in self.schedules.values())
         unit = self.jobs[0].item if len(self.jobs) == 1 else "item"
         shown = self.options.progress
         return progress_bar(self.title(), shown, total=total, initial=self.done(), unit=unit)
@@ -171,13 +173,14 @@ class Runner:
                 continue
             if time.perf_counter() - self.start_time > DELAY:
                 notes = (
-                    state.job.progress_note(t.chunk.start) for state, t in self.futures.values()
+                    schedule.job.progress_note(t.chunk.start)
+                    for schedule, t in self.futures.values()
                 )
                 refresh(bar, next(filter(None, notes), self.title()))
             finished, _ = wait(self.futures, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
             for future in finished:
-                state, task = self.futures.pop(future)
-                state.add_result(task, *future.result())
+                schedule, task = self.futures.pop(future)
+                schedule.add_result(task, *future.result())
                 self.computed_items += len(task.items)
             bar.update(self.done() - bar.n)
 
@@ -190,27 +193,33 @@ class Runner:
 
     def hand_out(self, workers: Workers, fmus: Mapping[str, Path | bytes], bar: Any) -> None:
         """Submit the next tasks of all ready jobs until the workers' queue is full."""
-        for state in self.states.values():
-            while len(self.futures) < workers.max_in_flight() and self.ready(state):
+        for schedule in self.schedules.values():
+            while len(self.futures) < workers.max_in_flight() and self.ready(schedule):
                 # nothing that is sure waits behind a guess
-                task = state.next_task(len(self.futures) + 1 < workers.max_in_flight())
+                task = schedule.next_task(len(self.futures) + 1 < workers.max_in_flight())
                 if task is None:
                     break
-                chosen = {model: fmus[model] for model in state.job.models}
-                state.under_way.add(task.chunk.index)
-                code = state.identity["code"] if workers.remote else None
+                chosen = {model: fmus[model] for model in schedule.job.models}
+                schedule.under_way.add(task.chunk.index)
+                code = schedule.identity["code"] if workers.remote else None
                 future = workers.executor.submit(
-                    compute, state.job, chosen, task.items, task.previous, task.warmup_items, code
+                    compute,
+                    schedule.job,
+                    chosen,
+                    task.items,
+                    task.previous,
+                    task.warmup_items,
+                    code,
                 )
-                self.futures[future] = state, task
+                self.futures[future] = schedule, task
 
-    def ready(self, state: Progress) -> bool:
+    def ready(self, schedule: ChunkSchedule) -> bool:
         """Return whether a job has chunks to compute; make its items at first."""
-        if state.complete:
+        if schedule.complete:
             return False
-        if state.items is None:
-            state.start()
-        return not state.complete
+        if schedule.items is None:
+            schedule.make_items()
+        return not schedule.complete
 
 
 def import_xarray() -> None:
@@ -219,7 +228,9 @@ def import_xarray() -> None:
         xr.Dataset({"number": ("place", np.zeros(1))})
 
 
-def gather(jobs: Iterable[Job], running: Mapping[str, object], find: FmuFinder) -> list[xr.Dataset]:
+def compute_datasets(
+    jobs: Iterable[Job], running: Mapping[str, object], find: FmuFinder
+) -> list[xr.Dataset]:
     """Compute several jobs in parallel with common workers; return their datasets in order."""
     listed = list(jobs)
     results = Runner(listed, RunOptions.from_keywords(running), find).run()

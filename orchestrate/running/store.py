@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..errors import InputError, StaleError, StoreError, first_line, printable
 from ..files import check_path_encoding, open_folder, write_whole
 from ..lazy import xr
-from .blocks import BLOCK, blocks, chunk_shape
+from .blocks import BLOCK, blocks, file_block_shape
 from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
@@ -318,7 +318,11 @@ def create_variable(file: Any, name: str, array: xr.DataArray) -> Any:
         if dimension not in file.dimensions:
             file.createDimension(str(dimension), size)
     create: Any = file.createVariable
-    compression = {"zlib": True, "complevel": ZLIB_LEVEL, "chunksizes": chunk_shape(array.shape)}
+    compression = {
+        "zlib": True,
+        "complevel": ZLIB_LEVEL,
+        "chunksizes": file_block_shape(array.shape),
+    }
     target = create(name, array.dtype, array.dims, fill_value=np.nan, **compression)
     target.set_var_chunk_cache(8 * BLOCK)
     target.setncatts(array.attrs)

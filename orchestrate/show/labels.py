@@ -31,7 +31,7 @@ PUSHED = {
 }
 # what a title leaves out
 USUAL_VALUES = {"mu": 1.0, "kappa": 1.2, "gamma": STRUCTURE["gamma"].default, "omega": 1.0}
-RATIOS = ("D", "D1", "D2", "mu", "kappa", "omega")
+TITLE_RATIOS = ("D", "D1", "D2", "mu", "kappa", "omega")
 HALF_PARAMETERS = {"m1", "m2", "k1", "k2", "d1", "d2", "mu", "kappa", "omega", "D", "D1", "D2"}
 HALF_PARAMETERS |= {"f1", "f2", "zeta1", "zeta2"}
 PART_OF_LABEL = re.compile(r"bonded|(?P<name>[A-Za-z]+?)(?P<values>-?\d[\d.e+-]*)")
@@ -75,7 +75,9 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
     values = {name: known[name] for name in ("e", "gamma") if name in known} | values
     left_out = {name for name, value in USUAL_VALUES.items() if values.get(name) == value} | shown
     left_out |= {"D", "D1", "D2"} if "D" in shown else set()
-    order = [name for name in ("e", *RATIOS, "gamma") if name in values and name not in left_out]
+    order = [
+        name for name in ("e", *TITLE_RATIOS, "gamma") if name in values and name not in left_out
+    ]
     texts = [format_halves(known) if by_halves else ""]
     texts.append(format_parameters({name: values[name] for name in order}))
     bonded = bool(known.get("bonded"))

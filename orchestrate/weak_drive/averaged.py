@@ -23,12 +23,12 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
-from ..dynamics import bifurcations
+from ..dynamics.bifurcation_kinds import Kind
 from ..lazy import xr
 from ..model.drive import Drive
 from ..model.structure import Structure
 
-FOLD, TORUS = bifurcations.Kind.FOLD.label, bifurcations.Kind.TORUS.label
+FOLD, TORUS = Kind.FOLD.label, Kind.TORUS.label
 
 
 class BifurcationPoint(NamedTuple):

@@ -17,7 +17,7 @@ from ..errors import InputError
 from ..fmu.description import Description
 from ..fmu.instance import INTEGER_TYPES, REAL_TYPES
 from ..fmu.unit_names import unit_by_name
-from ..model.ranges import did_you_mean
+from ..model.spelling import did_you_mean
 
 MOTION = ("box_acceleration", "box_velocity", "box_position")  # outputs of a drive
 FORCE = ("box_force", "box_force_1", "box_force_2", "box_force_3")  # inputs: with its derivatives

@@ -21,7 +21,7 @@ from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..running.options import Running
-from ..running.runner import gather
+from ..running.runner import compute_datasets
 from . import averaged, couple, own_resonance
 from .couple import KINDS
 
@@ -125,7 +125,7 @@ def couple_all(
         raise InputError("kinds, rates: expected one of each, or more")
     datasets = [
         run.assign_coords(eta0=run.eta0.reset_coords(drop=True), Omega=run.Omega)
-        for run in gather(jobs, running, finder(running))
+        for run in compute_datasets(jobs, running, finder(running))
     ]
     texts_of_jumps = {name: "" for name, values in datasets[0].items() if values.dtype.kind == "U"}
     missing = dict.fromkeys(datasets[0].data_vars, np.nan) | texts_of_jumps

@@ -15,7 +15,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..dynamics.bifurcations import KINDS, Kind
+from ..dynamics.bifurcation_kinds import KINDS, Kind
 from ..dynamics.continuation import SOLVER_ERRORS
 from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError

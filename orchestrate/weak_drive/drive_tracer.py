@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..dynamics.bifurcations import KINDS, Kind
+from ..dynamics.bifurcation_kinds import KINDS, Kind
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import (
     ArclengthStepper,
@@ -188,7 +188,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         """Return whether a new motion has as many impacts as the one before."""
         return self.shooter.shoot(root.unknowns).is_connected_to(self.shot)
 
-    def test(self, point: Motion, kind: Kind) -> float:
+    def test_function(self, point: Motion, kind: Kind) -> float:
         """Evaluate the test function of a bifurcation, which is zero there."""
         values = point.multipliers
         if kind == Kind.FOLD:
@@ -197,7 +197,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
             return float(np.prod(1.0 + values).real)
         return float(np.prod([1.0 - a * b for a, b in combinations(values, 2)]).real)
 
-    def confirms(self, kind: Kind, point: Motion, part: float) -> bool:
+    def zero_is_bifurcation(self, kind: Kind, point: Motion, part: float) -> bool:
         """Return True, but for a torus whether a complex pair lies on the unit circle."""
         pairs = point.multipliers[np.abs(point.multipliers.imag) > 1e-6]
         return kind != Kind.TORUS or bool((np.abs(np.abs(pairs) - 1.0) < 1e-4).any())

@@ -61,7 +61,7 @@ class RampRecord:
         """Return the voltage over K omega at the ends of revolutions."""
         return self.sense * self.table["voltage"][rows] / self.job.drive.volts(self.job.structure)
 
-    def speed(self, rows: Any) -> Any:
+    def speed_ratio_at(self, rows: Any) -> Any:
         """Return the mean speed over omega of revolutions."""
         return np.abs(self.table["speed"][rows]) / self.job.structure.omega
 
@@ -78,7 +78,7 @@ class RampRecord:
             b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
             width = max(4, math.ceil(SMOOTH / (b * omega * turn)))
             past = self.sign * self.eta0(leg) >= self.sign * low
-            slips = self.eta0(leg) - self.speed(leg)
+            slips = self.eta0(leg) - self.speed_ratio_at(leg)
             if not past.any() or len(leg) < width:
                 continue
             done = np.convolve((first - slips) / fall, np.full(width, 1.0 / width), "valid")

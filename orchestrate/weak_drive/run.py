@@ -84,7 +84,7 @@ class CoupledJob(Job, ABC):
 
     chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
-    gathers: ClassVar[bool] = True
+    last_item_uses_all: ClassVar[bool] = True
     item_columns: ClassVar[tuple[str, ...]] = ()  # nodes or revolutions, and a state
     item: ClassVar[str] = "step"
 

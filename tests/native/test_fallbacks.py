@@ -9,7 +9,7 @@ from fmu_src.export.c_library import LOOPS
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS, export
 from orchestrate.errors import InputError
-from orchestrate.fmu.c_library import library
+from orchestrate.fmu.c_library import library_path
 from tests import importers
 
 from ..fmu.programs.driver import COMMON, harmonic
@@ -60,7 +60,7 @@ def test_without_a_compiler_there_is_the_pythonfmu_fmu_and_one_line(fmus, hide, 
 def test_without_a_compiler_one_line_says_what_the_loops_need(hide, tmp_path):
     hide("ziglang", "own")
     with pytest.raises(InputError) as caught:
-        library(LOOPS / "respond.c", tmp_path)
+        library_path(LOOPS / "respond.c", tmp_path)
     (line,) = str(caught.value).splitlines()
     assert line.startswith("respond.c: no library of it is here") and "no C compiler" in line
     assert 'expected pip install -e ".[build]"' in line

@@ -76,13 +76,13 @@ def write_driven_motion(m, h):
             rest = m[at.VOLT_SERIES + k] - opposing_voltage(m, k)
             m[at.AMPERE_SERIES + k + 1] = part * (rest / inductance)
         else:
-            m[at.AMPERE_SERIES + k] = static_current(m, k)
+            m[at.AMPERE_SERIES + k] = current_term_without_inductance(m, k)
         next_motion_terms(m, k, part)
     if inductance == 0.0:
-        m[at.AMPERE_SERIES + at.DEGREE] = static_current(m, at.DEGREE)
+        m[at.AMPERE_SERIES + at.DEGREE] = current_term_without_inductance(m, at.DEGREE)
 
 
-def static_current(m, k):
+def current_term_without_inductance(m, k):
     """Return term k of the current without inductance."""
     rest = m[at.VOLT_SERIES + k] - m[at.FORCE_FACTOR] * m[at.SPEED_SERIES + k]
     return rest / m[at.COIL_RESISTANCE]

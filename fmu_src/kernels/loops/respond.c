@@ -331,7 +331,7 @@ EXPORT double nearest_state(const double *states, size_t count, double frequency
     for (size_t k = 0; k < STATES; k++) memory[GIVEN + k] = state[k];
     for (size_t k = 0; k < STATES * count; k++) memory[HEAD + k] = states[k];
     kernel_nearest(memory, 0.0);
-    return memory[DEVIATION];
+    return memory[DISTANCE];
 }
 
 EXPORT int rest_and_threshold(double *memory) { return kernel_rest_and_threshold(memory, 0.0); }

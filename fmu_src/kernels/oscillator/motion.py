@@ -102,7 +102,7 @@ def state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
     return x3, v3, x3, v3
 
 
-def is_from_unloaded(m):  # inline
+def counts_from_unloaded_positions(m):  # inline
     """Return whether the present state's displacements count from the unloaded positions, not from
     where the masses rest together.
     """
@@ -112,7 +112,7 @@ def is_from_unloaded(m):  # inline
 def gap_between(m, tau, x1, x2):  # inline
     """Return the gap between the displacements of :func:`state_at`, >= 0."""
     gap = x2 - x1
-    if m[at.GAP_OFFSET] != 0.0 and is_from_unloaded(m):  # rarely
+    if m[at.GAP_OFFSET] != 0.0 and counts_from_unloaded_positions(m):  # rarely
         gap = m[at.BEGIN_GAP] if tau == 0.0 else gap + m[at.GAP_OFFSET]
         gap = gap if gap > 0.0 else 0.0
     return gap
@@ -132,7 +132,7 @@ def from_outside(m, x1, v1, x2, v2, gap):
 
 def from_unloaded(m, x1, x2):  # inline
     """Convert the displacements of :func:`state_at` to those from the unloaded positions."""
-    if m[at.GAP_OFFSET] != 0.0 and not is_from_unloaded(m):  # rarely
+    if m[at.GAP_OFFSET] != 0.0 and not counts_from_unloaded_positions(m):  # rarely
         x1, x2 = x1 + m[at.REST_1], x2 + m[at.REST_2]
     return x1, x2
 
@@ -141,7 +141,7 @@ def from_rest_together(m, x1, x2):
     """Convert the displacements of :func:`state_at` to those from where the masses rest
     together.
     """
-    if m[at.GAP_OFFSET] != 0.0 and is_from_unloaded(m):  # rarely
+    if m[at.GAP_OFFSET] != 0.0 and counts_from_unloaded_positions(m):  # rarely
         x1, x2 = x1 - m[at.REST_1], x2 - m[at.REST_2]
     return x1, x2
 
@@ -490,6 +490,6 @@ def has_died_away(m, x1, v1, x2, v2):
     """
     if m[at.SHAKEN] != 0.0 or m[at.CUBIC_PRESENT] != 0.0:
         return False
-    if m[at.GAP_OFFSET] > FAINTEST and not is_from_unloaded(m):
+    if m[at.GAP_OFFSET] > FAINTEST and not counts_from_unloaded_positions(m):
         return False  # together, but not at rest
     return max(abs(x1), abs(v1)) < FAINTEST and max(abs(x2), abs(v2)) < FAINTEST

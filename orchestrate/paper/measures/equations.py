@@ -64,7 +64,7 @@ def free_part(data: Datasets, claim: Claim) -> Measured:
     return compare("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
 
 
-def one_sided(data: Datasets, claim: Claim) -> Measured:
+def negative_gap_in_flight(data: Datasets, claim: Claim) -> Measured:
     """Measure the gap in flight: (12) as printed allows negative ones."""
     figure = data.figure("5")
     flying = figure.kind.values == FLIGHT

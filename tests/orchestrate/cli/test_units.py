@@ -11,8 +11,8 @@ import pytest
 import xarray as xr
 
 from orchestrate import cli
-from orchestrate.cli import dynamics, responses
-from orchestrate.cli.printing import attractor_table
+from orchestrate.cli import dynamics, printing, responses
+from orchestrate.cli.dynamics import attractor_table
 from orchestrate.dynamics.orbit_records import STABILITY
 from orchestrate.response.labels import flags
 from orchestrate.units import with_units
@@ -214,6 +214,15 @@ def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(comman
         more["state"] = (("attractor", "coordinate"), [[0.0] * 4])
         lines = attractor_table(data.assign(more))
     assert "xi_Rel = 1.5, 3 mm" in " ".join(lines)
+
+
+def test_a_unit_that_begins_with_one_is_printed_whole():
+    """Of a ratio none is."""
+    values = {"decay": ("eta", [2.0], {"units": "1/s"}), "ratio": ("eta", [0.5], {"units": "1"})}
+    data = xr.Dataset(values, coords={"eta": [1.2], "rate": ("eta", [3.0], {"units": "1/s"})})
+    lines = {line.split()[0]: line.split()[1:] for line in responses.table_of_one(data, "eta")}
+    assert (lines["decay"], lines["ratio"]) == (["2", "1/s"], ["0.5"])
+    assert printing.format_parameter(data, "rate", 3.0) == "rate = 3 1/s"
 
 
 def test_times_of_impacts_are_tau_in_ratios_unless_a_unit_is_asked_for(ask):

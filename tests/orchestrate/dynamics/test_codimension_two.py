@@ -9,7 +9,7 @@ import pytest
 import orchestrate
 from orchestrate import Structure
 from orchestrate.dynamics import codimension_two
-from orchestrate.dynamics.bifurcations import Kind
+from orchestrate.dynamics.bifurcation_kinds import Kind
 from orchestrate.dynamics.codimension_two import CharacteristicPolynomial, PointKind, points_between
 from orchestrate.dynamics.continuation import newton_correct, unit_vector
 from orchestrate.dynamics.families import Setting

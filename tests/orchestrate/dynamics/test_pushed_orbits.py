@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.dynamics.bifurcations import Kind
+from orchestrate.dynamics.bifurcation_kinds import Kind
 from orchestrate.dynamics.families import Setting, central_difference
 from orchestrate.dynamics.orbit_search import solve_orbit
 from orchestrate.dynamics.orbits import guess_from_result

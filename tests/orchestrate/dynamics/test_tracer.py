@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate.dynamics.bifurcations import KINDS, Kind
+from orchestrate.dynamics.bifurcation_kinds import KINDS, Kind
 from orchestrate.dynamics.continuation import ArclengthStepper, NoConvergenceError, Root
 from orchestrate.dynamics.tracer import LIMIT, MAX_POINTS, NO_CONVERGENCE, BranchTracer
 
@@ -38,7 +38,7 @@ class CircleTracer(BranchTracer):
     def limits(self):
         return 0, [self.range]
 
-    def test(self, point, kind):
+    def test_function(self, point, kind):
         return float(self.functions[KINDS[kind]](point))
 
     def go_on_from(self, point):
@@ -106,7 +106,7 @@ def test_a_step_is_shortened_where_a_bifurcation_cannot_be_located():
     assert tracer.trace(tracer.start).end == NO_CONVERGENCE
 
 
-@pytest.mark.parametrize("method", ["finish_step", "go_on_from", "point"])
+@pytest.mark.parametrize("method", ["fit_impacts_to_step", "go_on_from", "point"])
 @pytest.mark.parametrize("error", [NoConvergenceError, np.linalg.LinAlgError])
 def test_what_was_followed_is_kept_where_an_inner_iteration_fails(method, error):
     """Whatever part of a step it belongs to."""

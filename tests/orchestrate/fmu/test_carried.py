@@ -8,12 +8,12 @@ import pytest
 
 from orchestrate import Structure
 from orchestrate.fmu import OSCILLATOR, Instance, begin, find, gap_between
-from orchestrate.fmu.oscillator import library, traits
+from orchestrate.fmu.oscillator import respond_library, traits
 from orchestrate.model import Excitation
 
 
 def carried(state, one, other, length=1.0, speed=1.0):
-    carry, like = library().carry_state, (c_double * 4)()
+    carry, like = respond_library().carry_state, (c_double * 4)()
     carry.argtypes, carry.restype = [c_void_p] * 3 + [c_double] * 2 + [c_void_p], None
     carry((c_double * 4)(*state), traits(one), traits(other), length, speed, like)
     return np.array(like)

@@ -311,8 +311,8 @@ def test_the_nearest_state_is_numpys(seed):
     apart = np.abs((sized[:, 1] - sized[:, 0]) - (other[1] - other[0])) / gap
     faster = np.abs(rates - (other[3] - other[2])) / max(gap, np.abs(rates).max())
     distance = np.column_stack([off, apart, faster]).max(axis=1)
-    assert m[repetition.MULTIPLICITY] == distance.argmin()
-    assert m[repetition.DEVIATION] == pytest.approx(distance.min())
+    assert m[repetition.NEAREST] == distance.argmin()
+    assert m[repetition.DISTANCE] == pytest.approx(distance.min())
 
 
 @pytest.mark.parametrize(("gap", "counts"), [(1.01 / 2**20, True), (0.99 / 2**20, False)])

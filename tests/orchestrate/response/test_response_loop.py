@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from orchestrate.errors import FmuError, InputError
-from orchestrate.fmu import OSCILLATOR, Instance, find, gap_between, library, sampled
+from orchestrate.fmu import OSCILLATOR, Instance, find, gap_between, respond_library, sampled
 from orchestrate.fmu.oscillator import OscillatorCalls, ResponseProgress, ResponseTask
 from orchestrate.model import Excitation
 from orchestrate.response.questions import Point
@@ -158,7 +158,7 @@ def test_ends_are_rounded(instance, scale):
 
 def test_structures_have_the_sizes_of_the_source():
     """A field forgotten on one side would shift all that follow."""
-    sizes = (ctypes.c_uint * 3).in_dll(library(), "sizes_of_respond")
+    sizes = (ctypes.c_uint * 3).in_dll(respond_library(), "sizes_of_respond")
     assert list(sizes) == [
         ctypes.sizeof(kind) for kind in (OscillatorCalls, ResponseTask, ResponseProgress)
     ]

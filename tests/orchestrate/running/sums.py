@@ -54,7 +54,7 @@ class Sums(Squares):
 class Gathered(Squares):
     """Squares, and their sum over all that nobody knows before all are there."""
 
-    gathers: ClassVar[bool] = True
+    last_item_uses_all: ClassVar[bool] = True
 
     def count(self) -> int:
         return self.size + 1

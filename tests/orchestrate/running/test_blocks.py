@@ -29,7 +29,7 @@ def small(monkeypatch):
         return rows(stored, chosen)
 
     monkeypatch.setattr(blocks, "BLOCK", 400)
-    monkeypatch.setattr(blocks, "CHUNK", 100)
+    monkeypatch.setattr(blocks, "FILE_BLOCK", 100)
     monkeypatch.setattr(store, "MIN_COMPRESSED", 100)
     monkeypatch.setattr(store, "MAX_LOADED", 1000)
     monkeypatch.setattr(netcdf, "MAX_LOADED", 1000)

@@ -9,9 +9,9 @@ import pytest
 from orchestrate.fmu import OSCILLATOR, find
 from orchestrate.model import Structure
 from orchestrate.response.sweep import SweepJob
+from orchestrate.running.chunk_schedule import ChunkSchedule
 from orchestrate.running.executors import compute
 from orchestrate.running.options import RunOptions
-from orchestrate.running.progress import Progress
 from orchestrate.running.store import Store, open_store
 from tests.sparing import ordinary
 
@@ -21,18 +21,18 @@ RANGES = [(0, 0), (100, 140), (55, 200), (0, 240), (119, 121)]
 MODELS = {OSCILLATOR: Model(None)}
 
 
-def play(progress: Progress, workers: int, seed: int, stop: int = -1) -> None:
+def play(schedule: ChunkSchedule, workers: int, seed: int, stop: int = -1) -> None:
     """Compute a job, or so many chunks of it, as if by workers that end in a random order."""
     draw, busy = random.Random(seed), []
-    fmus = {model: fmu.path for model, fmu in progress.fmus.items()}
-    progress.start()
-    while not progress.complete and stop != 0:
-        while len(busy) < workers and (task := progress.next_task()) is not None:
-            progress.under_way.add(task.chunk.index)
+    fmus = {model: fmu.path for model, fmu in schedule.fmus.items()}
+    schedule.make_items()
+    while not schedule.complete and stop != 0:
+        while len(busy) < workers and (task := schedule.next_task()) is not None:
+            schedule.under_way.add(task.chunk.index)
             busy.append(task)
         task = busy.pop(draw.randrange(len(busy)))
-        chunk = compute(progress.job, fmus, task.items, task.previous, task.warmup_items)
-        progress.add_result(task, *chunk)
+        chunk = compute(schedule.job, fmus, task.items, task.previous, task.warmup_items)
+        schedule.add_result(task, *chunk)
         stop -= 1
 
 
@@ -43,29 +43,31 @@ def test_guesses_never_change_a_bit(stubborn, workers):
     job = Forgetful("job", stubborn=stubborn)
     alone = job.work({}, job.items(), None)["value"]
     for seed in range(3):
-        progress = Progress(job, Store(), {}, MODELS)
-        play(progress, workers, seed)
-        assert np.array_equal(progress.result.value, alone)
-        assert progress.wasted == 0 or (workers > 1 and stubborn != (0, 0))
-        assert stubborn != (100, 140) or workers != 2 or progress.wasted > 0
-        assert progress.wasted < (60 if stubborn == (100, 140) else 300)  # it does not go on so
+        schedule = ChunkSchedule(job, Store(), {}, MODELS)
+        play(schedule, workers, seed)
+        assert np.array_equal(schedule.result.value, alone)
+        assert schedule.wasted == 0 or (workers > 1 and stubborn != (0, 0))
+        assert stubborn != (100, 140) or workers != 2 or schedule.wasted > 0
+        assert schedule.wasted < (60 if stubborn == (100, 140) else 300)  # it does not go on so
 
 
 def test_a_guess_is_stored_for_a_run_that_is_interrupted(tmp_path, monkeypatch):
-    monkeypatch.setattr("orchestrate.running.progress.REACH", 2)
+    monkeypatch.setattr("orchestrate.running.chunk_schedule.REACH", 2)
     path = tmp_path / "job.nc"
     store = open_store("job", {}, RunOptions(store=path))
-    progress = Progress(Forgetful("job"), store, {}, MODELS)
-    progress.start()
-    certain = progress.next_task()
-    progress.under_way.add(certain.chunk.index)
-    guess = progress.next_task()
+    schedule = ChunkSchedule(Forgetful("job"), store, {}, MODELS)
+    schedule.make_items()
+    certain = schedule.next_task()
+    schedule.under_way.add(certain.chunk.index)
+    guess = schedule.next_task()
     assert (certain.guess, guess.guess, guess.chunk.index) == (False, True, 3)  # 1 and the reach
-    progress.under_way.add(guess.chunk.index)
-    made = compute(progress.job, {}, guess.items, guess.previous, guess.warmup_items)
-    progress.add_result(guess, *made)
+    schedule.under_way.add(guess.chunk.index)
+    made = compute(schedule.job, {}, guess.items, guess.previous, guess.warmup_items)
+    schedule.add_result(guess, *made)
     store.close()
-    again = Progress(Forgetful("job"), open_store("job", {}, RunOptions(store=path)), {}, MODELS)
+    again = ChunkSchedule(
+        Forgetful("job"), open_store("job", {}, RunOptions(store=path)), {}, MODELS
+    )
     assert (set(again.guesses), again.done()) == ({3}, 10)
     play(again, 2, seed=0)
     assert np.array_equal(again.result.value, again.job.work({}, again.job.items(), None)["value"])
@@ -82,9 +84,9 @@ def job(direction: str):
 def played(sweep: SweepJob, workers: int, store=None):
     """The result, and how many values were guessed in vain."""
     with patch.object(SweepJob, "chunk_size", 10):
-        progress = Progress(sweep, store or Store(), {}, {OSCILLATOR: find(OSCILLATOR)})
-        play(progress, workers, 1)
-    return progress.result.drop_attrs(), progress.wasted
+        schedule = ChunkSchedule(sweep, store or Store(), {}, {OSCILLATOR: find(OSCILLATOR)})
+        play(schedule, workers, 1)
+    return schedule.result.drop_attrs(), schedule.wasted
 
 
 @pytest.mark.usefixtures("exported")

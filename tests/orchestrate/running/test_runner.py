@@ -11,7 +11,7 @@ from orchestrate.errors import InputError, StaleError, StoreError
 from orchestrate.running import bar
 from orchestrate.running.journal import Journal, journal_path, lock_result
 from orchestrate.running.options import RunOptions
-from orchestrate.running.runner import answer, answer_all, gather
+from orchestrate.running.runner import answer, answer_all, compute_datasets
 
 from .conftest import Find
 from .sums import Gathered, Squares, Sums
@@ -77,7 +77,7 @@ def test_several_jobs_are_stored_in_a_folder(find, tmp_path):
 
 
 def test_jobs_side_by_side_come_in_their_order(find):
-    first, second = gather([Squares("a"), Squares("b", size=3)], {}, find)
+    first, second = compute_datasets([Squares("a"), Squares("b", size=3)], {}, find)
     assert (first.sizes["number"], second.sizes["number"]) == (10, 3)
 
 

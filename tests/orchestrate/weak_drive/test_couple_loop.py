@@ -17,12 +17,12 @@ SOURCE = libraries.sources.LOOPS / "couple.c"
 
 
 def test_a_library_of_other_sources_is_made_anew(tmp_path):
-    found = libraries.library(SOURCE, tmp_path)
+    found = libraries.library_path(SOURCE, tmp_path)
     first = found.read_bytes()
-    assert libraries.library(SOURCE, tmp_path) == found
+    assert libraries.library_path(SOURCE, tmp_path) == found
     assert found.read_bytes() == first
     found.write_bytes(first.replace(b"{", b"("))
-    assert libraries.library(SOURCE, tmp_path).read_bytes() == first
+    assert libraries.library_path(SOURCE, tmp_path).read_bytes() == first
 
 
 def test_structures_have_the_sizes_of_the_source():

@@ -48,7 +48,7 @@ class Guess:
     end: Table  # the chunk's last entries
 
 
-class Progress:
+class ChunkSchedule:
     """Scheduling state of one job: chunks done, running, or computed ahead from guessed states."""
 
     def __init__(self, job: Job, store: Store, identity: Identity, fmus: Mapping[str, Fmu]) -> None:
@@ -109,7 +109,7 @@ class Progress:
         """Return the number of items of a chunk."""
         return self.chunks[index].stop - self.chunks[index].start
 
-    def start(self) -> None:
+    def make_items(self) -> None:
         """Make the job's items; finish it if all chunks are stored."""
         self.items = self.job.items()
         self.finish_if_done()
@@ -133,10 +133,10 @@ class Progress:
                 yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
 
     def previous_table(self, chunk: Chunk) -> Table | None:
-        """Return the rows a chunk continues from, all if it gathers; None if it needs none."""
+        """Return the rows a chunk continues from: none, the last, or all for the last item."""
         if chunk.after is None:
             return None
-        if self.job.gathers and chunk.index == len(self.chunks) - 1:
+        if self.job.last_item_uses_all and chunk.index == len(self.chunks) - 1:
             return self.store.table(chunk.index)
         return self.end_of(chunk.after)
 
@@ -150,7 +150,7 @@ class Progress:
         """Return whether a chunk can start now from its true state, and nobody computes it yet."""
         if not self.is_untouched(chunk.index) or chunk.after is None:
             return self.is_untouched(chunk.index)
-        if self.job.gathers and chunk.index == len(self.chunks) - 1:
+        if self.job.last_item_uses_all and chunk.index == len(self.chunks) - 1:
             return len(self.left) == 1
         return chunk.after not in self.left
 
@@ -196,7 +196,7 @@ class Progress:
 
     def item_range(self, first: int, last: int) -> Sequence[Any]:
         """Return the items from ``first`` up to, not including, ``last``."""
-        assert self.items is not None, "not started"
+        assert self.items is not None, "items not made"
         return self.items[first:last]
 
     def open_tasks(self) -> int:
@@ -256,8 +256,8 @@ class Progress:
         self.items = None
 
     def table(self) -> Table:
-        """Return the arrays of all chunks, concatenated (a gathering job: and the last's)."""
+        """Return the arrays of all chunks, concatenated (and a last one that uses all)."""
         last = len(self.chunks) - 1
-        if self.job.gathers:
+        if self.job.last_item_uses_all:
             return {**self.store.table(last), **self.store.get(last)}
         return self.store.table(len(self.chunks), self.job.bulk)
