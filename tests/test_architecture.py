@@ -236,9 +236,9 @@ PAGE = {  # modules of the explorer's page by what they are for; a new one needs
         *("worker", "worker_pool"),
     },
     "input, words and files": {
-        *("app", "basin_part", "caption", "command", "controls", "diagram_input", "drive_part"),
+        *("app", "basin_panel", "caption", "command", "controls", "diagram_input", "drive_panel"),
         *("field", "files", "inspector", "link", "main", "opening", "player", "saving", "shaking"),
-        *("tables", "tour_part", "words_of"),
+        *("response_words", "tables", "tour_panel"),
     },
 }
 FUNCTIONS_OF_PAGE = {  # of Math: axes, dots, swinging box, clicks, natural frequencies
@@ -247,11 +247,11 @@ FUNCTIONS_OF_PAGE = {  # of Math: axes, dots, swinging box, clicks, natural freq
     "diagram_view": {"sqrt"},
 }
 PRODUCTS = {  # how many products, quotients and powers: places in arrays, axes, starts, units
-    **{"app": 10, "basin": 14, "basin_part": 6, "caption": 10, "command": 21, "controls": 3},
-    **{"coupled": 7, "diagram": 13, "diagram_input": 3, "drive_part": 13, "inspector": 2},
+    **{"app": 10, "basin": 14, "basin_panel": 6, "caption": 10, "command": 21, "controls": 3},
+    **{"coupled": 7, "diagram": 13, "diagram_input": 3, "drive_panel": 13, "inspector": 2},
     **{"kernel": 32, "model": 7, "motion": 3, "opening": 5, "payload": 5, "player": 5},
     **{"regions": 5, "requests": 3, "response": 2, "shaking": 6, "tables": 6, "tasks": 3},
-    **{"words_of": 8},
+    **{"response_words": 8},
 }
 COMMENT_OR_TEXT = re.compile(r"/\*[\s\S]*?\*/|//[^\n]*|\"[^\"\n]*\"")
 MATHEMATICS = re.compile(r"\bMath\.(?!abs|ceil|floor|max|min|PI|round|sign)(\w+)")

@@ -17,6 +17,7 @@ HUGE = 1e100  # squares and energies of what an importer may set stay finite
 # of positive parameters: ratios of frequencies are at most LARGE**2, and a fourth derivative,
 # LARGE**8 * HUGE, is a number; what needs more is checked where a run or a step begins
 TINY, LARGE = 1e-24, 1e24
+DRIVE_LIMIT = 1e30  # of a drive's start values and inputs: their energies stay finite
 Entry = Callable[[Any, float], int]  # memory and time (s) -> code, 0 for success
 
 
@@ -115,6 +116,23 @@ def parameter(name: str, unit: str, start: float, description: str, **more: Any)
     """Return a parameter, fixed unless said otherwise."""
     given = {"variability": "fixed", "initial": "exact", **more}
     return Variable(name, description, "parameter", unit, start=start, **given)
+
+
+def positive(name: str, unit: str, start: float, description: str) -> Variable:
+    """Return a parameter that is not zero."""
+    return parameter(name, unit, start, description, minimum=TINY, maximum=LARGE)
+
+
+def not_negative(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
+    """Return a parameter that may be zero."""
+    return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE, **more)
+
+
+def start_value(
+    name: str, unit: str, description: str, limit: float = DRIVE_LIMIT, **more: Any
+) -> Variable:
+    """Return the start value of a co-ordinate, of either sign."""
+    return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit, **more)
 
 
 def evaluation_limit(function: str) -> Variable:

@@ -24,7 +24,7 @@ from ..running.job import Table
 from .closed_form import Floats
 from .families import Family, Setting
 from .orbit_search import check_orbit_in_fmu
-from .periodic_orbit import CLOSING, ENDS, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
+from .periodic_orbit import AT_OUTER_END, CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .turning_points import (
     Amplitudes,
     nearest_miss,
@@ -35,7 +35,11 @@ from .turning_points import (
 
 STABILITY = {0: "unstable", 1: "stable", UNDECIDED: "undecided"}
 INSIDE = {0: "impact", 1: "impact_into_contact", 2: "release"}
-KINDS = {-1: "none", **INSIDE, **{ENDS + kind: f"{name}_outside" for kind, name in INSIDE.items()}}
+KINDS = {
+    -1: "none",
+    **INSIDE,
+    **{AT_OUTER_END + kind: f"{name}_outside" for kind, name in INSIDE.items()},
+}
 NO_YES = {0: "no", 1: "yes"}
 PARTS = np.array(["real", "imaginary"])
 TURNS_AWAY = "smallest gap at which the masses turn away from each other without an impact"
@@ -236,7 +240,7 @@ def impact_columns(
 ) -> dict[str, NDArray[Any]]:
     """Return the orbits' impacts: times, speeds, rate; NaN for releases."""
     nodes, kinds, speed = table["nodes"], table["kinds"], np.array([[p.speed] for p in points])
-    released = (kinds >= 0) & (kinds % ENDS == RELEASE)
+    released = (kinds >= 0) & (kinds % AT_OUTER_END == RELEASE)
     there = (kinds >= 0) & ~released
     return {
         "impact_time": np.where(there, nodes[:, :, PHASE] / frequency[:, None], np.nan),

@@ -13,8 +13,8 @@ from .closed_form import INNER, OUTER, ClosedForm, Floats
 from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, HeldFamily, Setting
 from .periodic_orbit import (
+    AT_OUTER_END,
     CLOSING,
-    ENDS,
     IMPACT,
     PHASE,
     RELEASE,
@@ -48,7 +48,7 @@ def guess_from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods
     state = point.faces(impacts.state)
     phase = point.excitation.frequency * impacts.time
     velocity = state[:, 2:] @ form.shares
-    ends = ENDS * (2.0 * (state[:, 1] - state[:, 0]) > form.limit)
+    ends = AT_OUTER_END * (2.0 * (state[:, 1] - state[:, 0]) > form.limit)
     nodes = np.stack([phase, state[:, 0], velocity, impacts.closing / point.speed], axis=1)
     following = np.append(phase[1:], phase[:1] + TURN * periods)
     kinds: list[int] = []
@@ -172,7 +172,7 @@ def check_orbit_in_fmu(
     away = float(np.abs(after - state).max())
     nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
     kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
-    wanted, kinds = nodes[kinds % ENDS != RELEASE], kinds[kinds % ENDS != RELEASE]
+    wanted, kinds = nodes[kinds % AT_OUTER_END != RELEASE], kinds[kinds % AT_OUTER_END != RELEASE]
     phases, sticks = point.excitation.frequency * observed.time, observed.sticks
     if len(phases) != len(wanted):
         # of the motion's speed the square root of a gap's rounding is 1e-8
@@ -183,7 +183,7 @@ def check_orbit_in_fmu(
     if len(phases) != len(wanted):
         return False, away
     near = np.abs(phases - wanted[:, PHASE]).max(initial=0.0) < 1e-6  # rad
-    return bool(near and (sticks == (kinds % ENDS == STICK)).all()), away
+    return bool(near and (sticks == (kinds % AT_OUTER_END == STICK)).all()), away
 
 
 def first_possible_orbit(
@@ -212,7 +212,7 @@ def first_possible_orbit(
 
 def single_impact_guesses(form: ClosedForm, periods: int) -> Iterator[Guess]:
     """Yield orbit guesses with a single impact at an end, at phases spaced around the circle."""
-    for kind in (IMPACT, IMPACT + ENDS)[: 1 + (form.limit < np.inf)]:
+    for kind in (IMPACT, IMPACT + AT_OUTER_END)[: 1 + (form.limit < np.inf)]:
         sequence = ImpactSequence(periods, (kind,))
         for phase in np.arange(24) * TURN / 24:
             yield guess_from_phases(form, sequence, np.array([phase]))

@@ -16,13 +16,12 @@ from .families import Family
 from .orbit_search import least_periods, solve_orbit
 from .periodic_orbit import (
     CLOSING,
-    ENDS,
     IMPACT,
     POSITION,
-    RELEASE,
     STICK,
     ImpactSequence,
     PeriodicOrbit,
+    kind_at_same_end,
 )
 from .tracer import (
     NO_CONVERGENCE,
@@ -242,15 +241,17 @@ def add_or_drop_chattering_impacts(point: OrbitPoint) -> OrbitPoint:
     if point.contact_margin(Kind.CONTACT_BEGUN) < point.contact_margin(Kind.CONTACT_LOST):
         impacts = ~(orbit.contact | orbit.sequence.releases)
         sticking = int(np.where(impacts, margins, np.inf).argmin())
-        releases = [i for i in range(sticking + 1, len(kinds)) if kinds[i] % ENDS == RELEASE]
-        if not releases:
+        later = orbit.sequence.releases[sticking + 1 :]
+        if not later.any():
             raise NoConvergenceError("an impact sticks that is not of a chattering")
-        kept = [*range(sticking + 1), *range(releases[0], len(kinds))]
-        kinds[sticking] += STICK - IMPACT
+        release = sticking + 1 + int(later.argmax())
+        kept = [*range(sticking + 1), *range(release, len(kinds))]
+        kinds[sticking] = kind_at_same_end(kinds[sticking], STICK)
         kinds, nodes = [kinds[i] for i in kept], nodes[kept]
     else:
         last = int(np.where(orbit.contact, margins, -np.inf).argmax())
-        kinds = [*kinds[:last], kinds[last] + IMPACT - STICK, *kinds[last:]]
+        impact = kind_at_same_end(kinds[last], IMPACT)
+        kinds = [*kinds[:last], impact, *kinds[last:]]
         nodes = np.insert(nodes, last + 1, estimated_next_impact(orbit, last), axis=0)
     sequence = ImpactSequence(orbit.sequence.periods, tuple(kinds))
     guess, setting = (sequence, nodes), point.family.setting

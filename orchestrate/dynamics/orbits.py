@@ -40,7 +40,7 @@ from .orbit_search import (
     guess_from_state,
     single_impact_guesses,
 )
-from .periodic_orbit import ENDS, IMPACT, PHASE, RELEASE, ImpactSequence
+from .periodic_orbit import AT_OUTER_END, IMPACT, PHASE, RELEASE, ImpactSequence
 
 MAX_PERIODS = 1000  # of an orbit that can be asked for
 NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
@@ -60,7 +60,7 @@ class FirstGuess:
         if self.state:
             return f"{self.state!r}"
         rows = zip(self.kinds, self.nodes, strict=True)
-        times = [row[PHASE] / frequency for kind, row in rows if kind % ENDS != RELEASE]
+        times = [row[PHASE] / frequency for kind, row in rows if kind % AT_OUTER_END != RELEASE]
         return f"{{'impact_time': {times!r}}}"
 
     def as_guess(self, periods: int) -> Guess:

@@ -23,7 +23,7 @@ from ..constants import TURN
 from .closed_form import FREE, INNER, OUTER, ClosedForm, Floats, parting_sign
 
 IMPACT, STICK, RELEASE = range(3)  # kinds of nodes; after STICK follows permanent contact
-ENDS = 3  # kinds: what is added to those of nodes at the outer end
+AT_OUTER_END = 3  # added to the kind of a node at the outer end of a stroke
 PHASE, POSITION, VELOCITY, CLOSING = range(4)  # unknowns of a node
 ON_CIRCLE = 1e-7  # of a multiplier's size: nearer to the unit circle no orbit is called stable
 
@@ -38,17 +38,17 @@ class ImpactSequence:
     @cached_property
     def sticks(self) -> NDArray[np.bool_]:
         """Return, for each node, whether permanent contact follows it."""
-        return np.array(self.kinds, dtype=int) % ENDS == STICK
+        return np.array(self.kinds, dtype=int) % AT_OUTER_END == STICK
 
     @cached_property
     def releases(self) -> NDArray[np.bool_]:
         """Return, for each node, whether it is a release from permanent contact."""
-        return np.array(self.kinds, dtype=int) % ENDS == RELEASE
+        return np.array(self.kinds, dtype=int) % AT_OUTER_END == RELEASE
 
     @cached_property
     def outer(self) -> NDArray[np.bool_]:
         """Return, for each node, whether it is at the outer end of a stroke."""
-        return np.array(self.kinds, dtype=int) >= ENDS
+        return np.array(self.kinds, dtype=int) >= AT_OUTER_END
 
     @cached_property
     def modes(self) -> NDArray[np.int_]:
@@ -69,8 +69,13 @@ class ImpactSequence:
 
     def with_impact(self, before: int, outer: bool = False) -> ImpactSequence:
         """Return the sequence with an impact inserted before the node of this index."""
-        kind = IMPACT + ENDS * outer
+        kind = IMPACT + AT_OUTER_END * outer
         return ImpactSequence(self.periods, (*self.kinds[:before], kind, *self.kinds[before:]))
+
+
+def kind_at_same_end(kind: int, event: int) -> int:
+    """Return the kind of an event at the end of the stroke that a node of this kind is at."""
+    return event + AT_OUTER_END * (kind // AT_OUTER_END)
 
 
 def next_rows(rows: NDArray[Any]) -> NDArray[Any]:

@@ -190,8 +190,8 @@ def drive_data(step: float = 0.1) -> dict[str, Any]:
     for name in ("tolerance", "easy", "halvings", "first_passes"):
         setattr(pair, name, getattr(scheme, name))
     for side, known in names.items():
-        for name, some in known.items():
-            setattr(getattr(pair, side), f"{name[:-1]}_count", len(some))
+        instance = getattr(pair, side)
+        instance.input_count, instance.output_count = len(known["inputs"]), len(known["outputs"])
     return {
         "pair": numbers_in(pair),
         "names": names,

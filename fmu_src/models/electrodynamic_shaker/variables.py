@@ -9,37 +9,23 @@ from typing import Any
 from ...kernels.electrodynamic_shaker import memory
 from ...runtime.table import (
     BOOLEAN,
+    DRIVE_LIMIT,
     INTEGER,
-    LARGE,
-    TINY,
     Variable,
     drive,
     evaluation_limit,
+    not_negative,
     numbered,
     output,
     parameter,
+    positive,
+    start_value,
 )
-
-LIMIT = 1e30  # of start values and inputs: squares, sums and energies of them stay finite
-
-
-def positive(name: str, unit: str, start: float, description: str) -> Variable:
-    """Return a parameter that is not zero."""
-    return parameter(name, unit, start, description, minimum=TINY, maximum=LARGE)
-
-
-def not_negative(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
-    """Return a parameter that may be zero."""
-    return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE, **more)
-
-
-def start(name: str, unit: str, description: str, **more: Any) -> Variable:
-    return parameter(name, unit, 0.0, description, minimum=-LIMIT, maximum=LIMIT, **more)
 
 
 def cubic(name: str, units: tuple[str, ...], description: str) -> tuple[Variable, ...]:
     """Return an input and its three time derivatives."""
-    limits: dict[str, Any] = {"minimum": -LIMIT, "maximum": LIMIT}
+    limits: dict[str, Any] = {"minimum": -DRIVE_LIMIT, "maximum": DRIVE_LIMIT}
     text = f"{description}: value when it was set; runs on as the cubic with {name}_1, {name}_2"
     value = drive(name, units[0], 0.0, f"{text} and {name}_3", input_derivatives=3, **limits)
     orders = zip(("First", "Second", "Third"), units[1:], strict=True)
@@ -84,9 +70,11 @@ PARAMETERS = (
         "Distance of the stops from the middle, at which a step fails; 0: no stops",
         **MILLIMETRES,
     ),
-    start("position_start", "m", "Position of the table at the start", nominal=1e-3, **MILLIMETRES),
-    start("velocity_start", "m/s", "Velocity of the table at the start"),
-    start(
+    start_value(
+        "position_start", "m", "Position of the table at the start", nominal=1e-3, **MILLIMETRES
+    ),
+    start_value("velocity_start", "m/s", "Velocity of the table at the start"),
+    start_value(
         "current_start",
         "A",
         "Current at the start, where coil_inductance > 0, and where current_control is true, with "

@@ -6,18 +6,17 @@ from typing import Any
 
 from ...kernels.motor_shaker import memory
 from ...runtime.table import (
+    DRIVE_LIMIT,
     INTEGER,
-    LARGE,
-    TINY,
     Variable,
     drive,
     evaluation_limit,
+    not_negative,
     numbered,
     output,
-    parameter,
+    positive,
+    start_value,
 )
-
-LIMIT = 1e30  # of start values and inputs: squares, sums and energies of them stay finite
 
 BOX = ("box_mass", "box_stiffness", "box_damping", "position_start", "velocity_start")
 ROTOR = ("unbalance_mass", "unbalance_radius", "rotor_inertia", "angle_start", "speed_start")
@@ -33,22 +32,8 @@ FORCE = ("box_force", "box_force_1")
 ALL = (*BOX, *ROTOR, *(name for name in CIRCUIT if name not in ROTOR), "voltage")
 
 
-def positive(name: str, unit: str, start: float, description: str) -> Variable:
-    """Return a parameter that is not zero."""
-    return parameter(name, unit, start, description, minimum=TINY, maximum=LARGE)
-
-
-def not_negative(name: str, unit: str, start: float, description: str) -> Variable:
-    """Return a parameter that may be zero."""
-    return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE)
-
-
-def start(name: str, unit: str, description: str, limit: float = LIMIT, **more: Any) -> Variable:
-    return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit, **more)
-
-
 def given(name: str, unit: str, description: str, start: float = 0.0, **more: Any) -> Variable:
-    return drive(name, unit, start, description, minimum=-LIMIT, maximum=LIMIT, **more)
+    return drive(name, unit, start, description, minimum=-DRIVE_LIMIT, maximum=DRIVE_LIMIT, **more)
 
 
 RPM: dict[str, Any] = {"display_unit": "rpm"}
@@ -67,11 +52,15 @@ PARAMETERS = (
     not_negative(
         "armature_inductance", "H", 0.0, "Inductance of the armature, L; 0: static torque line"
     ),
-    start("angle_start", "rad", "Angle of the unbalance at the start", 1e6),
-    start("speed_start", "rad/s", "Speed of the rotor at the start", 1e9, nominal=100.0, **RPM),
-    start("position_start", "m", "Position of the box at the start", nominal=1e-3, **MILLIMETRES),
-    start("velocity_start", "m/s", "Velocity of the box at the start"),
-    start("current_start", "A", "Current at the start, where armature_inductance > 0"),
+    start_value("angle_start", "rad", "Angle of the unbalance at the start", 1e6),
+    start_value(
+        "speed_start", "rad/s", "Speed of the rotor at the start", 1e9, nominal=100.0, **RPM
+    ),
+    start_value(
+        "position_start", "m", "Position of the box at the start", nominal=1e-3, **MILLIMETRES
+    ),
+    start_value("velocity_start", "m/s", "Velocity of the box at the start"),
+    start_value("current_start", "A", "Current at the start, where armature_inductance > 0"),
 )
 INPUTS = (
     given("voltage", "V", "Voltage of the motor, U, constant over the step", start=8.0),

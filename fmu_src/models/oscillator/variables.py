@@ -20,6 +20,7 @@ from ...runtime.table import (
     numbered,
     output,
     parameter,
+    start_value,
 )
 
 MECHANICS = ("m1", "m2", "k1", "k2", "d1", "d2")
@@ -60,11 +61,6 @@ PUSHES = ("phase_start", "force1_amplitude", "force2_amplitude", "force1", "forc
 # after an impact at the start; whether the masses stick hangs on the forces, at a wall on the box
 IMPACT_2 = (*STRUCTURE, *FAMILY, *STARTS, *PUSHES)
 IMPACT = (*IMPACT_2, "box_amplitude", "box_frequency", "box_acceleration")
-
-
-def start(name: str, unit: str, description: str) -> Variable:
-    """Return the start value of a co-ordinate."""
-    return parameter(name, unit, 0.0, description, minimum=-HUGE, maximum=HUGE)
 
 
 DISCRETE: dict[str, Any] = {"variability": "discrete"}
@@ -189,20 +185,22 @@ SCALARS = (
     parameter(
         "bonded", "", 0.0, "true: the undamaged structure, both masses glued for good", type=BOOLEAN
     ),
-    start(
+    start_value(
         "x1_start",
         "m",
         "Displacement of mass 1 at the start, from its place at rest: with a preload F that is "
         "x1 = -F/k1, else x1 = 0",
+        HUGE,
     ),
-    start(
+    start_value(
         "x2_start",
         "m",
         "Displacement of mass 2 at the start, from its place at rest: with a preload F that is "
         "x2 = F/k2, else x2 = 0; so that the gap is not below 0",
+        HUGE,
     ),
-    start("v1_start", "m/s", "Velocity of mass 1 at the start"),
-    start("v2_start", "m/s", "Velocity of mass 2 at the start"),
+    start_value("v1_start", "m/s", "Velocity of mass 1 at the start", HUGE),
+    start_value("v2_start", "m/s", "Velocity of mass 2 at the start", HUGE),
     parameter(
         "phase_start",
         "rad",

@@ -1,12 +1,12 @@
 /** The page: joins the diagram, the chosen motion, the controls, the tour and the link. */
 
-import { BasinPart } from "./basin_part.js";
+import { BasinPanel } from "./basin_panel.js";
 import { diagramCommand, motionCommand } from "./command.js";
 import { Controls } from "./controls.js";
 import { WorkerPool } from "./worker_pool.js";
 import { nearest, startAt } from "./diagram.js";
 import { listen } from "./diagram_input.js";
-import { DrivePart } from "./drive_part.js";
+import { DrivePanel } from "./drive_panel.js";
 import { inHertz, PAPER, pointAt, sameLevel } from "./excitation.js";
 import { toDefault } from "./field.js";
 import { Inspector } from "./inspector.js";
@@ -23,7 +23,7 @@ import { saveShown } from "./saving.js";
 import { shown } from "./scale.js";
 import { Shaking } from "./shaking.js";
 import { omegaOf, sameStructure } from "./structure.js";
-import { TourPart } from "./tour_part.js";
+import { TourPanel } from "./tour_panel.js";
 import { frequencyUnit, showIn, unitsOption, wordsOf } from "./units.js";
 
 const FIRST_ETA = 0.7; // of the motion that the page opens with, where its diagram has it
@@ -61,12 +61,12 @@ export class App {
       tell: (text) => this.tell(text),
       changed: () => this.refreshMotion(),
     });
-    this.basin = new BasinPart(at, this.pool, table.alike, {
+    this.basin = new BasinPanel(at, this.pool, table.alike, {
       choose: (start) => this.inspect(this.eta, start),
       seen: () => this.computeBasin(),
       others: () => this.hint(),
     });
-    this.drive = new DrivePart(at, this.pool, table.drive);
+    this.drive = new DrivePanel(at, this.pool, table.drive);
     this.controls = new Controls(at, this.structure, table, (structure) => this.change(structure));
     this.shaking = new Shaking(at, table.units, this.structure, this.level, {
       choose: (eta, exactly) => this.choose(eta, exactly),
@@ -76,7 +76,7 @@ export class App {
         this.carried = this.carried || inHertz(before) !== inHertz(level);
       },
     });
-    this.tour = new TourPart(at("tour"), table.tour);
+    this.tour = new TourPanel(at("tour"), table.tour);
     this.regions.view.overlay = (pen, picture, theme) => {
       if (input("branches").checked && sameStructure(this.structure, table.structure)) {
         overlayOf(table, this.regions.view)(pen, picture, theme);

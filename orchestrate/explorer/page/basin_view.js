@@ -4,7 +4,7 @@ import { label, placeOf, SETTLING, startAt } from "./basin.js";
 import { drawFrame, areaOf } from "./chart.js";
 import { inHertz, PAPER } from "./excitation.js";
 import { Picture } from "./picture.js";
-import { averageWords, meanCountOf, repeatWords } from "./words_of.js";
+import { averageWords, meanCountOf, repeatWords } from "./response_words.js";
 import { periodsOf } from "./response.js";
 import { omegaOf } from "./structure.js";
 import { channels } from "./theme.js";

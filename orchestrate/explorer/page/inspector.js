@@ -14,7 +14,7 @@ import { opensFrom } from "./opening.js";
 import { periodsOf } from "./response.js";
 import { shown } from "./scale.js";
 import { Sound } from "./audio.js";
-import { averageWords, exponentWords, numbersOf, sentenceOf } from "./words_of.js";
+import { averageWords, exponentWords, numbersOf, sentenceOf } from "./response_words.js";
 
 /**
  * @typedef {import("./response.js").Response} Response

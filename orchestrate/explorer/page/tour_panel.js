@@ -1,6 +1,6 @@
 /** The guided tour: which of its stops is shown, and the step's text. */
 
-export class TourPart {
+export class TourPanel {
   /** @param {HTMLElement} tour @param {Record<string, string>} stops the view of each, as a link has it */
   constructor(tour, stops) {
     this.stops = stops;

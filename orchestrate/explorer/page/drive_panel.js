@@ -2,7 +2,7 @@
 
 import { drawChart } from "./chart.js";
 import { toDefault } from "./field.js";
-import { countOf } from "./words_of.js";
+import { countOf } from "./response_words.js";
 import { Picture } from "./picture.js";
 import { shown } from "./scale.js";
 
@@ -15,7 +15,7 @@ const SWEEP = 2e-4; // V/s of a ramp, times the largest voltage
 
 /** @typedef {{time: number, voltage: number, speed: number, impacts: number}} Row */
 
-export class DrivePart {
+export class DrivePanel {
   /** @param {(id: string) => HTMLElement} at @param {WorkerPool} pool @param {Start} start */
   constructor(at, pool, start) {
     this.at = at;

@@ -8,7 +8,7 @@ import { lengthOf } from "./structure.js";
 const SIDE = 64; // cells
 const FEW = [6, 19, 32, 45, 58]; // columns and rows of the cells that are tried for every motion
 
-export class BasinPart {
+export class BasinPanel {
   /**
    * @param {(id: string) => HTMLElement} at
    * @param {WorkerPool} pool
