@@ -26,7 +26,6 @@ from ..laboratory.pieces import Floats
 
 ORDERS = np.arange(1, 13)  # of what a window is projected on
 HIGH = slice(5, 12)  # orders 6 to 12
-MIDDLE = (0.8, 0.2)  # quantiles: a window by itself is chance
 MIN_QUIET = 8  # windows in which nothing strikes: of fewer those that move least are taken
 
 PRIOR = 1e-6  # weight of a participation of 1, over that of the windows
@@ -60,6 +59,7 @@ class TimingSettings:
     at_end: float = 0.9
     stiffens: float = 0.5
     stiffens_moving: float = 2.0
+    middle: float = 0.6  # share of the windows for the spread: one by itself is chance
     spread: float = 0.15  # of the place, over the stroke: stops and play make 0.07, gaps 0.28
     known: float = 0.03  # error of a frequency that is known
     stiffer: float = 1.06  # frequency while something strikes, over that of the faces shut
@@ -83,7 +83,7 @@ class Strikes:
     order2: float  # over order 1, the largest
     stiffens: float  # growth of the stiffness, over order 2: see `stiffness_growth`
     place: float  # where it strikes, over the stroke: -1 or 1 at its ends
-    spread: float  # of the place in the middle three fifths of the windows, over the stroke
+    spread: float  # of the place in the `middle` of the windows, over the stroke
     stiffness: float  # frequency over that of the faces shut; NaN where that is not known
 
     def numbers(self) -> str:
@@ -153,6 +153,7 @@ def strikes_at(
         float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
     ]
     is_known = grown[0] > settings.stiffens and math.isfinite(shut)
+    ends = 0.5 * (1.0 + settings.middle), 0.5 * (1.0 - settings.middle)
     position = (size * np.cos(peak))[loud] / size.max()
     return Strikes(
         heard=float(heard[loud].max()),
@@ -164,7 +165,7 @@ def strikes_at(
         order2=float(second[loud].max()),
         stiffens=grown[is_known],
         place=float(np.median(turned.real)),
-        spread=float(np.subtract(*np.quantile(position, MIDDLE))),
+        spread=float(np.subtract(*np.quantile(position, ends))),
         stiffness=math.sqrt(max(np.median(stiffness[loud]), 0.0)) / shut * (1.0 - settings.known),
     )
 

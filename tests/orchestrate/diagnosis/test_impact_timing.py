@@ -117,7 +117,7 @@ def test_lengths_are_parts_of_the_period(monkeypatch):
 def test_one_window_by_itself_does_not_move_the_place(monkeypatch):
     """A stop at the end of the stroke was taken for faces: one window of ten had its peak off."""
     rest = 0.9, 0.5, 0.1, math.nan, 1.0, 1.0, -1.0
-    for off, expected in ((1, 0.0), (4, 1.5)):
+    for off, expected in ((1, 0.0), (3, 1.5)):
         peaks = [2.0 * math.pi / 3.0] * off + [0.0] * (10 - off)
         rows = [(9.0, 1.0, 1.0, peak, *rest) for peak in peaks]
         monkeypatch.setattr(impact_timing, "timed_windows", lambda *given, rows=rows: iter(rows))
