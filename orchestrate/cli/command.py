@@ -351,9 +351,11 @@ def suggestion(flag: str, error: exceptions.UnknownOptionError, command: type[Co
     """Return what is probably meant by an unknown option, as words of a message; or nothing."""
     name = flag.lstrip("-").replace("-", "_")
     if name in STRUCTURE_NAMES and "--set" in command.flags():
-        words = error.root_input_tokens or []
-        after = words[words.index(flag) + 1 :] if flag in words else []
-        return did_you_mean(f"--set {name}={''.join(after[:1]) or 'VALUE'}")
+        words = " ".join(error.root_input_tokens or []).replace(f"{flag}=", f"{flag} ").split(" ")
+        value = "".join(words[words.index(flag) + 1 :][:1]) if flag in words else ""
+        several = set(value) & set(":,") and "--over" in command.flags()
+        meant = f"--over {name} --values {value}" if several else f"--set {name}={value or 'VALUE'}"
+        return did_you_mean(meant)
     said = SAID.get(flag, "")
     if said.partition(" ")[0] in command.flags():
         return did_you_mean(said)
