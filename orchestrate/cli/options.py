@@ -19,7 +19,7 @@ from ..model.sections import TO_RAD_S
 from ..model.toml_files import parse
 from . import grammar
 from .command import Keywords, Options, option, option_names
-from .notes import SETTINGS, mass_note
+from .notes import SETTINGS, heavy_mass_note
 
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
 FREQUENCIES = ("eta", *UNITS)
@@ -166,7 +166,7 @@ def print_difference(flag: str, path: Any, stored: Structure, asked: Structure) 
 def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
     """Print which parameters of the user's beam are taken from a shipped set; warn of per cent."""
     warn_of_per_cent({name: changes[name] for name in ("zeta1", "zeta2") if name in changes})
-    if note := mass_note(structure):
+    if note := heavy_mass_note(structure):
         print(note)
     if source not in SETS or not changes.keys() & {"f1", "f2"}:
         return

@@ -111,7 +111,7 @@ class HowRun(Options):
     heading, rank = "results and running", 5
     force: bool = option("recompute what is there already")
     keep_stale: bool = option("take results that older code or another FMU has made")
-    jobs: int | None = option("processes at once (default: all cores)")
+    jobs: int | None = option("threads or processes at once (default: all cores)")
     cluster: str | None = option(
         "compute on the workers of a Dask scheduler, such as tcp://host:8786", value="ADDRESS"
     )

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from ..units import as_shown, omega_of
 from . import passage
-from .colours import BLACK, GREEN, GREY, ORANGE, STRUCTURES
+from .colours import BIFURCATION_MARKS, BLACK, DIRECTION_STYLES, GREEN, GREY, ORANGE, STRUCTURES
 from .kinds import OTHER, draws
 from .labels import format_voltage, typeset_unit
 from .passage import HISTORIES, POWER_REVOLUTIONS, has_jump, jump_texts, undecided_directions
@@ -33,10 +33,6 @@ from .style import (
 
 IMPACT_REVOLUTIONS = 10  # revolutions that impacts are averaged over
 THEORY = "averaged theory, bonded"
-MARKS = {  # of bifurcations
-    **{"fold": "o", "Neimark-Sacker": "s", "period doubling": "^"},
-    **{"grazing of a flight": "x", "grazing of an impact": "+"},
-}
 FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, averaged theory"}
 DOUBT: Any = {"color": ORANGE, "alpha": 0.3, "linewidth": 0.0, "label": "undecided between"}
 
@@ -114,7 +110,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
         for kind in np.unique(branches.bifurcation_kind.values[of_one]):
             at = branches.isel(bifurcation=of_one & (branches.bifurcation_kind == kind))
             mark: Any = {"color": STRUCTURES[name], "label": f"{name}, {kind}", "markersize": 5}
-            marker = MARKS.get(str(kind), "o")
+            marker = BIFURCATION_MARKS[str(kind)]
             axes[0].plot(at.bifurcation_voltage, at.bifurcation_speed, marker, **mark)
             axes[1].plot(at.bifurcation_speed, at.bifurcation_amplitude, marker, **mark)
     label_axes(axes, branches)
@@ -176,7 +172,8 @@ def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
     """Return a run's revolutions there and back as index arrays, each with style and name."""
     voltage = data.voltage.values
     turn = int(np.argmax(np.abs(voltage - voltage[0]))) or len(voltage) - 1  # or a constant voltage
-    legs = [(np.arange(turn + 1), "-", "there"), (np.arange(turn + 1, len(voltage)), "--", "back")]
+    numbers = np.arange(turn + 1), np.arange(turn + 1, len(voltage))
+    legs = zip(numbers, DIRECTION_STYLES.values(), ("there", "back"), strict=True)
     return [leg for leg in legs if leg[0].size]
 
 
