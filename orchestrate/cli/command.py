@@ -55,7 +55,7 @@ SAID = {  # for options of ours
     **{"--duration": "--periods", "--sine": "--swept-sine", "--sweep": "--swept-sine"},
 }
 OF_BOX = ("eta", "frequency", "amplitude", "level")
-READERS: dict[Any, Callable[[str, str], Any]] = {int: grammar.read_int, float: grammar.read_float}
+READERS: dict[Any, Callable[[str, str], Any]] = {int: grammar.read_int, float: grammar.read_number}
 STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *grammar.SET_NAMES)
 Keywords = dict[str, Any]
 

@@ -353,7 +353,7 @@ The excitation says where a first orbit is looked for; without it that is the lo
 
 
 parse_bifurcation = reads(
-    "a number, or all", lambda text: text if text == "all" else plain_int(text)
+    "a number, or all", lambda _, text: text if text == "all" else plain_int(text)
 )
 Bifurcation = Annotated[int | str, parse_bifurcation]
 

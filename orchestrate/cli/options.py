@@ -198,7 +198,7 @@ class OfPushes(Options):
     """Options of what acts besides the box's harmonic motion."""
 
     heading, rank = "what acts besides", 1
-    box_acceleration: grammar.Acceleration = option(
+    box_acceleration: float | None = option(
         "constant acceleration of the box, m/s2 or with g: -1g is gravity towards positive x, as "
         "to a stop"
     )
@@ -222,9 +222,7 @@ class OfBox(OfPushes):
     rpm: str | None = option("the same in turns per minute", value="VALUES")
     frequency: str | None = option("the same as Omega in rad/s", value="VALUES")
     eta: Any = option("the same as frequency ratio Omega/omega", value="VALUES")
-    amplitude: grammar.Length = option(
-        "amplitude a in m (default with --eta: 1/eta^2 m)", value="A"
-    )
+    amplitude: float | None = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
     g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
 
     def read_excitation(
@@ -357,7 +355,7 @@ class OfSensors(Options):
         "second (default: 2.56 times it)",
         value="HZ[:RATE]",
     )
-    noise: grammar.Noise = option("density of their noise, (m/s2)/sqrt(Hz), or 30ug of g/sqrt(Hz)")
+    noise: float | None = option("density of their noise, (m/s2)/sqrt(Hz), or 30ug of g/sqrt(Hz)")
     range: grammar.Positive = option("of the sensors, g (default: none)")
 
     def read_sensor(
