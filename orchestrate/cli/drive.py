@@ -185,23 +185,20 @@ class OfSchedule(OfRamp):
         from ..weak_drive.couple import schedule_from_arguments
         from ..weak_drive.schedule import Course
 
-        rate = self.ramp_rate(structure, drive)
         if self.course:
             for name in ("eta0", "voltage", "duration"):
                 self.one_of("course", name)
             return Course.from_csv(self.course)
         ends = self.parse_voltages(structure, drive)
-        if len(ends) == 1:
-            if self.duration is None:
-                raise InputError(f"one voltage, {ends[0]:g} V: expected --duration with it, in s")
-            return schedule_from_arguments(structure, drive, ends[0], duration=self.duration)
-        if self.duration is not None:
-            raise InputError("--duration: expected one voltage with it, not FIRST:LAST")
+        if (len(ends) == 1) != (self.duration is not None):
+            given = " to ".join(f"{end:g}" for end in ends)
+            raise InputError(f"{given} V: expected --duration, in s, with one voltage and only so")
         return schedule_from_arguments(
             structure,
             drive,
-            (ends[0], ends[1]),
-            rate=rate,
+            ends if len(ends) == 2 else ends[0],
+            self.duration,
+            rate=self.ramp_rate(structure, drive),
             settle=self.settle / structure.omega,
             increment=self.increment * drive.volts(structure),
             back=not self.one_way,
