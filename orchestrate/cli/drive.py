@@ -75,7 +75,7 @@ class OfMotor(Options):
         changes, of_drive = parse_changes(self.set), {field.name for field in fields(Drive)}
         motor = {name: float(changes.pop(name)) for name in list(changes) if name in of_drive}
         motor |= self.read_datasheet(motor)
-        check_masses(source, changes)
+        require_masses(source, changes)
         changed = structure.replace(**changes)
         print_assumptions(changed, source, changes)
         return changed, drive.replace(**motor)
@@ -248,7 +248,7 @@ class OfController(Options):
         return None
 
 
-def check_masses(source: str, changes: Mapping[str, Any]) -> None:
+def require_masses(source: str, changes: Mapping[str, Any]) -> None:
     """Raise if a beam's frequencies are set but its masses are not: the motor feels them."""
     unknown = {"m1", "m2"} - changes.keys() - ({"m2"} if "mu" in changes else set())
     named = next((name for name in ("f1", "f2") if name in changes), None)

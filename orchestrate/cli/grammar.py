@@ -54,7 +54,7 @@ def number(name: str, text: str) -> float:
     return float(plain_float(text)) if with_unit is None else with_unit
 
 
-def quantity_of(option: str) -> str:
+def option_quantity(option: str) -> str:
     """Return the name of the quantity that an option is."""
     return option.lstrip("-").replace("-", "_")
 
@@ -72,7 +72,7 @@ def reads(expected: str, split: Callable[[str, str], Parsed]) -> Reader[Parsed]:
 
     def read(option: str, text: str) -> Parsed:
         try:
-            return split(quantity_of(option), text)
+            return split(option_quantity(option), text)
         except ValueError:
             raise InputError(f"{option} {text}: expected {expected}{with_point(text)}") from None
 
@@ -144,9 +144,9 @@ Orders = Annotated[float | tuple[float, ...] | None, parse_orders]
 def read_number(option: str, text: str, name: str = "", other: str = "") -> float:
     """Parse a number with a unit of its quantity, by default that which the option is."""
     try:
-        return number(name or quantity_of(option), text)
+        return number(name or option_quantity(option), text)
     except ValueError:
-        units = " or ".join([*ranges.known_units(name or quantity_of(option))][:4])
+        units = " or ".join([*ranges.known_units(name or option_quantity(option))][:4])
         words = f", with {units} if you like" if units else other
         text = f"{text}: expected a number{words}{with_point(text)}"
         raise InputError(f"{option}{'' if option.endswith('=') else ' '}{text}") from None
@@ -245,7 +245,7 @@ def parse_values(option: str, text: str, zero: bool = False, name: str = "") -> 
     """Parse ``FIRST:LAST:STEP`` or ``A,B,...``; with ``zero`` numbers may be zero."""
     parts = text.split(":" if ":" in text else ",")
     try:
-        exact = [Decimal(repr(number(name or quantity_of(option), part))) for part in parts]
+        exact = [Decimal(repr(number(name or option_quantity(option), part))) for part in parts]
     except ValueError:
         raise InputError(f"{option} {text}: not numbers; {RANGE}") from None
     finite = all(one.is_finite() for one in exact)

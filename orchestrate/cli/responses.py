@@ -13,7 +13,7 @@ from ..model import Drive, Structure
 from ..units import as_shown, is_in_ratios, text_of
 from . import printing
 from .answer import Asked, Overlay, is_curve
-from .command import Keywords, option
+from .command import Keywords, option, option_names
 from .drive import Driven
 from .grammar import parse_changes, parse_listed
 from .options import Beside, OfBox, OfStructure, Over
@@ -72,6 +72,8 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
         structure, question = self.read_structure(), self.keywords()
         if self.has_levels():
             self.calls = "resonance_levels"
+            if pushes := self.pushes():
+                raise InputError(f"{option_names(pushes)}: expected one level, --g, with it")
             return structure, {**question, **self.read_excitation(structure, by_level=True)}
         return structure, {**question, **self.read_excitation(structure, si=True)}
 

@@ -39,7 +39,7 @@ DOUBT: Any = {"color": ORANGE, "alpha": 0.3, "linewidth": 0.0, "label": "undecid
 
 @draws("couple", beside=OTHER)
 @styled
-def draw(
+def draw_ramps(
     runs: Mapping[str, xr.Dataset],
     theory: xr.Dataset | None = None,
     branches: xr.Dataset | None = None,
@@ -51,7 +51,7 @@ def draw(
     for name, data in shown.items():
         for part, style, direction in split_directions(data):
             line: Any = {"color": STRUCTURES[name], "linewidth": 1.2}
-            draw_motions(axes, data, part, style, **line, label=f"{name}, {direction}")
+            draw_speed_curves(axes, data, part, style, **line, label=f"{name}, {direction}")
             if name == "delaminated":
                 draw_impacts(axes[2], data.isel(revolution=part), direction)
         mark_jumps(axes[0], data, name)
@@ -118,7 +118,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
-def draw_motions(
+def draw_speed_curves(
     axes: Sequence[Axes], data: xr.Dataset, part: np.ndarray, style: str, **line: Any
 ) -> None:
     """Draw speed over voltage and amplitude over speed of a part of the motions."""
@@ -134,8 +134,8 @@ def draw_motions(
 def draw_theory(axes: Sequence[Axes], theory: xr.Dataset) -> None:
     """Draw the averaged theory: dash-dotted where stable, dotted where unstable."""
     stable, line = theory.stable.values, {"color": BLACK, "linewidth": 1.0}
-    draw_motions(axes, theory, stable, "-.", **line, label=f"{THEORY}, stable")
-    draw_motions(axes, theory, ~stable, ":", **line, label=f"{THEORY}, unstable")
+    draw_speed_curves(axes, theory, stable, "-.", **line, label=f"{THEORY}, stable")
+    draw_speed_curves(axes, theory, ~stable, ":", **line, label=f"{THEORY}, unstable")
 
 
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
@@ -147,7 +147,7 @@ def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
             stable, known = branch.stable.values, np.isfinite(branch.voltage.values)
             for part, style, what in ((stable, "-", "stable"), (known & ~stable, ":", "unstable")):
                 label = None if i else f"{name}, branch, {what}"
-                draw_motions(axes, branch, part, style, **line, label=label)
+                draw_speed_curves(axes, branch, part, style, **line, label=label)
 
 
 def drop_spin_up(data: xr.Dataset) -> xr.Dataset:
