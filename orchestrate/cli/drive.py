@@ -229,11 +229,8 @@ class OfController(Options):
 
         chosen = self.one_of(*CONTROLS) or ""
         given = self.given(OfController)
-        for needed, names in CONTROLS.items():
-            for name in names if needed != chosen else ():
-                if name in given:
-                    expected = f"expected {option_names([needed])} with it"
-                    raise InputError(f"{option_names([name])} {given[name]:g}: {expected}")
+        owners = {name: [control] for control, names in CONTROLS.items() for name in names}
+        self.refuse_without(owners, [chosen])
         own = {name.removeprefix("speed_"): given[name] for name in given if name not in CONTROLS}
         require_motor(structure, drive)
         constant = drive.motor_constant

@@ -32,7 +32,13 @@ MAPPING_ITEM = re.compile(r"'([^']*)': '([^']*)'")
 COMMA = re.compile(r"-?\d+,\d+ *[a-zA-Z%]*")  # a decimal comma, perhaps with a unit
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 OF_ONE_MASS = {name: (f"{name}1",) for name in ("m", "k", "d", "f", "zeta")}  # before a stop
-SAID = {"gap": "clearance", "restitution": "e", "mass": "m1", "frequency": "f1", "damping": "zeta1"}
+MEANT = {
+    "gap": "clearance",
+    "restitution": "e",
+    "mass": "m1",
+    "frequency": "f1",
+    "damping": "zeta1",
+}
 
 # -- numbers --------------------------------------------------------------------------------------
 
@@ -317,5 +323,5 @@ def check_name(name: str) -> None:
 
     known = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)
     if name not in (*known, *ranges.DRIVE):
-        expected = expected_one_of(SAID.get(name, name), known)
+        expected = expected_one_of(MEANT.get(name, name), known)
         raise InputError(f"--set {name}: no parameter; {expected}")
