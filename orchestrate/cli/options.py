@@ -312,16 +312,14 @@ class Over(Options):
 
     def ask_along_parameter(self, si: bool = False) -> tuple[Structure, Keywords]:
         """Return structure, keywords, excitation and what varies of it."""
-        structure = self.read_structure()
-        if self.over is None and self.has_levels():
-            box = self.read_excitation(structure, one=True, by_level=True)
-            varied: Keywords = {**box, "over": "level", "values": box.pop("level")}
-        elif varied := self.over_arguments():
+        structure, varied = self.read_structure(), self.over_arguments()
+        if varied:
             self.check_over(self.over)
-            varied = {**self.read_excitation(structure, si, one=True), **varied}
-        else:
-            varied = self.read_excitation(structure, si)
-        return structure, {**self.keywords(), **varied}
+        by_level = not varied and self.has_levels()
+        box = self.read_excitation(structure, si, bool(varied) or by_level, by_level)
+        if by_level:
+            varied = {"over": "level", "values": box.pop("level")}
+        return structure, {**self.keywords(), **box, **varied}
 
     def check_over(self, over: str) -> None:
         """Raise unless a parameter of a structure may vary with these options."""
