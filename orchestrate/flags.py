@@ -15,6 +15,11 @@ def flag_words(attributes: Mapping[Any, Any]) -> dict[int, str]:
     return {int(n): word.replace("_", " ") for n, word in zip(numbers, words, strict=True)}
 
 
+def flag_word(flag: Any) -> str:
+    """Return the word that a scalar flag variable stands for; empty if it is no flag."""
+    return flag_words(flag.attrs).get(int(flag), "") if "flag_meanings" in flag.attrs else ""
+
+
 def runs_of(flags: Iterable[Any]) -> list[tuple[int, int]]:
     """Return first and last index of each run of true flags."""
     runs: list[tuple[int, int]] = []

@@ -91,8 +91,9 @@ def has_own_frequency(data: xr.Dataset) -> bool:
 
 
 def is_in_ratios(data: xr.Dataset) -> bool:
-    """Return whether lengths are shown as the paper's ratios, without a unit."""
-    return not (has_own_frequency(data) or units_of(data).length)
+    """Return whether lengths are shown as the paper's ratios: of a structure that is not in SI."""
+    in_si = has_own_frequency(data) or math.isnan(omega_of(data))
+    return not (in_si or units_of(data).length)
 
 
 def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:

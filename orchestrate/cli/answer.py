@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
@@ -109,7 +108,6 @@ class Asked(Command):
     def answer(self, structure: Any, *rest: Any, picture: bool = True) -> dict[str, xr.Dataset]:
         """Compute results, print their summary, write files; return them."""
         *others, question = rest
-        self.check_known(question)
         states, branches = self.states(structure), self.read_overlay(structure, question)
         over = f"over_{digest(*branches)}" if branches else ""
         asked, fresh = (structure, *others, question), None if self.stores else True
@@ -144,13 +142,6 @@ class Asked(Command):
 
     def write_more(self, files: Files, question: Keywords, shown: Runs, results: Runs) -> None:
         """Write what a command has besides results and picture."""
-
-    def check_known(self, question: Keywords) -> None:
-        """Raise for an option that the public function does not take."""
-        known = inspect.signature(getattr(orchestrate, self.calls)).parameters
-        if "others" not in known and (unknown := [name for name in question if name not in known]):
-            text = f"{self.calls} does not know it yet; expected the command without it"
-            raise InputError(f"{option_names(unknown[:1])}: {text}")
 
     def read_overlay(self, structure: Any, question: Keywords) -> list[xr.Dataset]:
         """Return the branches of ``--overlay``; raise for one that does not fit the question."""

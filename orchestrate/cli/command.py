@@ -12,7 +12,7 @@ import inspect
 import re
 import typing
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -30,7 +30,7 @@ from . import grammar
 LINK = re.compile(r"As (?:in|for) :\w+:`orchestrate\.(\w+)`")
 MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
 MAPPING = re.compile(r'\{"(\w+)": "?([^"}]*)"?\}')  # on the command line NAME=VALUE
-KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of options are read, named
+DOCUMENTED: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts are read, and named
     "array_like or xarray.Dataset": (grammar.State, "X1,X2,V1,V2|FILE.nc"),
     "array_like of 4 floats, or mapping": (grammar.State, "X1,X2,V1,V2|FILE.nc"),
     "array_like of 4 floats": (Annotated[Any, grammar.parse_state], "X1,X2,V1,V2"),
@@ -48,14 +48,14 @@ KINDS: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts of optio
     "array_like": (float, "X"),
 }
 NEEDED = " (needed)"
-SAID = {  # for options of ours
+MEANT = {  # for options of ours
     **{"--gravity": "--box-acceleration -1g", "--level": "--g", "--g-rms": "--g", "--rms": "--g"},
     **{"--freq": "--hz", "--force": "--force1", "--csv": "--format csv", "--out": "--output"},
     **{"--levels": "--g", "--guess": "--structure", "--time": "--periods", "--beam": "--structure"},
     **{"--duration": "--periods", "--sine": "--swept-sine", "--sweep": "--swept-sine"},
 }
 OF_BOX = ("eta", "frequency", "amplitude", "level")
-READERS: dict[Any, Callable[[str, str], Any]] = {int: grammar.read_int, float: grammar.read_float}
+READERS: dict[Any, Callable[[str, str], Any]] = {int: grammar.read_int, float: grammar.read_number}
 STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *grammar.SET_NAMES)
 Keywords = dict[str, Any]
 
@@ -161,6 +161,15 @@ class Options:
             raise InputError(f"{option_names(given, ' and ')}: expected one of them")
         return given[0] if given else None
 
+    def refuse_without(
+        self, owners: Mapping[str, Sequence[str]], chosen: Collection[str], flag: str = ""
+    ) -> None:
+        """Raise for an option that is given without one of its owners: options, or words of one."""
+        for name, own in owners.items():
+            if getattr(self, name) not in (None, False) and not {*own} & {*chosen}:
+                words = flag + " or ".join(own) if flag else option_names(own, " or ")
+                raise InputError(f"{option_names([name])}: expected only with {words}")
+
 
 class Debugging(Options):
     """The option of all commands."""
@@ -225,12 +234,12 @@ class Command(Debugging, ABC):
 
     def keywords(self) -> Keywords:
         """Return the values of options that are arguments of the public function, by name."""
-        arguments = inspect.signature(getattr(orchestrate, self.calls)).parameters
+        arguments = arguments_of(self.calls)
         found: Keywords = {}
         for name, (one, kind, of) in self.options().items():
             if of is type(self) and name in arguments:
                 found[name] = getattr(self, name)
-                if arguments[name].default is inspect.Parameter.empty:
+                if arguments[name]:
                     self.needed(name, f" ({one.help.removesuffix(NEEDED)})")
                 if kind is grammar.State and isinstance(found[name], Path):
                     found[name] = grammar.read_earlier_result(option_names([name]), found[name])
@@ -256,6 +265,12 @@ class Command(Debugging, ABC):
 
 
 # -- options from a public function ----------------------------------------------------------------
+
+
+def arguments_of(function: str) -> dict[str, bool]:
+    """Return the arguments of a public function or class, and whether each is needed."""
+    parameters = inspect.signature(getattr(orchestrate, function)).parameters.values()
+    return {one.name: one.default is inspect.Parameter.empty for one in parameters}
 
 
 @functools.cache
@@ -287,7 +302,7 @@ def arguments_read(function: str) -> list[str]:
         if one.kind == one.KEYWORD_ONLY
         and one.name not in (*OF_BOX, "over", "values")
         and one.default is not True
-        and typed[one.name][0].startswith(("{", *KINDS))
+        and typed[one.name][0].startswith(("{", *DOCUMENTED))
         and typed[one.name][0].partition(",")[0] != "array_like"  # of one number, where named
     ]
 
@@ -302,7 +317,8 @@ def options_of_functions(
         parameters = inspect.signature(getattr(orchestrate, function)).parameters
         for name in names.split():
             typed, meaning = documentation_of(function)[name]
-            kind, value = next((KINDS[one] for one in KINDS if typed.startswith(one)), (None, ""))
+            known = (DOCUMENTED[one] for one in DOCUMENTED if typed.startswith(one))
+            kind, value = next(known, (None, ""))
             if typed.startswith("{"):
                 kind = Literal[tuple(re.findall(r'"(\w+)"', typed))]
             usual = parameters[name].default if name in parameters else None
@@ -356,7 +372,7 @@ def suggestion(flag: str, error: exceptions.UnknownOptionError, command: type[Co
         several = set(value) & set(":,") and "--over" in command.flags()
         meant = f"--over {name} --values {value}" if several else f"--set {name}={value or 'VALUE'}"
         return did_you_mean(meant)
-    said = SAID.get(flag, "")
+    said = MEANT.get(flag, "")
     if said.partition(" ")[0] in command.flags():
         return did_you_mean(said)
     return did_you_mean(closest(flag, command.flags()) if flag.startswith("--") else "")

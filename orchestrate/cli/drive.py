@@ -75,7 +75,7 @@ class OfMotor(Options):
         changes, of_drive = parse_changes(self.set), {field.name for field in fields(Drive)}
         motor = {name: float(changes.pop(name)) for name in list(changes) if name in of_drive}
         motor |= self.read_datasheet(motor)
-        check_masses(source, changes)
+        require_masses(source, changes)
         changed = structure.replace(**changes)
         print_assumptions(changed, source, changes)
         return changed, drive.replace(**motor)
@@ -185,23 +185,20 @@ class OfSchedule(OfRamp):
         from ..weak_drive.couple import schedule_from_arguments
         from ..weak_drive.schedule import Course
 
-        rate = self.ramp_rate(structure, drive)
         if self.course:
             for name in ("eta0", "voltage", "duration"):
                 self.one_of("course", name)
             return Course.from_csv(self.course)
         ends = self.parse_voltages(structure, drive)
-        if len(ends) == 1:
-            if self.duration is None:
-                raise InputError(f"one voltage, {ends[0]:g} V: expected --duration with it, in s")
-            return schedule_from_arguments(structure, drive, ends[0], duration=self.duration)
-        if self.duration is not None:
-            raise InputError("--duration: expected one voltage with it, not FIRST:LAST")
+        if (len(ends) == 1) != (self.duration is not None):
+            given = " to ".join(f"{end:g}" for end in ends)
+            raise InputError(f"{given} V: expected --duration, in s, with one voltage and only so")
         return schedule_from_arguments(
             structure,
             drive,
-            (ends[0], ends[1]),
-            rate=rate,
+            ends if len(ends) == 2 else ends[0],
+            self.duration,
+            rate=self.ramp_rate(structure, drive),
             settle=self.settle / structure.omega,
             increment=self.increment * drive.volts(structure),
             back=not self.one_way,
@@ -232,11 +229,8 @@ class OfController(Options):
 
         chosen = self.one_of(*CONTROLS) or ""
         given = self.given(OfController)
-        for needed, names in CONTROLS.items():
-            for name in names if needed != chosen else ():
-                if name in given:
-                    expected = f"expected {option_names([needed])} with it"
-                    raise InputError(f"{option_names([name])} {given[name]:g}: {expected}")
+        owners = {name: [control] for control, names in CONTROLS.items() for name in names}
+        self.refuse_without(owners, [chosen])
         own = {name.removeprefix("speed_"): given[name] for name in given if name not in CONTROLS}
         require_motor(structure, drive)
         constant = drive.motor_constant
@@ -251,7 +245,7 @@ class OfController(Options):
         return None
 
 
-def check_masses(source: str, changes: Mapping[str, Any]) -> None:
+def require_masses(source: str, changes: Mapping[str, Any]) -> None:
     """Raise if a beam's frequencies are set but its masses are not: the motor feels them."""
     unknown = {"m1", "m2"} - changes.keys() - ({"m2"} if "mu" in changes else set())
     named = next((name for name in ("f1", "f2") if name in changes), None)

@@ -11,6 +11,7 @@ import orchestrate
 
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
+from ..flags import flag_word
 from ..lazy import xr
 from ..model import PARAMETERS, Structure
 from ..model.ranges import PUSHES
@@ -213,7 +214,7 @@ def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
     """Return the title of an orbit's picture: whether it is stable, structure and excitation."""
     from ..show.labels import title_from_attributes
 
-    return f"{printing.flag_word(orbit.stability)} orbit, {title_from_attributes(motion)}"
+    return f"{flag_word(orbit.stability)} orbit, {title_from_attributes(motion)}"
 
 
 class Orbit(OfStructure, OfBox, Asked, Stored, Results):
@@ -235,7 +236,7 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         parts = data.multipliers.transpose("multiplier", "part").values
         size = max(abs(complex(*pair)) for pair in parts)
-        word = printing.flag_word(data.stability)
+        word = flag_word(data.stability)
         yield f"{word}: the largest multiplier has the absolute value {size:.6f}"
         if word == "undecided":
             yield "a run of the FMU from this orbit has other impacts: it may not be a motion"
@@ -353,7 +354,7 @@ The excitation says where a first orbit is looked for; without it that is the lo
 
 
 parse_bifurcation = reads(
-    "a number, or all", lambda text: text if text == "all" else plain_int(text)
+    "a number, or all", lambda _, text: text if text == "all" else plain_int(text)
 )
 Bifurcation = Annotated[int | str, parse_bifurcation]
 

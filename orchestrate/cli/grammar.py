@@ -8,9 +8,8 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping
-from contextlib import suppress
-from decimal import Decimal, InvalidOperation
+from collections.abc import Callable, Collection, Iterable
+from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -33,12 +32,12 @@ MAPPING_ITEM = re.compile(r"'([^']*)': '([^']*)'")
 COMMA = re.compile(r"-?\d+,\d+ *[a-zA-Z%]*")  # a decimal comma, perhaps with a unit
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 OF_ONE_MASS = {name: (f"{name}1",) for name in ("m", "k", "d", "f", "zeta")}  # before a stop
-SAID = {"gap": "clearance", "restitution": "e", "mass": "m1", "frequency": "f1", "damping": "zeta1"}
-OWN_UNITS = {"--g": "g", "--range": "g", "--hz": "Hz", "--rpm": "rpm"}
-OF_NOISE = {  # of an acceleration's density, as data sheets have it, over (m/s2)/sqrt(Hz)
-    f"{prefix}g{tail}": factor * GRAVITY
-    for tail in ("/sqrt(Hz)", "/sqrtHz", "")
-    for prefix, factor in (("u", 1e-6), ("\u00b5", 1e-6), ("m", 1e-3), ("", 1.0))
+MEANT = {
+    "gap": "clearance",
+    "restitution": "e",
+    "mass": "m1",
+    "frequency": "f1",
+    "damping": "zeta1",
 }
 
 # -- numbers --------------------------------------------------------------------------------------
@@ -55,19 +54,15 @@ def plain_int(text: str) -> int:
     return int(plain_float(text, int))
 
 
-def without_own_unit(option: str, text: str) -> str:
-    """Take off the unit that an option is named after, where numbers have it: ``--g 0.1g``."""
-    unit = OWN_UNITS.get(option)
-    pattern = rf"(?<=[0-9.]) *{unit}(?![a-z0-9])"
-    return re.sub(pattern, "", text, flags=re.IGNORECASE) if unit else text
+def number(name: str, text: str) -> float:
+    """Parse a number of a quantity, with one of its units behind it or none."""
+    with_unit = ranges.number_with_unit(name, text.strip())
+    return float(plain_float(text)) if with_unit is None else with_unit
 
 
-def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]) -> Parsed:
-    """Call ``reader`` on an option's text; turn its ``ValueError`` into an ``InputError``."""
-    try:
-        return reader(without_own_unit(option, text))
-    except ValueError:
-        raise InputError(f"{option} {text}: expected {expected}{with_point(text)}") from None
+def option_quantity(option: str) -> str:
+    """Return the name of the quantity that an option is."""
+    return option.lstrip("-").replace("-", "_")
 
 
 def with_point(text: str) -> str:
@@ -75,9 +70,19 @@ def with_point(text: str) -> str:
     return f" (with a decimal point, {text.replace(',', '.')})" if COMMA.fullmatch(text) else ""
 
 
-def reads(expected: str, split: Callable[[str], Parsed]) -> Reader[Parsed]:
-    """Return the reader of an option's text by a function that raises ``ValueError``."""
-    return lambda option, text: parse(option, text, expected, split)
+def reads(expected: str, split: Callable[[str, str], Parsed]) -> Reader[Parsed]:
+    """Return the reader of an option's text by a function that raises ``ValueError``.
+
+    The function takes the quantity that the option is, whose units texts may have, and the text.
+    """
+
+    def read(option: str, text: str) -> Parsed:
+        try:
+            return split(option_quantity(option), text)
+        except ValueError:
+            raise InputError(f"{option} {text}: expected {expected}{with_point(text)}") from None
+
+    return read
 
 
 def floats(
@@ -85,68 +90,45 @@ def floats(
 ) -> Reader[tuple[float, ...]]:
     """Return a reader of numbers between separators (a regular expression), ``counts`` of them."""
 
-    def split(text: str) -> tuple[float, ...]:
-        numbers = tuple(plain_float(part) for part in re.split(separator, text))
+    def split(name: str, text: str) -> tuple[float, ...]:
+        numbers = tuple(number(name, part) for part in re.split(separator, text))
         wrong = counts and len(numbers) not in counts
-        if wrong or (positive and not all(0.0 < number < math.inf for number in numbers)):
+        if wrong or (positive and not all(0.0 < one < math.inf for one in numbers)):
             raise ValueError(text)
         return numbers
 
     return reads(expected, split)
 
 
-def in_units(units: Mapping[str, float]) -> Callable[[str], float]:
-    """Return a parser of a number that may have one of some units behind it, longer ones first."""
-
-    def split(text: str) -> float:
-        unit = next((unit for unit in units if text.endswith(unit)), "")
-        return float(units.get(unit, 1.0) * plain_float(text.removesuffix(unit)))
-
-    return split
-
-
-def float_with_unit(name: str, text: str) -> float:
-    """Parse a number of a quantity, with one of its units behind it or none."""
-    number = ranges.number_with_unit(name, text)
-    return float(plain_float(text)) if number is None else number
-
-
-def split_length(text: str) -> float:
-    if not 0.0 <= (number := float_with_unit("amplitude", text)) < math.inf:
-        raise ValueError(text)
-    return number
-
-
-def split_state(text: str) -> tuple[float, ...]:
+def split_state(_: str, text: str) -> tuple[float, ...]:
     pairs = zip(("x1", "x2", "v1", "v2"), text.split(","), strict=True)
-    return tuple(float_with_unit(name, part.strip()) for name, part in pairs)
+    return tuple(number(name, part) for name, part in pairs)
 
 
-def split_plane_side(text: str) -> tuple[str, float, float, int]:
+def split_plane_side(_: str, text: str) -> tuple[str, float, float, int]:
     name, first, last, count = (part.strip() for part in text.split(","))
-    return name, float_with_unit(name, first), float_with_unit(name, last), plain_int(count)
+    return name, number(name, first), number(name, last), plain_int(count)
 
 
-def split_breakpoints(text: str, unit: float = 1.0) -> tuple[tuple[float, float], ...]:
+def split_breakpoints(_: str, text: str, unit: float = 1.0) -> tuple[tuple[float, float], ...]:
     pairs = [tuple(map(plain_float, part.split(":"))) for part in text.split(",")]
     if not all(len(pair) == 2 and all(map(math.isfinite, pair)) for pair in pairs):
         raise ValueError(text)
     return tuple((frequency, unit * value) for frequency, value in pairs)
 
 
-def split_density(text: str) -> tuple[tuple[float, float], ...]:
+def split_density(name: str, text: str) -> tuple[tuple[float, float], ...]:
     """Parse a density over frequency in (m/s2)^2/Hz, or in g2/Hz with that unit behind it."""
-    number = text.removesuffix("g2/Hz")
-    return split_breakpoints(number, 1.0 if number == text else GRAVITY**2)
+    numbers = text.removesuffix("g2/Hz")
+    return split_breakpoints(name, numbers, 1.0 if numbers == text else GRAVITY**2)
 
 
-def split_orders(text: str) -> float | tuple[float, ...]:
+def split_orders(_: str, text: str) -> float | tuple[float, ...]:
     orders = tuple(map(plain_float, text.split(",")))
     return orders if "," in text else orders[0]
 
 
-read_float = reads("a number", plain_float)
-read_int = reads("a whole number", plain_int)
+read_int = reads("a whole number", lambda _, text: plain_int(text))
 parse_ends = floats("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,))
 parse_number_or_ends = floats("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
 parse_rates = floats("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
@@ -158,25 +140,27 @@ parse_orders = reads("a number, or a list such as 0.5,1,2", split_orders)
 parse_plane_side = reads(
     "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60 or x_rel,0,20um,60", split_plane_side
 )
-read_acceleration = reads("a number in m/s2, or in g such as -1g", in_units({"g": GRAVITY}))
-read_noise = reads("a number in (m/s2)/sqrt(Hz), or of g such as 30ug or 0.3mg", in_units(OF_NOISE))
 Ends = Annotated[tuple[float, ...] | None, parse_ends]
 Bandwidth = Annotated[tuple[float, ...] | None, parse_sensor]
-Acceleration = Annotated[float | None, read_acceleration]
-Noise = Annotated[float | None, read_noise]
 PlaneSide = Annotated[tuple[str, float, float, int] | None, parse_plane_side]
 Density = Annotated[tuple[tuple[float, float], ...] | None, parse_density]
 Orders = Annotated[float | tuple[float, ...] | None, parse_orders]
 
 
+def read_number(option: str, text: str, name: str = "", other: str = "") -> float:
+    """Parse a number with a unit of its quantity, by default that which the option is."""
+    try:
+        return number(name or option_quantity(option), text)
+    except ValueError:
+        units = " or ".join([*ranges.known_units(name or option_quantity(option))][:4])
+        words = f", with {units} if you like" if units else other
+        text = f"{text}: expected a number{words}{with_point(text)}"
+        raise InputError(f"{option}{'' if option.endswith('=') else ' '}{text}") from None
+
+
 def positive_number(option: str, text: str) -> float:
     expected = f"a number > 0, such as {option} 0.5"
     return floats(expected, counts=(1,), positive=True)(option, text)[0]
-
-
-def read_length(option: str, text: str) -> float:
-    expected = f"a length in m, or with its unit such as {option} 20um"
-    return parse(option, text, expected, split_length)
 
 
 def read_state(option: str, text: str) -> tuple[float, ...] | Path:
@@ -185,7 +169,6 @@ def read_state(option: str, text: str) -> tuple[float, ...] | Path:
 
 
 Positive = Annotated[float | None, positive_number]
-Length = Annotated[float | None, read_length]
 State = Annotated[Any, read_state]
 
 
@@ -264,25 +247,25 @@ def with_option_names(message: str, chosen: Any) -> str:
 # -- ranges and lists -----------------------------------------------------------------------------
 
 
-def parse_values(option: str, text: str, zero: bool = False) -> tuple[float, ...]:
+def parse_values(option: str, text: str, zero: bool = False, name: str = "") -> tuple[float, ...]:
     """Parse ``FIRST:LAST:STEP`` or ``A,B,...``; with ``zero`` numbers may be zero."""
-    parts = without_own_unit(option, text).split(":" if ":" in text else ",")
+    parts = text.split(":" if ":" in text else ",")
     try:
-        numbers = [plain_float(part.strip(), Decimal) for part in parts]
-    except (InvalidOperation, ValueError):
+        exact = [Decimal(repr(number(name or option_quantity(option), part))) for part in parts]
+    except ValueError:
         raise InputError(f"{option} {text}: not numbers; {RANGE}") from None
-    finite = all(number.is_finite() for number in numbers)
-    wrong = not finite or (":" in text and len(numbers) != 3) or min(numbers) < 0
-    if wrong or (not zero and min(numbers) == 0):
+    finite = all(one.is_finite() for one in exact)
+    wrong = not finite or (":" in text and len(exact) != 3) or min(exact) < 0
+    if wrong or (not zero and min(exact) == 0):
         raise InputError(f"{option} {text}: {RANGE}")
     if ":" in text:
-        first, last, step = numbers
+        first, last, step = exact
         if last < first:
             raise InputError(f"{option} {text}: {first} > {last}; {RANGE}")
         if step == 0 or (last - first) > MAX_VALUES * step:
             raise InputError(f"{option} {text}: {RANGE}, and at most {MAX_VALUES} values")
-        numbers = [first + i * step for i in range(int((last - first) / step) + 1)]
-    return tuple(map(float, numbers))
+        exact = [first + i * step for i in range(int((last - first) / step) + 1)]
+    return tuple(map(float, exact))
 
 
 Listed = Annotated[tuple[float, ...] | None, parse_values]
@@ -291,12 +274,8 @@ Listed = Annotated[tuple[float, ...] | None, parse_values]
 def parse_listed(name: str, text: str) -> tuple[float, ...]:
     """Parse a parameter's values, with units or without."""
     if ":" in text:
-        with suppress(ValueError):  # what is no number is said below
-            pairs = [(one, ranges.number_with_unit(name, one.strip())) for one in text.split(":")]
-            text = ":".join(one if number is None else repr(number) for one, number in pairs)
-        return parse_values("--values", text, zero=True)
-    option = f"--over {name} --values "
-    return tuple(parse_with_unit(option, name, one.strip()) for one in text.split(","))
+        return parse_values("--values", text, zero=True, name=name)
+    return tuple(read_number(f"--over {name} --values", one, name) for one in text.split(","))
 
 
 def is_single_number(text: str) -> bool:
@@ -326,7 +305,8 @@ def parse_changes(texts: Iterable[str], wall: bool = False) -> dict[str, float |
         names = known.get(name, (name,))
         value: float | bool = text == "true"
         if text not in ("true", "false"):
-            value = parse_with_unit(f"--set {names[0]}=", names[0], text, ", or true or false")
+            check_name(names[0])
+            value = read_number(f"--set {names[0]}=", text, names[0], ", or true or false")
         if name == "preload":  # as a length: in N it depends on the springs
             if text[-1:] != "m" or value < 0.0:
                 raise InputError(f"--set preload={text}: expected a length above 0, such as 20um")
@@ -337,23 +317,11 @@ def parse_changes(texts: Iterable[str], wall: bool = False) -> dict[str, float |
     return changes
 
 
-def parse_with_unit(option: str, name: str, value: str, other: str = "") -> float:
-    """Parse a number, with a unit if the parameter of this name allows it."""
-    try:
-        return float_with_unit(name, value)
-    except ValueError:
-        check_name(name)  # before its unit
-        known = " or ".join(ranges.known_units(name))
-        words = f", with {known} if you like" if known else other
-        text = f"{value} is not a number; expected one{words}{with_point(value)}"
-        raise InputError(f"{option}{value}: {text}") from None
-
-
 def check_name(name: str) -> None:
     """Raise unless a name is that of a parameter of the structure or of a drive."""
     from ..model import PARAMETERS
 
     known = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)
     if name not in (*known, *ranges.DRIVE):
-        expected = expected_one_of(SAID.get(name, name), known)
+        expected = expected_one_of(MEANT.get(name, name), known)
         raise InputError(f"--set {name}: no parameter; {expected}")

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import orchestrate
 
@@ -18,36 +17,32 @@ from ..model import Shaker, Structure
 from ..units import Units, text_of
 from . import grammar, output, printing
 from .answer import Asked, Runs
-from .command import Command, Keywords, Options, option, option_names
+from .command import Command, Keywords, Options, arguments_of, option, option_names
 from .options import Beside, OfSensors, OfStructure
 from .output import Files, Reading, digest, unit_note
 
-KINDS = {  # of excitation: the class, or the reader, whose arguments are its options
-    "swept_sine": "SweptSine",
-    "stepped_sine": "SteppedSine",
-    "random": "Random",
-    "shock": "Shock",
-    "hammer": "Hammer",
-    "record": "read_record",
-}
 
+class ExcitationKind(NamedTuple):
+    """How options become an excitation."""
+
+    calls: str  # the class, or the reader, whose arguments are its options
+    main: tuple[str, ...] = ()  # its arguments that the option of the kind itself is
+    level: str = ""  # that which the level is
+
+
+EXCITATIONS = {
+    "swept_sine": ExcitationKind("SweptSine", ("first", "last"), "acceleration"),
+    "stepped_sine": ExcitationKind("SteppedSine", ("frequencies",), "acceleration"),
+    "random": ExcitationKind("Random", ("psd",), "rms"),
+    "shock": ExcitationKind("Shock", ("shape",), "peak"),
+    "hammer": ExcitationKind("Hammer", ("peak", "width")),
+    "record": ExcitationKind("read_record"),
+}
 SweepEnds = Annotated[Any, grammar.floats("FIRST:LAST in Hz, such as 8:20", ":", (2,))]
 Knock = Annotated[
     Any, grammar.floats("PEAK:WIDTH in N and s, two numbers such as 20:0.004", ":", (2,))
 ]
 LEVELS = ("g", "acceleration")
-LEVELED = ("swept_sine", "stepped_sine", "shock", "random")
-MAIN = {  # the arguments that the option of a kind itself is
-    **{"swept_sine": ("first", "last"), "stepped_sine": ("frequencies",), "random": ("psd",)},
-    **{"shock": ("shape",), "hammer": ("peak", "width")},
-}
-LEVEL_OF = {"shock": "peak", "random": "rms"}  # the argument that the level is, if another
-
-
-def arguments_of(function: str) -> dict[str, bool]:
-    """Return the arguments of a public function or class, and whether each is needed."""
-    parameters = inspect.signature(getattr(orchestrate, function)).parameters.values()
-    return {one.name: one.default is inspect.Parameter.empty for one in parameters}
 
 
 class OfExcitation(Options):
@@ -86,6 +81,7 @@ class OfExcitation(Options):
     def read_excitation(self) -> Any:
         """Return the excitation that the options describe, such as a ``SweptSine``."""
         kind = self.excitation_kind()
+        calls, names, argument = EXCITATIONS[kind]
         settings = self.given(OfExcitation)
         main = settings.pop(kind)
         if kind == "record":
@@ -97,28 +93,28 @@ class OfExcitation(Options):
                 print(f"{main}: {note}")
             return orchestrate.Sampled.from_record(record)
         has_level = [settings.pop(name) for name in LEVELS if name in settings]
-        if kind in LEVELED and (has_level or kind != "random"):
-            settings[LEVEL_OF.get(kind, "acceleration")] = level = self.read_level()
-            if kind in LEVEL_OF and not isinstance(level, float):
+        if argument and (has_level or kind != "random"):
+            settings[argument] = level = self.read_level()
+            if argument != "acceleration" and not isinstance(level, float):
                 raise InputError(f"{option_names([kind])}: expected one number for its level")
-        names = MAIN[kind]
         settings |= dict(zip(names, main if len(names) > 1 else (main,), strict=True))
-        return getattr(orchestrate, KINDS[kind])(**settings)
+        return getattr(orchestrate, calls)(**settings)
 
     def excitation_kind(self) -> str:
         """Return which kind of excitation is chosen; raise for options of another kind."""
         given = self.given(OfExcitation)
-        chosen = [name for name in KINDS if name in given]
+        chosen = [name for name in EXCITATIONS if name in given]
         if len(chosen) != 1:
             words = option_names(chosen, " and ") or "nothing"
-            raise InputError(f"excitation: {words} given; expected one of {option_names(KINDS)}")
-        takes = {name: arguments_of(called) for name, called in KINDS.items()}
-        owners = {**dict.fromkeys(LEVELS, LEVELED), "column": ["record"]}
-        for name in given.keys() - KINDS.keys():
-            own = owners.get(name) or [one for one in KINDS if name in takes[one]]
-            if chosen[0] not in own:
-                text = f"expected only with {option_names(own, ' or ')}"
-                raise InputError(f"{option_names([name])}: {text}")
+            raise InputError(
+                f"excitation: {words} given; expected one of {option_names(EXCITATIONS)}"
+            )
+        takes = {name: arguments_of(kind.calls) for name, kind in EXCITATIONS.items()}
+        leveled = [name for name, kind in EXCITATIONS.items() if kind.level]
+        owners = {**dict.fromkeys(LEVELS, leveled), "column": ["record"]}
+        for name in given.keys() - EXCITATIONS.keys() - owners.keys():
+            owners[name] = [one for one in EXCITATIONS if name in takes[one]]
+        self.refuse_without(owners, chosen)
         for name in ("duration", "length"):
             if takes[chosen[0]].get(name) and name not in given:
                 raise InputError(f"{option_names(chosen)}: expected --{name} with it, in s")
@@ -348,10 +344,8 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
         """Return each analysis's keywords; raise for an option that none of them takes."""
         chosen = self.given(Settings)
         takes = {name: arguments_of(row[0]) for name, row in ANALYSES.items()}
-        for one in chosen:
-            owners = [name for name in takes if one in takes[name]]
-            if not set(owners) & set(names):
-                raise InputError(f"--{one}: expected only with --show {' or '.join(owners)}")
+        owners = {one: [name for name in takes if one in takes[name]] for one in chosen}
+        self.refuse_without(owners, names, "--show ")
         return {name: {o: chosen[o] for o in chosen if o in takes[name]} for name in names}
 
     def paths_by_label(self) -> dict[str, Path]:

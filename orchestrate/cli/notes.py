@@ -47,7 +47,7 @@ def warn(text: str) -> None:
     warnings.warn(text, stacklevel=3)
 
 
-def mass_note(structure: Structure) -> str:
+def heavy_mass_note(structure: Structure) -> str:
     """Return a line that gives heavy masses their unit; empty for lighter ones and in ratios."""
     masses = {f"m{half}": getattr(structure, f"m{half}") for half in structure.halves}
     if max(masses.values()) < SETTINGS.heavy or math.isclose(structure.omega, 1.0):

@@ -19,7 +19,7 @@ from ..model.sections import TO_RAD_S
 from ..model.toml_files import parse
 from . import grammar
 from .command import Keywords, Options, option, option_names
-from .notes import SETTINGS, mass_note
+from .notes import SETTINGS, heavy_mass_note
 
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
 FREQUENCIES = ("eta", *UNITS)
@@ -166,7 +166,7 @@ def print_difference(flag: str, path: Any, stored: Structure, asked: Structure) 
 def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
     """Print which parameters of the user's beam are taken from a shipped set; warn of per cent."""
     warn_of_per_cent({name: changes[name] for name in ("zeta1", "zeta2") if name in changes})
-    if note := mass_note(structure):
+    if note := heavy_mass_note(structure):
         print(note)
     if source not in SETS or not changes.keys() & {"f1", "f2"}:
         return
@@ -198,7 +198,7 @@ class OfPushes(Options):
     """Options of what acts besides the box's harmonic motion."""
 
     heading, rank = "what acts besides", 1
-    box_acceleration: grammar.Acceleration = option(
+    box_acceleration: float | None = option(
         "constant acceleration of the box, m/s2 or with g: -1g is gravity towards positive x, as "
         "to a stop"
     )
@@ -222,9 +222,7 @@ class OfBox(OfPushes):
     rpm: str | None = option("the same in turns per minute", value="VALUES")
     frequency: str | None = option("the same as Omega in rad/s", value="VALUES")
     eta: Any = option("the same as frequency ratio Omega/omega", value="VALUES")
-    amplitude: grammar.Length = option(
-        "amplitude a in m (default with --eta: 1/eta^2 m)", value="A"
-    )
+    amplitude: float | None = option("amplitude a in m (default with --eta: 1/eta^2 m)", value="A")
     g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
 
     def read_excitation(
@@ -314,16 +312,14 @@ class Over(Options):
 
     def ask_along_parameter(self, si: bool = False) -> tuple[Structure, Keywords]:
         """Return structure, keywords, excitation and what varies of it."""
-        structure = self.read_structure()
-        if self.over is None and self.has_levels():
-            box = self.read_excitation(structure, one=True, by_level=True)
-            varied: Keywords = {**box, "over": "level", "values": box.pop("level")}
-        elif varied := self.over_arguments():
+        structure, varied = self.read_structure(), self.over_arguments()
+        if varied:
             self.check_over(self.over)
-            varied = {**self.read_excitation(structure, si, one=True), **varied}
-        else:
-            varied = self.read_excitation(structure, si)
-        return structure, {**self.keywords(), **varied}
+        by_level = not varied and self.has_levels()
+        box = self.read_excitation(structure, si, bool(varied) or by_level, by_level)
+        if by_level:
+            varied = {"over": "level", "values": box.pop("level")}
+        return structure, {**self.keywords(), **box, **varied}
 
     def check_over(self, over: str) -> None:
         """Raise unless a parameter of a structure may vary with these options."""
@@ -357,7 +353,7 @@ class OfSensors(Options):
         "second (default: 2.56 times it)",
         value="HZ[:RATE]",
     )
-    noise: grammar.Noise = option("density of their noise, (m/s2)/sqrt(Hz), or 30ug of g/sqrt(Hz)")
+    noise: float | None = option("density of their noise, (m/s2)/sqrt(Hz), or 30ug of g/sqrt(Hz)")
     range: grammar.Positive = option("of the sensors, g (default: none)")
 
     def read_sensor(

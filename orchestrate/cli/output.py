@@ -16,14 +16,12 @@ from ..files import escape_glob
 from ..lazy import xr
 from ..units import FACTORS, Units, scale_of
 from .command import Options, option
-from .grammar import floats
 
 if TYPE_CHECKING:
     from ..running.options import Running
 
 FORMATS = ("nc", "csv", "mat", "xlsx")
 PLOTS = ("png", "pdf", "svg")
-SIZE = floats("W:H such as 16:9", ":", (2,), positive=True)
 DIGITS = 6  # of the digest in a file's name
 OWN_NAME = re.compile(rf"[a-z-]+_(.+)_[0-9a-f]{{{DIGITS}}}")  # of a result's file
 
@@ -111,7 +109,7 @@ class HowRun(Options):
     heading, rank = "results and running", 5
     force: bool = option("recompute what is there already")
     keep_stale: bool = option("take results that older code or another FMU has made")
-    jobs: int | None = option("processes at once (default: all cores)")
+    jobs: int | None = option("threads or processes at once (default: all cores)")
     cluster: str | None = option(
         "compute on the workers of a Dask scheduler, such as tcp://host:8786", value="ADDRESS"
     )
@@ -222,7 +220,7 @@ class Files:
     plots: tuple[str, ...]
     fresh: bool  # whether the result is to be computed: then tables and pictures are made again
     units: str = ""  # of `--units`: tables and pictures in these have them in their names
-    size: tuple[float, ...] | None = None  # shape of the pictures
+    size: str = ""  # shape of the pictures
     over: str = ""  # suffix of the pictures' names, where other data lie over the result
 
     @classmethod
@@ -243,7 +241,10 @@ class Files:
             resumed = journal_path(result, anew=True).exists()
             fresh = arguments.force or resumed or not result.exists()
         chosen = str(arguments.read_units()).replace(", ", "-").replace("/", "_")
-        size = SIZE("--size", arguments.size) if arguments.size else None
+        if size := arguments.size or "":
+            from ..show.figure_files import slide_shape  # brings Matplotlib
+
+            slide_shape(size)
         files = cls(result, formats, plots, fresh, chosen, size, over)
         others = [*files.table_paths(), *files.picture_paths()]
         existing = [path for path in others if existing_files(path)]
@@ -262,7 +263,7 @@ class Files:
 
     def picture_paths(self, *endings: str) -> list[Path]:
         """Return the paths of a picture: its name has units and overlay."""
-        size = "{:g}-{:g}".format(*self.size) if self.size else ""
+        size = self.size.replace(":", "-")
         picture = self.beside(self.units, self.over, *endings, size)
         return [picture.with_suffix(f".{ending}") for ending in self.plots]
 
@@ -282,12 +283,10 @@ class Files:
         paths = self.picture_paths(*endings)
         missing = [path for path in paths if self.fresh or not path.exists()]
         if missing:
-            from ..show.figure_files import for_slides, save
+            from ..show.figure_files import for_slides, save, slide_shape
 
-            figure, dpi = draw(), {}
-            if self.size:
-                figure = for_slides(figure, (self.size[0], self.size[1]))
-                dpi = {"dpi": figure.dpi}
+            figure = for_slides(draw(), slide_shape(self.size))
+            dpi = {"dpi": figure.dpi} if self.size else {}
             save(figure, paths[0].with_suffix(""), [path.suffix[1:] for path in missing], **dpi)
         for path in paths:
             print(path)

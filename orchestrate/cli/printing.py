@@ -167,10 +167,6 @@ def unit_or_nothing(array: xr.DataArray) -> str:
     return "" if unit == "1" else unit
 
 
-def flag_word(value: xr.DataArray) -> str:
-    return flag_words(value.attrs)[int(value)]
-
-
 def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
     """Return a Boolean array: where a CF flag variable has the number of a word."""
     number = values.attrs["flag_meanings"].split().index(word)

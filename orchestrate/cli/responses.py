@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from ..errors import InputError
-from ..flags import flag_words
+from ..flags import flag_word, flag_words
 from ..lazy import xr
 from ..model import Drive, Structure
 from ..units import as_shown, is_in_ratios, text_of
 from . import printing
 from .answer import Asked, Overlay, is_curve
-from .command import Keywords, option
+from .command import Keywords, option, option_names
 from .drive import Driven
 from .grammar import parse_changes, parse_listed
 from .options import Beside, OfBox, OfStructure, Over
@@ -72,6 +72,8 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
         structure, question = self.read_structure(), self.keywords()
         if self.has_levels():
             self.calls = "resonance_levels"
+            if pushes := self.pushes():
+                raise InputError(f"{option_names(pushes)}: expected one level, --g, with it")
             return structure, {**question, **self.read_excitation(structure, by_level=True)}
         return structure, {**question, **self.read_excitation(structure, si=True)}
 
@@ -200,8 +202,8 @@ def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
     columns = {"": [str(key) for key in arrays]}
     for case in itertools.product(*(data[dim].values.tolist() for dim in sorted(order)[::-1])):
         at = dict(zip(sorted(order)[::-1], case, strict=True))
-        cells = [float(one.sel({dim: at[str(dim)] for dim in one.dims})) for one in arrays.values()]
-        columns[" ".join(case) or "value"] = [f"{cell:.6g}" for cell in cells]
+        cells = [one.sel({dim: at[str(dim)] for dim in one.dims}) for one in arrays.values()]
+        columns[" ".join(case) or "value"] = [flag_word(one) or f"{one:.6g}" for one in cells]
     columns["unit"] = [printing.unit_or_nothing(one) for one in arrays.values()]
     yield from printing.table(columns, len(arrays))
 

@@ -34,18 +34,18 @@ def draw_couple(
     title: str, results: Runs, job: CoupleJob, branches: xr.Dataset | None = None
 ) -> Any:
     """Draw the runs: ramps with averaged theory and branches, others over time."""
-    from ..show.passage import draw_run
-    from ..show.weak_drive import draw
+    from ..show.passage import draw_over_time
+    from ..show.weak_drive import draw_ramps
     from ..weak_drive import averaged, own_resonance
     from ..weak_drive.schedule import Ramp
 
     system = job.structure, job.drive
     if job.control or not isinstance(job.schedule, Ramp):
         resonance = own_resonance.dividing_speed(*system) * job.structure.omega
-        return draw_run(results, resonance, title)
+        return draw_over_time(results, resonance, title)
     units = units_of(next(iter(results.values())))
     under = None if branches is None else with_units(branches, units)
-    return draw(results, with_units(averaged.stationary_curve(*system), units), under, title)
+    return draw_ramps(results, with_units(averaged.stationary_curve(*system), units), under, title)
 
 
 class Couple(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
@@ -255,12 +255,12 @@ class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
         return structure, motor, question
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
-        from ..show.passage import draw
+        from ..show.passage import draw_passage
 
         shown = {state: first_stored_interval(data) for state, data in results.items()}
         spectra = {"revolutions": self.revolutions, "mass": self.mass}
         falls = {state: orchestrate.waterfall(data, **spectra) for state, data in shown.items()}
-        return draw(shown, falls, self.picture_title(results))
+        return draw_passage(shown, falls, self.picture_title(results))
 
     def summaries(self, results: Runs) -> Iterator[str]:
         from ..show.passage import format_jumps

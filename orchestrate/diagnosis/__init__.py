@@ -9,7 +9,7 @@ module                   idea
 :mod:`.drive_signs`      signs of a run on a weak drive
 :mod:`.undamaged`        the sound structure that a record is compared with: a linear oscillator
 :mod:`.opening`          the force that would open the faces of a sound structure, in closed form
-:mod:`.plan_test`        the frequencies and levels at which a delamination shows best
+:mod:`.plan_test`        the lowest level at which ``detect`` decides, by rehearsals
 :mod:`.settings`         every threshold and effort, in one place that a caller reaches
 :mod:`.order_windows`    orders of a record's channels in short windows, and the floor between them
 :mod:`.wiring`           whether channels are wired as stated: polarity, unit, delay, swapped, hum

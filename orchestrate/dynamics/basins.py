@@ -318,7 +318,7 @@ def basin(
         if x is None and y is None and at is None:
             at = known.samples.mean(axis=0)
     if hasattr(at, "data_vars"):
-        at = mean_state(at, point.excitation.frequency)  # type: ignore[arg-type]
+        at = mean_over_attractors(at, point.excitation.frequency)  # type: ignore[arg-type]
     sides = (
         known.default_axis("x_rel") if x is None and known else checked_axis("x", x),
         known.default_axis("v_rel") if y is None and known else checked_axis("y", y),
@@ -335,8 +335,8 @@ def basin(
     )
 
 
-def mean_state(found: xr.Dataset, frequency: float) -> Floats:
-    """Return the mean of a state on each attractor of :func:`attractors`, at one parameter."""
+def mean_over_attractors(found: xr.Dataset, frequency: float) -> Floats:
+    """Return the mean state over attractors of :func:`attractors`, found at this frequency."""
     over = [name for name in found.get("state", xr.DataArray()).dims if name != "coordinate"]
     if "attractor" not in over or any(
         found.sizes[name] > 1 for name in over if name != "attractor"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
-from ..flags import flag_words
+from ..flags import flag_word
 from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
@@ -239,7 +239,7 @@ def lies_on_curve(curve: xr.Dataset, question: Mapping[str, Any], near: float = 
     x, y = curve[across].values - float(found.bifurcation_value), curve[along].values - level
     at = np.flatnonzero((y[:-1] * y[1:] <= 0.0) & (y[:-1] != y[1:]))
     passes = x[at] - y[at] * (x[at + 1] - x[at]) / (y[at + 1] - y[at])
-    kind = flag_words(found.bifurcation_kind.attrs)[int(found.bifurcation_kind)]
+    kind = flag_word(found.bifurcation_kind)
     reach = near * np.ptp(question["limits"][0])
     return bool(curve.attrs["kind"] == kind and (np.abs(passes) < reach).any())
 

@@ -48,8 +48,8 @@ class AttractorsAtValue:
     # of each random start, its attractor
     labels: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
-    def collect_from_starts(self, starts: Table, settings: AttractorSettings) -> None:
-        """Group the motions that random starts settle to into attractors; label each start."""
+    def group_starts(self, starts: Table, settings: AttractorSettings) -> None:
+        """Group random starts by the motions that they settled to: attractors; label each start."""
         features, ends, decided = (starts[name] for name in ("features", "end", "decided"))
         self.labels = np.full(len(ends), -1, dtype=np.intp)
         seen: dict[bytes, int] = {}
@@ -150,7 +150,7 @@ def continue_attractors(
     """Return the attractors along a parameter from random starts, continued and matched."""
     values = [AttractorsAtValue(MotionDecider(*instances, point, settings)) for point in points]
     for value, starts_there in zip(values, starts, strict=True):
-        value.collect_from_starts(starts_there, settings)
+        value.group_starts(starts_there, settings)
     for seed in seeds:
         values[0].find_or_add(values[0].decider.decide(seed)[0])
     links = continue_to_neighbours(values)

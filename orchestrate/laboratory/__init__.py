@@ -17,12 +17,12 @@ module                    idea
 :mod:`.analog_filter`     the exact response of an analogue filter
 :mod:`.sensors`           what accelerometers read of a history
 :mod:`.record`            the one dataset of channels, measured or simulated
-:mod:`.record_checks`     saturated, dead and identical channels, lost samples
+:mod:`.record_checks`     saturated, dead and identical channels, implausible units and times
 :mod:`.record_of_run`     the run of a weak drive as a record
-:mod:`.columns`           which columns of a file are its channels, and their units
+:mod:`.columns`           which columns of a file are its channels, their units, lost samples
 :mod:`.missing_units`     what is missing to read columns, and the arguments that give it
 :mod:`.channel_setup`     how the channels of a file are read, as TOML or a mapping
-:mod:`.channel_table`     the columns of a file, and the setup that reads them
+:mod:`.channel_table`     the columns of a file as a dataset, and the setup that is written of it
 :mod:`.conversion`        velocities, displacements and voltages made accelerations
 :mod:`.time_base`         rounded and uneven times made equal
 :mod:`.record_csv`        columns of numbers as text

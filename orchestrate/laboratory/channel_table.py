@@ -1,4 +1,7 @@
-"""The columns of a file as a table, and as a setup that can be completed and given back."""
+"""The columns of a file as a dataset, and as a setup, a TOML file to complete and give back.
+
+The command ``channels`` prints them (``cli/laboratory.py``).
+"""
 
 from __future__ import annotations
 

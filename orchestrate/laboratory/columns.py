@@ -264,7 +264,7 @@ def converted_channels(
             expected = f"expected volts: a sensitivity does not act on a column in {own}"
             raise InputError(f"{column_label(table, column)}: sensitivity {sensor}; {expected}")
         channels[name] = Channel(scaled_values(table, column, factor), derivatives)
-    return time, channels, read_as | unit_attributes(used, unit, units)
+    return time, channels, read_as | attributes_on_units(used, unit, units)
 
 
 def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:
@@ -281,10 +281,10 @@ def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:
     return time
 
 
-def unit_attributes(
+def attributes_on_units(
     channels: Mapping[str, Column], unit: ByChannel, units: Mapping[str, str]
 ) -> dict[str, str]:
-    """Return a record's attributes on its units: those used, and the file's own if they differ."""
+    """Return a record's attributes ``unit``, ``unit_in_file`` (if it differs), ``time_unit``."""
     own = ", ".join(dict.fromkeys(one.unit for one in channels.values() if one.unit))
     used = ", ".join(dict.fromkeys(units.get(name, one.unit) for name, one in channels.items()))
     differs = any(

@@ -15,10 +15,11 @@ from fmu_src.models.electrodynamic_shaker import variables as electrodynamic_sha
 from fmu_src.models.motor_shaker import variables as motor_shaker
 from fmu_src.models.oscillator import variables as oscillator
 
+from ..constants import GRAVITY
 from ..errors import InputError
 
 Described = TypeVar("Described")
-WRITTEN_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # in texts, over a parameter's own
+WRITTEN_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # in texts, over a quantity's own
     ("clearance", "preload", "stroke", "amplitude", "x1", "x2", "x_rel"): {
         "mm": "1e-3",
         "um": "1e-6",
@@ -26,7 +27,15 @@ WRITTEN_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # in texts, over a par
         "m": "1",
     },
     ("zeta1", "zeta2", "D", "D1", "D2"): {"%": "0.01"},
-    ("f1", "f2", "f1_hz", "f2_hz"): {"Hz": "1"},
+    ("f1", "f2", "f1_hz", "f2_hz", "hz", "frequency_hz"): {"Hz": "1", "hz": "1"},
+    ("rpm", "frequency_rpm"): {"rpm": "1"},
+    ("g", "acceleration_g", "range"): {"g": "1"},
+    ("box_acceleration",): {"m/s2": "1", "g": str(GRAVITY)},
+    ("noise",): {  # density of an acceleration, as data sheets have it
+        f"{prefix}g{root}": str(Decimal(factor) * Decimal(str(GRAVITY)))
+        for root in ("", "/sqrt(Hz)", "/sqrtHz")
+        for prefix, factor in (("u", "1e-6"), ("µ", "1e-6"), ("m", "1e-3"), ("", "1"))
+    },
     ("m1", "m2"): {"kg": "1", "g": "1e-3"},
     ("v1", "v2", "v_rel"): {"mm/s": "1e-3", "m/s": "1"},
 }

@@ -14,7 +14,7 @@ from ..fmu import OSCILLATOR, Instance
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Positive, Transient
-from ..running.blocks import lazy_rows
+from ..running.array_blocks import lazy_rows
 from ..running.job import FAMILY, Table
 from ..running.options import Running
 from ..running.store import StoredRows

@@ -8,7 +8,7 @@ module                  idea
 :mod:`.options`         keywords that all questions share
 :mod:`.store`           storage of chunks and results, in memory or on disk
 :mod:`.journal`         chunks on disk while a job is under way
-:mod:`.blocks`          arrays larger than memory, block by block
+:mod:`.array_blocks`    arrays larger than memory, block by block
 :mod:`.checksum`        checksum of a result, however it is stored
 :mod:`.netcdf`          NetCDF files that may come from anybody
 :mod:`.formats`         export of a result: CSV, MATLAB, Excel

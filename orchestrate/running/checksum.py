@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..lazy import xr
-from .blocks import blocks
+from .array_blocks import block_indices
 
 ATTRIBUTE = "content_sha256"
 
@@ -27,7 +27,7 @@ def checksum(data: xr.Dataset) -> str:
         dims, attributes = list(map(str, array.dims)), normalized_attributes(array.attrs)
         header = [str(name), dims, list(array.shape), attributes]
         digest.update(encode_json(header))
-        for block in blocks(array.shape):
+        for block in block_indices(array.shape):
             digest.update(encode_array(np.asarray(array[block].values)))
     return digest.hexdigest()
 

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import InputError
 from ..lazy import xr
 from ..reader_process import allowed_memory, read_in_process
-from .blocks import blocks
+from .array_blocks import block_indices
 
 MAX_LOADED = 2**28  # bytes of numbers that are read whole; more are read when they are used
 TEXT = 64  # bytes of a text, roughly
@@ -70,7 +70,7 @@ def variable_content(variable: Any, is_large: bool) -> dict[str, Any]:
     """Return dimensions, attributes and numbers of a variable; large ones are read and dropped."""
     values = None
     if is_large:
-        for block in blocks(variable.shape):
+        for block in block_indices(variable.shape):
             variable[block or ...]
     else:
         values = np.asarray(variable[...])

@@ -17,7 +17,7 @@ from ..model.spelling import closest, did_you_mean
 if TYPE_CHECKING:
     from distributed import Client
 
-MAX_JOBS = 1024  # processes of one machine
+MAX_JOBS = 1024  # workers of one machine
 OF_COMMANDS = {  # what users of the command line write, and what it is in Python
     "hz": "frequency=2*pi*Hz, in rad/s",
     "rpm": "frequency=2*pi*rpm/60, in rad/s",
@@ -32,7 +32,8 @@ class Running(TypedDict, total=False):
     Attributes
     ----------
     jobs : int, optional
-        Processes at once; all cores by default. Small questions are computed in this process.
+        Threads or processes at once; all cores by default. Small questions are computed in this
+        process.
     cluster : str, distributed.Client or concurrent.futures.Executor, optional
         What computes instead: the workers of a Dask scheduler, by its address, such as
         ``"tcp://host:8786"``, or by a client of it; or any executor of ``jobs`` workers.
@@ -108,8 +109,8 @@ class RunOptions:
         yield from ((name, value) for name, value in every if value is not None)
 
     @property
-    def processes(self) -> int:
-        """Number of worker processes: ``jobs``, or all available cores."""
+    def workers(self) -> int:
+        """Number of workers, threads or processes: ``jobs``, or all cores this process may use."""
         usable = getattr(os, "sched_getaffinity", None)
         return self.jobs or (len(usable(0)) if usable else os.cpu_count() or 1)
 

@@ -119,7 +119,7 @@ class Runner:
 
     def workers(self) -> AbstractContextManager[Workers]:
         """Return new workers: of a cluster if one is given, else threads or processes."""
-        count = self.options.processes
+        count = self.options.workers
         if self.options.cluster:
             from .cluster import cluster  # brings asyncio, which worker processes do without
 
@@ -134,7 +134,7 @@ class Runner:
 
     def little_left(self) -> bool:
         """Return whether the rest is too short, by time or tasks, to be worth parallel workers."""
-        if self.options.processes == 1 or not self.computed_items:
+        if self.options.workers == 1 or not self.computed_items:
             return True
         left = sum(schedule.job.total() for schedule in self.schedules.values()) - self.done()
         seconds = (time.perf_counter() - self.start_time) / self.computed_items * left

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..errors import InputError, StaleError, StoreError, first_line, printable
 from ..files import check_path_encoding, open_folder, write_whole
 from ..lazy import xr
-from .blocks import BLOCK, blocks, file_block_shape
+from .array_blocks import BLOCK, block_indices, file_block_shape
 from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
@@ -362,7 +362,7 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
     bulk = [  # in blocks, those whose rows are shorter than one
         name
         for name in large_variables
-        if dataset[name].dtype == float and len(list(blocks(dataset[name].shape))) > 1
+        if dataset[name].dtype == float and len(list(block_indices(dataset[name].shape))) > 1
     ]
     encoding = {name: {"zlib": True, "complevel": ZLIB_LEVEL} for name in large_variables}
     open_file: Any = NetCDF4DataStore.open
@@ -374,7 +374,7 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
             others = {name: options for name, options in encoding.items() if name not in bulk}
             dataset.drop_vars(bulk).dump_to_store(file, encoding=others)
             for name, target in targets.items():
-                for block in blocks(dataset[name].shape):
+                for block in block_indices(dataset[name].shape):
                     target[block] = dataset.variables[name][block].values
 
     return write_whole(path, write)

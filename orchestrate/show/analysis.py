@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..units import as_shown
-from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STRUCTURES
+from .colours import BLACK, BLUE, DIRECTION_STYLES, GREEN, GREY, ORANGE, PURPLE, RED, STRUCTURES
 from .kinds import draws
 from .labels import in_shown_units, plain_title
 from .scales import label_with_unit, typeset_array_unit
@@ -124,7 +124,7 @@ def split_sweep(data: xr.Dataset) -> Iterator[tuple[xr.Dataset, str]]:
         return
     rising = (data.sweep_rate.values >= 0.0).tolist()
     for up, numbers in groupby(range(len(rising)), key=rising.__getitem__):
-        yield data.isel(time=list(numbers)), "-" if up else "--"
+        yield data.isel(time=list(numbers)), DIRECTION_STYLES["up" if up else "down"]
 
 
 # -- pictures -------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from importlib.metadata import PackageNotFoundError, version
 
 from ..errors import InputError
+from ..flags import flag_word
 from ..lazy import xr
 from ..model.ranges import EXCITATION, STRUCTURE
 from ..units import OVER_OMEGA, as_shown, scale_of
@@ -55,13 +56,6 @@ def scalar_table(answer: xr.Dataset) -> Table:
             meaning = str(array.attrs.get("long_name", ""))
             rows.append((str(name), meaning, flag_word(array) or value))
     return Table(("name", "what it is", "value"), rows[:60])
-
-
-def flag_word(array: xr.DataArray) -> str:
-    """Return the word that a scalar flag variable stands for; empty if it is no flag."""
-    words = str(array.attrs.get("flag_meanings", "")).split()
-    numbers = [int(number) for number in array.attrs.get("flag_values", [])]
-    return words[numbers.index(int(array))] if words and int(array) in numbers else ""
 
 
 def parameter_table(answer: xr.Dataset) -> Table:

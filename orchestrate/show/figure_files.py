@@ -9,6 +9,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from ..errors import InputError
 from ..files import write_whole
 from .style import set_title, style_context
 
@@ -33,8 +34,21 @@ def png_size(png: bytes) -> dict[str, int]:
     return {"width": width, "height": height}
 
 
-def for_slides(figure: Figure, shape: tuple[float, float]) -> Figure:
-    """Give a figure the shape of a slide, so small that its letters are large on it."""
+def slide_shape(size: str) -> tuple[float, float] | None:
+    """Return width and height of a shape such as ``16:9``; None of an empty one."""
+    try:
+        width, height = map(float, size.split(":")) if size else (1.0, 1.0)
+        if not (0.1 <= width / height <= 10.0):
+            raise ValueError
+    except (ValueError, ZeroDivisionError):
+        raise InputError(f"size = {size!r}: expected W:H such as '16:9'") from None
+    return (width, height) if size else None
+
+
+def for_slides(figure: Figure, shape: tuple[float, float] | None) -> Figure:
+    """Give a figure the shape of a slide, if any, so small that its letters are large on it."""
+    if shape is None:
+        return figure
     height = max(SLIDE_HEIGHT, SLIDE_PART * figure.get_figheight())
     width = height * shape[0] / shape[1]
     figure.set_size_inches(width, height)

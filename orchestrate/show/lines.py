@@ -18,7 +18,19 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, PercentFor
 
 from ..flags import flag_words
 from . import style
-from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, STRUCTURES, YELLOW
+from .colours import (
+    BLACK,
+    BLUE,
+    DIRECTIONS,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    STRUCTURES,
+    YELLOW,
+)
 from .kinds import BRANCHES, MORE, draws
 from .labels import branch_title, format_voltage, orbit_label, title_from_attributes
 from .overlay import Overlay, draw_bifurcations, draw_orbits, length_factors
@@ -103,7 +115,10 @@ def draw_steps(
         axes.plot(x, values, **marker_keywords(len(x), MarkStyle(colour, 0.7)), **more)
 
 
-MARKS = {"up": MarkStyle(BLUE, 2.0, filled=False), "down": MarkStyle(RED)}  # down lies on up
+DIRECTION_MARKS = {  # down lies on up
+    "up": MarkStyle(DIRECTIONS["up"], 2.0, filled=False),
+    "down": MarkStyle(DIRECTIONS["down"]),
+}
 
 
 @draws("sweep", beside=BRANCHES)
@@ -124,11 +139,11 @@ def draw_sweep(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] 
     for direction in map(str, data.direction.values) if both else ("",):
         part = {"direction": direction} if both else {}
         samples = shown.sel(part).transpose(parameter, "sample").values
-        marks = usual if branches else MARKS.get(direction, usual)
+        marks = usual if branches else DIRECTION_MARKS.get(direction, usual)
         draw_samples(top, x, samples, marks, "the sweep" if branches else direction)
         impacts = data.impacts_per_period.sel(part).values
         width = {"up": 2.6, "down": 1.0}.get(direction, 0.8)
-        draw_steps(bottom, x, impacts, MARKS.get(direction, MarkStyle(BLACK)).colour, width)
+        draw_steps(bottom, x, impacts, DIRECTIONS.get(direction, BLACK), width)
     set_impact_scale(bottom, data.impacts_per_period.values)
     samples_shown = f"$n = {int(data.sample.values[0])}(1){int(data.sample.values[-1])}$"
     words = title or title_from_attributes(data)

@@ -14,16 +14,11 @@ from ..errors import InputError
 from ..flags import flag_words
 from ..model.ranges import OF_LENGTH, STRUCTURE
 from ..units import length_of_ratio, omega_of
-from .colours import BLUE, RED
+from .colours import BIFURCATION_MARKS, BLUE, RED
 from .kinds import kind_of
 from .scales import ETA, acceleration_scale, axis_values, frequency_scale, parameter_scale
 from .style import draw_line
 
-MARKERS = {  # by the bifurcation's kind
-    **{"fold": "<", "period doubling": "s", "period halving": "d", "Neimark-Sacker": "o"},
-    **{"grazing of an impact": "v", "grazing of a flight": "^", "earlier release": "D"},
-    **{"loss of permanent contact": "X", "begin of permanent contact": "P"},
-}
 SAME = 1e-9  # relative: numbers that are nearer than this are one
 SI = (*STRUCTURE, "bonded")
 MOVED = {  # by a parameter that is not in SI
@@ -205,4 +200,4 @@ def draw_bifurcations(
     for at, row, kind in zip(x, rows, branch.bifurcation_kind.values, strict=True):
         word = names[int(kind)].replace("Neimark Sacker", "Neimark-Sacker")
         place = np.full(len(row), at)
-        plane.plot(place, row, MARKERS[word], linestyle="none", label=word, **style)
+        plane.plot(place, row, BIFURCATION_MARKS[word], linestyle="none", label=word, **style)

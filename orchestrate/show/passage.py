@@ -28,7 +28,7 @@ FLOOR = 1e-4  # of the largest line: the lower end of the colours
 
 
 @styled
-def draw_run(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> Figure:
+def draw_over_time(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> Figure:
     """Draw coupled runs over time, one column per structure; return the figure."""
     count, rows = len(runs), len(ROWS) + 1
     size = (6.5 * count, 2.6 * rows)
@@ -56,7 +56,7 @@ def draw_run(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") 
 
 
 @styled
-def draw(
+def draw_passage(
     runs: Mapping[str, xr.Dataset], spectra: Mapping[str, xr.Dataset], title: str = ""
 ) -> Figure:
     """Draw passages, one column per structure; return the figure."""

@@ -42,7 +42,7 @@ BORDERS = {
     **{"fold": ORANGE, "period doubling": RED, "Neimark-Sacker": BLUE},
     **{"grazing of an impact": GREEN, "grazing of a flight": BLACK, "earlier release": PURPLE},
 }
-MARKERS = ("*", "D", "o", "s", "^", "P", "v", "X", "<", ">", "h")  # by number of the point's kind
+POINT_MARKS = ("*", "D", "o", "s", "^", "P", "v", "X", "<", ">", "h")  # by kind of codimension two
 SHARES = {0.0: "0", 0.25: "π/2", 0.5: "π", 0.75: "3π/2", 1.0: "2π"}  # of a turn
 STATES = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent contact
 
@@ -267,7 +267,7 @@ def mark_codimension_two(
     x, y = (curve[f"codimension_two_{n}"] / unit for n, unit in zip(over, units, strict=True))
     for kind, right, up in zip(curve.codimension_two_kind.values, x.values, y.values, strict=True):
         style: Any = {"color": BLACK, "markeredgecolor": "white", "label": words[int(kind)]}
-        plane.plot(right, up, MARKERS[int(kind) % len(MARKERS)], linestyle="none", **style)
+        plane.plot(right, up, POINT_MARKS[int(kind) % len(POINT_MARKS)], linestyle="none", **style)
 
 
 @draws("poincare")

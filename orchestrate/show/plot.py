@@ -20,7 +20,7 @@ from . import (  # noqa: F401 -- what draws registers itself
     spectra,
     weak_drive,
 )
-from .figure_files import for_slides
+from .figure_files import for_slides, slide_shape
 from .kinds import BONDED, BRANCHES, DRAW, MORE, OTHER, TOGETHER, required_kind
 
 OVER_OTHERS = ("border", "branch", "drive_branch")
@@ -92,19 +92,7 @@ def plot(
     if draw is None:
         raise InputError(f"plot: no picture of {' and '.join(kinds) or 'nothing'}; {EXPECTED}")
     shape = slide_shape(size)
-    figure = draw(title=title) if title else draw()
-    return for_slides(figure, shape) if shape else figure
-
-
-def slide_shape(size: str) -> tuple[float, float] | None:
-    """Return width and height of a shape such as ``16:9``; None of an empty one."""
-    try:
-        width, height = map(float, size.split(":")) if size else (1.0, 1.0)
-        if not (0.1 <= width / height <= 10.0):
-            raise ValueError
-    except (ValueError, ZeroDivisionError):
-        raise InputError(f"plot: size = {size!r}; expected W:H such as '16:9'") from None
-    return (width, height) if size else None
+    return for_slides(draw(title=title) if title else draw(), shape)
 
 
 def choose_picture(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] | None:

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from .colours import BLACK, GREY, STRUCTURES
+from .colours import BLACK, DIRECTION_STYLES, GREY, STRUCTURES
 from .kinds import BRANCHES, draws
 from .labels import title_from_attributes
 from .lines import MAX_DISTINCT, MarkStyle, marker_keywords
@@ -28,9 +28,9 @@ from .scales import (
 )
 from .style import draw_line, legend_below, make_panels, set_title, styled, use_plain_log
 
-WAYS: dict[str, Any] = {  # down lies on up
-    "up": {"linestyle": "-", "linewidth": 1.8, "alpha": 0.75},
-    "down": {"linestyle": "--", "linewidth": 1.0},
+DIRECTION_LINES: dict[str, Any] = {  # down lies on up
+    "up": {"linestyle": DIRECTION_STYLES["up"], "linewidth": 1.8, "alpha": 0.75},
+    "down": {"linestyle": DIRECTION_STYLES["down"], "linewidth": 1.0},
 }
 JUMP_LINES: dict[str, Any] = {"up": ":", "down": (0, (6.0, 2.0, 1.0, 2.0))}
 THRESHOLD, LOWEST = "threshold_acceleration", "lowest_threshold"
@@ -81,12 +81,13 @@ def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: AxisVal
     """Draw one quantity's curves and list each structure's maximum; no gap if bonded."""
     factor, unit = display_unit(data, values)
     largest: dict[str, tuple[float, float]] = {}
-    for structure, way, part in iterate_curves(values):
+    for structure, direction, part in iterate_curves(values):
         curve = part.values / factor
         if np.nanmax(curve, initial=0.0) <= 0.0:
             continue
-        colour, label = STRUCTURES.get(structure, BLACK), ", ".join(filter(None, [structure, way]))
-        axes.plot(x.values, curve, **WAYS[way or "up"], color=colour, label=label)
+        label = ", ".join(filter(None, [structure, direction]))
+        colour = STRUCTURES.get(structure, BLACK)
+        axes.plot(x.values, curve, **DIRECTION_LINES[direction or "up"], color=colour, label=label)
         if len(x.values) <= MAX_DISTINCT // 4:
             axes.plot(x.values, curve, **marker_keywords(len(x.values), MarkStyle(colour, 0.6)))
         at = int(np.nanargmax(curve))
@@ -102,8 +103,8 @@ def iterate_curves(values: xr.DataArray) -> Iterator[tuple[str, str, xr.DataArra
     structures = values.structure.values if "structure" in values.dims else [""]
     for structure in map(str, structures):
         part = values.sel(structure=structure) if structure else values
-        for way in map(str, part.direction.values) if "direction" in part.dims else [""]:
-            yield structure, way, part.sel(direction=way) if way else part
+        for direction in map(str, part.direction.values) if "direction" in part.dims else [""]:
+            yield structure, direction, part.sel(direction=direction) if direction else part
 
 
 def draw_level_of_box(axes: Axes, data: xr.Dataset, x: AxisValues) -> None:

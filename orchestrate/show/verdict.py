@@ -9,7 +9,7 @@ import numpy as np
 from ..constants import TURN
 from ..lazy import xr
 from ..units import scale_of, units_of, with_units
-from .diagnosis import PARTED, draw_detect, draw_misfit
+from .diagnosis import PARTED, draw_misfit, draw_orders_and_fits
 from .page import MISSING, Section, Table, Verdict, format_number, format_with_error
 
 TONES = {"delaminated": "bad", "no opening seen": "good", "not described": "unclear"}
@@ -181,7 +181,7 @@ def fits_section(answer: xr.Dataset) -> Section | None:
     """Return a section with the measurement over the fits; None without fits."""
     if "measured" not in answer or "fitted" not in answer:
         return None
-    picture = draw_detect(answer.assign_attrs(title=""))
+    picture = draw_orders_and_fits(answer.assign_attrs(title=""))
     picture.set_size_inches(max(7.6, 0.7 * picture.get_figwidth()), 4.0)  # near that on paper
     words = "What was measured, and what the best structures of each kind do, order by order."
     return Section("The measurement over the fits", picture=picture, caption=words, place="front")

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from ..units import as_shown, omega_of
 from . import passage
-from .colours import BLACK, GREEN, GREY, ORANGE, STRUCTURES
+from .colours import BIFURCATION_MARKS, BLACK, DIRECTION_STYLES, GREEN, GREY, ORANGE, STRUCTURES
 from .kinds import OTHER, draws
 from .labels import format_voltage, typeset_unit
 from .passage import HISTORIES, POWER_REVOLUTIONS, has_jump, jump_texts, undecided_directions
@@ -33,17 +33,13 @@ from .style import (
 
 IMPACT_REVOLUTIONS = 10  # revolutions that impacts are averaged over
 THEORY = "averaged theory, bonded"
-MARKS = {  # of bifurcations
-    **{"fold": "o", "Neimark-Sacker": "s", "period doubling": "^"},
-    **{"grazing of a flight": "x", "grazing of an impact": "+"},
-}
 FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, averaged theory"}
 DOUBT: Any = {"color": ORANGE, "alpha": 0.3, "linewidth": 0.0, "label": "undecided between"}
 
 
 @draws("couple", beside=OTHER)
 @styled
-def draw(
+def draw_ramps(
     runs: Mapping[str, xr.Dataset],
     theory: xr.Dataset | None = None,
     branches: xr.Dataset | None = None,
@@ -55,7 +51,7 @@ def draw(
     for name, data in shown.items():
         for part, style, direction in split_directions(data):
             line: Any = {"color": STRUCTURES[name], "linewidth": 1.2}
-            draw_motions(axes, data, part, style, **line, label=f"{name}, {direction}")
+            draw_speed_curves(axes, data, part, style, **line, label=f"{name}, {direction}")
             if name == "delaminated":
                 draw_impacts(axes[2], data.isel(revolution=part), direction)
         mark_jumps(axes[0], data, name)
@@ -114,7 +110,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
         for kind in np.unique(branches.bifurcation_kind.values[of_one]):
             at = branches.isel(bifurcation=of_one & (branches.bifurcation_kind == kind))
             mark: Any = {"color": STRUCTURES[name], "label": f"{name}, {kind}", "markersize": 5}
-            marker = MARKS.get(str(kind), "o")
+            marker = BIFURCATION_MARKS[str(kind)]
             axes[0].plot(at.bifurcation_voltage, at.bifurcation_speed, marker, **mark)
             axes[1].plot(at.bifurcation_speed, at.bifurcation_amplitude, marker, **mark)
     label_axes(axes, branches)
@@ -122,7 +118,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
-def draw_motions(
+def draw_speed_curves(
     axes: Sequence[Axes], data: xr.Dataset, part: np.ndarray, style: str, **line: Any
 ) -> None:
     """Draw speed over voltage and amplitude over speed of a part of the motions."""
@@ -138,8 +134,8 @@ def draw_motions(
 def draw_theory(axes: Sequence[Axes], theory: xr.Dataset) -> None:
     """Draw the averaged theory: dash-dotted where stable, dotted where unstable."""
     stable, line = theory.stable.values, {"color": BLACK, "linewidth": 1.0}
-    draw_motions(axes, theory, stable, "-.", **line, label=f"{THEORY}, stable")
-    draw_motions(axes, theory, ~stable, ":", **line, label=f"{THEORY}, unstable")
+    draw_speed_curves(axes, theory, stable, "-.", **line, label=f"{THEORY}, stable")
+    draw_speed_curves(axes, theory, ~stable, ":", **line, label=f"{THEORY}, unstable")
 
 
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
@@ -151,7 +147,7 @@ def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
             stable, known = branch.stable.values, np.isfinite(branch.voltage.values)
             for part, style, what in ((stable, "-", "stable"), (known & ~stable, ":", "unstable")):
                 label = None if i else f"{name}, branch, {what}"
-                draw_motions(axes, branch, part, style, **line, label=label)
+                draw_speed_curves(axes, branch, part, style, **line, label=label)
 
 
 def drop_spin_up(data: xr.Dataset) -> xr.Dataset:
@@ -176,7 +172,8 @@ def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
     """Return a run's revolutions there and back as index arrays, each with style and name."""
     voltage = data.voltage.values
     turn = int(np.argmax(np.abs(voltage - voltage[0]))) or len(voltage) - 1  # or a constant voltage
-    legs = [(np.arange(turn + 1), "-", "there"), (np.arange(turn + 1, len(voltage)), "--", "back")]
+    numbers = np.arange(turn + 1), np.arange(turn + 1, len(voltage))
+    legs = zip(numbers, DIRECTION_STYLES.values(), ("there", "back"), strict=True)
     return [leg for leg in legs if leg[0].size]
 
 

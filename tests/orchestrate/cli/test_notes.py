@@ -56,4 +56,4 @@ def test_a_clearance_that_is_hardly_meant(caplog, times, doubted):
 
 @pytest.mark.parametrize(("mass", "heavy"), [(19.9, False), (20.1, True)])
 def test_a_heavy_half_of_a_beam(mass, heavy):
-    assert bool(notes.mass_note(BEAM.replace(m2=mass))) == heavy
+    assert bool(notes.heavy_mass_note(BEAM.replace(m2=mass))) == heavy

@@ -182,6 +182,13 @@ def test_levels_of_the_box_are_a_number_or_several():
         sweep(hz="12:14:1", g="0.1,0.2").read_excitation(beam, one=True, by_level=True)
 
 
+@pytest.mark.parametrize("name", ["sweep", "lyapunov", "attractors"])
+def test_several_levels_are_what_varies(name):
+    _, question = cli.COMMANDS[name](structure="beam", hz="12", g="0.1,0.2").ask()
+    assert question["over"] == "level" and question["values"] == pytest.approx((0.980665, 1.96133))
+    assert "level" not in question and "amplitude" not in question
+
+
 # -- names and ranges -----------------------------------------------------------------------------
 
 ASKED = {"eta": (0.1, 0.5, 8.0), "direction": "up", "transient": 500, "start": None}

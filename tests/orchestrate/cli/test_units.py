@@ -242,3 +242,12 @@ def test_the_picture_of_an_orbit_says_whether_it_is_stable():
 @pytest.mark.parametrize("command", ["paper", "build"])
 def test_a_command_whose_numbers_have_no_units_has_no_such_option(ask, command):
     ask(command, "--units", "Hz").complaint(f"--units: no option of {command}")
+
+
+def test_lengths_of_no_structure_have_their_unit():
+    """A drive that runs without a structure is in SI."""
+    about = {"units": "m/s2", "long_name": "acceleration of the box"}
+    alone = xr.Dataset({"box_acceleration": ("time", [-0.1, 0.2], about)})
+    assert [*printing.extents(alone, "box_acceleration")] == [
+        "acceleration of the box: -0.1 to 0.2 m/s2"
+    ]

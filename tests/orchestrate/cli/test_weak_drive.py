@@ -92,7 +92,7 @@ def test_what_is_undecided_is_printed_and_titled(ask, folder):
     assert word == "undecided" and "a longer --hold may" in reason
     (data,) = results(folder).values()
     assert data.decided.values.tolist() == ["undecided", ""]
-    title = figures.draw({"bonded": data}).axes[0].get_title(loc="left")
+    title = figures.draw_ramps({"bonded": data}).axes[0].get_title(loc="left")
     assert title == "bonded: jump up undecided"
 
 

@@ -68,5 +68,5 @@ def test_curves_below_an_axis_are_named():
     made |= {"fitted": (over, fitted), "misfit": ("hypothesis", [0.1, 2.0])}
     names = {"hypothesis": ["delaminated", "bonded"], "order": [2.0]}
     names |= {"channel": ["acceleration1"], "frequency": np.arange(1.0, 6.0)}
-    (plane,) = diagnosis.draw_detect(xr.Dataset(made, names)).axes
+    (plane,) = diagnosis.draw_orders_and_fits(xr.Dataset(made, names)).axes
     assert plane.get_title("right") == "below this axis: bonded"

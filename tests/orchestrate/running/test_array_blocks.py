@@ -10,7 +10,7 @@ import xarray as xr
 from orchestrate.errors import StoreError
 from orchestrate.model import Structure
 from orchestrate.response.sweep import sweep
-from orchestrate.running import blocks, netcdf, store
+from orchestrate.running import array_blocks, netcdf, store
 
 PAPER = Structure.nondimensional()
 SHORT = {"transient": 5, "samples": 20, "progress": False, "jobs": 1}
@@ -28,8 +28,8 @@ def small(monkeypatch):
         counts.append(len(chosen))
         return rows(stored, chosen)
 
-    monkeypatch.setattr(blocks, "BLOCK", 400)
-    monkeypatch.setattr(blocks, "FILE_BLOCK", 100)
+    monkeypatch.setattr(array_blocks, "BLOCK", 400)
+    monkeypatch.setattr(array_blocks, "FILE_BLOCK", 100)
     monkeypatch.setattr(store, "MIN_COMPRESSED", 100)
     monkeypatch.setattr(store, "MAX_LOADED", 1000)
     monkeypatch.setattr(netcdf, "MAX_LOADED", 1000)
@@ -61,7 +61,7 @@ def test_a_damaged_block_is_seen(exported, tmp_path, small):
 @pytest.mark.parametrize("shape", [(), (0,), (7, 3), (5000,), (30, 50), (3, 41, 20), (900, 2, 3)])
 def test_blocks_make_up_an_array_in_its_order(tmp_path, small, shape):
     values = np.random.default_rng(1).normal(size=shape)
-    parts = [values[block].ravel() for block in blocks.blocks(shape)]
+    parts = [values[block].ravel() for block in array_blocks.block_indices(shape)]
     assert np.array_equal(np.concatenate(parts), values.ravel())
     assert all(len(part) <= 400 for part in parts)
     data = xr.Dataset({"x": ([f"d{i}" for i in range(len(shape))], values)})
@@ -71,7 +71,7 @@ def test_blocks_make_up_an_array_in_its_order(tmp_path, small, shape):
 
 IMPORTING = """
 import threading
-from orchestrate.running.blocks import lazy_rows
+from orchestrate.running.array_blocks import lazy_rows
 from orchestrate.running.runner import import_xarray
 thread = threading.Thread(target=import_xarray)
 thread.start()

@@ -27,7 +27,7 @@ def file_block_shape(shape: tuple[int, ...]) -> tuple[int, ...]:
     return (*([1] * (len(shape) - 2)), min(file_block_rows(shape[-2:]), shape[-2]), shape[-1])
 
 
-def blocks(shape: tuple[int, ...]) -> Iterator[Index]:
+def block_indices(shape: tuple[int, ...]) -> Iterator[Index]:
     """Yield indices of blocks that make up an array in C order; one for all if it is small."""
     size = int(np.prod(shape, dtype=float))
     if size <= BLOCK:
@@ -35,7 +35,7 @@ def blocks(shape: tuple[int, ...]) -> Iterator[Index]:
         return
     if size // shape[0] > BLOCK:
         for i in range(shape[0]):
-            for rest in blocks(shape[1:]):
+            for rest in block_indices(shape[1:]):
                 yield (i, *rest)
         return
     step = BLOCK // FILE_BLOCK * file_block_rows(shape)
