@@ -1,7 +1,6 @@
 """``modelDescription.xml`` says what is promised, and its dependencies are true."""
 
 import contextlib
-import math
 
 import fmpy
 import pytest
@@ -155,14 +154,6 @@ def test_units_are_defined(found, variables):
     for variable in variables.values():
         display = getattr(variable, "displayUnit", None)
         assert display is None or display in shown[variable.unit]
-
-
-@pytest.mark.parametrize("model", [OSCILLATOR])
-def test_box_frequency_is_shown_in_hertz_or_turns_a_minute(found, variables):
-    assert variables["box_frequency"].displayUnit == "Hz"
-    (unit,) = (unit for unit in found.unitDefinitions if unit.name == "rad/s")
-    factors = {shown.name: float(shown.factor) for shown in unit.displayUnits}
-    assert factors == {"Hz": pytest.approx(0.5 / math.pi), "rpm": pytest.approx(30.0 / math.pi)}
 
 
 @models

@@ -10,7 +10,7 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from .driver import FMUS, run, run_with_output
+from .driver import FMUS, run
 from .programs.driver import Refused, describe, harmonic, messages, open_fmu
 
 PYTHON = FMUS["fmi2-python"]
@@ -84,25 +84,6 @@ def test_hostile_instance_names(fmu, name):
     with pytest.raises(Refused, match="m1 = nan kg: expected 1e-24 <= m1 <= 1e"):
         f.set(m1=math.nan)
     assert f.reset().start().step(1.0).one("phase") == pytest.approx(0.4)
-
-
-def test_percent_signs_in_a_message_reach_the_importer(tmp_path):
-    """The only text of a user's that a message repeats is a number, so a variable of a copied FMU
-    gets a name with format directives.
-    """
-    texts = run("traps.percent_signs_in_a_message_reach_the_importer", PYTHON, cwd=tmp_path)
-    assert len(texts) == 50
-    assert all("%s%n %d 100 %: expected everything" in text for text in texts)
-
-
-def test_discarded_step_is_noticed(tmp_path):
-    """FMPy's loop takes pythonfmu's discarded step for the end of the simulation and reports
-    success: stderr has the reason.
-    """
-    times, done = run_with_output("traps.discarded_step_is_noticed", PYTHON, cwd=tmp_path)
-    assert times[-1] < 10.0  # the trap
-    (line,) = [text for text in done.stderr.splitlines() if "cannot finish" in text]
-    assert "the step to time = " in line and "10000000" in line
 
 
 def test_a_step_too_short_to_advance_is_reported_once(fmu):

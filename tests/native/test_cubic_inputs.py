@@ -69,26 +69,6 @@ def at_end(fmu, *times):
 
 
 @pytest.mark.parametrize("form", ["fmi2", "fmi3"])
-@pytest.mark.parametrize("name", CUBIC)
-def test_a_cubic_begins_where_one_of_its_inputs_is_set(fmus, form, name):
-    """To the value that it has already, too: it is the one at the time of setting."""
-    values = dict(zip(CUBIC, (0.1, -0.03, 0.02, 0.01), strict=True))
-    with (
-        open_fmu(fmus[form]) as fmu,
-        open_fmu(fmus[form]) as all_set,
-        open_fmu(fmus[form]) as untouched,
-    ):
-        for one in (fmu, all_set, untouched):
-            one.start(**values)
-            one.step(3.0)
-        fmu.set(**{name: values[name]})
-        all_set.set(**values)
-        begun, also, other = (at_end(one, 5.0) for one in (fmu, all_set, untouched))
-    assert begun == also
-    assert begun != other
-
-
-@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
 def test_a_cubic_runs_on_where_other_inputs_are_set(fmus, form):
     """Bonded and without a harmonic: another amplitude changes nothing, so the cubic is to be the
     one of a single step.

@@ -75,16 +75,6 @@ def test_no_function_calls_itself_and_a_step_nothing_that_allocates_waits_or_wri
     }
 
 
-def test_a_circle_of_calls_is_seen():
-    graph = footprint.CallGraph(
-        {"a.c:one": 16, "a.c:two": 32, "a.c:end": 64},
-        {"a.c:one": {"a.c:two"}, "a.c:two": {"a.c:end", "a.c:one"}},
-    )
-    with pytest.raises(RecursionError, match=r"a.c:one -> a.c:two -> a.c:one"):
-        graph.stack_bytes("a.c:one")
-    assert graph.stack_bytes("a.c:two", without=("one",)) == 96
-
-
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("version", VERSIONS)
 def test_no_compiler_warns(folders, version, model):

@@ -13,7 +13,6 @@ from fmu_src.models.motor_shaker import variables as motor_shaker_table
 from fmu_src.models.motor_shaker.model import MODEL as MOTOR_SHAKER
 from fmu_src.models.oscillator import variables as oscillator_table
 from fmu_src.models.oscillator.model import MODEL as OSCILLATOR
-from fmu_src.runtime.table import numbered
 
 MODELS = [
     (oscillator, oscillator_table.VARIABLES),
@@ -67,12 +66,6 @@ def test_promised_value_references():
     places = {variable.name: variable.slot for variable in oscillator_table.VARIABLES}
     found = {name: places[name] for name in PROMISED}
     assert found == PROMISED
-
-
-def test_a_table_in_another_order_is_refused():
-    first, second, *others = (replace(v, slot=-1) for v in oscillator_table.VARIABLES)
-    with pytest.raises(ValueError, match="m2 is variable 0 of the table, but slot 1"):
-        numbered([second, first, *others], oscillator)
 
 
 def test_no_slot_lies_in_another():

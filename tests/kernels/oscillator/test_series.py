@@ -60,19 +60,6 @@ def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
             assert x2 >= x1
 
 
-@examples(80)
-@given(structures(), *PLACES, sizes(1e-9, 0.1), st.floats(0.0, 1.0))
-def test_value_and_derivatives(values, x, v, slope, part):
-    m, _, gap = leaving(values, x, v, slope)
-    assume(m[at.SERIES] != 0.0)
-    tau = part * m[at.END]
-    with mp.workdps(50):
-        scale = abs(gap.derivative()(mp.mpf(0))) + abs(gap.derivative().derivative()(mp.mpf(0)))
-        for order, value in enumerate(evaluate(m, tau)[:3]):
-            assert abs(value - gap(mp.mpf(tau))) <= 1e-12 * float(scale), order
-            gap = gap.derivative()
-
-
 @st.composite
 def pressed_or_open(draw):
     """Structures whose faces rest against each other with a force, or apart."""
