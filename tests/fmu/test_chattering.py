@@ -1,6 +1,4 @@
-"""The end of chattering: nothing sticks out of motion at e = 1, it does not matter which half is
-number 1, and what it takes stands in the energy balance.
-"""
+"""The end of chattering: which half is number 1 does not matter, and what it takes is counted."""
 
 import math
 import random

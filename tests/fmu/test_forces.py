@@ -180,18 +180,13 @@ def test_what_enters_through_forces_is_in_the_momentum(fmu, more):
 @pytest.mark.parametrize("more", [{}, {"wall": True}, FORCES])
 @pytest.mark.parametrize("e", [0.0, 0.6])
 def test_both_ends_of_a_play(fmu, e, more):
-    """The gap stays between them, the sides say which one; steps know their largest gap, masses
-    stay together at either end, and the mirrored system moves as the mirrored motion.
+    """The gap stays between them, the sides say which one; steps know their largest gap, and
+    masses stay together at either end.
     """
     values = {**harmonic(0.7), **more, "e": e, "stroke": 1.0, "clearance": 0.3, "d1": 0.1}
-    mirrored = {"clearance": 0.7, "box_amplitude": -values["box_amplitude"]}
-    mirrored |= {name: -value for name, value in more.items() if name != "wall"}
-    f, other = (open_fmu(fmu).start(**v) for v in (values, {**values, **mirrored}))
-    sides, rows, count = [set(), set()], [], 0
-    names = ("x1", "x2", "v1", "v2", "box_force", "contact_force", "impact_count")
+    f, sides, count = open_fmu(fmu).start(**values), [set(), set()], 0
     for k in range(1, 1500):
-        f.step(k / 16)
-        gap, largest, begun = f.get("x_rel", "x_rel_max", "x_rel_max")
+        gap, largest = f.step(k / 16).get("x_rel", "x_rel_max")
         assert 0.0 <= gap <= largest <= 1.0
         touching, struck, now = f.get("contact_side", "impact_side", "impact_count")
         assert bool(touching) == f.one("in_contact")
@@ -200,18 +195,8 @@ def test_both_ends_of_a_play(fmu, e, more):
         count = now
         sides[0].add(touching)
         sides[1].add(struck)
-        rows.append([gap, largest])
-        if k < 200:
-            here, there = f.get(*names), other.step(k / 16).get(*names)
-            assert [-x for x in here[:5]] == pytest.approx(there[:5], abs=1e-9)
-            assert here[5:] == pytest.approx(there[5:], abs=1e-9)
-            assert other.one("x_rel") == pytest.approx(1.0 - gap, abs=1e-9)
     assert sides[1] >= {1, 2} and (e > 0.0 or sides[0] > {0})
     assert e > 0.0 or "wall" not in more or sides[0] == {0, 1, 2}
-    whole = open_fmu(fmu).start(**values)
-    for k in range(4, 1500, 4):
-        most = max(largest for _, largest in rows[k - 4 : k])
-        assert whole.step(k / 16).one("x_rel_max") == pytest.approx(most, abs=1e-14)
 
 
 def test_a_start_at_the_outer_end(fmu):
@@ -230,22 +215,22 @@ def test_a_start_at_the_outer_end(fmu):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_peaks_are_those_of_a_dense_look(fmu, kind):
-    """Displacements, and accelerations in space between impacts."""
-    values, _, _, motion = exact(kind, 7, 3)
+    """Displacements, accelerations in space between impacts, and the gap."""
+    values = exact(kind, 7, 3)[0]
     dense, whole = (open_fmu(fmu).start(**values, peaks_on=True) for _ in range(2))
-    names = ("x1_max", "x2_max", "a1_max", "a2_max")
-    motion = Motion(values)
+    motion, names = Motion(values), ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max")
     for k in range(1, 40):
         rows = []
         whole.step(0.25 * k)
         for i in range(1, 65):
             t = 0.25 * (k - 1) + i / 256
-            x1, v1, x2, v2, touch = dense.step(t).get("x1", "v1", "x2", "v2", "in_contact")
-            pair = motion.accelerations(t, (x1, v1, x2, v2))
+            *state, touch, gap = dense.step(t).get(*STATE, "in_contact", "x_rel")
+            pair = motion.accelerations(t, state)
             if touch:
                 share = motion.share
                 pair = [sum(m * a for m, a in zip(share, pair, strict=True)) / sum(share)] * 2
-            rows.append([abs(x1), abs(x2), *(abs(a + motion.box(t)) for a in pair)])
+            spatial = [abs(a + motion.box(t)) for a in pair]
+            rows.append([abs(state[0]), abs(state[2]), *spatial, gap])
         top, found = np.max(rows, axis=0), np.array(whole.get(*names))
         assert (found >= top - 1e-12).all(), (k, found, top)
         one_impact = whole.one("impact_count") == dense.one("impact_count")

@@ -118,41 +118,6 @@ def test_phase_is_continuous_when_the_frequency_changes(fmu, damping):
         assert math.remainder(found - phase, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-11)
 
 
-def signal(t):
-    """A box acceleration, smooth and without a period, and its first three derivatives."""
-    parts = ((0.8, 0.9, 0.3), (0.5, 1.7, 1.1), (-0.3, 2.3, 0.0))
-    return [
-        sum(a * w**n * math.cos(w * t + p + 0.5 * math.pi * n) for a, w, p in parts)
-        for n in range(4)
-    ]
-
-
-def test_piecewise_cubic_acceleration_against_integration(fmu):
-    """With value and three derivatives set at each step the FMU follows a smooth signal to the
-    fourth power of the step.
-    """
-    values = {"m1": 1.0, "m2": 1.5, "k1": 1.0, "k2": 1.4, "d1": 0.05, "d2": 0.03, "e": 0.8}
-    values |= {"x1_start": -0.5, "x2_start": 0.5, "box_amplitude": 0.0}
-    exact = Motion({**values, "box_frequency": 2.3, "gamma": 1e-4}, lambda t: signal(t)[0])
-    times = [0.5 * k for k in range(1, 41)]
-    expected = [exact.run(time).state.copy() for time in times]
-    errors = []
-    for step in (2.0**-3, 2.0**-5):
-        f, found = open_fmu(fmu).start(**values), []
-        while f.time < times[-1]:
-            f.set(**dict(zip(CUBIC, signal(f.time), strict=True)))
-            f.step(f.time + step)
-            if f.time % 0.5 == 0.0:
-                found.append(f.get(*STATE))
-        assert f.get("impact_count", "contact_count") == [len(exact.impacts), 0]
-        errors.append(np.max(np.abs(np.array(found) - expected)))
-    coarse, fine = errors
-    assert len(exact.impacts) > 5
-    assert coarse < 3e-4
-    assert fine < 1e-6
-    assert coarse / fine > 100  # 4^4 = 256 in the limit
-
-
 @pytest.mark.parametrize("name", (*CUBIC, "box_amplitude"))
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_each_derivative_moves_masses_from_rest(fmu, name, sign):

@@ -66,14 +66,3 @@ def test_promised_value_references():
     places = {variable.name: variable.slot for variable in oscillator_table.VARIABLES}
     found = {name: places[name] for name in PROMISED}
     assert found == PROMISED
-
-
-def test_no_slot_lies_in_another():
-    """Each name has its own place; offsets inside a branch count from 0 on their own."""
-    assert oscillator.OSCILLATOR_2 - oscillator.OSCILLATOR_1 == oscillator.STEP_GROWTH + 4
-    outputs = oscillator.X1_SAMPLE - oscillator.X1
-    assert oscillator.RATES + outputs == oscillator.ADDED_RATES
-    added = oscillator.TIME - oscillator.EVALUATIONS
-    assert oscillator.ADDED_RATES + added == oscillator.CUBIC_SET == oscillator.SIZE - 3
-    for drive in (shaker, coil):
-        assert drive.OUTPUT_RATES + drive.TIME - drive.BOX_POSITION == drive.SIZE
