@@ -98,6 +98,8 @@ def module_of(folder, body):
         ("m[0] = helper(m, x=time)\nreturn 0", 11, "expected arguments without names"),
         ("m[0] = 'text'\nreturn 0", 11, "'text'; expected a number"),
         ("return entry(m, time)", 11, "entry calls itself; expected a loop, no recursion"),
+        # two calls that change the memory, of which a test decides whether they are made
+        ("x = helper(m, 1.0) - helper(m, 2.0) if time > 0.0 else 0.0\nm[0] = x", 10, "too early"),
     ],
 )
 def test_what_is_outside_the_subset_is_refused(tmp_path, body, line, text):

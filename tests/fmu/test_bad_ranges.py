@@ -127,12 +127,14 @@ STARTS = [  # with what the message names
     *(({"wall": True, **more}, "wall = true") for more in ({"x2_start": 0.1}, {"v2_start": -1.0})),
     ({"wall": True, "bonded": True}, "bonded"),
     ({"stroke": 0.1, "clearance": 0.25}, "stroke = 0.1 m"),
+    *(({"sample_count": n}, f"sample_count = {n}:") for n in (-1, 201)),
     *(({"evaluation_limit": n}, f"evaluation_limit = {n}: ") for n in (0, -1, 10_000_001)),
     ({"clearance": -0.5, "k2": 1.0, "x1_start": 0.125, "x2_start": 0.12}, "x2_start >= x1_start ="),
     ({"clearance": 0.5, "x1_start": 0.75, "x2_start": 0.2}, "clearance = 0.25 m"),
     ({"clearance": math.nan}, "-1e+100 <= clearance <= 1e+100"),
     ({"e_slope": -1e-300}, "0.0 <= e_slope <= 1e+100"),
     ({"e_slope": 1e101}, "0.0 <= e_slope <= 1e+100"),
+    ({"e": 1.5}, "0.0 <= e <= 1.0"),
 ]
 
 

@@ -59,30 +59,3 @@ def test_five_splits_event_mode_and_early_return_are_one_step(ways, motion):
     for way in ways:
         for grid in (end, *splits):
             assert run(way, values, grid) == expected
-
-
-def at_end(fmu, *times):
-    """Outputs after steps without a touch of the inputs."""
-    for time in times:
-        fmu.step(time)
-    return fmu.get(*STATE)
-
-
-@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
-def test_a_cubic_runs_on_where_other_inputs_are_set(fmus, form):
-    """Bonded and without a harmonic: another amplitude changes nothing, so the cubic is to be the
-    one of a single step.
-    """
-    values = dict(zip(CUBIC, (0.1, -0.03, 0.02, 0.01), strict=True))
-    values |= {"bonded": True, "box_amplitude": 0.0, "box_frequency": 0.0}
-    with open_fmu(fmus[form]) as fmu, open_fmu(fmus[form]) as whole:
-        for one in (fmu, whole):
-            one.start(**values)
-        fmu.step(2.0)
-        fmu.set(box_amplitude=0.5)
-        fmu.step(3.0)
-        fmu.set(box_amplitude=0.25, x_rel_max_on=False)
-        found, expected = at_end(fmu, 5.0), at_end(whole, 5.0)
-    for name in ("x1", "v1", "box_force"):
-        place = STATE.index(name)
-        assert found[place] == pytest.approx(expected[place], rel=1e-13)

@@ -1,18 +1,13 @@
 """Slots follow one another; variable tables and memories of the kernels agree."""
 
-from dataclasses import replace
-
 import pytest
 
 from fmu_src.kernels.electrodynamic_shaker import memory as coil
 from fmu_src.kernels.motor_shaker import memory as shaker
 from fmu_src.kernels.oscillator import memory as oscillator
 from fmu_src.models.electrodynamic_shaker import variables as coil_table
-from fmu_src.models.electrodynamic_shaker.model import MODEL as COIL
 from fmu_src.models.motor_shaker import variables as motor_shaker_table
-from fmu_src.models.motor_shaker.model import MODEL as MOTOR_SHAKER
 from fmu_src.models.oscillator import variables as oscillator_table
-from fmu_src.models.oscillator.model import MODEL as OSCILLATOR
 
 MODELS = [
     (oscillator, oscillator_table.VARIABLES),
@@ -43,23 +38,6 @@ def test_value_references_are_places_in_the_table_and_slots(memory, variables):
     for variable in variables:
         if "[" not in variable.name:
             assert getattr(memory, variable.name.upper()) == variable.slot
-
-
-@pytest.mark.parametrize("model", [OSCILLATOR, MOTOR_SHAKER, COIL], ids=lambda model: model.name)
-def test_a_continuous_output_anywhere_in_the_table_has_a_rate_of_its_own(model):
-    """Whichever variable became one, also behind all that there are: its rate lies among the rates,
-    and in nobody else's slot.
-    """
-    memory = {OSCILLATOR: oscillator, MOTOR_SHAKER: shaker, COIL: coil}[model]
-    first = next(v.slot for v in model.variables if v.causality == "output")
-    could_be = [v for v in model.variables[first:] if not v.series]
-    could_be = [replace(v, causality="output", variability="continuous") for v in could_be]
-    slots = [model.rate_slot(v) for v in could_be]
-    assert len(set(slots)) == len(slots)
-    if model is OSCILLATOR:
-        assert memory.RATES <= min(slots) <= max(slots) < memory.CUBIC_SET
-    else:
-        assert memory.OUTPUT_RATES <= min(slots) <= max(slots) < memory.SIZE
 
 
 def test_promised_value_references():
