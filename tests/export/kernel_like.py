@@ -33,7 +33,8 @@ def order(m, x):
     # C's compilers like to begin with the last argument
     m[at.OUT] = between(x, bump(m, at.COUNT), bump(m, at.COUNT) * bump(m, at.COUNT))
     m[at.OUT + 1], m[at.OUT + 2] = bump(m, at.COUNT), m[at.COUNT]
-    return a
+    m[at.RESULT] = a
+    return 0
 
 
 def swaps(m, x):
@@ -43,7 +44,8 @@ def swaps(m, x):
         a, b = b - a * 0.25, a + b
     m[at.OUT], m[at.OUT + 1] = m[at.OUT + 1], m[at.OUT]
     m[at.OUT + 2] = a - b
-    return a
+    m[at.RESULT] = a
+    return 0
 
 
 def loops(m, x):
@@ -64,7 +66,8 @@ def loops(m, x):
         if total > 700.0:
             break
     m[at.OUT] = last
-    return total + n
+    m[at.RESULT] = total + n
+    return 0
 
 
 def tuples(m, x):
@@ -74,7 +77,8 @@ def tuples(m, x):
     m[at.OUT], m[at.OUT + 1] = whole[0][:2]
     p, q, _ = whole[0]
     negative, three = whole[1]
-    return p - q * three if negative else whole[2] + halves(m, p)[0]
+    m[at.RESULT] = p - q * three if negative else whole[2] + halves(m, p)[0]
+    return 0
 
 
 def numbers(m, x):
@@ -87,7 +91,8 @@ def numbers(m, x):
         k = 2.5
     inside = -1.0 < x <= m[at.LIMIT] and not x >= 0.5 or rest == 3
     m[at.OUT] = 1.0 if inside else 0.0
-    return share + k + max(x, share, 0.125) - min(x, 0.0) + math.sqrt(abs(x)) - -x
+    m[at.RESULT] = share + k + max(x, share, 0.125) - min(x, 0.0) + math.sqrt(abs(x)) - -x
+    return 0
 
 
 WEIGHTS, BEGIN = (0.1, -0.2, 1.0 / 3.0), (0, 1, 3)
@@ -99,7 +104,8 @@ def tables(m, x):
     for row in range(2):
         for i in range(BEGIN[row], BEGIN[row + 1]):
             total = total / 3.0 + WEIGHTS[i] * x
-    return total * BEGIN[2] + WEIGHTS[2 if m[at.COUNT] > 0.0 else 0]
+    m[at.RESULT] = total * BEGIN[2] + WEIGHTS[2 if m[at.COUNT] > 0.0 else 0]
+    return 0
 
 
 def chosen(m, x):
@@ -112,50 +118,8 @@ def chosen(m, x):
         y = short - x
     else:
         y = int(m[at.COUNT]) * x
-    return y
-
-
-def run_order(m, time):
-    m[at.RESULT] = order(m, time)
+    m[at.RESULT] = y
     return 0
 
 
-def run_swaps(m, time):
-    m[at.RESULT] = swaps(m, time)
-    return 0
-
-
-def run_loops(m, time):
-    m[at.RESULT] = loops(m, time)
-    return 0
-
-
-def run_tuples(m, time):
-    m[at.RESULT] = tuples(m, time)
-    return 0
-
-
-def run_numbers(m, time):
-    m[at.RESULT] = numbers(m, time)
-    return 0
-
-
-def run_tables(m, time):
-    m[at.RESULT] = tables(m, time)
-    return 0
-
-
-def run_chosen(m, time):
-    m[at.RESULT] = chosen(m, time)
-    return 0
-
-
-ENTRIES = {
-    "order": run_order,
-    "swaps": run_swaps,
-    "loops": run_loops,
-    "tuples": run_tuples,
-    "tables": run_tables,
-    "numbers": run_numbers,
-    "chosen": run_chosen,
-}
+ENTRIES = {one.__name__: one for one in (order, swaps, loops, tuples, tables, numbers, chosen)}

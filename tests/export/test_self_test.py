@@ -23,18 +23,3 @@ def test_a_cubic_input_begins_in_it(folder):
     assert flags.index(1.0) == self_test.STEPS // 2 - 1 and sum(flags) == 1.0
     assert all(memory[slot] == self_test.CHANGE for slot in model.set_flags)
     assert total == self_test.expected_sum(model)
-
-
-def test_each_last_bit_counts():
-    """Of any variable, in any step."""
-    model = load_model("oscillator")
-
-    def advance(memory, time):
-        code = model.advance(memory, time)
-        if time == 3 * self_test.STEP:
-            memory[0] *= 1.0 + 2.0**-52
-        return code
-
-    memory = [0.0] * model.memory_size
-    total = self_test.sum_of_run(model, memory, model.initialize, advance)
-    assert total != self_test.expected_sum(model)

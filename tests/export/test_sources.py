@@ -5,7 +5,6 @@ import json
 import os
 import subprocess
 import sys
-from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -51,17 +50,6 @@ def test_no_import_of_ours_is_overlooked():
         assert nodes <= {*map(ast.unparse, sources.import_statements(source))}, path
 
 
-def test_an_import_that_leads_nowhere_is_named():
-    with pytest.raises(FileNotFoundError, match=r"runtime/x.py: from .nothing import it"):
-        list(sources.imported_files("runtime/x.py", b"import math\nfrom .nothing import it\n"))
-
-
-def test_the_native_forms_know_nothing_of_pythonfmu():
-    files = sources.exporter_files("export/native_form.py")
-    assert "export/pythonfmu_form.py" not in files
-    assert not [name for name, text in files.items() if b"import pythonfmu" in text]
-
-
 @pytest.mark.parametrize("form", forms.FORMS)
 def test_a_change_of_any_source_is_another_guid(monkeypatch, form):
     """Kernel, table, texts, exporter and C shim; another form's or model's is none of them."""
@@ -102,8 +90,3 @@ def test_sources_edited_during_an_export_are_named(monkeypatch, tmp_path):
     with pytest.raises(CannotExport, match=f"^{place} was edited .*: expected a new process$"):
         forms.export("TwoMassImpactOscillator", "fmi2-python", tmp_path)
     assert not list(tmp_path.rglob("*.fmu"))
-
-
-def test_pythonfmu_is_the_version_the_slave_is_made_for():
-    required = [line for line in metadata.requires("vibroimpact") if line.startswith("pythonfmu")]
-    assert required[0].startswith(f"pythonfmu=={pythonfmu_form.PYTHONFMU};")

@@ -98,6 +98,8 @@ def module_of(folder, body):
         ("m[0] = helper(m, x=time)\nreturn 0", 11, "expected arguments without names"),
         ("m[0] = 'text'\nreturn 0", 11, "'text'; expected a number"),
         ("return entry(m, time)", 11, "entry calls itself; expected a loop, no recursion"),
+        # two calls that change the memory, of which a test decides whether they are made
+        ("x = helper(m, 1.0) - helper(m, 2.0) if time > 0.0 else 0.0\nm[0] = x", 10, "too early"),
     ],
 )
 def test_what_is_outside_the_subset_is_refused(tmp_path, body, line, text):
@@ -107,20 +109,6 @@ def test_what_is_outside_the_subset_is_refused(tmp_path, body, line, text):
         translate({"entry": module.entry})
     told = str(caught.value)
     assert f"outside.py, line {line}: " in told and text in told and "\n" not in told
-
-
-def test_comments_say_how_often_lines_run(tmp_path):
-    """Beside a test and beside a def; what rare ways alone lead to stays out of the others."""
-    body = "if m[0] != 0.0:  # rarely\n    m[0] = helper(m, time)\nreturn 0"
-    module = module_of(tmp_path, body)
-    text = translate({"advance": module.entry})
-    assert "if (RARELY(m[0] != 0.0)) {" in text and "rarely" not in text
-    assert "static COLD double helper(" in text and "static inline int entry(" in text
-    assert "static COLD int entry(" in translate({"restore": module.entry})
-    body = "if m[0] != 0.0:  # usually\n    m[0] = helper(m, time)\nreturn 0"
-    assert "static inline double helper(" in translate({"entry": module_of(tmp_path, body).entry})
-    kernel = kernel_of("oscillator")
-    assert "static INLINE Reals6 next_phasors(" in kernel and "/* inline */" not in kernel
 
 
 def test_floor_is_exact(tmp_path):
@@ -142,13 +130,6 @@ def test_floor_is_exact(tmp_path):
         assert [x.hex() for x in memory] == [x.hex() for x in expected], value
 
 
-def test_what_would_be_evaluated_too_early_is_refused(tmp_path):
-    """Two calls that change the memory, of which a test decides whether they are made."""
-    body = "x = helper(m, 1.0) - helper(m, 2.0) if time > 0.0 else 0.0\nm[0] = x\nreturn 0"
-    with pytest.raises(CannotExport, match="would be evaluated too early"):
-        translate({"entry": module_of(tmp_path, body).entry})
-
-
 @functools.cache
 def kernel_of(folder):
     """A model's kernel in C."""
@@ -167,14 +148,3 @@ def test_kernels_compile_without_a_warning(tmp_path, folder):
     called = {name.partition("@")[0] for name in undefined if name not in "Uw"}
     allowed = {"sqrt", "fabs", "memset", "memcpy"}
     assert {name for name in called if not name.startswith("_")} <= allowed
-
-
-def test_kernel_reads_like_the_paper():
-    """Functions and slots keep their names, equations their numbers, comments their places."""
-    text = kernel_of("oscillator")
-    assert "static inline Reals4 state_at(double *RESTRICT m, double tau)" in text
-    assert "/* Return displacements and velocities tau after the state's start, (10). */" in text
-    assert "m[OSCILLATOR_3 + OMEGA_SQUARED]" in text
-    assert "static const double BRIEF = 0x1.0c6f7a0b5ed8dp-20 /* 1e-06 */;" in text
-    assert "/* exactly what the state began with: a start from rest is at rest */" in text
-    assert max(map(len, text.splitlines())) <= 100

@@ -58,16 +58,12 @@ def test_fmpy_finds_no_problem(model, form):
 
 
 def test_documentation_is_inside(fmu):
-    """A page that explains every variable promised, an icon, reference results."""
-    files = contents(fmu)
+    """A page that explains every variable promised, an icon."""
+    files, found = contents(fmu), fmpy.read_model_description(str(fmu)).modelVariables
     page = files["documentation/index.html"].decode()
-    found = fmpy.read_model_description(str(fmu))
-    for variable in found.modelVariables:
-        scalar = variable.type != "Clock" and not variable.dimensions
-        if scalar and variable.causality in ("parameter", "input", "output"):
-            assert re.search(rf"\b{variable.name}\b", page), variable.name
-    for picture in re.findall(r'(?:src|data|href)="([^":#]+\.(?:png|svg|csv))"', page):
-        assert f"documentation/{picture}" in files
+    promised = [v for v in found if v.causality in ("parameter", "input", "output")]
+    names = [v.name for v in promised if v.type != "Clock" and not v.dimensions]
+    assert [name for name in names if not re.search(rf"\b{name}\b", page)] == []
     icon = "terminalsAndIcons/icon.png" if fmu.parent.name == "fmi3" else "model.png"
     assert files[icon].startswith(b"\x89PNG")
 

@@ -43,7 +43,6 @@ SET = [  # phase, values, and parts of the message; those of pythonfmu's form al
     ("ended", {"e": 0.5}, "python: e = 0.5; python: fixed parameter"),
     ("new", {"x1": 1.0}, "x1 = 1.0; output; expected a parameter or an input"),
     ("running", {"impact_count": 3}, "impact_count = 3; output; expected"),
-    ("running", {"in_contact": True}, "in_contact; output; expected"),
 ]
 CALL = [  # phase, function, arguments of which names are references, and parts of the message
     ("new", "setReal", (["m1", "k2", "m2"], [2.0, nan, 3.0]), "k2 = nan N/m; 1e-24 <= k2 <= 1e+24"),
@@ -51,22 +50,16 @@ CALL = [  # phase, function, arguments of which names are references, and parts 
     ("new", "setReal", ([999], [1.0]), "valueReference = 999; python: Real; expected"),
     ("running", "getInteger", (["m1"],), "valueReference = 0; python: Integer; expected"),
     ("running", "getString", (["m1"],), "python: valueReference = 0; String"),
-    ("running", "getReal", (["impact_count"],), "valueReference = ; python: Real; expected"),
     ("new", "setInteger", (["m1"], [2]), "valueReference = 0; python: Integer; expected"),
-    ("new", "setBoolean", (["m1"], [True]), "valueReference = 0; python: Boolean; expected"),
     ("new", "setReal", (["bonded"], [1.0]), "valueReference = ; python: Real; expected"),
     ("running", "doStep", (2.0, -0.5), f"communicationStepSize = -0.5 s; {STEP_SIZE}"),
-    ("running", "doStep", (2.0, inf), f"communicationStepSize = inf s; {STEP_SIZE}"),
     ("running", "doStep", (2.5, 0.5), "currentCommunicationPoint = 2.5 s; expected 2.0 s"),
     ("running", "doStep", (inf, 0.5), "currentCommunicationPoint = inf s; expected 2.0 s"),
     ("new", "doStep", (0.0, 1.0), "fmi2DoStep; python: expected after initialisation"),
     ("begun", "doStep", (0.0, 1.0), "fmi2DoStep; python: expected after initialisation"),
     ("ended", "doStep", (2.0, 1.0), "fmi2DoStep; python: before fmi2Terminate"),
     ("new", "exitInitializationMode", (), f"fmi2ExitInitializationMode; {ONCE} in initialisation"),
-    ("running", "exitInitializationMode", (), f"fmi2ExitInitializationMode; {ONCE}"),
-    ("begun", "enterInitializationMode", (), f"fmi2EnterInitializationMode; {ONCE}"),
     ("running", "enterInitializationMode", (), f"fmi2EnterInitializationMode; {ONCE}"),
-    ("ended", "enterInitializationMode", (), f"fmi2EnterInitializationMode; {ONCE}"),
     ("running", "setupExperiment", (), f"fmi2SetupExperiment; {ONCE}"),
 ]
 OTHER = {  # what has more steps: a function, and parts of the message

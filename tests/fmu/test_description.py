@@ -1,7 +1,6 @@
 """``modelDescription.xml`` says what is promised, and its dependencies are true."""
 
 import contextlib
-import math
 
 import fmpy
 import pytest
@@ -157,22 +156,6 @@ def test_units_are_defined(found, variables):
         assert display is None or display in shown[variable.unit]
 
 
-@pytest.mark.parametrize("model", [OSCILLATOR])
-def test_box_frequency_is_shown_in_hertz_or_turns_a_minute(found, variables):
-    assert variables["box_frequency"].displayUnit == "Hz"
-    (unit,) = (unit for unit in found.unitDefinitions if unit.name == "rad/s")
-    factors = {shown.name: float(shown.factor) for shown in unit.displayUnits}
-    assert factors == {"Hz": pytest.approx(0.5 / math.pi), "rpm": pytest.approx(30.0 / math.pi)}
-
-
-@models
-def test_structure_is_complete(found, variables):
-    expected = {name for name, v in variables.items() if v.causality == "output"}
-    assert {unknown.variable.name for unknown in found.outputs} == expected
-    scalars = {name for name in expected if variables[name].type != "Clock"}
-    assert scalars <= {unknown.variable.name for unknown in found.initialUnknowns}
-
-
 TOUCHING = {"x1_start": 0.25, "x2_start": 0.25, "phase_start": 0.5}
 MOTOR = {
     **{"angle_start": 0.4, "speed_start": 30.0, "position_start": 0.01, "velocity_start": 0.2},
@@ -197,7 +180,6 @@ STARTS = {
         {"clearance": 0.5},
         {"clearance": -0.5},
         {"d2": 0.03, "phase_start": -0.5},
-        {"d2": 0.03, "box_amplitude": 0.0},
         {"d2": 0.03, "box_amplitude": 0.0, "force1": 0.1, "force2": -0.2, "phase_start": 1.0},
         {"d2": 0.03, "stroke": 0.5, "v1_start": -1.0, "x2_start": 0.5, "x1_start": 0.0},
         {**TOUCHING, "v1_start": 1.0, "e": 0.05, "gamma": 0.9, "force1_amplitude": 0.5},

@@ -4,10 +4,9 @@ kernel and its Python source.
 
 import pytest
 
-from .driver import FMUS, run
+from .driver import run
 from .programs.driver import harmonic, open_fmu
 
-PYTHON = FMUS["fmi2-python"]
 # In chaotic motion (1.13) a lost bit grows to a first digit within some 150 s; at 0.4 the masses
 # stick for a while in each period.
 CASES = {
@@ -98,10 +97,3 @@ def test_state_is_saved_before_and_during_initialisation(fmu):
     g.set(box_frequency=1.13)
     g.leave()
     assert g.step(100.0).outputs() == plain
-
-
-def test_compiled_state_continues_in_the_source(tmp_path):
-    """A serialised state is the same numbers for both."""
-    f = open_fmu(PYTHON).start(**harmonic(1.13)).step(77.0)
-    data, expected = f.save()[0].hex(), f.step(300.0).outputs()
-    assert run("determinism.resume", PYTHON, data, 300.0, cwd=tmp_path, pure=True) == expected

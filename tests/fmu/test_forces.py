@@ -5,7 +5,6 @@ must always hold.
 
 import functools
 import itertools
-import math
 
 import numpy as np
 import pytest
@@ -44,7 +43,8 @@ def harmonic_force(rng, half):
 
 
 def drawn(kind, seed, periods):
-    """A structure, the inputs that are set at some times, and when its motion ends.
+    """A structure, with a restitution that decreases with the speed in half of them, the inputs
+    that are set at some times, and when its motion ends.
 
     Forces and cubics of the box, some from the start and others later: they jump, and so does the
     force of a contact.
@@ -53,6 +53,7 @@ def drawn(kind, seed, periods):
     forces = harmonic_force if kind == HARMONIC else some_forces
     values = structure(seed) | forces(rng, 1) | forces(rng, 2) | KINDS[kind]
     values["clearance"] *= seed % 3 > 0
+    values["e_slope"] = (0.0, 0.5, 0.0, 2.0)[seed % 4]
     values["box_amplitude"] *= seed % 5 > 0
     if values.get("wall") and values["clearance"] < values["x1_start"]:
         values["x1_start"] = 0.0
@@ -143,49 +144,6 @@ def test_all_forms_and_the_pure_kernel_give_the_same_bits(kind):
             assert f.get(*names) == [m[getattr(memory, name.upper())] for name in names]
 
 
-def test_masses_pressed_together_part_where_a_force_jumps(fmu):
-    """The contact force jumps with the inputs: 10 N on mass 2 pulls it off at once, and the gap is
-    that of both masses on their own; a force that presses leaves them together.
-    """
-    values = {"box_amplitude": 0.0, "d1": 0.0, "d2": 0.0, "force1": 0.1}
-    f = open_fmu(fmu).start(**values).step(1.0)
-    together, x, v = f.get("in_contact", "x1", "v1")
-    assert together
-    f.set(force2=-0.2)
-    assert f.step(1.25).one("in_contact")
-    x, v = f.get("x1", "v1")
-    f.set(force2=10.0).step(1.75)
-    moved = [
-        rest + (x - rest) * math.cos(w * 0.5) + v / w * math.sin(w * 0.5)
-        for rest, w in ((0.1, 1.0), (10.0 / 1.2, math.sqrt(1.2)))
-    ]
-    assert f.get("x1", "x2") == pytest.approx(moved, rel=1e-13)
-    assert f.get("in_contact", "impact_count") == [0, 0]
-    assert f.one("x_rel") > 1.0
-
-
-def test_a_force_on_a_mass_is_a_box_that_moves_for_it_alone(fmu):
-    """Forces in proportion to the masses do what the box does: to within rounding, also where they
-    are harmonic.
-    """
-    values = {"m1": 1.5, "m2": 0.8, "k1": 2.0, "x2_start": 0.1, "box_frequency": 0.9}
-    cubic = dict(zip(CUBICS["box"], (0.3, -0.1, 0.02, -0.004), strict=True))
-    pushed = {
-        name: -values[f"m{half}"] * cubic[box]
-        for half in (1, 2)
-        for name, box in zip(CUBICS[half], CUBICS["box"], strict=True)
-    }
-    pushed |= {f"force{half}_amplitude": 0.7 * 0.9**2 * values[f"m{half}"] for half in (1, 2)}
-    box = open_fmu(fmu).start(**values, **cubic, box_amplitude=0.7).at(3.0, 15.0)
-    other = open_fmu(fmu).start(**values, **pushed, box_amplitude=0.0).at(3.0, 15.0)
-    assert box.one("impact_count") > 2
-    expected = box.outputs()
-    for name in ("box_impulse", "xi1", "xi2", "xi_rel"):
-        expected.pop(name)
-    assert {name: other.one(name) for name in expected} == pytest.approx(expected, abs=1e-11)
-    assert other.get("xi1", "xi2", "xi_rel") == [0.0, 0.0, 0.0]
-
-
 @pytest.mark.parametrize("more", [FORCES, {**FORCES, "wall": True, "clearance": 0.1}])
 def test_what_enters_through_forces_is_in_the_momentum(fmu, more):
     """The impulse on the box is what box and forces give the masses, less what they keep."""
@@ -219,67 +177,16 @@ def test_what_enters_through_forces_is_in_the_momentum(fmu, more):
     assert f.one("impact_count") > 5
 
 
-def test_force_on_a_wall_by_springs_and_impacts(fmu):
-    """Every impact adds (1 + e) times its momentum to what spring, damper and contact make."""
-    values = {"wall": True, "d1": 0.1, "e": 0.6, "box_amplitude": 0.5, "box_frequency": 0.8}
-    f, h = open_fmu(fmu).start(**values, force1_amplitude=0.2), 2.0**-7
-    count, total, pressed, impulse = 0, 0.0, 0, f.one("box_impulse")
-    before = f.one("box_force")
-    for k in range(1, 12000):
-        f.step(k * h)
-        impacts, closing, one, after = f.get(
-            "impact_count", "impact_velocity", "box_impulse", "box_force"
-        )
-        drive = (0.5 * 0.8**2 + 0.2) * math.sin(f.one("phase"))
-        impulse += one
-        if impacts == count:
-            total += 0.5 * h * (before + after)
-        elif impacts == count + 1:
-            total += one
-            if not f.one("in_contact"):
-                spring = 0.5 * h * (before + after)
-                assert one == pytest.approx(1.6 * closing + spring, abs=0.2 * h * (1.0 + closing))
-        else:
-            total += one
-        if f.one("in_contact"):
-            pressed += 1
-            assert after == pytest.approx(drive, abs=1e-13)
-            assert f.one("contact_force") == pytest.approx(drive, abs=1e-13)
-            assert f.get("x1", "v1", "x2", "v2", "x_rel") == [0.0] * 5
-        count, before = impacts, after
-    assert count > 20 and pressed > 100
-    assert total == pytest.approx(impulse, abs=3e-3)
-
-
-def test_a_wall_is_the_limit_of_a_heavy_stiff_mass(fmu):
-    """Mass 2 times 1e4, 1e6, 1e8 at its frequency: the distance falls in proportion."""
-    values = {"d1": 0.05, "e": 0.6, "clearance": 0.2, "box_amplitude": 0.5, "box_frequency": 1.7}
-    exact = open_fmu(fmu).start(**values, wall=True, m2=0.3, k2=9.0, d2=0.7).step(20.0)
-    assert exact.one("impact_count") > 3
-    apart = []
-    for heavy in (1e4, 1e6, 1e8):
-        # at a thousand times its frequency, so that the box's motion hardly moves it
-        f = open_fmu(fmu).start(**values, m2=heavy, k2=1e6 * heavy, d2=0.0).step(20.0)
-        assert f.one("impact_count") == exact.one("impact_count")
-        apart.append(np.abs(np.subtract(f.get("x1", "v1"), exact.get("x1", "v1"))).max())
-    assert apart[0] > 10.0 * apart[1] > 20.0 * apart[2] and apart[2] < 1e-5
-
-
 @pytest.mark.parametrize("more", [{}, {"wall": True}, FORCES])
 @pytest.mark.parametrize("e", [0.0, 0.6])
 def test_both_ends_of_a_play(fmu, e, more):
-    """The gap stays between them, the sides say which one; steps know their largest gap, masses
-    stay together at either end, and the mirrored system moves as the mirrored motion.
+    """The gap stays between them, the sides say which one; steps know their largest gap, and
+    masses stay together at either end.
     """
     values = {**harmonic(0.7), **more, "e": e, "stroke": 1.0, "clearance": 0.3, "d1": 0.1}
-    mirrored = {"clearance": 0.7, "box_amplitude": -values["box_amplitude"]}
-    mirrored |= {name: -value for name, value in more.items() if name != "wall"}
-    f, other = (open_fmu(fmu).start(**v) for v in (values, {**values, **mirrored}))
-    sides, rows, count = [set(), set()], [], 0
-    names = ("x1", "x2", "v1", "v2", "box_force", "contact_force", "impact_count")
+    f, sides, count = open_fmu(fmu).start(**values), [set(), set()], 0
     for k in range(1, 1500):
-        f.step(k / 16)
-        gap, largest, begun = f.get("x_rel", "x_rel_max", "x_rel_max")
+        gap, largest = f.step(k / 16).get("x_rel", "x_rel_max")
         assert 0.0 <= gap <= largest <= 1.0
         touching, struck, now = f.get("contact_side", "impact_side", "impact_count")
         assert bool(touching) == f.one("in_contact")
@@ -288,24 +195,12 @@ def test_both_ends_of_a_play(fmu, e, more):
         count = now
         sides[0].add(touching)
         sides[1].add(struck)
-        rows.append([gap, largest])
-        if k < 200:
-            here, there = f.get(*names), other.step(k / 16).get(*names)
-            assert [-x for x in here[:5]] == pytest.approx(there[:5], abs=1e-9)
-            assert here[5:] == pytest.approx(there[5:], abs=1e-9)
-            assert other.one("x_rel") == pytest.approx(1.0 - gap, abs=1e-9)
     assert sides[1] >= {1, 2} and (e > 0.0 or sides[0] > {0})
     assert e > 0.0 or "wall" not in more or sides[0] == {0, 1, 2}
-    whole = open_fmu(fmu).start(**values)
-    for k in range(4, 1500, 4):
-        most = max(largest for _, largest in rows[k - 4 : k])
-        assert whole.step(k / 16).one("x_rel_max") == pytest.approx(most, abs=1e-14)
 
 
 def test_a_start_at_the_outer_end(fmu):
-    """At rest against it, pressed by a force; a smaller play is refused, and so is one that
-    displacements dwarf.
-    """
+    """At rest against it, pressed by a force; a play that displacements dwarf is refused."""
     values = {"box_amplitude": 0.0, "stroke": 0.25, "clearance": 0.25, "force2": 0.5}
     f = open_fmu(fmu).start(**values)
     assert f.get("in_contact", "contact_side", "x_rel", "x2") == [1, 2, 0.25, 0.0]
@@ -313,41 +208,29 @@ def test_a_start_at_the_outer_end(fmu):
     f.step(3.0).set(force2=-0.5).step(3.5)
     assert f.get("in_contact", "contact_side", "impact_side") == [0, 0, 0]
     assert 0.0 < f.one("x_rel") < 0.25
-    wrong = open_fmu(fmu).set(stroke=0.1, clearance=0.25)
-    wrong.enter()
-    message = wrong.refused("exitInitializationMode")
-    assert "stroke = 0.1 m" in message and "clearance = 0.25 m" in message
     narrow = open_fmu(fmu).start(stroke=1e-9, **harmonic(1.1))
     with pytest.raises(Refused, match="stroke = 1e-09 m"):
         narrow.step(100.0)
 
 
-@pytest.mark.parametrize("wrong", [{"x2_start": 0.1}, {"v2_start": -1.0}, {"bonded": True}])
-def test_what_a_wall_cannot_be_is_refused(fmu, wrong):
-    f = open_fmu(fmu).set(wall=True, **wrong)
-    f.enter()
-    message = f.refused("exitInitializationMode")
-    assert "wall = true" in message and next(iter(wrong)) in message
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_peaks_are_those_of_a_dense_look(fmu, kind):
-    """Displacements, and accelerations in space between impacts."""
-    values, _, _, motion = exact(kind, 7, 3)
+    """Displacements, accelerations in space between impacts, and the gap."""
+    values = exact(kind, 7, 3)[0]
     dense, whole = (open_fmu(fmu).start(**values, peaks_on=True) for _ in range(2))
-    names = ("x1_max", "x2_max", "a1_max", "a2_max")
-    motion = Motion(values)
+    motion, names = Motion(values), ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max")
     for k in range(1, 40):
         rows = []
         whole.step(0.25 * k)
         for i in range(1, 65):
             t = 0.25 * (k - 1) + i / 256
-            x1, v1, x2, v2, touch = dense.step(t).get("x1", "v1", "x2", "v2", "in_contact")
-            pair = motion.accelerations(t, (x1, v1, x2, v2))
+            *state, touch, gap = dense.step(t).get(*STATE, "in_contact", "x_rel")
+            pair = motion.accelerations(t, state)
             if touch:
                 share = motion.share
                 pair = [sum(m * a for m, a in zip(share, pair, strict=True)) / sum(share)] * 2
-            rows.append([abs(x1), abs(x2), *(abs(a + motion.box(t)) for a in pair)])
+            spatial = [abs(a + motion.box(t)) for a in pair]
+            rows.append([abs(state[0]), abs(state[2]), *spatial, gap])
         top, found = np.max(rows, axis=0), np.array(whole.get(*names))
         assert (found >= top - 1e-12).all(), (k, found, top)
         one_impact = whole.one("impact_count") == dense.one("impact_count")

@@ -5,7 +5,6 @@ line, libcosim, fmuloader and ecos; and another checker reads it.
 import itertools
 import subprocess
 import sys
-import time
 from importlib.util import find_spec
 
 import fmpy
@@ -14,7 +13,7 @@ import pytest
 
 from ..sparing import ordinary
 from .driver import FMUS, FORMS, run, run_with_output
-from .programs.driver import compiled, open_fmu
+from .programs.driver import open_fmu
 
 NAMES = [
     *("x1", "x2", "v1", "v2", "x_rel", "x_rel_max", "box_force", "box_impulse", "phase"),
@@ -39,21 +38,6 @@ def test_simulate_fmu(fmu, reference):
     rows = np.array([found[name].astype(float) for name in ("time", *NAMES)]).T
     assert np.array_equal(rows, reference)
     assert reference[-1, -1] > 0.0
-
-
-def test_second_simulation_is_as_fast_as_the_first():
-    """FMPy extracts anew each time and deletes the folder afterwards, while Python keeps the
-    modules: the kernel stays the compiled one.
-    """
-    options = {"stop_time": 2e4, "output_interval": 1e4, "output": ["x1"]}
-    options["start_values"] = {"box_frequency": 1.13, "x_rel_max_on": False}
-    seconds, ends = [], set()
-    for _ in range(3):
-        begin = time.process_time()
-        ends.add(float(fmpy.simulate_fmu(str(FMUS["fmi2-python"]), **options)["x1"][-1]))
-        seconds.append(time.process_time() - begin)
-    assert len(ends) == 1 and compiled()
-    assert min(seconds[1:]) < 4 * seconds[0] + 0.1  # the source takes some fifty times as long
 
 
 def test_steps_that_differ_in_the_last_bits(fmu):
@@ -112,7 +96,5 @@ def test_fmutool_finds_nothing_to_say(form):
     program = "from fmu_manipulation_toolbox.cli.fmutool import fmutool; fmutool()"
     command = [sys.executable, "-c", program, "-input", str(FMUS[form]), "-check"]
     done = subprocess.run(command, capture_output=True, text=True)
-    told = done.stdout + done.stderr
     version = 3 if form == "fmi3" else 2
-    assert f"compliant with FMI-{version}.0" in told, told
-    assert f"No semantic error against the FMI-{version} standard" in told, told
+    assert f"No semantic error against the FMI-{version} standard" in done.stdout + done.stderr

@@ -1,16 +1,11 @@
 """What pythonfmu 0.7.0 does to an FMU's user, measured, and that this FMU does not pass it on."""
 
-import gc
 import math
 import re
-import sys
-import tempfile
-from pathlib import Path
 
-import fmpy
 import pytest
 
-from .driver import FMUS, run, run_with_output
+from .driver import FMUS, run
 from .programs.driver import Refused, describe, harmonic, messages, open_fmu
 
 PYTHON = FMUS["fmi2-python"]
@@ -50,31 +45,6 @@ def test_host_with_modules_of_the_same_names(tmp_path):
         ), name
 
 
-def resident():
-    return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="memory is looked up in Linux's way")
-def test_many_instances_and_resets():
-    """References that pythonfmu only borrows, released 300 times, and memory that stays."""
-    expected = open_fmu(PYTHON).start(**harmonic(1.13)).step(20.0).outputs()
-    f, sizes = open_fmu(PYTHON), []
-    for k in range(300):
-        f.reset().start(**harmonic(1.13)).step(1.0)
-        if k % 200 == 99:
-            gc.collect()
-            sizes.append(resident())
-    assert sizes[-1] - sizes[0] < 1e6  # bytes, over 200 resets; an instance has 8 kB
-    for k in range(40):
-        g = open_fmu(PYTHON, name=f"instance {k}").start(**harmonic(1.13)).step(1.0)
-        if k % 3 == 0:
-            g.reset()
-        g.free()
-        if k % 20 == 0:
-            gc.collect()
-            assert f.reset().start(**harmonic(1.13)).step(20.0).outputs() == expected
-
-
 @pytest.mark.parametrize(
     "name", ["%s%n%s%n", "%d %100000d %p", "ü €", "", "a" * 2000, "two\nlines"]
 )
@@ -84,25 +54,6 @@ def test_hostile_instance_names(fmu, name):
     with pytest.raises(Refused, match="m1 = nan kg: expected 1e-24 <= m1 <= 1e"):
         f.set(m1=math.nan)
     assert f.reset().start().step(1.0).one("phase") == pytest.approx(0.4)
-
-
-def test_percent_signs_in_a_message_reach_the_importer(tmp_path):
-    """The only text of a user's that a message repeats is a number, so a variable of a copied FMU
-    gets a name with format directives.
-    """
-    texts = run("traps.percent_signs_in_a_message_reach_the_importer", PYTHON, cwd=tmp_path)
-    assert len(texts) == 50
-    assert all("%s%n %d 100 %: expected everything" in text for text in texts)
-
-
-def test_discarded_step_is_noticed(tmp_path):
-    """FMPy's loop takes pythonfmu's discarded step for the end of the simulation and reports
-    success: stderr has the reason.
-    """
-    times, done = run_with_output("traps.discarded_step_is_noticed", PYTHON, cwd=tmp_path)
-    assert times[-1] < 10.0  # the trap
-    (line,) = [text for text in done.stderr.splitlines() if "cannot finish" in text]
-    assert "the step to time = " in line and "10000000" in line
 
 
 def test_a_step_too_short_to_advance_is_reported_once(fmu):
@@ -118,14 +69,3 @@ def test_a_step_too_short_to_advance_is_reported_once(fmu):
     (message,) = texts + messages
     for part in ("communicationStepSize = 1e-09 s", "1000000000.0 s", "expected a longer one"):
         assert part in message
-
-
-def test_working_folder_and_paths(fmu, tmp_path, monkeypatch):
-    """Wherever the importer runs, and wherever it extracts to."""
-    folder = tmp_path / "a folder with spaces" / "run"
-    folder.mkdir(parents=True)
-    expected = open_fmu(fmu).start().step(50.0).outputs()
-    for place in (folder, "/"):
-        monkeypatch.chdir(place)
-        extracted = fmpy.extract(str(fmu), tempfile.mkdtemp(dir=folder))
-        assert open_fmu(fmu, folder=extracted).start().step(50.0).outputs() == expected

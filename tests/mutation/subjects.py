@@ -19,7 +19,7 @@ SUBJECTS = {
     "fmu_src/kernels/oscillator/impact.py": kernel("impact", "chattering", "motion"),
     "fmu_src/kernels/oscillator/contact.py": kernel("contact", "event_function", "motion"),
     "fmu_src/kernels/oscillator/series.py": kernel("series", "chattering", "motion"),
-    "fmu_src/kernels/oscillator/motion.py": kernel("motion", "chattering", "stepper", "contact"),
+    "fmu_src/kernels/oscillator/motion.py": kernel("motion", "chattering", "contact"),
     "fmu_src/kernels/repetition.py": ("tests/orchestrate/response/test_multiplicity.py",),
     "orchestrate/weak_drive/hysteresis.py": (f"{DRIVE}/test_hysteresis.py",),
     "orchestrate/weak_drive/steady_speed.py": (f"{DRIVE}/test_steady_speed.py",),

@@ -1,7 +1,6 @@
 """Which function may be called when, and what a call that may not be changes: nothing."""
 
 import ctypes
-import math
 import re
 
 import pytest
@@ -9,7 +8,7 @@ import pytest
 from fmu_src.export import native_form
 
 from ..fmu.driver import MODELS, path_of
-from ..fmu.programs.driver import ERROR, Refused, open_fmu
+from ..fmu.programs.driver import ERROR, open_fmu
 from .conftest import VERSIONS
 
 NEW, INITIALIZING, STEPPING, TERMINATED, BETWEEN_EVENTS, AT_EVENT = range(6)
@@ -106,52 +105,3 @@ def test_no_instance_and_null_pointers_are_an_error(exported, version, model):
         component = ctypes.c_void_p(f.fmu.component)
         assert function(component, *nothing) in range(ERROR + 1), name
     f.reset().start().step(1.0)
-
-
-@pytest.mark.parametrize("version", VERSIONS)
-def test_null_pointers_where_values_are_asked_for(fmus, version):
-    """One reference, and no place for its value: an error with a message."""
-    with open_fmu(fmus[version]) as f:
-        f.start()
-        component, one = ctypes.c_void_p(f.fmu.component), ctypes.c_size_t(1)
-        kinds = ("Float64", "Int32", "Boolean") if f.third else ("Real", "Integer", "Boolean")
-        for name in (f"{version}{verb}{kind}" for verb in ("Get", "Set") for kind in kinds):
-            function = getattr(ctypes.CDLL(f.fmu.dll._name), name)
-            place = (ctypes.c_uint32 * 1)(0)
-            for given in ((place, one, None, one), (None, one, place, one)):
-                assert function(component, *given) == ERROR, name
-
-
-@pytest.mark.parametrize("version", VERSIONS)
-def test_only_references_of_the_model_description_are_known(fmus, version):
-    with open_fmu(fmus[version]) as f:
-        f.start()
-        before = f.save()
-        scalars = {v.valueReference: v for v in f.variables.values() if not v.dimensions}
-        arrays = {v.valueReference for v in f.variables.values() if v.dimensions}
-        types = ("Float64", "Int32", "Boolean") if f.third else ("Real", "Integer", "Boolean")
-        for reference in (*range(2100), 2**31 - 1, 2**31, 2**32 - 1):
-            known = scalars.get(reference)
-            for kind in types:
-                if known is None or known.type != kind:
-                    if reference not in arrays:
-                        f.refused(f"get{kind}", [reference])
-                else:
-                    f.call(f"get{kind}", [reference])
-                if known is None or known.causality not in ("parameter", "input"):
-                    with pytest.raises(Refused):
-                        f.call(f"set{kind}", [reference], [0])
-        assert f.save() == before
-
-
-@pytest.mark.parametrize("version", VERSIONS)
-def test_a_step_of_no_length_and_the_shortest_there_is(fmus, version):
-    with open_fmu(fmus[version]) as f:
-        before = f.start().step(20.0).motion()
-        for size in (-1.0, -5e-324, math.nan, math.inf, -math.inf):
-            assert "communicationStepSize = " in f.refused("doStep", 20.0, size)
-        for point in (-20.0, 19.0, 21.0, math.nan, math.inf, 1e300):
-            told = f.refused("doStep", point, 1.0)
-            assert "currentCommunicationPoint = " in told and "20.0 s" in told
-        f.call("doStep", 20.0, 0.0)
-        assert f.motion() == before

@@ -58,22 +58,6 @@ def test_times_by_the_clock_are_impact_times_of_small_steps(fmus, values, end):
     assert seen == len(times)
 
 
-def test_without_early_return_the_clock_ticks_at_the_end_of_steps_with_impacts(fmus):
-    f = open_fmu(fmus["fmi3"], event_mode=True).start(**CHAOS)
-    count, ticks = 0, []
-    for k in range(1, 1025):
-        event, early = f.go(0.25 * k)
-        assert not early and f.time == 0.25 * k
-        before, count = count, f.one("impact_count")
-        f.fmu.enterEventMode()
-        assert f.clock() == event == (count > before)
-        ticks.append(event)
-        f.update()
-        assert not f.clock()
-        f.fmu.enterStepMode()
-    assert 10 < sum(ticks) < len(ticks) - 100
-
-
 def test_an_ignored_tick_is_gone_after_the_next_step(fmus):
     """An importer need not handle the event; and leaving event mode without an update ends the tick
     too.
@@ -171,12 +155,3 @@ def test_time_does_not_run_backwards_next_to_an_impact(fmus, scale):
                         if early and fmu.time == before and not event:
                             raise AssertionError("a step that went nowhere without an event")
             assert seen == times
-
-
-def test_a_refused_step_in_event_mode_leaves_the_tick(fmus):
-    with open_fmu(fmus["fmi3"], event_mode=True) as fmu:
-        fmu.start(**CHAOS)
-        assert fmu.go(20.0)[0]
-        fmu.fmu.enterEventMode()
-        fmu.refused("doStep", 20.0, 1.0)
-        assert fmu.clock()

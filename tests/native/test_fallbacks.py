@@ -5,11 +5,8 @@ import zipfile
 import pytest
 from fmpy.validation import validate_fmu
 
-from fmu_src.export.c_library import LOOPS
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS, export
-from orchestrate.errors import InputError
-from orchestrate.fmu.c_library import library_path
 from tests import importers
 
 from ..fmu.programs.driver import COMMON, harmonic
@@ -55,15 +52,6 @@ def test_without_a_compiler_there_is_the_pythonfmu_fmu_and_one_line(fmus, hide, 
     assert "pure Python" in line
     assert validate_fmu(str(made["fmi2-python"])) == []
     assert same_run(made["fmi2-python"], fmus["fmi2"], tmp_path) == (True, [])
-
-
-def test_without_a_compiler_one_line_says_what_the_loops_need(hide, tmp_path):
-    hide("ziglang", "own")
-    with pytest.raises(InputError) as caught:
-        library_path(LOOPS / "respond.c", tmp_path)
-    (line,) = str(caught.value).splitlines()
-    assert line.startswith("respond.c: no library of it is here") and "no C compiler" in line
-    assert 'expected pip install -e ".[build]"' in line
 
 
 @pytest.mark.slow  # compiles for 4 s

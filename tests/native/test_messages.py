@@ -58,13 +58,6 @@ def test_another_token_is_shown_beside_the_fmus_own(fmus, version):
     assert ("GUID" in message) == (version == "fmi2")
 
 
-@versions
-def test_model_exchange_is_refused_as_such(fmus, version):
-    message = refusal(fmus[version], version, describe(fmus[version]).guid, "model exchange")
-    assert "co-simulation only" in message
-    assert "GUID" not in message and "token" not in message
-
-
 @pytest.mark.parametrize("model", MODELS)
 def test_a_message_needs_no_arguments(exported, model):
     """Importers that show the format as it is, and those that fill it in, show the same text."""

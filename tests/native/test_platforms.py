@@ -24,7 +24,6 @@ int kernel_advance(double *memory, double time) {
     return 0;
 }
 """
-EXPORTED = b'__attribute__((visibility("default"))) int one(void) { return 1; }'
 FUSED = r"\s(v?fn?m(add|sub|la|ls)\S*)\s"  # fmadd, fmsub, fnmadd, fnmsub, fmla, fmls; vfmadd...
 ARM_LIBRARIES = Path("/usr/aarch64-linux-gnu")  # Debian's libc6-arm64-cross
 FOLDERS = {
@@ -101,16 +100,6 @@ def install_name(library):
     command = load_commands(library)[ID_DYLIB]
     (offset,) = struct.unpack_from("<I", command, 8)
     return command[offset:].split(b"\0", 1)[0].decode()
-
-
-@pytest.mark.parametrize("platform", ["x86_64-darwin", "aarch64-darwin"])
-def test_a_dylib_bears_the_name_it_is_given(platform):
-    """Libraries of one name are one to macOS's loader: the model's keeps them apart."""
-    try:
-        library = compiler.link(platform, "MotorShaker", {"one.c": EXPORTED})
-    except CannotExport as reason:
-        pytest.skip(str(reason))
-    assert install_name(library).rsplit("/", 1)[-1] == "MotorShaker.dylib"
 
 
 @pytest.mark.slow

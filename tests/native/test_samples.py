@@ -3,7 +3,7 @@
 import pytest
 
 from ..fmu.driver import FMUS, FORMS
-from ..fmu.programs.driver import COMMON, STATE, harmonic, open_fmu
+from ..fmu.programs.driver import STATE, harmonic, open_fmu
 
 SERIES = ("x1", "x2", "v1", "v2")
 ROOM = 200
@@ -28,20 +28,6 @@ def test_samples_are_states_of_small_steps(fmus, form, count):
 
 
 @forms
-def test_samples_do_not_change_the_run_and_their_number_may(fmus, form):
-    found = []
-    for counts in ((0,), (7,), (ROOM, 0, 3)):
-        f = open_fmu(FMUS[form]).start(**harmonic(1.13))
-        for k in range(50):
-            count = counts[k % len(counts)]
-            f.set(sample_count=count).step(10.0 * (k + 1))
-            if count:
-                assert f.series("x2_sample")[count - 1] == f.one("x2")
-        found.append(f.get(*(name for name in COMMON if name != "x_rel_max")))
-    assert found[0] == found[1] == found[2]
-
-
-@forms
 def test_a_saved_state_has_the_samples_of_its_step_and_no_others(fmus, form):
     """By its handle: also if only one of both has any, or the number of samples is 0 by now."""
     f, states = open_fmu(FMUS[form]).start(**harmonic(1.13)), []
@@ -57,11 +43,3 @@ def test_a_saved_state_has_the_samples_of_its_step_and_no_others(fmus, form):
     for k in (1, 0):
         other.call("setFMUState", states[k][0])
         assert [other.series(f"{name}_sample") for name in SERIES] == states[k][1]
-
-
-@pytest.mark.parametrize("count", [-1, ROOM + 1])
-def test_sample_count_out_of_range(native_fmu, count):
-    f = open_fmu(native_fmu).start()
-    setter = "setInt32" if f.third else "setInteger"
-    message = f.refused(setter, [f.reference("sample_count")], [count])
-    assert f"sample_count = {count}:" in message and f"{ROOM}" in message

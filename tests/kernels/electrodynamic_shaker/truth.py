@@ -11,7 +11,6 @@ from fmu_src.models.electrodynamic_shaker.variables import VARIABLES
 
 DEFAULTS = {v.name: float(v.start) for v in VARIABLES if not v.calculated}
 STATES = ("box_position", "box_velocity", "current", "energy")
-LOSSES = ("coil_heat", "suspension_loss", "box_force_work")
 
 
 def polynomial(p, name, t):

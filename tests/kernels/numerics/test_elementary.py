@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from fmu_src.kernels.numerics.elementary import TWO_PI, exp_decay, fraction, sincos_turns
+from fmu_src.kernels.numerics.elementary import exp_decay, fraction, sincos_turns
 
 from ..oscillator.kernel import examples
 
@@ -39,22 +39,6 @@ def test_quarter_turns_are_exact(full):
     assert quarters == [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)]
 
 
-@examples(200)
-@given(st.floats(-1e3, 1e3))
-def test_full_turns_change_nothing(u):
-    near = fraction(u)
-    if near + 1024.0 - 1024.0 == near:  # the sum is exact
-        assert sincos_turns(near) == sincos_turns(near + 1024.0)
-
-
-@examples(200)
-@given(st.floats(-math.pi, math.pi))
-def test_agrees_with_the_mathematical_library(angle):
-    sine, cosine = sincos_turns(angle / TWO_PI)
-    assert sine == pytest.approx(math.sin(angle), abs=5e-16)
-    assert cosine == pytest.approx(math.cos(angle), abs=5e-16)
-
-
 @examples(400)
 @given(st.floats(0.0, 700.0) | st.floats(0.0, 1.0))
 @example(0.0)
@@ -62,12 +46,6 @@ def test_agrees_with_the_mathematical_library(angle):
 def test_exponential_decay(x):
     with mp.workdps(40):
         assert ulps(exp_decay(x), mp.exp(-mp.mpf(x))) <= 2.0
-
-
-@examples(100)
-@given(st.floats(700.0, 1e308, exclude_min=True))
-def test_exponential_decay_ends_at_zero(x):
-    assert exp_decay(x) == 0.0
 
 
 @examples(300)

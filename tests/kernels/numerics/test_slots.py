@@ -1,19 +1,13 @@
 """Slots follow one another; variable tables and memories of the kernels agree."""
 
-from dataclasses import replace
-
 import pytest
 
 from fmu_src.kernels.electrodynamic_shaker import memory as coil
 from fmu_src.kernels.motor_shaker import memory as shaker
 from fmu_src.kernels.oscillator import memory as oscillator
 from fmu_src.models.electrodynamic_shaker import variables as coil_table
-from fmu_src.models.electrodynamic_shaker.model import MODEL as COIL
 from fmu_src.models.motor_shaker import variables as motor_shaker_table
-from fmu_src.models.motor_shaker.model import MODEL as MOTOR_SHAKER
 from fmu_src.models.oscillator import variables as oscillator_table
-from fmu_src.models.oscillator.model import MODEL as OSCILLATOR
-from fmu_src.runtime.table import numbered
 
 MODELS = [
     (oscillator, oscillator_table.VARIABLES),
@@ -46,41 +40,7 @@ def test_value_references_are_places_in_the_table_and_slots(memory, variables):
             assert getattr(memory, variable.name.upper()) == variable.slot
 
 
-@pytest.mark.parametrize("model", [OSCILLATOR, MOTOR_SHAKER, COIL], ids=lambda model: model.name)
-def test_a_continuous_output_anywhere_in_the_table_has_a_rate_of_its_own(model):
-    """Whichever variable became one, also behind all that there are: its rate lies among the rates,
-    and in nobody else's slot.
-    """
-    memory = {OSCILLATOR: oscillator, MOTOR_SHAKER: shaker, COIL: coil}[model]
-    first = next(v.slot for v in model.variables if v.causality == "output")
-    could_be = [v for v in model.variables[first:] if not v.series]
-    could_be = [replace(v, causality="output", variability="continuous") for v in could_be]
-    slots = [model.rate_slot(v) for v in could_be]
-    assert len(set(slots)) == len(slots)
-    if model is OSCILLATOR:
-        assert memory.RATES <= min(slots) <= max(slots) < memory.CUBIC_SET
-    else:
-        assert memory.OUTPUT_RATES <= min(slots) <= max(slots) < memory.SIZE
-
-
 def test_promised_value_references():
     places = {variable.name: variable.slot for variable in oscillator_table.VARIABLES}
     found = {name: places[name] for name in PROMISED}
     assert found == PROMISED
-
-
-def test_a_table_in_another_order_is_refused():
-    first, second, *others = (replace(v, slot=-1) for v in oscillator_table.VARIABLES)
-    with pytest.raises(ValueError, match="m2 is variable 0 of the table, but slot 1"):
-        numbered([second, first, *others], oscillator)
-
-
-def test_no_slot_lies_in_another():
-    """Each name has its own place; offsets inside a branch count from 0 on their own."""
-    assert oscillator.OSCILLATOR_2 - oscillator.OSCILLATOR_1 == oscillator.STEP_GROWTH + 4
-    outputs = oscillator.X1_SAMPLE - oscillator.X1
-    assert oscillator.RATES + outputs == oscillator.ADDED_RATES
-    added = oscillator.TIME - oscillator.EVALUATIONS
-    assert oscillator.ADDED_RATES + added == oscillator.CUBIC_SET == oscillator.SIZE - 3
-    for drive in (shaker, coil):
-        assert drive.OUTPUT_RATES + drive.TIME - drive.BOX_POSITION == drive.SIZE

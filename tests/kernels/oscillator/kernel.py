@@ -1,6 +1,4 @@
-"""A kernel's flat memory from keyword arguments, steps that must succeed, and the states a step
-passes through.
-"""
+"""A kernel's flat memory from keyword arguments, and the states that a step passes through."""
 
 import math
 from unittest.mock import patch
@@ -27,18 +25,11 @@ DEFAULTS = {
     "x_rel_max_on": 1.0,
     "evaluation_limit": 1e7,
 }
-# of a point of time
-OUTPUTS = (
-    tuple(range(at.X1, at.BOX_IMPULSE))
-    + tuple(range(at.CONTACT_FORCE, at.X_REL_MAX))
-    + (at.CONTACT_COUNT, at.TIME)
-)
 FORCES = (
     *("force1_amplitude", "force2_amplitude", "force1", "force1_1", "force1_2", "force1_3"),
     *("force2", "force2_1", "force2_2", "force2_3"),
 )
 least_work = patch.multiple(stepper, WORK_BASE=5000.0, WORK_RATE=0.0)  # steps that give up early
-CHAOTIC = {"box_frequency": 0.7}  # default structure: tens of impacts a period, no period
 
 
 def unstarted(**values):
@@ -69,11 +60,6 @@ def set_inputs(m, **values):
         m[getattr(at, name.upper())] = value
 
 
-def outputs(m):
-    """Everything an importer sees of a point of time (not what belongs to a whole step)."""
-    return [m[i] for i in OUTPUTS]
-
-
 def pieces(m, time):
     """Advance to ``time``; the parts of states passed through, as (state's memory, age at entry,
     age at exit).
@@ -94,10 +80,8 @@ def pieces(m, time):
 
 
 def flight(x1, v1, x2, v2, **values):
-    """A flight from initial conditions at the start time, in a structure with omega = 1."""
-    m = started(x1_start=x1, v1_start=v1, x2_start=x2, v2_start=v2, **values)
-    assert m[at.MODE] == at.FLIGHT
-    return m
+    """A motion from initial conditions at the start time, in a structure with omega = 1."""
+    return started(x1_start=x1, v1_start=v1, x2_start=x2, v2_start=v2, **values)
 
 
 def examples(count):

@@ -13,12 +13,10 @@ from hypothesis import strategies as st
 from fmu_src.kernels.numerics.elementary import sincos_turns
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.contact import first_nonzero_derivative, gap_acceleration
-from fmu_src.kernels.oscillator.event_function import evaluate
 from fmu_src.kernels.oscillator.motion import state_at
 from tests import exact_motion as truth
 
-from .kernel import DEFAULTS, FORCES, advanced, examples, pieces, rounded, started, structures
-from .reference import opening
+from .kernel import DEFAULTS, examples, rounded, started, structures
 from .test_event_function import STATES, contact_and_pull, size
 
 # of the force at rest the fifth derivative is the first that does not vanish
@@ -51,16 +49,6 @@ def test_from_rest_newton_decides(values, phase):
     assert started(**values)[at.IN_CONTACT] == float(pressed)
 
 
-@examples(150)
-@given(structures(), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
-def test_on_the_boundary_the_force_decides(values, x, v):
-    phase = mp.mpf(values["phase_start"])
-    force = opening({**DEFAULTS, **values}, mp.mpf(x), mp.mpf(v), phase)
-    assume(abs(force) > 1e-12)  # not where it vanishes
-    m = started(x1_start=x, x2_start=x, v1_start=v, v2_start=v, **values)
-    assert m[at.IN_CONTACT] == float(force < 0)
-
-
 @examples(60)
 @given(structures(clearance=True), STATES, st.floats(0.0, 3.0))
 def test_the_gaps_acceleration_is_newtons(values, state, age):
@@ -70,21 +58,6 @@ def test_the_gaps_acceleration_is_newtons(values, state, age):
     x1, v1, *_ = state_at(m, age)
     found = gap_acceleration(m, x1, v1, cosine, sine, age)
     assert abs(found + pull(age)) <= 1e-12 * (1.0 + size(pull)) * (1.0 + age) ** 3
-
-
-@examples(100)
-@given(structures(), st.floats(0.1, 1.0), st.sampled_from([-1.0, 1.0]))
-def test_where_the_force_vanishes_its_slope_decides(values, v, sign):
-    values = {**values, "d1": 0.3, "d2": 0.05, **dict.fromkeys(FORCES, 0.0)}
-    m2, k2 = values["m2"], values["k2"]
-    assume(abs(1.0 - k2 / m2) > 1e-2)
-    v *= sign
-    x = -(values["d1"] - values["d2"] / m2) * v / (1.0 - k2 / m2)
-    gap = separate_gap(values, x, v, mp.mpf(values["phase_start"]), mp.mpf("1e-4"))
-    assume(abs(gap) > 1e-15)  # the slope does not vanish too
-    m = started(x1_start=x, x2_start=x, v1_start=v, v2_start=v, **values)
-    assert m[at.IN_CONTACT] == float(gap < 0)
-    assert m[at.IMPACT_COUNT] == 0.0
 
 
 @pytest.mark.parametrize("force", [0.0, 0.3])
@@ -119,73 +92,3 @@ def test_drives_that_cancel_but_for_rounding_decide_nothing():
     for v in np.linspace(0.1, 1.0, 100).tolist():
         x = part * v / m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
         assert first_nonzero_derivative(m, x, v, 1)[0] == 2
-
-
-CONTACTS = pytest.mark.parametrize(
-    "values",
-    [
-        {"e": 0.3},
-        {"e": 0.0, "d1": 0.3, "d2": 0.02, "box_frequency": 0.7},
-        {"m2": 2.0, "k2": 1.0, "e": 0.1},
-        {"e": 0.3, "force1_amplitude": 0.1, "force2": -0.05},
-        {"e": 0.3, "wall": True, "d1": 0.1},
-    ],
-)
-
-
-@CONTACTS
-def test_pressed_together_all_through_contact(values):
-    m = started(**values)
-    contacts = [piece for piece in pieces(m, 120.0) if piece[0][at.MODE] == at.CONTACT]
-    assert len(contacts) >= 5
-    for state, entry, end in contacts:
-        ages = np.linspace(entry, end, 200)
-        force = np.array([-evaluate(state, float(age))[0] for age in ages])
-        size = np.abs(force).max()
-        assert force[1:-1].max() < 0.0
-        if state[at.END_KIND] == at.END_EVENT:
-            assert abs(force[-1]) <= 1e-12 * (1.0 + size)
-
-
-@CONTACTS
-def test_released_masses_part(values):
-    m = started(**values)
-    passed = pieces(m, 120.0)
-    released = [
-        (before, after)
-        for before, after in zip(passed, passed[1:], strict=False)
-        if before[0][at.MODE] == at.CONTACT
-    ]
-    assert len(released) >= 4
-    for (before, *_), (state, _, end) in released:
-        assert state[at.IMPACT_COUNT] == before[at.IMPACT_COUNT]
-        assert state[at.MODE] == at.FLIGHT
-        x1, v1, x2, v2 = state_at(state, min(end, 0.05) / 2)
-        assert x2 > x1
-        assert v2 > v1
-
-
-@CONTACTS
-def test_contact_force_is_newtons(values):
-    m = started(**values)
-    seen = 0
-    for i in range(1, 400):
-        before = list(m)
-        advanced(m, 0.3 * i)
-        assert m[at.CONTACT_FORCE] >= 0.0
-        if m[at.IN_CONTACT] and before[at.IN_CONTACT]:
-            seen += 1
-            phase = mp.mpf(m[at.PHASE])
-            _, push = truth.contact_motion({**DEFAULTS, **values}, m[at.X1], m[at.V1], phase)
-            assert m[at.CONTACT_FORCE] == pytest.approx(float(push(0)), abs=1e-12)
-    assert seen > 20
-
-
-@pytest.mark.parametrize("pressing", [True, False])
-def test_a_plastic_impact_sticks_at_once_where_it_is_pressed(pressing):
-    x = 1.0 if pressing else -1.0
-    m = started(x1_start=x, x2_start=x, v1_start=0.5, v2_start=-0.5, e=0.0, box_amplitude=0.0)
-    assert m[at.IN_CONTACT] == float(pressing)
-    assert (m[at.IMPACT_COUNT], m[at.V1], m[at.V2]) == (1.0, 0.0, 0.0)
-    assert m[at.IMPACT_ENERGY] == 0.25
-    assert (advanced(m, 0.1)[at.X_REL] == 0.0) == pressing

@@ -11,53 +11,7 @@ from hypothesis import strategies as st
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import nodes, stepper
 
-from .kernel import advanced, examples, least_work, sizes, started, unstarted
-
-UNDAMPED = {"d1": 0.0, "d2": 0.0}
-
-
-@pytest.mark.parametrize(
-    "values, code",
-    [
-        ({**UNDAMPED, "box_frequency": 1.0}, at.OK),
-        ({"x1_start": 1e-300}, at.START_OVERLAP),
-        ({"x1_start": 0.1, "x2_start": 0.09999999999999999}, at.START_OVERLAP),
-        ({"bonded": 1.0, "x2_start": 0.1}, at.START_BONDED),
-        ({"bonded": 1.0, "v2_start": 0.1}, at.START_BONDED),
-        ({"bonded": 1.0, "v2_start": 0.1, "v1_start": 0.1}, at.OK),
-    ],
-)
-def test_codes_of_initialisation(values, code):
-    m = unstarted(**values)
-    assert stepper.initialize(m, 0.0) == code
-
-
-@least_work
-def test_a_step_with_too_many_impacts_gives_up():
-    m = started(e=1.0, gamma=1e-9, box_frequency=0.4)
-    assert stepper.advance(m, 1e6) == at.UNFINISHED
-    assert m[at.WORK] <= m[at.WORK_LIMIT] + 1.0
-    assert stepper.advance(started(e=1.0, gamma=1e-9, box_frequency=0.4), 1.0) == at.OK
-
-
-def test_the_work_allowed_grows_with_the_step():
-    m = started()
-    limits = [advanced(m, time)[at.WORK_LIMIT] for time in (1e-3, 1.0, 3.0)]
-    assert limits[0] < limits[1] < limits[2]
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"box_amplitude": 1e308, "box_frequency": 1.3},
-        {"x2_start": 1e300, "v1_start": -1e300, "k2": 1e20},
-        {"box_acceleration": 1e308, "k1": 1e-5, "k2": 1e-5},
-    ],
-)
-def test_what_overflows_is_not_finite(values):
-    m = unstarted(**values)
-    code = stepper.initialize(m, 0.0)
-    assert at.NOT_FINITE in (code, code or stepper.advance(m, 1.0))
+from .kernel import examples, least_work, sizes, unstarted
 
 
 @pytest.mark.parametrize(

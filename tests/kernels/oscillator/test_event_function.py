@@ -16,7 +16,7 @@ from fmu_src.kernels.oscillator.motion import begin_common
 from fmu_src.kernels.oscillator.nodes import LONGEST
 from tests import exact_motion as truth
 
-from .kernel import DEFAULTS, examples, rest_together, sizes, started, structures, unloaded
+from .kernel import DEFAULTS, examples, flight, rest_together, sizes, started, structures, unloaded
 
 AGES = st.floats(0.0, 40.0)
 STATES = st.tuples(
@@ -26,8 +26,7 @@ STATES = st.tuples(
 
 def flight_and_gap(values, state):
     """A flight's memory and its gap by Newton's law, omega = 1."""
-    x1, v1, x2, v2 = state
-    m = started(x1_start=x1, v1_start=v1, x2_start=x2, v2_start=v2, **values)
+    m = flight(*state, **values)
     full, start = {**DEFAULTS, **values}, unloaded(values, state)
     first, second = truth.free_motion(full, start, mp.mpf(values["phase_start"]))
     return m, truth.gap_signal(full, first, second)

@@ -15,7 +15,7 @@ from fmu_src.kernels.oscillator.impact import (
     velocities_after_impact,
 )
 
-from .kernel import advanced, examples, rounded, sizes, started, unstarted
+from .kernel import examples, rounded, sizes, started, unstarted
 
 SPEEDS = rounded(-10.0, 10.0)
 
@@ -34,23 +34,9 @@ def kinetic(m, v1, v2):
 
 
 @examples(200)
-@given(sizes(1e-3, 1e3), st.floats(0.0, 1.0), SPEEDS, SPEEDS)
-def test_momentum_restitution_and_energy(mu, e, v1, v2):
-    assume(v1 > v2)
-    m = structure(mu, e)
-    w1, w2 = velocities_after_impact(m, v1, v2, e)
-    speed = abs(v1) + abs(v2)
-    assert w1 + mu * w2 == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
-    assert w2 - w1 == pytest.approx(e * (v1 - v2), abs=4e-15 * speed)
-    count_impact(m, 0.0, v1 - v2, e, False)
-    lost = kinetic(m, v1, v2) - kinetic(m, w1, w2)
-    assert m[at.IMPACT_ENERGY] == pytest.approx(lost, abs=1e-13 * kinetic(m, speed, speed))
-
-
-@examples(200)
-@given(sizes(1e-3, 1e3), st.floats(0.0, 1.0), sizes(1e-6, 1e6), SPEEDS, SPEEDS)
-def test_restitution_that_decreases_with_the_speed_never_adds_energy(mu, e, slope, v1, v2):
-    """v' = -e(v) v with e(v) = e/(1 + slope v), v in m/s; momentum is kept, energy is lost."""
+@given(*(sizes(1e-3, 1e3), st.floats(0.0, 1.0), st.just(0.0) | sizes(1e-6, 1e6), SPEEDS, SPEEDS))
+def test_momentum_restitution_and_energy(mu, e, slope, v1, v2):
+    """v' = -e(v) v with e(v) = e/(1 + slope v), v in m/s; nothing is gained, whatever e(v)."""
     assume(v1 > v2)
     m = structure(mu, e, e_slope=slope)
     closing, speed = v1 - v2, abs(v1) + abs(v2)
@@ -59,7 +45,10 @@ def test_restitution_that_decreases_with_the_speed_never_adds_energy(mu, e, slop
     w1, w2 = velocities_after_impact(m, v1, v2, now)
     assert w1 + mu * w2 == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
     assert w2 - w1 == pytest.approx(now * closing, abs=4e-15 * speed)
-    assert kinetic(m, w1, w2) <= kinetic(m, v1, v2) + 1e-13 * kinetic(m, speed, speed)
+    count_impact(m, 0.0, closing, now, False)
+    lost = kinetic(m, v1, v2) - kinetic(m, w1, w2)
+    assert m[at.IMPACT_ENERGY] == pytest.approx(lost, abs=1e-13 * kinetic(m, speed, speed))
+    assert lost >= -1e-13 * kinetic(m, speed, speed)
 
 
 @examples(200)
@@ -72,12 +61,6 @@ def test_a_faster_impact_parts_faster_by_a_smaller_coefficient(e, slope, one, tw
     assert parting[0] <= parting[1] * (1.0 + 1e-15)
     assert e >= restitution_coefficient(m, slow) >= restitution_coefficient(m, fast) >= 0.0
     assert restitution_coefficient(m, 1e-17 / slope) == e
-
-
-@examples(200)
-@given(st.floats(0.0, 1.0), st.floats(0.0, 1e300))
-def test_without_a_slope_the_coefficient_is_e_to_the_last_bit(e, closing):
-    assert restitution_coefficient(structure(1.0, e), closing) == e
 
 
 @examples(200)
@@ -106,11 +89,3 @@ def test_masses_that_are_pulled_apart_do_not_stick():
 def test_at_e_1_nothing_sticks():
     assert not chattering_ends(started(gamma=1.0, e=1.0), 1e-300, -1e300)
     assert chattering_ends(started(gamma=1.0, e=0.0), 0.0, -1e-300)
-
-
-def test_an_impact_at_the_start_counts():
-    m = started(v1_start=1.0, v2_start=-1.0, e=0.5, box_amplitude=0.0)
-    assert (m[at.IMPACT_COUNT], m[at.IMPACT_VELOCITY], m[at.IMPACT_TIME]) == (1.0, 2.0, 0.0)
-    assert (m[at.V1], m[at.V2]) == (-0.5, 0.5)
-    assert m[at.IMPACT_ENERGY] == pytest.approx(0.75)
-    assert advanced(m, 0.1)[at.X_REL] > 0.0

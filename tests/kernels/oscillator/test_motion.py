@@ -16,69 +16,10 @@ from tests import exact_motion as truth
 from tests.fmu.event_driven import CONTACT, Motion
 from tests.fmu.test_forces import KINDS, drawn
 
-from . import reference
 from .kernel import DEFAULTS, advanced, pieces, set_inputs, started
 
 STATE = (-0.3, 0.2, 0.4, -0.5)  # x1, v1, x2, v2
 STARTS = dict(zip(("x1_start", "v1_start", "x2_start", "v2_start"), STATE, strict=True))
-
-
-def events(m, stop):
-    """Times (s) and kinds of the kernel's events."""
-    found = []
-    for state, _, end in pieces(m, stop)[:-1]:
-        if state[at.END_KIND] == at.END_EVENT:
-            found.append(
-                ((state[at.ORIGIN] + state[at.ORIGIN_LOW] + end) / state[at.OMEGA], state[at.MODE])
-            )
-    return found
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"box_frequency": 1.3, "stop": 60.0},
-        {"box_frequency": 0.4, "e": 0.3, "gamma": 1e-3, "stop": 60.0},
-        {
-            "m1": 0.7,
-            "m2": 1.9,
-            "k1": 2.3,
-            "k2": 1.1,
-            "d1": 0.2,
-            "d2": 0.05,
-            "box_frequency": 1.1,
-            "phase_start": 2.0,
-            "stop": 60.0,
-        },
-        {
-            "k2": 3.0,
-            "d1": 2.5,
-            "d2": 0.0,
-            "e": 0.9,
-            "box_frequency": 0.8,
-            "box_acceleration": 0.2,
-            "stop": 60.0,
-        },
-        {"d1": 1.9, "d2": 0.3, "e": 0.0, "box_frequency": 0.6, "stop": 60.0},
-        {"force1_amplitude": 0.3, "force2_amplitude": -0.1, "force2": 0.02, "stop": 60.0},
-    ],
-)
-def test_event_by_event_in_high_precision(values):
-    values = {**DEFAULTS, **values}
-    stop = values.pop("stop")
-    with mp.workdps(40):
-        expected, state = reference.event_by_event(values, STATE, stop)
-    m = started(**values, **STARTS)
-    found = events(m, stop)
-    assert len(found) == len(expected) >= 5
-    assert [mode == at.CONTACT for _, mode in found] == [kind == "release" for _, kind in expected]
-    assert [time for time, _ in found] == pytest.approx(
-        [float(time) for time, _ in expected], rel=1e-12
-    )
-    speed = float(m[at.FORCING])
-    assert [m[i] for i in (at.X1, at.V1, at.X2, at.V2)] == pytest.approx(
-        [float(value) for value in state], abs=1e-11 * (1.0 + speed)
-    )
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -40,15 +40,6 @@ def test_they_are_those_of_the_closed_form(values, ages):
 
 
 @examples(40)
-@given(structures() | st.just(STEEP), AGES)
-def test_they_do_not_depend_on_the_way_to_them(values, ages):
-    m = flight(-0.9, 0.95, 0.7, 0.24, **values)
-    fresh = [nodes.phasors_at(list(m), age) for age in ages]
-    assert [nodes.phasors_at(m, age) for age in ages] == fresh
-    assert [nodes.phasors_at(m, age) for age in reversed(ages)] == fresh[::-1]
-
-
-@examples(40)
 @given(structures())
 def test_what_a_quintic_misses_is_bounded_closely(values):
     """A sixth derivative that stays 1 is missed by s^3 (1 - s)^3 h^6/720, against b_2 and b_3."""

@@ -103,29 +103,6 @@ def test_in_high_precision(ratio, omega_squared, x, v, phase, tau):
         assert abs(found - value) <= 4e-15 * terms * angle * unit
 
 
-@examples(100)
-@given(st.floats(0.05, 20.0), st.floats(0.0, 30.0), st.integers(0, 40))
-def test_continuous_across_critical_damping(omega_squared, tau, k):
-    critical = math.sqrt(omega_squared)
-    near = [
-        oscillator(critical * (1.0 + sign * 2.0**-k / 8), omega_squared, 0.3, 0.4, 0.0)
-        for sign in (-1, 0, 1)
-    ]
-    below, at_it, above = (state(m, tau)[0] for m in near)
-    middle = 0.5 * (below + above)
-    # the response is a smooth function of the damping
-    steep = (1.0 + critical * tau) ** 4 * (1.0 + 1.0 / omega_squared) ** 4
-    assert abs(middle - at_it) <= (4.0**-k + 1e-14) * steep
-
-
-def test_critical_damping_is_met_exactly():
-    m = [0.0] * at.SIZE
-    set_oscillator(m, BRANCH, 1.5, 2.25)
-    assert m[BRANCH + at.NU_SQUARED] == 0.0
-    found = fundamental_solutions(m, BRANCH, 2.0)
-    assert list(found[:2]) == pytest.approx([math.exp(-3.0), 2.0 * math.exp(-3.0)], rel=1e-15)
-
-
 @examples(400)
 @given(
     st.sampled_from(DAMPINGS) | sizes(1e-4, 1e4) | st.floats(0.9, 1.1),

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fmu_src.kernels.oscillator import event_function, roots, secular, stepper
+from fmu_src.kernels.oscillator import event_function, secular
 from fmu_src.kernels.oscillator import memory as at
 from tests import exact_motion as truth
 
@@ -18,10 +18,7 @@ from .kernel import (
     DEFAULTS,
     advanced,
     examples,
-    flight,
-    outputs,
     resonances,
-    set_inputs,
     sizes,
     started,
 )
@@ -117,41 +114,6 @@ def test_a_gap_of_nearly_equal_oscillators_is_bounded_by_its_own(state, near, ga
     later = spacing * np.linspace(0.0, secular.LONGEST_DRIVEN, 30)
     assert max(abs(sixth(t)) for t in later) <= found
     assert found <= 1e3 * (gap + near * spacing * secular.LONGEST_DRIVEN + 1e-13)
-
-
-@examples(60)
-@given(resonances(), STATES)
-def test_a_flight_ends_at_its_first_root(values, state):
-    """By a scan in high precision, each dip of it to its bottom."""
-    x1, v1, x2, v2 = state
-    m = flight(x1, v1, x2, v2, **values)
-    roots.walk(m, 6.0)
-    first, second = truth.free_motion({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
-    end = m[at.END] if m[at.END_KIND] == at.END_EVENT else None
-    expected = truth.first_root(second - first, 6.0)
-    if end is None or end > 6.0:
-        assert expected is None
-    else:
-        closing = abs(float((second - first).derivative()(expected)))
-        assert abs(end - expected) <= 1e-15 + 2e-14 * size(values, 6.0) / closing
-
-
-@pytest.mark.parametrize("values", [{"k2": 1.2}, {"k2": 1.0}, {"k2": 1.2, "bonded": 1.0}])
-def test_a_drive_that_comes_to_a_resonance_while_running(values):
-    """What it was is the state it goes on from, there and away again."""
-    m = advanced(started(d1=0.0, d2=0.0, **{"box_frequency": 0.4, **values}), 3.0)
-    assert m[at.SECULAR] == 0.0
-    before = outputs(m)
-    set_inputs(m, box_frequency=math.sqrt(1.1) if "bonded" in values else 1.0)
-    assert stepper.advance(m, 3.0 + 1e-9) == at.OK
-    assert m[at.SECULAR] == 1.0
-    assert outputs(m)[:4] == pytest.approx(before[:4], abs=1e-8)
-    advanced(m, 40.0)
-    before = outputs(m)
-    set_inputs(m, box_frequency=0.4)
-    advanced(m, 40.0 + 1e-9)
-    assert m[at.SECULAR] == 0.0
-    assert outputs(m)[:4] == pytest.approx(before[:4], abs=1e-6)
 
 
 ALIKE = {"m2": 1.0, "k2": 1.0, "d1": 0.0, "d2": 0.0, "box_frequency": 1.0, "phase_start": 1.0}

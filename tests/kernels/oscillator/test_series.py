@@ -20,108 +20,57 @@ PLACES = st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)
 
 
 def leaving(values, x, v, slope):
-    """A flight that has just left an impact, its gap in high precision, and a scale of the motion's
-    size.
-    """
-    v2 = v + slope
-    m = flight(x, v, x, v2, **values)
-    first, second = truth.free_motion(
-        {**DEFAULTS, **values}, (x, v, x, v2), mp.mpf(values["phase_start"])
-    )
-    return m, first, second - first
-
-
-@examples(80)
-@given(structures(), *PLACES, sizes(1e-9, 0.1))
-def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
-    m, first, gap = leaving(values, x, v, slope)
-    assume(m[at.SERIES] != 0.0)
-
-    # of the gap's own terms, which may cancel; those of the displacements are larger by far. Two
-    # oscillators that differ by rounding alone count as alike.
-    def rounding(tau):
-        terms = abs(m[at.FORCE_V] * v) + abs(m[at.FORCE_X] * x)
-        alike = SAME * (abs(x) + 2.0 * m[at.OSCILLATOR_1 + at.DAMPING] * abs(v))
-        return 1e-14 * (slope * tau + terms * tau * tau) + alike * tau * tau
-
-    with mp.workdps(50):
-        end = m[at.END]
-        assert m[at.END_KIND] == at.END_EVENT and gap.derivative()(mp.mpf(end)) < 0
-        assert abs(gap(mp.mpf(end))) <= rounding(end)
-        assert all(gap(mp.mpf(end) * i / 64) > 0 for i in range(1, 64))
-        for part in (0.1, 0.5, 0.9):
-            tau = part * end
-            x1, v1, x2, v2 = state_at(m, tau)
-            assert (
-                abs(x1 - first(mp.mpf(tau))) <= 1e-15
-                and abs(v1 - first.derivative()(mp.mpf(tau))) <= 1e-14
-            )
-            assert abs(evaluate(m, tau)[0] - gap(mp.mpf(tau))) <= rounding(tau)
-            assert x2 >= x1
-
-
-@examples(80)
-@given(structures(), *PLACES, sizes(1e-9, 0.1), st.floats(0.0, 1.0))
-def test_value_and_derivatives(values, x, v, slope, part):
-    m, _, gap = leaving(values, x, v, slope)
-    assume(m[at.SERIES] != 0.0)
-    tau = part * m[at.END]
-    with mp.workdps(50):
-        scale = abs(gap.derivative()(mp.mpf(0))) + abs(gap.derivative().derivative()(mp.mpf(0)))
-        for order, value in enumerate(evaluate(m, tau)[:3]):
-            assert abs(value - gap(mp.mpf(tau))) <= 1e-12 * float(scale), order
-            gap = gap.derivative()
+    """A flight that leaves faces which touch, mass 1's motion and the gap in high precision."""
+    apart = max(values.get("clearance", 0.0), 0.0)
+    start = x, v, x - apart, v + slope
+    full = {**DEFAULTS, **values}
+    first, second = truth.free_motion(full, unloaded(values, start), mp.mpf(values["phase_start"]))
+    return flight(*start, **values), first, truth.gap_signal(full, first, second)
 
 
 @st.composite
 def pressed_or_open(draw):
-    """Structures whose faces rest against each other with a force, or apart."""
-    values = draw(structures())
+    """Structures whose faces rest against each other, with a force or without, or apart."""
     size = draw(sizes(1e-6, 1e3))
-    return {**values, "clearance": draw(st.sampled_from((-size, -size, size)))}
+    return {**draw(structures()), "clearance": draw(st.sampled_from((0.0, -size, -size, size)))}
 
 
-def leaving_with_clearance(values, x, v, slope):
-    """A flight that leaves faces which touch, and its gap in high precision."""
-    apart = max(values["clearance"], 0.0)
-    start = x, v, x - apart, v + slope
-    m = flight(*(start[i] for i in range(4)), **values)
-    full = {**DEFAULTS, **values}
-    first, second = truth.free_motion(full, unloaded(values, start), mp.mpf(values["phase_start"]))
-    return m, truth.gap_signal(full, first, second)
-
-
-@examples(120)
+@examples(200)
 @given(pressed_or_open(), *PLACES, sizes(1e-9, 0.1))
 # pressed hard, so that the preload alone brings the faces together again
 @example({"clearance": -100.0, "phase_start": 1.0}, 0.3, -0.2, 0.05)
 @example({"clearance": -3.0, "phase_start": 0.0, "m2": 0.4, "d2": 0.3}, -0.5, 0.7, 1e-3)
 @example({"clearance": -3.0, "phase_start": 0.0, "d2": 0.3, "force1_2": 30.0}, -0.5, 0.7, 1e-3)
-def test_a_short_flight_under_a_preload_is_that_of_the_gap(values, x, v, slope):
-    """Value and curvature all along, and the end: those of Newton's law, to rounding of the gap's
-    own terms; the fifth derivative stays below the bound that makes the root certain.
+def test_a_short_flight_is_that_of_the_gap(values, x, v, slope):
+    """Value, slope and curvature all along, and the end: those of Newton's law, to rounding of the
+    gap's own terms; the fifth derivative stays below the bound that makes the root certain.
     """
-    m, gap = leaving_with_clearance(values, x, v, slope)
+    m, first, gap = leaving(values, x, v, slope)
     assume(m[at.SERIES] != 0.0)
     with mp.workdps(50):
-        end, curvature = m[at.END], abs(gap.derivative().derivative()(mp.mpf(0)))
-        offset = values["clearance"] if values["clearance"] > 0.0 else 0.0
-        terms = abs(m[at.FORCE_V] * v) + abs(m[at.FORCE_X]) * (abs(x) + offset)
-        terms += abs(m[at.PRELOAD]) + SAME * (abs(x) + abs(v))
+        end, speed, closing = m[at.END], first.derivative(), gap.derivative()
+        curvature = closing.derivative()
+        terms = abs(m[at.FORCE_V] * v) + abs(m[at.PRELOAD]) + SAME * (abs(x) + abs(v))
+        terms += abs(m[at.FORCE_X]) * (abs(x) + max(values["clearance"], 0.0))
         start = abs(float(gap(mp.mpf(0))))  # faces that touch but for the rounding of the start
-        assert m[at.END_KIND] == at.END_EVENT
+        size = 1.0 + abs(values["clearance"])
+        assert m[at.END_KIND] == at.END_EVENT and closing(mp.mpf(end)) < 0
         for part in (0.1, 0.5, 0.9, 1.0):
             tau = mp.mpf(part * end)
             bound = 1e-13 * (slope + terms * tau) * tau + 4.0 * start
-            assert abs(evaluate(m, float(tau))[0] - gap(tau)) <= bound
+            h0, h1, h2, *_ = evaluate(m, float(tau))
+            assert abs(h0 - gap(tau)) <= bound
+            assert abs(h1 - closing(tau)) <= 1e-12 * (slope + terms)
+            assert abs(h2 - curvature(tau)) <= 1e-12 * (slope + abs(curvature(0)) + terms)
+            x1, v1, *_ = state_at(m, float(tau))
+            assert abs(v1 - speed(tau)) <= 1e-14 * size
+            assert values["clearance"] or abs(x1 - first(tau)) <= 1e-15  # counted from rest else
         assert abs(gap(mp.mpf(end))) <= 1e-13 * (slope + terms * end) * end + 4.0 * start
-        fifth = gap.derivative().derivative().derivative().derivative().derivative()
+        assert all(gap(mp.mpf(end) * i / 64) > -start for i in range(1, 64))
+        fifth = curvature.derivative().derivative().derivative()
         reach = 0.3 / m[at.RATE]
         largest = max(abs(fifth(mp.mpf(reach * i / 8))) for i in range(9))
         assert largest <= m[at.SERIES_BOUND]
-        assert abs(evaluate(m, 0.0)[2] - gap.derivative().derivative()(mp.mpf(0))) <= 1e-12 * (
-            curvature + terms
-        )
 
 
 def test_a_gap_that_is_not_concave_is_walked():
