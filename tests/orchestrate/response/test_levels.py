@@ -46,6 +46,3 @@ def test_resonance_at_levels_is_resonance_at_each(exported, direction):
     assert "0.102 g" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
-def test_a_branch_does_not_vary_the_level():
-    with pytest.raises(InputError, match="over = 'level'"):
-        orchestrate.branch(Structure.nondimensional(), eta=2.0, over="level", limits=(1.0, 2.0))

@@ -79,8 +79,3 @@ def test_ranges_of_irregular_responses_reach_over_narrow_windows_alone(irregular
         assert inside_irregular([True, False, False, True]).all()
 
 
-def test_what_is_no_question():
-    with pytest.raises(InputError, match="expected one of up, down, both"):
-        resonance(BEAM, eta=1.0, direction="given")
-    with pytest.raises(InputError, match="jump = 0"):
-        resonance(BEAM, eta=1.0, jump=0)

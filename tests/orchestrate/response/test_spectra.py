@@ -78,6 +78,3 @@ def test_lines_at_and_beside_zero_of_a_motion_with_impacts():
         assert float(felt[1:].max()) < 1e-3 * mean
 
 
-def test_lines_beyond_half_the_rate_are_refused(exported):
-    with pytest.raises(InputError, match="highest = 40: expected at most points/2 = 16"):
-        spectra(PAPER, eta=1.0, points=32)
