@@ -227,14 +227,15 @@ UNKNOWING = {  # what does not know a wall or a stroke
     "contact_threshold": lambda s: orchestrate.contact_threshold(s, eta=1.0),
     "cosimulate": lambda s: orchestrate.cosimulate(s, DRIVE, duration=1.0, step=0.1),
     "couple": lambda s: orchestrate.couple(s, DRIVE, **VOLTS, rate=0.1),
+    "passage": lambda s: orchestrate.passage(s, DRIVE, **VOLTS),
+    "capture": lambda s: orchestrate.capture(s, DRIVE, **VOLTS),
+    "jump_voltages": lambda s: orchestrate.jump_voltages(s, DRIVE, **VOLTS),
     "drive_spectra": lambda s: orchestrate.drive_spectra(s, DRIVE),
     "drive_branch": lambda s: orchestrate.drive_branch(s, DRIVE),
     "plan_test": lambda s: orchestrate.plan_test(s),
     "fit": delaminated_guess,
     "detect": lambda s: sound_structure(s, None, None),
 }
-for one in ("passage", "capture", "jump_voltages"):
-    UNKNOWING[one] = lambda s, ask=getattr(orchestrate, one): ask(s, DRIVE, **VOLTS)
 KNOWING_STROKE = ("shaker", "cosimulate", "fit", "detect")
 
 

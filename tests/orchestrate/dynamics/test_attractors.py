@@ -5,7 +5,7 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
-from orchestrate.dynamics.attractors import AttractorsJob, attractors, random_starts
+from orchestrate.dynamics.attractors import AttractorsJob, attractors
 from orchestrate.dynamics.clusters import AttractorSettings, transient_periods
 from orchestrate.errors import InputError
 from orchestrate.model import Structure
@@ -42,8 +42,6 @@ def test_the_same_seed_gives_the_same_starts(found):
     assert (other.features != found.features).any()
 
 
-
-
 def test_scale_is_three_times_the_largest_gap_from_rest():
     dropped = transient_periods(300, 300.0, TWO)
     gap = float(sweep(PAPER, eta=TWO, transient=dropped, samples=48).xi_rel_max[0])
@@ -54,10 +52,6 @@ def test_scale_is_three_times_the_largest_gap_from_rest():
         attractors(PAPER, **asked, scale=[1.0, 2.0])
     with pytest.raises(InputError, match=r"scale = -1\.0: expected numbers > 0"):
         attractors(PAPER, **asked, scale=-1.0)
-
-
-
-
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate import InputError
 from orchestrate.dynamics.basin_entropy import box_entropies
 
 
@@ -57,5 +56,3 @@ def test_one_basin_has_no_boundary():
     assert float(found.basin_entropy) == 0.0
     assert math.isnan(float(found.boundary_basin_entropy))
     assert math.isnan(float(found.uncertainty_exponent))
-
-

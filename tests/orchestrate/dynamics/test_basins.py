@@ -4,15 +4,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, basin, run_to_phase_zero
-from orchestrate.errors import InputError
+from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, basin
 from orchestrate.fmu import OSCILLATOR, REST, STATE, Instance, begin, find, finder
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
-from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import sweep
 from orchestrate.running.runner import answer
 
@@ -43,8 +40,6 @@ def test_gap_coordinates_keep_the_means():
     np.testing.assert_allclose(states[:, 0, 3] - states[:, 0, 2], [-2.0, 0.0, 2.0])
 
 
-
-
 def test_each_start_leads_where_it_says(found):
     states, _ = starts(SIDES["x"], SIDES["y"], REST)
     assert found.attractor_of.dims == ("v_rel", "x_rel")
@@ -61,8 +56,6 @@ def test_starts_that_overlap_count_in_no_share(found):
     assert (labels[:, 1:] >= 0).all()
     np.testing.assert_allclose(found.share, np.bincount(labels[labels >= 0]) / 16)
     assert float(found.share.sum()) == pytest.approx(1.0)
-
-
 
 
 @pytest.mark.usefixtures("exported")
@@ -94,10 +87,6 @@ def returns_after(instance, excitation, state, transient):
         points.append(instance.get(*STATE))
     apart = np.abs(np.array(points[1:]) - points[0]).max(axis=1)
     return next((n for n, most in enumerate(apart, 1) if most < 1e-6), 0)
-
-
-
-
 
 
 @pytest.mark.usefixtures("exported")

@@ -9,7 +9,6 @@ import pytest
 from orchestrate.dynamics import borders
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.response import questions
 
@@ -59,10 +58,6 @@ def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
             assert abs(found.nearest_miss.values[i]) < 1e-12
             times = np.linspace(0.01, 0.99, 20_001) * truth.time
             assert abs(truth.gap(times).min()) < 1e-7
-
-
-
-
 
 
 FOLDED = Structure.nondimensional(D=0.02, clearance=3.0)

@@ -5,18 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.continuation import (
     NoConvergenceError,
-    fix_sign,
     newton_correct,
-    unit_tangent,
 )
 from orchestrate.dynamics.orbits import orbit
-from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
 from orchestrate.model import Excitation, Structure
 
@@ -71,8 +67,6 @@ def test_all_orbits_of_a_branch_are_those_of_the_closed_form(period):
             1e-8 * truth.largest
         )
     assert found.fmu_same_impacts.values.mean() > 0.99  # but where a flight grazes
-
-
 
 
 def test_period_doubling_against_a_wall():
@@ -207,10 +201,6 @@ def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
         assert np.abs(truth.multipliers + 1.0).min() < 1e-9
 
 
-
-
-
-
 def test_a_root_is_known_by_its_residual():
     """Short steps alone do not make one: a wrong derivative makes them anywhere."""
 
@@ -227,5 +217,3 @@ def test_a_root_is_known_by_its_residual():
 
     with pytest.raises(NoConvergenceError, match="the residual is"):
         newton_correct(Steep(), np.zeros(2), np.array([0.0, 1.0]))
-
-

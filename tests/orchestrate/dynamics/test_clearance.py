@@ -5,18 +5,12 @@ import pytest
 
 import orchestrate
 from orchestrate import Structure
-from orchestrate.dynamics.closed_form import FREE, INNER, OUTER, ClosedForm
+from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.model import Excitation
 from orchestrate.response.questions import Point
 
 DAMPED = Structure(d1=0.1, d2=0.12, e=0.5)
 BOX = {"frequency": 1.2, "amplitude": 1.0}
-
-
-
-
-
-
 
 
 def test_a_border_begins_where_an_open_structure_touches():

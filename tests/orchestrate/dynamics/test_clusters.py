@@ -11,7 +11,6 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from orchestrate.dynamics import clusters
 from orchestrate.dynamics.clusters import (
     AttractorSettings,
-    SettlingRun,
     irregular_clusters,
     run_until_settled,
     single_linkage,
@@ -120,8 +119,6 @@ def test_a_response_is_run_on_until_it_is_known(exported, eta, multiplicity, lea
 
 def test_short_periods_take_more_of_them():
     assert [transient_periods(400, 300.0, eta) for eta in (0.5, 1.5, 8.0)] == [400, 450, 2400]
-
-
 
 
 @pytest.mark.parametrize("wrong", [{"alike": 0.0}, {"longest": -1}, {"near": float("nan")}])

@@ -4,7 +4,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from orchestrate import orbit
 from orchestrate.dynamics import decision
@@ -19,7 +18,6 @@ from orchestrate.dynamics.settled_motion import same_nodes
 from orchestrate.fmu import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
-from orchestrate.response.multiplicity import nearest_state
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
 
@@ -79,8 +77,6 @@ def test_attractors_are_those_that_newtons_method_confirms(structure, eta, asked
         sizes = np.hypot(*confirmed.multipliers.transpose("part", "multiplier").values)
         assert float(one.multiplier) == pytest.approx(sizes.max(), rel=1e-6)
         assert int(one.decided_by) == ORBIT
-
-
 
 
 @pytest.mark.parametrize(("eta", "e"), [(0.4, 0.7), (0.6, 0.2), (0.6, 0.0)])
@@ -152,8 +148,6 @@ def test_orbits_are_one_whatever_period_they_begin_with():
         np.vstack([orbit.nodes, orbit.nodes + [4.0 * np.pi, 0.0, 0.0, 0.0]]),
     )
     assert (least_periods(orbit), least_periods(twice)) == (2, 2)
-
-
 
 
 @pytest.mark.parametrize(

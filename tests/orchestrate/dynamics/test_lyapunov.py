@@ -18,12 +18,10 @@ from orchestrate.dynamics.lyapunov import (
 )
 from orchestrate.dynamics.variational import period_in_tau
 from orchestrate.errors import InputError
-from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
+from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
-
-from .test_variational import monodromy
 
 make = Structure.nondimensional
 PAPER = make()
@@ -42,8 +40,6 @@ def settled(instance, point, periods):
     begin(instance, *point, REST)
     instance.step(0.0, periods * point.excitation.period)
     return np.array(instance.get(*STATE))
-
-
 
 
 @pytest.mark.parametrize(

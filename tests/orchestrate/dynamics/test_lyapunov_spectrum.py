@@ -4,13 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import orchestrate
 from orchestrate.dynamics.impacts_after_transient import follow_impacts
 from orchestrate.dynamics.lyapunov_spectrum import (
-    compound_matrices,
     kaplan_yorke_dimension,
     lyapunov_spectrum,
 )
@@ -36,8 +33,6 @@ def followed(exported):
             return follow_impacts(eventful, point, start, periods), point
 
         yield follow
-
-
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from scipy.linalg import expm
 
 import orchestrate
-from orchestrate import InputError, Structure
+from orchestrate import Structure
 from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.curve_growth import CurveGrower, CurvePoint, GrowthSettings
 from orchestrate.fmu import OSCILLATOR, Instance, begin
@@ -165,8 +165,6 @@ def test_its_bits_are_the_same_with_the_kernels_of_any_processor():
         "print(hashlib.sha256(m.state.values.tobytes()).hexdigest())"
     )
     assert len(set(printed_on_each(["-c", code], ("Haswell", "Nehalem")).values())) == 1
-
-
 
 
 def test_the_largest_distance_that_is_named_leaves_the_gap_open():

@@ -5,7 +5,6 @@ import functools
 import numpy as np
 import pytest
 
-from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
@@ -86,14 +85,10 @@ def test_the_physical_form_is_the_same_orbit_in_metres():
     assert found.exponent.item() == pytest.approx(plain.exponent.item(), rel=1e-9)
 
 
-
-
 def test_no_orbit_is_said():
     """4T/1 does not exist at 7.4: its flight would go through mass 1."""
     with pytest.raises(InputError, match="period = 4: no orbit found"):
         orbit(PAPER, eta=7.4, period=4, guess={"impact_time": [0.4]})
-
-
 
 
 def test_an_impact_at_phase_0_makes_no_longer_period():

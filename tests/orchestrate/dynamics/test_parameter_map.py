@@ -1,14 +1,11 @@
 """Maps: each point is a response from the same start, in whatever unit and order."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
 from orchestrate.dynamics.lyapunov import lyapunov
 from orchestrate.dynamics.orbits import orbit
-from orchestrate.dynamics.parameter_map import MapJob, map
-from orchestrate.errors import InputError
+from orchestrate.dynamics.parameter_map import map
 from orchestrate.model import Structure
 from orchestrate.model.outcomes import REPEATED, UNDECIDED
 from orchestrate.response.simulate import simulate
@@ -24,8 +21,6 @@ pytestmark = pytest.mark.usefixtures("exported")
 @pytest.fixture(scope="module")
 def found(exported):
     return map(SLOWER, eta=ETAS, e=ES, exponent=True, periods=100)
-
-
 
 
 def test_each_point_is_a_response_from_rest(found):
@@ -95,5 +90,3 @@ def test_any_two_parameters_in_any_unit():
     assert same.equals(found) and same.attrs["identity"] == found.attrs["identity"]
     box = map(own, frequency=[90.0, 110.0], amplitude=[1e-3, 2e-3], **short)
     np.testing.assert_allclose(box.xi_rel_max[:, 0], box.xi_rel_max[:, 1], rtol=1e-6)
-
-

@@ -5,9 +5,6 @@ import pytest
 
 import orchestrate
 from orchestrate.dynamics.bifurcation_kinds import Kind
-from orchestrate.dynamics.families import Setting, central_difference
-from orchestrate.dynamics.orbit_search import solve_orbit
-from orchestrate.dynamics.orbits import guess_from_result
 from orchestrate.errors import InputError
 from orchestrate.model import Excitation, Structure
 
@@ -87,8 +84,6 @@ def test_orbits_of_random_structures_are_those_of_the_fmus_own_map(at_rest):
         if found.xi_rel > 1e-2:  # in contact at phase 0 there is no neighbour beyond
             assert_multipliers(found, structure, excitation, within=1e-6)
     assert contacts > 0 and max(map(len, sequences)) > (0 if at_rest else 3)
-
-
 
 
 OPEN = Structure.nondimensional(e=0.7, D=0.02, clearance=0.3)

@@ -1,13 +1,9 @@
 """Amplitudes of orbits against the FMU's; the contact force's derivatives by differences."""
 
-import numpy as np
 import pytest
 
-from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.dynamics.orbits import orbit
-from orchestrate.dynamics.periodic_orbit import ImpactSequence, PeriodicOrbit
-from orchestrate.dynamics.turning_points import pressing_force
-from orchestrate.model import Excitation, Structure
+from orchestrate.model import Structure
 from orchestrate.response.sweep import sweep
 
 NODES = ("node_phase", "node_position", "node_velocity", "node_closing")
@@ -21,5 +17,3 @@ def test_amplitudes_are_those_of_the_settled_response(eta, period):
     assert found.xi_rel_max.item() == pytest.approx(seen.xi_rel_max.item(), rel=1e-9)
     for name in ("xi1_max", "xi2_max"):
         assert found[name].item() == pytest.approx(seen[name].item(), rel=1e-5)
-
-

@@ -10,11 +10,9 @@ import pytest
 import orchestrate
 from orchestrate import Excitation, InputError, Structure
 from orchestrate.dynamics.attractors import random_starts
-from orchestrate.model import write
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import traits_of
 
-from ...draws import draw_structure
 from ...fmu.event_driven import Motion
 
 OWN = Structure(m1=0.8, m2=1.1, k1=5.0, k2=7.5, d1=0.3, d2=0.4, e=0.6, clearance=0.05)
@@ -136,10 +134,6 @@ def test_one_mass_rests_at_its_clearance_from_the_wall():
     assert Structure.from_attributes(mass.parameters()) == mass
 
 
-
-
-
-
 def test_starts_lie_where_the_masses_can_be():
     for structure in (KINDS["play"], KINDS["wall and play"]):
         states = random_starts(50, 3.0, (1, 2), structure)
@@ -232,24 +226,12 @@ def test_impacts_have_to_come_only_where_that_is_known():
     assert (orchestrate.sweep(OWN, **touching).impacts_per_period > 0.0).all()
 
 
-
-
-
-
-
-
-
-
-
-
 def test_at_zero_they_change_no_bit():
     zeros = dict.fromkeys(("box_acceleration", "force1", "force2"), 0.0)
     for structure in (OWN, Structure()):
         asked = {"eta": [0.5, 1.3], "transient": 20, "samples": 8, **QUICK}
         plain, pushed = (orchestrate.sweep(structure, **asked, **more) for more in ({}, zeros))
         assert all((plain[name] == pushed[name]).all() for name in plain)
-
-
 
 
 @pytest.mark.parametrize("e", [0.0, 0.7])

@@ -1,17 +1,10 @@
 """At what a question is asked: both forms of an excitation, one parameter, and what is refused."""
 
-import math
-
-import numpy as np
 import pytest
-import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from orchestrate import simulate
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
-from orchestrate.response.questions import checked_point, checked_states, excitation_numbers
 from orchestrate.response.sweep import SweepJob
 
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
@@ -72,16 +65,6 @@ def test_a_parameter_of_the_structure_is_replaced_and_eta_stays():
     assert [*found.etas] == [1.5, 1.5]
 
 
-
-
-
-
-
-
-
-
-
-
 def test_the_call_is_one_that_can_be_made_again(exported):
     import orchestrate
 
@@ -94,5 +77,3 @@ def test_the_call_is_one_that_can_be_made_again(exported):
         found = ask(OWN, **asked)
         again = eval(found.attrs["call"], {**names, ask.__name__: ask})
         assert again.identical(found.assign_attrs(history=again.attrs["history"]))
-
-

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.response.resonance import resonance
 from orchestrate.response.sweep import sweep
@@ -77,5 +76,3 @@ def test_ranges_of_irregular_responses_reach_over_narrow_windows_alone(irregular
         window = [True, *[False] * 3, True]
         assert inside_irregular(window).tolist() == window
         assert inside_irregular([True, False, False, True]).all()
-
-

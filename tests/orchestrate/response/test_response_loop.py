@@ -1,14 +1,13 @@
 """The compiled loop of responses: however it is cut in pieces, for FMUs of every form."""
 
 import ctypes
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from orchestrate.errors import FmuError, InputError
-from orchestrate.fmu import OSCILLATOR, Instance, find, gap_between, respond_library, sampled
+from orchestrate.fmu import OSCILLATOR, Instance, find, respond_library, sampled
 from orchestrate.fmu.oscillator import OscillatorCalls, ResponseProgress, ResponseTask
 from orchestrate.model import Excitation
 from orchestrate.response.questions import Point
@@ -37,10 +36,6 @@ def points(seed, count=12):
     for _ in range(count):
         structure, eta = draw_structure(random)
         yield Point(structure, Excitation.nondimensional(eta, structure))
-
-
-
-
 
 
 def bits(results):
@@ -127,8 +122,6 @@ def test_samples_are_more_than_a_step_keeps(instance):
     end = 1700 * point.excitation.period
     states = sampled(instance, end, end + 9.0, 4500)
     assert states[-1].tolist() == instance.get("x1", "x2", "v1", "v2")
-
-
 
 
 def test_structures_have_the_sizes_of_the_source():

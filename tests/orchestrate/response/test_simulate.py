@@ -8,15 +8,11 @@ import pytest
 from orchestrate.model import Structure
 from orchestrate.response.simulate import simulate
 
-from ...fmu.event_driven import Motion
-
 PAPER = Structure.nondimensional()
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=2.9, e=0.6)
 STRONG = Structure.nondimensional(D1=0.3, D2=1.2, mu=0.4, kappa=2.0, e=0.5)
 
 pytestmark = pytest.mark.usefixtures("exported")
-
-
 
 
 @pytest.mark.parametrize("structure", [PAPER, OWN, STRONG, OWN.as_bonded()])

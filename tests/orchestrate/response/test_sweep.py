@@ -38,10 +38,6 @@ def test_values_keep_their_order_whatever_the_direction():
     assert (given.end_state != down.end_state).any()
 
 
-
-
-
-
 def test_responses_of_a_sweep_are_run_on_each_from_its_own_state(exported):
     """T/1 at D = 0.05 is unstable from 1.1154 on, which 500 periods from 1.115 do not see."""
     structure = Structure.nondimensional(D=0.05)
