@@ -6,7 +6,6 @@ from orchestrate.dynamics.orbits import orbit
 from orchestrate.model import Structure
 from orchestrate.response.sweep import sweep
 
-NODES = ("node_phase", "node_position", "node_velocity", "node_closing")
 
 
 @pytest.mark.parametrize(("eta", "period"), [(1.5, 1), (4.0, 2), (0.4, 1), (1.0, 1)])
