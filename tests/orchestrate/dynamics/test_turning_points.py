@@ -7,7 +7,6 @@ from orchestrate.model import Structure
 from orchestrate.response.sweep import sweep
 
 
-
 @pytest.mark.parametrize(("eta", "period"), [(1.5, 1), (4.0, 2), (0.4, 1), (1.0, 1)])
 def test_amplitudes_are_those_of_the_settled_response(eta, period):
     structure = Structure.nondimensional()
