@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from fmu_src.version import VERSION
 from orchestrate import cli
 from orchestrate.fmu import find
 from tools import assets
@@ -22,19 +21,6 @@ COMMANDS = sorted(set(re.findall(r"python -m orchestrate (\w+)", README)))
 def test_the_test_command_is_what_ci_runs():
     command = (ROOT / ".ci" / "run").read_text().strip().splitlines()[-1]
     assert f"```\n{command}\n```" in README
-
-
-def test_it_is_short():
-    assert len(README.splitlines()) < 150
-
-
-@pytest.mark.parametrize("text", [f"Version {VERSION}, ", "pip install", "docs/comparison.md"])
-def test_its_first_screen_says_what_there_is_and_how_to_get_it(text):
-    assert text in README.partition("docs/figure6.png")[0]
-
-
-def test_the_citation_is_of_this_version():
-    assert f"\nversion: {VERSION}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("reference", assets.REFERENCES, ids=lambda reference: reference.model)

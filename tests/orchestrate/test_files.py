@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate.files import HeldFolder, HeldLock, remove_unheld, write_whole
+from orchestrate.files import HeldFolder, HeldLock, write_whole
 
 ROOT = Path(__file__).resolve().parents[2]
 WRITE = """
@@ -95,18 +95,6 @@ def test_a_killed_container_holds_nothing(writer, tmp_path):
     assert half.exists()
     write_whole(tmp_path / "out.txt", lambda place: place.write_text("whole"))
     assert names(tmp_path) == ["out.txt"]
-
-
-def test_folders_of_others_stay(tmp_path):
-    """Those without our lock file, and those behind links."""
-    (tmp_path / "out.txt.mine.tmp").mkdir()
-    elsewhere = HeldFolder(tmp_path, "elsewhere")
-    elsewhere._lock.release()
-    (elsewhere.path / ".lock").touch()
-    (tmp_path / "out.txt.link.tmp").symlink_to(elsewhere.path)
-    before = names(tmp_path)
-    remove_unheld(tmp_path, "out.txt.*.tmp")
-    assert names(tmp_path) == before and (elsewhere.path / ".lock").exists()
 
 
 def test_a_lock_whose_file_was_removed_is_not_the_one_of_the_next(tmp_path):

@@ -1,8 +1,6 @@
 """The public face as users call it: every function, own SI parameters, scripts and notebooks."""
 
-import inspect
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -138,18 +136,6 @@ def test_every_answer_can_be_written_and_read(answers, tmp_path):
         assert xr.load_dataset(path).equals(data), question
 
 
-def test_dimensions_are_those_that_were_asked_for(answers):
-    assert answers["simulate"].sizes["time"] == 61
-    assert answers["sweep"].xi_rel.dims == ("frequency", "sample")
-    assert answers["sweep both"].xi_rel.dims == ("direction", "frequency", "sample")
-    assert answers["sweep over"].xi_rel.dims == ("k2", "sample")
-    assert answers["map"].multiplicity.dims == ("frequency", "e")
-    assert answers["map exponent"].exponent.dims == ("kappa", "e")
-    assert answers["lyapunov"].exponent.dims == ("frequency",)
-    assert answers["basin"].attractor_of.shape == (2, 3)
-    assert answers["couple"].speed.dims == ("revolution",)
-
-
 def test_a_table_has_a_row_a_response(answers):
     sweep, turns = answers["sweep"], 2.0 * np.pi * np.array([46.5, 46.75, 47.0])
     sweep = sweep.assign_coords(frequency=sweep.frequency.copy(data=turns))
@@ -160,55 +146,3 @@ def test_a_table_has_a_row_a_response(answers):
     assert len(orchestrate.to_dataframe(answers["resonance"])) == answers["resonance"].x1_max.size
     with pytest.raises(InputError, match="expected a result"):
         orchestrate.to_dataframe(sweep[[]])
-
-
-def test_asking_changes_nothing_around_it(exported):
-    import matplotlib
-
-    before = dict(os.environ), matplotlib.get_backend(), dict(matplotlib.rcParams)
-    orchestrate.simulate(OWN, frequency=NEAR, amplitude=1e-3, periods=1, points=4)
-    assert (dict(os.environ), matplotlib.get_backend(), dict(matplotlib.rcParams)) == before
-
-
-def test_the_scale_of_a_structure_does_not_matter(exported):
-    unit = Structure.nondimensional(
-        mu=OWN.mu, kappa=OWN.kappa, D1=OWN.D1, D2=OWN.D2, e=OWN.e, gamma=OWN.gamma
-    )
-    asked = {"eta": [0.7, 1.9], "transient": 50, "samples": 10}
-    own, of_unit = orchestrate.sweep(OWN, **asked), orchestrate.sweep(unit, **asked)
-    assert np.allclose(own.xi_rel_max, of_unit.xi_rel_max, rtol=1e-6)
-
-
-def takers(name: str) -> list[str]:
-    """Public functions that need an argument of this name."""
-    functions = [one for one in orchestrate.__all__ if one[0].islower()]
-    return [one for one in functions if name in needed(one)]
-
-
-def needed(function: str) -> list[str]:
-    """Names of the arguments that a public function cannot do without."""
-    call = getattr(orchestrate, function)
-    taken = inspect.signature(call).parameters if inspect.isfunction(call) else {}
-    kinds = inspect.Parameter.empty, inspect.Parameter.VAR_KEYWORD
-    return [n for n, one in taken.items() if one.default is kinds[0] and one.kind != kinds[1]]
-
-
-@pytest.mark.parametrize(
-    ("what", "given", "name"),
-    [
-        *(("structure", "beam", name) for name in takers("structure")),
-        *(
-            ("drive", 3, name)
-            for name in takers("drive")
-            if name not in ("cosimulate", "write_ssp")
-        ),
-    ],
-)
-def test_what_is_no_structure_and_no_drive_is_refused_by_its_name(what, given, name):
-    sine = orchestrate.SweptSine(first=1.0, last=2.0, duration=9.0, acceleration=1.0)
-    usual = {"structure": UNIT, "drive": motor(), "voltage": (1.0, 2.0), "excitation": sine}
-    arguments = {**usual, "path": "weak.ssp", "duration": 1.0, "step": 0.1, what: given}
-    call = getattr(orchestrate, name)
-    eta = {"eta": 0.9} if "eta" in inspect.signature(call).parameters else {}
-    with pytest.raises(InputError, match=f"^{what} = {given!r}: expected a {what.title()}"):
-        call(**{n: arguments.get(n) for n in needed(name)}, **eta)

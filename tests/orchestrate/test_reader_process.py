@@ -1,6 +1,5 @@
 """Files from anybody: whatever happens to the process that reads one, it is a line, and little."""
 
-import os
 import runpy
 import sys
 import time
@@ -102,17 +101,3 @@ def test_an_answer_is_of_plain_arrays_and_within_its_size():
     for kind, shape in (("<f8", [11]), ("O", [2]), ("V8", [2]), ("<f8", [-1]), ("<f8", [9, 9])):
         with pytest.raises(ValueError, match="^$"):
             child.unpack({"array": kind, "shape": shape}, [80])
-
-
-def test_a_process_reads_several_files_and_is_replaced_if_it_has_ended(tmp_path):
-    path = tmp_path / "a.npy"
-    np.save(path, np.arange(3.0))
-    numbers = []
-    for change in (str, str, Child.close, str):
-        assert read_in_process(np.load, path, expected="").tolist() == [0.0, 1.0, 2.0]
-        assert list(IDLE) == [os.getpid()]
-        numbers.append(IDLE[os.getpid()].process.pid)
-        change(IDLE[os.getpid()])
-    assert numbers[0] == numbers[1] == numbers[2] != numbers[3]
-    read_in_process(np.load, path, expected="", keep=False)
-    assert IDLE[os.getpid()].process.pid == numbers[3]

@@ -152,21 +152,6 @@ def test_pictures_are_in_the_units_asked_for_and_in_no_other():
         assert any("rpm" in word for word in words), kind
 
 
-def test_a_page_has_them_too(tmp_path):
-    answer = answers()["resonance_levels"]
-    page = orchestrate.report(answer, output=tmp_path / "a.html", units="rpm, um, g")
-    text = page.read_text(encoding="utf-8")
-    assert re.search(r"29\d\d(\.\d+)? rpm", text)  # of the lowest threshold
-    assert "-20 um" in text.replace("\N{MINUS SIGN}", "-")
-
-
-def test_wrong_units_are_one_line(tmp_path):
-    answer = answers()["contact_threshold"]
-    for asked in (lambda u: orchestrate.plot(answer, units=u),):
-        with pytest.raises(InputError, match="furlong; expected a list of Hz or rpm"):
-            asked("furlong")
-
-
 def test_the_cross_of_a_state_lies_where_the_gap_is():
     """The gap has the clearance in it."""
     answer = answers()["basin"]

@@ -5,7 +5,7 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
-from orchestrate.dynamics.attractors import AttractorsJob, attractors, random_starts
+from orchestrate.dynamics.attractors import AttractorsJob, attractors
 from orchestrate.dynamics.clusters import AttractorSettings, transient_periods
 from orchestrate.errors import InputError
 from orchestrate.model import Structure
@@ -42,17 +42,6 @@ def test_the_same_seed_gives_the_same_starts(found):
     assert (other.features != found.features).any()
 
 
-def test_starts_are_states_in_their_box():
-    states = random_starts(1000, 2.0, (1, 0), Structure(k1=100.0))
-    x1, x2, v1, v2 = states.T
-    assert (x2 >= x1).all()
-    assert np.abs(x1).max() < 2.0
-    assert (x2 - x1).max() < 2.0
-    assert 10.0 < np.abs(v1).max() < 20.0
-    assert 10.0 < np.abs(v2 - v1).max() < 20.0
-    assert (random_starts(1000, 2.0, (1, 1), Structure(k1=100.0)) != states).all()
-
-
 def test_scale_is_three_times_the_largest_gap_from_rest():
     dropped = transient_periods(300, 300.0, TWO)
     gap = float(sweep(PAPER, eta=TWO, transient=dropped, samples=48).xi_rel_max[0])
@@ -63,17 +52,6 @@ def test_scale_is_three_times_the_largest_gap_from_rest():
         attractors(PAPER, **asked, scale=[1.0, 2.0])
     with pytest.raises(InputError, match=r"scale = -1\.0: expected numbers > 0"):
         attractors(PAPER, **asked, scale=-1.0)
-
-
-def test_one_value_alone_has_ten_times_the_starts():
-    with patch("orchestrate.response.signatures.answer_question", lambda job, _: job.starts):
-        assert attractors(PAPER, eta=TWO) == attractors(PAPER, over="e", values=0.7, eta=TWO) == 600
-        assert attractors(PAPER, over="e", values=[0.3, 0.7], eta=TWO) == 60
-
-
-def test_a_bonded_structure_has_nothing_to_tell():
-    with pytest.raises(InputError, match="bonded = True: expected a delaminated structure"):
-        attractors(PAPER.as_bonded(), eta=1.0)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate import InputError
 from orchestrate.dynamics.basin_entropy import box_entropies
 
 
@@ -57,17 +56,3 @@ def test_one_basin_has_no_boundary():
     assert float(found.basin_entropy) == 0.0
     assert math.isnan(float(found.boundary_basin_entropy))
     assert math.isnan(float(found.uncertainty_exponent))
-
-
-@pytest.mark.parametrize(
-    ("given", "box", "named"),
-    [
-        (xr.Dataset(), 5, "no answer of basin"),
-        (basins(np.zeros((12, 40))), 5, "at most 3"),
-        (basins(np.full((40, 40), -1)), 5, "overlap"),
-        (basins(np.zeros((40, 40))), 1, "box = 1"),
-    ],
-)
-def test_what_is_wrong_is_named(given, box, named):
-    with pytest.raises(InputError, match=named):
-        orchestrate.basin_entropy(given, box=box)

@@ -4,15 +4,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, basin, run_to_phase_zero
-from orchestrate.errors import InputError
+from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, basin
 from orchestrate.fmu import OSCILLATOR, REST, STATE, Instance, begin, find, finder
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
-from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import sweep
 from orchestrate.running.runner import answer
 
@@ -43,19 +40,6 @@ def test_gap_coordinates_keep_the_means():
     np.testing.assert_allclose(states[:, 0, 3] - states[:, 0, 2], [-2.0, 0.0, 2.0])
 
 
-def test_other_coordinates_are_taken_as_they_are():
-    states, phases = starts(("x2", 0.0, 1.0, 3), ("phase", 0.0, 6.0, 2))
-    assert states[1, :, 1].tolist() == [0.0, 0.5, 1.0]
-    assert phases[:, 0].tolist() == [0.0, 6.0]
-    np.testing.assert_array_equal(
-        states[..., [0, 2, 3]], np.broadcast_to([-1.0, 0.3, -0.1], (2, 3, 3))
-    )
-    with_gap, _ = starts(("x1", 0.0, 1.0, 3), ("x_rel", 0.0, 2.0, 2))
-    np.testing.assert_array_equal(with_gap[1, :, 1], [2.0, 2.5, 3.0])
-    with_second, _ = starts(("v2", 0.0, 1.0, 2), ("v_rel", -1.0, 1.0, 2))
-    np.testing.assert_array_equal(with_second[0, :, 2], [1.0, 2.0])
-
-
 def test_each_start_leads_where_it_says(found):
     states, _ = starts(SIDES["x"], SIDES["y"], REST)
     assert found.attractor_of.dims == ("v_rel", "x_rel")
@@ -72,19 +56,6 @@ def test_starts_that_overlap_count_in_no_share(found):
     assert (labels[:, 1:] >= 0).all()
     np.testing.assert_allclose(found.share, np.bincount(labels[labels >= 0]) / 16)
     assert float(found.share.sum()) == pytest.approx(1.0)
-
-
-@pytest.mark.usefixtures("exported")
-@pytest.mark.parametrize("phase", [0.0, 0.7, 2.0 * np.pi, 5.0, -1.0, 9.0])
-def test_a_start_at_another_phase_is_run_on_to_phase_zero(phase):
-    with Instance(find(OSCILLATOR).path) as instance:
-        found = run_to_phase_zero(instance, POINT, AT, phase)
-    left = (-phase % (2.0 * np.pi)) / (2.0 * np.pi)
-    motion = simulate(PAPER, eta=ETA, start=AT, phase=phase, periods=1, points=20_000)
-    for name, value in zip(("x1", "x2", "v1", "v2"), found, strict=True):
-        expected = np.interp(left, motion.periods_done, motion[name])
-        assert value == pytest.approx(expected, abs=1e-3)
-    assert left > 0.0 or found == AT
 
 
 @pytest.mark.usefixtures("exported")
@@ -116,37 +87,6 @@ def returns_after(instance, excitation, state, transient):
         points.append(instance.get(*STATE))
     apart = np.abs(np.array(points[1:]) - points[0]).max(axis=1)
     return next((n for n, most in enumerate(apart, 1) if most < 1e-6), 0)
-
-
-@pytest.mark.usefixtures("exported")
-def test_the_plane_may_lie_at_the_mean_of_attractors_that_were_found():
-    known = attractors(PAPER, eta=ETA, starts=6, seed=0)
-    at = known.state.isel(eta=0).mean("attractor")
-    plane = {"x": ("x1", -0.1, 0.1, 2), "y": ("v2", -0.1, 0.1, 2)}
-    xr.testing.assert_equal(
-        basin(PAPER, eta=ETA, at=known, **plane), basin(PAPER, eta=ETA, at=at.values, **plane)
-    )
-    with pytest.raises(InputError, match="a dataset over sample"):
-        basin(PAPER, eta=ETA, at=xr.Dataset({"x": ("sample", [1.0])}), **plane)
-
-
-@pytest.mark.parametrize(
-    ("asked", "text"),
-    [
-        ({"x": ("z", 0.0, 1.0, 3)}, "no coordinate 'z'; expected"),
-        ({"x": ("v_rel", 0.0, 1.0, 3)}, "v_rel twice; expected two coordinates"),
-        ({"x": ("x_rel", 1.0, 0.0, 3)}, "expected finite low < high"),
-        ({"x": ("x_rel", 0.0, 1.0)}, r"expected \(name, low, high, count\)"),
-        ({"x": ("x_rel", -2.0, -1.0, 3)}, "overlap at every start"),
-        ({"at": (1.0, 0.0, 0.0, 0.0)}, "x2 >= x1"),
-        ({"eta": [1.0, 2.0]}, "expected one number"),
-    ],
-)
-def test_what_is_refused(asked, text):
-    with pytest.raises(InputError, match=text):
-        basin(PAPER, **{"eta": ETA, **SIDES, **asked})
-    with pytest.raises(InputError, match="bonded = True"):
-        basin(PAPER.as_bonded(), eta=ETA)
 
 
 @pytest.mark.usefixtures("exported")

@@ -9,7 +9,6 @@ import pytest
 from orchestrate.dynamics import borders
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.response import questions
 
@@ -59,42 +58,6 @@ def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
             assert abs(found.nearest_miss.values[i]) < 1e-12
             times = np.linspace(0.01, 0.99, 20_001) * truth.time
             assert abs(truth.gap(times).min()) < 1e-7
-
-
-@pytest.mark.parametrize(
-    ("question", "words"),
-    [
-        ({"over": ("e", "eta")}, "over"),
-        ({"over": ("eta", "ee")}, "over = 'ee'"),
-        ({"limits": [(3.0, 4.0)]}, "limits"),
-        ({"limits": [(1.0, 1.1), (0.5, 0.9)]}, "limits = .*: eta = .* at the start"),
-        ({"limits": [(3.0, 4.0), (0.8, 0.9)]}, "limits = .*: e = 0.7 at the start"),
-        ({"bifurcation": 99}, "bifurcation = 99"),
-        ({"start": 1.5}, "start = 1.5"),
-    ],
-)
-def test_what_cannot_be_asked(question, words):
-    good = {"bifurcation": 0, "limits": [(3.0, 4.0), (0.5, 0.9)], "over": ("eta", "e")}
-    with pytest.raises(InputError, match=words) as caught:
-        border(PAPER, **{"start": window(), **good, **question})
-    assert "expected" in str(caught.value)
-
-
-@pytest.mark.parametrize("second", ["amplitude", "frequency"])
-def test_the_excitation_of_a_branch_begun_with_eta_is_followed_by_its_frequency_and_amplitude(
-    monkeypatch, second
-):
-    structure = PAPER.replace(clearance=0.5)
-    start = branch(structure, over="clearance", eta=2.6, limits=(0.0, 0.6))
-    monkeypatch.setattr(questions, "answer", lambda job, *rest: job)
-    question = {"start": start, "bifurcation": 0, "over": ("clearance", second)}
-    limits = {"amplitude": (0.05, 0.5), "frequency": (2.0, 3.0)}
-    job = border(structure, **question, limits=[(0.0, 0.6), limits[second]])
-    box = {"frequency": 2.6, "amplitude": 1.0 / 2.6**2}
-    assert job.values[1] == pytest.approx(box.pop(second), rel=1e-15)
-    assert dict(job.setting.excitation) == pytest.approx(box, rel=1e-15)
-    with pytest.raises(InputError, match=f"over = '{second}' with eta = 2.6: expected frequency"):
-        border(structure, **question, limits=[(0.0, 0.6), limits[second]], eta=2.6)
 
 
 FOLDED = Structure.nondimensional(D=0.02, clearance=3.0)

@@ -5,18 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.continuation import (
     NoConvergenceError,
-    fix_sign,
     newton_correct,
-    unit_tangent,
 )
 from orchestrate.dynamics.orbits import orbit
-from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
 from orchestrate.model import Excitation, Structure
 
@@ -71,19 +67,6 @@ def test_all_orbits_of_a_branch_are_those_of_the_closed_form(period):
             1e-8 * truth.largest
         )
     assert found.fmu_same_impacts.values.mean() > 0.99  # but where a flight grazes
-
-
-@pytest.mark.parametrize("period", ordinary([2, 3, 4]))
-def test_a_window_begins_where_a_flight_grazes(period):
-    """The smallest gap of the closed form's flight is zero there."""
-    found = windows(period)
-    (value,) = values(found, TOUCHING)
-    assert found.attrs["first_end"] == "grazing of a flight"
-    truth = SingleImpact(float(value), period)
-    times = np.linspace(0.0, truth.time, 20_001)[200:-200]
-    lowest = truth.gap(times).argmin()
-    fine = np.linspace(times[lowest - 1], times[lowest + 1], 2001)
-    assert abs(truth.gap(fine).min()) < 1e-9
 
 
 def test_period_doubling_against_a_wall():
@@ -218,42 +201,6 @@ def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
         assert np.abs(truth.multipliers + 1.0).min() < 1e-9
 
 
-@pytest.mark.parametrize(
-    ("question", "words"),
-    [
-        ({"over": "ata", "limits": (1.0, 2.0)}, "over = 'ata'"),
-        ({"limits": (2.0, 1.0)}, "limits"),
-        ({"limits": 3.0}, "limits"),
-        ({"over": "e", "limits": (0.1, 0.9)}, "excitation"),
-        ({"over": "e", "limits": (0.1, 1.9), "eta": 1.5}, "e = 1.9"),
-        ({"eta": 4.0, "limits": (1.0, 2.0)}, "eta = 4.0"),
-        ({"start": 1.5, "limits": (1.0, 2.0)}, "start = 1.5"),
-        (
-            {"start": xr.Dataset(), "limits": (1.0, 2.0)},
-            "start: a dataset over nothing; expected a dataset of orbit",
-        ),
-    ],
-)
-def test_what_cannot_be_asked(question, words):
-    with pytest.raises(InputError, match=words) as caught:
-        branch(PAPER, **question)
-    assert "expected" in str(caught.value)
-
-
-def test_what_cannot_be_switched_to():
-    given = {"start": windows(2), "limits": (1.37, 9.5)}
-    torus = int(np.flatnonzero(windows(2).bifurcation_kind.values == TORUS)[0])
-    with pytest.raises(InputError, match="switch: Neimark-Sacker"):
-        branch(PAPER, switch=torus, **given)
-    with pytest.raises(InputError, match="start: several orbits"):
-        branch(PAPER, **given)
-    with pytest.raises(InputError, match="switch = 99"):
-        branch(PAPER, switch=99, **given)
-    alone = orbit(PAPER, eta=4.0, period=2)
-    with pytest.raises(InputError, match="switch = 1: start has no bifurcations; expected a"):
-        branch(PAPER, start=alone, switch=1, limits=(3.0, 5.0))
-
-
 def test_a_root_is_known_by_its_residual():
     """Short steps alone do not make one: a wrong derivative makes them anywhere."""
 
@@ -270,12 +217,3 @@ def test_a_root_is_known_by_its_residual():
 
     with pytest.raises(NoConvergenceError, match="the residual is"):
         newton_correct(Steep(), np.zeros(2), np.array([0.0, 1.0]))
-
-
-def test_directions_have_the_side_that_a_component_gives_them():
-    """Singular vectors come out with one sign or the other, as the processor has it."""
-    vector = np.array([0.1, -0.7, 0.7])
-    assert fix_sign(vector) == pytest.approx(-vector)
-    assert fix_sign(-vector) == pytest.approx(-vector)
-    fold = np.array([[0.0, 1.0], [0.0, 1.0]])  # the tangent is across the last row
-    assert unit_tangent(fold) == pytest.approx([1.0, 0.0])

@@ -1,9 +1,11 @@
 """Closed form and equations of orbits: one source in Python and C, exact derivatives."""
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from fmu_src.kernels import orbits
 from orchestrate.constants import TURN
@@ -92,8 +94,16 @@ def test_segments_follow_the_equations_of_motion(seed):
             assert found == pytest.approx(state[:, moving], abs=1e-12)
 
 
-def test_an_iteration_that_went_astray_gives_no_number():
-    orbit = random_orbit(2)
-    nodes = orbit.nodes + [1e30, 0.0, 0.0, 0.0]
-    nodes[-1, 0] = np.nan
-    assert not np.isfinite(dataclasses.replace(orbit, nodes=nodes).residual()).all()
+@pytest.mark.parametrize("damping", [0.0, 0.3, 1.0 - 1e-12, 1.0, np.nextafter(1.0, 2.0), 2.0, 50.0])
+def test_the_flow_of_one_oscillator_is_a_matrix_exponential(damping):
+    """Critically damped too, and where one exponential has long vanished."""
+    form = ClosedForm.from_structure(Structure(), Excitation.nondimensional(0.7, Structure()))
+    for square, time in itertools.product((0.1, 1.0, 5.0), (0.0, 0.5, 3.0, 1e4)):
+        four = np.full(4, np.sqrt(square))
+        own = dataclasses.replace(form, damping=damping * four, stiffness=four**2)
+        rates = np.array([[0.0, 1.0], [-square, -2.0 * damping * four[0]]])
+        expected = expm(rates * time) if time < 1e3 else np.zeros((2, 2))
+        found = own.flow(np.atleast_1d(time))[0, ::2, ::2]
+        assert found == pytest.approx(expected, abs=1e-9) or (
+            time > 1e3 and np.isfinite(found).all()
+        )

@@ -11,7 +11,6 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from orchestrate.dynamics import clusters
 from orchestrate.dynamics.clusters import (
     AttractorSettings,
-    SettlingRun,
     irregular_clusters,
     run_until_settled,
     single_linkage,
@@ -120,14 +119,6 @@ def test_a_response_is_run_on_until_it_is_known(exported, eta, multiplicity, lea
 
 def test_short_periods_take_more_of_them():
     assert [transient_periods(400, 300.0, eta) for eta in (0.5, 1.5, 8.0)] == [400, 450, 2400]
-
-
-def test_settings_that_are_given_are_used():
-    lengths = {"transient": 30, "settle": 1.0, "samples": 8}
-    changed = {"alike": 0.5, "longest": 77, "returns": 1e-4}
-    run = SettlingRun.from_settings(AttractorSettings(**changed), **lengths)
-    assert {name: getattr(run, name) for name in (*lengths, *changed)} == {**lengths, **changed}
-    assert SettlingRun.from_settings(None, **lengths) == SettlingRun(**lengths)
 
 
 @pytest.mark.parametrize("wrong", [{"alike": 0.0}, {"longest": -1}, {"near": float("nan")}])

@@ -12,15 +12,13 @@ from orchestrate.dynamics import codimension_two
 from orchestrate.dynamics.bifurcation_kinds import Kind
 from orchestrate.dynamics.codimension_two import CharacteristicPolynomial, PointKind, points_between
 from orchestrate.dynamics.continuation import newton_correct, unit_vector
-from orchestrate.dynamics.families import Setting
-from orchestrate.dynamics.periodic_orbit import ImpactSequence, PeriodicOrbit
 from orchestrate.flags import flag_words
 
 from .single_impact import SingleImpact
 
 PAPER = Structure.nondimensional()
 QUIET = {"progress": False}
-WINDOWS = {1: (2.5, (2.4, 2.8)), 2: (3.55, (3.25, 3.7)), 3: (5.62, (5.45, 5.72))}
+WINDOWS = {1: (2.5, (2.4, 2.8)), 2: (3.55, (3.25, 3.7))}
 
 
 @functools.cache
@@ -54,53 +52,23 @@ def points(period, kind, over, limits):
 
 
 @pytest.mark.slow
-def test_a_resonance_1_3_is_where_the_closed_form_has_it():
-    (eta, kappa), at = points(1, "Neimark-Sacker", "kappa", (1.05, 2.2))["resonance 1:3"]
-    truth = SingleImpact(eta, 1, kappa=kappa).multipliers
+def test_points_are_where_the_closed_form_has_them_and_on_both_of_their_curves():
+    resonance, at = points(1, "Neimark-Sacker", "kappa", (1.05, 2.2))["resonance 1:3"]
+    truth = SingleImpact(resonance[0], 1, kappa=resonance[1]).multipliers
     assert np.abs(truth - np.exp(2j * np.pi / 3.0)).min() < 1e-8
     assert float(at.codimension_two_residual) < 1e-12
-
-
-@pytest.mark.slow
-def test_a_flip_neimark_sacker_point_is_on_both_curves():
-    both = [
-        points(1, kind, "kappa", (1.05, 2.2))["flip-Neimark-Sacker"][0]
-        for kind in ("Neimark-Sacker", "period doubling")
-    ]
+    kinds, name = ("Neimark-Sacker", "period doubling"), "flip-Neimark-Sacker"
+    both = [points(1, kind, "kappa", (1.05, 2.2))[name][0] for kind in kinds]
     assert both[0] == pytest.approx(both[1], abs=1e-9)
     truth = SingleImpact(both[0][0], 1, kappa=both[0][1]).multipliers
     pair = truth[truth.imag > 0.0]
     assert np.abs(truth + 1.0).min() < 1e-8 and abs(np.abs(pair) - 1.0).min() < 1e-8
-
-
-@pytest.mark.slow
-def test_a_period_doubling_ends_where_a_flight_grazes():
-    both = [
-        points(2, kind, "e", (0.29, 0.71))["grazing period doubling"][0]
-        for kind in ("period doubling", "grazing of a flight")
-    ]
+    kinds, name = ("period doubling", "grazing of a flight"), "grazing period doubling"
+    both = [points(2, kind, "e", (0.29, 0.71))[name][0] for kind in kinds]
     assert both[0] == pytest.approx(both[1], abs=1e-9)
-    eta, e = both[0]
-    truth = SingleImpact(eta, 2, e=e)
+    truth = SingleImpact(both[0][0], 2, e=both[0][1])
     assert np.abs(truth.multipliers + 1.0).min() < 1e-8
     assert abs(truth.gap(np.linspace(0.01, 0.99, 20_001) * truth.time).min()) < 1e-7
-
-
-def test_the_roots_of_the_polynomial_are_the_multipliers():
-    """Of a contact too, where two are zero."""
-    for eta, count in ((3.0, 4), (0.4, 2)):
-        found = orchestrate.orbit(PAPER, eta=eta, **QUIET)
-        there = found.node_kind.values >= 0
-        names = ("node_phase", "node_position", "node_velocity", "node_closing")
-        nodes = np.stack([found[name].values[there] for name in names], axis=1)
-        kinds = tuple(map(int, found.node_kind.values[there]))
-        form = Setting.fixed(PAPER, (("eta", eta),)).form(np.array([eta]))
-        orbit = PeriodicOrbit(ImpactSequence(1, kinds), form, nodes)
-        d = CharacteristicPolynomial(orbit, np.ones(4 * len(nodes)))
-        own = [complex(*pair) for pair in found.multipliers.values]
-        for multiplier in own[:count]:
-            assert abs(d(multiplier)) < 1e-9
-        assert abs(d(1.7)) > 1e-6
 
 
 class Normal:

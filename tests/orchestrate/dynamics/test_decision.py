@@ -4,7 +4,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from orchestrate import orbit
 from orchestrate.dynamics import decision
@@ -19,7 +18,6 @@ from orchestrate.dynamics.settled_motion import same_nodes
 from orchestrate.fmu import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
-from orchestrate.response.multiplicity import nearest_state
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
 
@@ -79,19 +77,6 @@ def test_attractors_are_those_that_newtons_method_confirms(structure, eta, asked
         sizes = np.hypot(*confirmed.multipliers.transpose("part", "multiplier").values)
         assert float(one.multiplier) == pytest.approx(sizes.max(), rel=1e-6)
         assert int(one.decided_by) == ORBIT
-
-
-def test_an_impact_at_the_sampled_phase_does_not_matter():
-    structure = PAPER.replace(e=0.5)
-
-    def phase(eta):
-        found = float(orbit(structure, eta=eta).node_phase[0])
-        return (found + np.pi) % (2.0 * np.pi) - np.pi
-
-    eta = brentq(phase, 2.09, 2.097, xtol=1e-15)
-    assert abs(phase(eta)) < 1e-12
-    for beside in (0.0, 1e-12, -1e-12, 1e-9):
-        assert told(attractors(structure, eta=eta + beside, starts=8)) == [(1.0, 1.0)]
 
 
 @pytest.mark.parametrize(("eta", "e"), [(0.4, 0.7), (0.6, 0.2), (0.6, 0.0)])
@@ -163,13 +148,6 @@ def test_orbits_are_one_whatever_period_they_begin_with():
         np.vstack([orbit.nodes, orbit.nodes + [4.0 * np.pi, 0.0, 0.0, 0.0]]),
     )
     assert (least_periods(orbit), least_periods(twice)) == (2, 2)
-
-
-def test_distances_compare_gaps_with_the_gap():
-    """A gap may be a hundredth of the displacements."""
-    known = [[1.0, 1.01, 0.0, 0.0]], 1.0, 0.01
-    assert nearest_state(*known, [1.0, 1.011, 0.0, 0.0]) == (0, pytest.approx(0.1))
-    assert nearest_state(*known, [1.001, 1.011, 0.0, 0.0]) == (0, pytest.approx(1e-3, rel=0.02))
 
 
 @pytest.mark.parametrize(

@@ -18,12 +18,10 @@ from orchestrate.dynamics.lyapunov import (
 )
 from orchestrate.dynamics.variational import period_in_tau
 from orchestrate.errors import InputError
-from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
+from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
-
-from .test_variational import monodromy
 
 make = Structure.nondimensional
 PAPER = make()
@@ -42,32 +40,6 @@ def settled(instance, point, periods):
     begin(instance, *point, REST)
     instance.step(0.0, periods * point.excitation.period)
     return np.array(instance.get(*STATE))
-
-
-@pytest.mark.parametrize(
-    ("structure", "eta"),
-    [
-        (PAPER, 1.047),
-        (make(D=0.05), 0.8),
-        (make(e=0.3), 0.6),
-        (make(D1=0.02, D2=0.1), 0.9),
-        (make(D1=0.1, D2=1.5), 1.6),
-        (Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=6.0, e=0.6), 1.8),
-    ],
-)
-def test_of_a_periodic_response_it_is_that_of_its_multipliers(instances, structure, eta):
-    plain, eventful = instances
-    point = Point(structure, Excitation.nondimensional(eta, structure))
-    start, span = settled(plain, point, 1500), period_in_tau(eta)
-    impacts = follow_impacts(eventful, point, start, 400)
-    exponent, error = largest_exponent(impacts, 400 * span, point)
-    first = np.searchsorted(impacts.time, span)
-    names = ("time", "state", "closing", "sticks")
-    one = Impacts(*(getattr(impacts, name)[:first] for name in names))
-    multiplier = np.abs(np.linalg.eigvals(monodromy(one, point))).max()
-    assert exponent == pytest.approx(math.log(multiplier) / span, abs=5e-4)
-    assert 0.0 < error < 5e-4
-    assert classify_exponents(exponent, error, 1e-3) == PERIODIC
 
 
 @pytest.mark.parametrize(

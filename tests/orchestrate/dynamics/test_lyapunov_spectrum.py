@@ -4,13 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import orchestrate
 from orchestrate.dynamics.impacts_after_transient import follow_impacts
 from orchestrate.dynamics.lyapunov_spectrum import (
-    compound_matrices,
     kaplan_yorke_dimension,
     lyapunov_spectrum,
 )
@@ -36,15 +33,6 @@ def followed(exported):
             return follow_impacts(eventful, point, start, periods), point
 
         yield follow
-
-
-@given(st.integers(0, 2**32), st.sampled_from([1, 2, 3, 4]))
-def test_volumes_are_carried_by_products_as_by_their_factors(seed, order):
-    """Cauchy and Binet: the compound of a product is the product of the compounds."""
-    one, two = np.random.default_rng(seed).uniform(-2.0, 2.0, (2, 4, 4))
-    product = compound_matrices((two @ one)[None], order)[0]
-    separate = compound_matrices(two[None], order)[0] @ compound_matrices(one[None], order)[0]
-    np.testing.assert_allclose(product, separate, atol=1e-9)
 
 
 @pytest.mark.parametrize(

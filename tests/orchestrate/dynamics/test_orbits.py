@@ -5,7 +5,6 @@ import functools
 import numpy as np
 import pytest
 
-from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
@@ -86,35 +85,10 @@ def test_the_physical_form_is_the_same_orbit_in_metres():
     assert found.exponent.item() == pytest.approx(plain.exponent.item(), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("question", "words"),
-    [
-        ({"eta": [1.0, 2.0]}, "eta: 2 values"),
-        ({}, "excitation"),
-        ({"eta": 4.0, "period": 1, "guess": {"time": [1.0]}}, "guess"),
-        ({"eta": 4.0, "guess": {"impact_time": [0.1, 9.0]}}, "impact_time"),
-        ({"eta": 4.0, "guess": (0.0, -1.0, 0.0, 0.0)}, "guess"),
-        ({"eta": 1.0, "structure": PAPER.replace(D=0.0)}, "natural frequency of mass 1"),
-        ({"eta": 1.0, "structure": PAPER.as_bonded()}, "bonded"),
-        ({"eta": 1.0, "structure": 7}, "structure = 7"),
-    ],
-)
-def test_what_cannot_be_asked(question, words):
-    with pytest.raises(InputError, match=words) as caught:
-        orbit(**{"structure": PAPER, **question})
-    assert "\n" not in str(caught.value)
-    assert "expected" in str(caught.value)
-
-
 def test_no_orbit_is_said():
     """4T/1 does not exist at 7.4: its flight would go through mass 1."""
     with pytest.raises(InputError, match="period = 4: no orbit found"):
         orbit(PAPER, eta=7.4, period=4, guess={"impact_time": [0.4]})
-
-
-def test_where_no_orbit_is_found_the_message_names_the_way_to_a_branch():
-    with pytest.raises(InputError, match="a guess to orbit, whose result is a start for branch"):
-        branch(PAPER, eta=2.5, period=2, limits=(2.4, 2.8))
 
 
 def test_an_impact_at_phase_0_makes_no_longer_period():

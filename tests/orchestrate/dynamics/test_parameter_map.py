@@ -1,14 +1,11 @@
 """Maps: each point is a response from the same start, in whatever unit and order."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
 from orchestrate.dynamics.lyapunov import lyapunov
 from orchestrate.dynamics.orbits import orbit
-from orchestrate.dynamics.parameter_map import MapJob, map
-from orchestrate.errors import InputError
+from orchestrate.dynamics.parameter_map import map
 from orchestrate.model import Structure
 from orchestrate.model.outcomes import REPEATED, UNDECIDED
 from orchestrate.response.simulate import simulate
@@ -24,20 +21,6 @@ pytestmark = pytest.mark.usefixtures("exported")
 @pytest.fixture(scope="module")
 def found(exported):
     return map(SLOWER, eta=ETAS, e=ES, exponent=True, periods=100)
-
-
-@pytest.mark.parametrize(("points", "chunks"), [(300, 16), (12, 12), (6000, 50)])
-def test_a_map_of_few_points_is_stored_in_many_parts(points, chunks):
-    grid = {
-        "given": (
-            ("eta", tuple(np.linspace(1.0, 2.0, points // 6))),
-            ("e", (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)),
-        )
-    }
-    job = MapJob(name="map", structure=PAPER, start=(0.0,) * 4, **grid)
-    found = job.chunks()
-    assert len(found) == chunks and (found[0].start, found[-1].stop) == (0, points)
-    assert all(one.stop == after.start for one, after in pairwise(found))
 
 
 def test_each_point_is_a_response_from_rest(found):
@@ -107,22 +90,3 @@ def test_any_two_parameters_in_any_unit():
     assert same.equals(found) and same.attrs["identity"] == found.attrs["identity"]
     box = map(own, frequency=[90.0, 110.0], amplitude=[1e-3, 2e-3], **short)
     np.testing.assert_allclose(box.xi_rel_max[:, 0], box.xi_rel_max[:, 1], rtol=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("asked", "text"),
-    [
-        ({"eta": ETAS}, "lists of values: eta; expected two"),
-        ({"eta": 1.0, "e": 0.5}, "lists of values: none; expected two"),
-        ({"eta": ETAS, "e": ES, "D": [0.1, 0.2]}, "lists of values: eta, e, D; expected two"),
-        ({"e": ES, "D": [0.1, 0.2]}, "nothing given; expected eta="),
-        ({"eta": ETAS, "colour": ES}, "colour: no parameter; expected"),
-        ({"eta": ETAS, "e": [0.5, 1.5]}, r"e = 1\.5: expected 0 <= e <= 1"),
-        ({"eta": ETAS, "e": [0.5, 0.5]}, "e: a value twice"),
-        ({"eta": ETAS, "over": "e"}, "over and values: expected both or none"),
-        ({"eta": ETAS, "over": "e", "values": ES, "e": 0.5}, "over= not by its name too"),
-    ],
-)
-def test_what_is_refused(asked, text):
-    with pytest.raises(InputError, match=text):
-        map(PAPER, **asked)

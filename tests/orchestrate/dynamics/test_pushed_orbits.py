@@ -5,9 +5,6 @@ import pytest
 
 import orchestrate
 from orchestrate.dynamics.bifurcation_kinds import Kind
-from orchestrate.dynamics.families import Setting, central_difference
-from orchestrate.dynamics.orbit_search import solve_orbit
-from orchestrate.dynamics.orbits import guess_from_result
 from orchestrate.errors import InputError
 from orchestrate.model import Excitation, Structure
 
@@ -87,19 +84,6 @@ def test_orbits_of_random_structures_are_those_of_the_fmus_own_map(at_rest):
         if found.xi_rel > 1e-2:  # in contact at phase 0 there is no neighbour beyond
             assert_multipliers(found, structure, excitation, within=1e-6)
     assert contacts > 0 and max(map(len, sequences)) > (0 if at_rest else 3)
-
-
-def test_newtons_matrix_is_that_of_differences_at_a_release_too():
-    structure = Structure.nondimensional(e=0.4, D1=0.02, D2=0.05, mu=1.3)
-    excitation = (("eta", 0.4), ("box_acceleration", -0.1), ("force1", 0.3), ("force2", -0.2))
-    found = orchestrate.orbit(structure, **dict(excitation), **QUICK)
-    assert {1, 2} <= set(found.node_kind.values.tolist())
-    setting, guess = Setting.fixed(structure, excitation), guess_from_result(found).as_guess(1)
-    family, root = solve_orbit(setting, guess, np.array([0.4]))
-    places = [(i, *root.unknowns[i] + [-1.0, 1.0]) for i in range(family.size)]
-    seen = [central_difference(family.residual, root.unknowns, *each, 1e-5) for each in places]
-    matrix = family.jacobian(root.unknowns)[:, : family.size]
-    assert np.abs(np.array(seen).T - matrix).max() < 1e-6 * np.abs(matrix).max()
 
 
 OPEN = Structure.nondimensional(e=0.7, D=0.02, clearance=0.3)

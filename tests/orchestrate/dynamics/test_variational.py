@@ -1,18 +1,14 @@
 """Flow and saltation matrices against neighbouring runs of the FMU and matrix exponentials."""
 
-import dataclasses
 import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from scipy.linalg import expm
 
-from orchestrate.dynamics.closed_form import FREE, INNER, ClosedForm
+from orchestrate.dynamics.closed_form import INNER, ClosedForm
 from orchestrate.dynamics.impacts_after_transient import follow_impacts
 from orchestrate.dynamics.variational import contact_durations, deviations, period_in_tau
-from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin, find
+from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.threshold import threshold_amplitudes
@@ -133,23 +129,6 @@ def test_releases_are_those_of_the_fmu(instances, structure, eta, pushed):
         assert touching == [True, release >= ends[stick]]
 
 
-@pytest.mark.parametrize("eta", [0.4, 7.4])
-def test_contacts_shorter_than_a_look_are_seen(instances, eta):
-    """Pressed together, but the force vanishes long before the next impact."""
-    plain, _ = instances
-    structure, start = ALIKE[0], (0.01, 0.01, -0.5, -0.5)
-    point = Point(structure, Excitation.nondimensional(eta, structure))
-    one = Impacts(np.zeros(1), np.array([start]), np.zeros(1), np.ones(1, dtype=bool))
-    found = deviations(one, 20.0, point)[1].item()
-    assert 0.01 < found < 20.0 / 64.0
-    touching = []
-    for tau in (found - 1e-9, found + 1e-9):
-        begin(plain, *point, start)
-        plain.step(0.0, tau)
-        touching += plain.get("in_contact")
-    assert touching == [True, False]
-
-
 @pytest.mark.parametrize("above", [1e-5, 5e-4])
 def test_short_openings_are_seen_wherever_a_contact_begins(above):
     """On the common steady motion, which opens for less than a sample, by 400,000 of its phases."""
@@ -168,35 +147,3 @@ def test_short_openings_are_seen_wherever_a_contact_begins(above):
     found = contact_durations(form, begins, form.steady_response(begins, INNER), spans)
     expected = (opened[0] - begins) % (2.0 * np.pi) / form.eta
     np.testing.assert_allclose(found, expected, atol=5e-5)
-
-
-def form_of(structure, eta=0.7):
-    return ClosedForm.from_structure(structure, Excitation.nondimensional(eta, structure))
-
-
-def oscillator(time, damping, square):
-    """Flow matrices of an oscillator of any numbers."""
-    four = np.ones(4)
-    form = dataclasses.replace(form_of(make()), damping=damping * four, stiffness=square * four)
-    return form.flow(np.atleast_1d(time))[:, ::2, ::2]
-
-
-@given(st.floats(0.0, 5.0), st.floats(0.1, 5.0), st.floats(0.0, 10.0))
-def test_one_oscillator_is_a_matrix_exponential(damping, square, time):
-    matrix = np.array([[0.0, 1.0], [-square, -2.0 * damping]])
-    np.testing.assert_allclose(oscillator(time, damping, square)[0], expm(matrix * time), atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    "damping", [1.0, 1.0 + 1e-12, 1.0 - 1e-12, 1.0 + 1e-14, np.nextafter(1.0, 2.0)]
-)
-def test_near_critical_damping_nothing_is_lost(damping):
-    time = np.array([0.0, 0.5, 3.0])
-    np.testing.assert_allclose(
-        oscillator(time, damping, 1.0), oscillator(time, 1.0, 1.0), atol=1e-11
-    )
-
-
-def test_nothing_overflows_in_a_long_flight():
-    form = form_of(make(D1=5.0, D2=50.0))
-    assert np.isfinite(form.flow(np.full(2, 1e4), np.array([FREE, INNER]))).all()

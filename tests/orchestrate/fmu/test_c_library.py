@@ -8,7 +8,6 @@ import sys
 import pytest
 
 from fmu_src.export import c_library as sources
-from fmu_src.export.platforms import this_machine
 from orchestrate.errors import InputError
 from orchestrate.fmu import c_library, exported
 from orchestrate.fmu.c_library import SOURCES, library_path
@@ -82,10 +81,3 @@ def test_what_is_somebody_else_s_is_loaded_only_from_the_package(cache, monkeypa
     else:
         with pytest.raises(InputError, match=f"{path}: others can write .*expected"):
             library_path(SOURCE, folder)
-
-
-def test_those_of_the_tests_are_sound(exported):
-    for source in SOURCES:
-        path = library_path(source, exported)
-        assert path is None or sources.is_current(path, sources.guid(source))
-        assert path is None or path.parent.name == this_machine()

@@ -50,9 +50,3 @@ def test_a_carried_state_is_one_of_the_other_structure(exported, wall):
         with Instance(find(OSCILLATOR).path) as instance:
             begin(instance, other, Excitation(frequency=1.1, amplitude=0.3), like)
     assert min(touching.values()) > 1
-
-
-def test_a_state_of_the_same_structure_is_itself():
-    for structure in (Structure(wall=True, clearance=0.3), Structure(stroke=1.0)):
-        state = [0.1, 0.0, 0.7, 0.0]
-        assert carried(state, structure, structure).tolist() == state

@@ -1,13 +1,12 @@
 """An FMU is described as it is now, and what is none is refused in one line."""
 
 import os
-import shutil
 import time
 
 import pytest
 
 from orchestrate.errors import InputError
-from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, describe, find
+from orchestrate.fmu import OSCILLATOR, describe
 from orchestrate.fmu.description import QUIET, digest_of
 
 from .altered import altered_fmu
@@ -59,14 +58,6 @@ def test_what_is_no_fmu_of_the_model(tmp_path, any_fmu, make, words):
     line = str(error.value)
     assert line.startswith(f"FMU {fmu}: ") and "expected" in line and "\n" not in line
     assert all(word in line for word in words), line
-
-
-def test_an_fmu_that_changes_is_described_anew(tmp_path, any_fmu):
-    path = tmp_path / "mine.fmu"
-    shutil.copy(any_fmu, path)
-    assert describe(path).name == OSCILLATOR
-    shutil.copy(find(MOTOR_SHAKER, any_fmu.parent.name).path, path)
-    assert describe(path).name == MOTOR_SHAKER
 
 
 def test_a_file_is_read_again_only_if_it_may_have_changed(tmp_path, monkeypatch):

@@ -82,19 +82,6 @@ def test_rows_and_impacts_are_those_of_single_steps(name, event_fmu):
     assert times == expected.impacts.time[: len(times)].tolist() and len(rows) > 100
 
 
-def test_an_open_instance_serves_any_number_of_motions(event_fmu):
-    """After another structure, and after a refusal, the motion is that of a new instance."""
-    expected, _ = done(event_fmu, STRUCTURE)
-    with Player(event_fmu) as player:
-        for structure in (*STRUCTURES.values(), STRUCTURE):
-            player.start(structure)
-            player.play(NODES, CUBICS, SAMPLES)
-        with pytest.raises(FmuError, match="box_acceleration = nan"):
-            player.play(NODES + NODES[-1], CUBICS * np.nan, SAMPLES)
-        player.start(STRUCTURE, (0.1, 0.2, 0.0, 0.0))
-        assert bits(player.play(NODES, CUBICS, SAMPLES)) == bits(expected)
-
-
 def refusal(fmu, cubics=CUBICS, nodes=NODES, **inputs):
     """What is said where the FMU refuses a call."""
     with Player(fmu) as player:
@@ -133,13 +120,6 @@ def test_numbers_that_are_not_finite_are_refused(first, event_fmu, tmp_path):
         pytest.importorskip("ziglang")
     fmu = misbehaving(event_fmu, tmp_path / "bad.fmu", "NaN", first=first)
     assert "answers x1 = nan; expected a finite number" in refusal(fmu)
-
-
-def test_shapes_that_do_not_fit_are_refused(event_fmu):
-    with Player(event_fmu) as player:
-        player.start(STRUCTURE)
-        with pytest.raises(ValueError, match=r"derivatives of shape \(400, 3\) for 401 nodes"):
-            player.play(NODES, CUBICS[:, :3], SAMPLES)
 
 
 def test_structures_have_the_sizes_of_the_source():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate.errors import FmuError, InputError
+from orchestrate.errors import InputError
 from orchestrate.fmu import REST, EventInstance, Instance, begin
 from orchestrate.model import Excitation, Structure
 
@@ -38,12 +38,6 @@ def test_every_impact_is_there(impacts, event_fmu):
     assert np.all(np.diff(impacts.time) > 0.0) and np.all(impacts.closing >= 0.0)
 
 
-def test_no_impacts(events):
-    begin(events, STRUCTURE.as_bonded(), CHAOS)
-    found = events.impacts(0.0, 10.0)
-    assert (found.time.shape, found.state.shape, found.sticks.dtype) == ((0,), (0, 4), bool)
-
-
 def test_begin_sets_all(any_fmu):
     structure = Structure(m1=2.0, m2=3.0, k1=4.0, k2=5.0, d1=0.1, d2=0.2, e=0.3, gamma=1e-5)
     excitation = Excitation(frequency=2.0, amplitude=0.5, phase=1.0)
@@ -57,18 +51,6 @@ def test_begin_sets_all(any_fmu):
         assert instance.get("bonded", "x_rel_max_on", "x2") == [True, True, 0.0]
 
 
-@pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), 0.0, [[0.0] * 4], "rest", ["a"] * 4])
-def test_a_start_has_four_numbers(events, start):
-    with pytest.raises(InputError, match=r"start = .*: expected 4 numbers, x1, x2, v1, v2"):
-        begin(events, STRUCTURE, CHAOS, start)
-
-
 def test_fmi_2_has_no_events(oscillator_in):
     with pytest.raises(InputError, match=r"is FMI 2.0; expected FMI 3.0, which has events"):
         EventInstance(oscillator_in("fmi2-python"))
-
-
-def test_a_refused_step_speaks(events):
-    begin(events, STRUCTURE, CHAOS)
-    with pytest.raises(FmuError, match="currentCommunicationPoint = 1.0 s"):
-        events.impacts(1.0, 2.0)

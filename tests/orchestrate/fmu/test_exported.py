@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from fmu_src.export.errors import EXTRA
-from orchestrate.errors import InputError, StoreError
+from orchestrate.errors import InputError
 from orchestrate.fmu import (
     FORMS,
     MODELS,
@@ -74,10 +74,6 @@ def put(source, folder, form="fmi3", model=OSCILLATOR):
     return target
 
 
-def test_the_fmi_3_form_is_the_default(real):
-    assert find(OSCILLATOR).path == real["fmi3"]
-
-
 def test_what_is_missing_is_exported_once(maker, places):
     folder, _ = places
     for _ in range(2):
@@ -85,25 +81,10 @@ def test_what_is_missing_is_exported_once(maker, places):
     assert maker.asked == [(OSCILLATOR, "fmi3", folder)]
 
 
-@pytest.mark.parametrize("progress", [True, False])
-def test_a_script_is_told_that_an_export_takes_long(maker, places, caplog, progress):
-    exported.announce.cache_clear()
-    finder({"progress": progress})(OSCILLATOR)
-    said = [record.getMessage() for record in caplog.records if record.levelname == "WARNING"]
-    assert any("takes some seconds" in line for line in said) == progress
-
-
 def test_what_came_with_the_package_needs_no_export(maker, places, real):
     put(real["fmi3"], places[1])
     assert find(OSCILLATOR).path == places[1] / "fmi3" / f"{OSCILLATOR}.fmu"
     assert maker.asked == []
-
-
-def test_other_sources_than_the_package_s_are_exported(maker, places, real):
-    guid = describe(real["fmi3"]).guid
-    stale = put(real["fmi3"], places[1])
-    altered_fmu(real["fmi3"], stale, instantiationToken=(guid, guid[::-1]))
-    assert find(OSCILLATOR).path.parents[1] == places[0]
 
 
 @pytest.mark.parametrize("damage", ["cut", "empty", "other", "stale"])
@@ -188,25 +169,6 @@ def test_build_writes_all(maker, places, tmp_path):
     written = build(tmp_path / "out")
     names = {path.relative_to(tmp_path / "out").as_posix() for path in written}
     assert names == {f"{form}/{model}.fmu" for form in FORMS for model in MODELS}
-
-
-def test_build_leaves_out_what_cannot_be_made(maker, places, tmp_path, caplog):
-    maker.without.update({"fmi2", "fmi3"})
-    written = build(tmp_path / "out", names=[OSCILLATOR])
-    assert [path.parent.name for path in written] == ["fmi2-python"]
-    assert caplog.text.count(REASON) == 2
-    maker.without.update(FORMS)
-    with pytest.raises(InputError, match="cannot be made: ziglang"):
-        build(tmp_path / "out")
-
-
-def test_a_full_disk(monkeypatch, tmp_path):
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(exported.sources, "export", full)
-    with pytest.raises(StoreError, match="No space left on device; expected a folder"):
-        build(tmp_path)
 
 
 def test_a_clone_has_its_own_folder(monkeypatch, tmp_path):

@@ -8,7 +8,6 @@ import pytest
 import orchestrate
 from orchestrate import InputError, Structure
 from orchestrate.cli.grammar import parse_changes
-from orchestrate.model import write
 from orchestrate.model.ranges import ADDED, OF_LENGTH, STRUCTURE, Quantity
 from orchestrate.model.structure import with_table
 
@@ -66,19 +65,10 @@ def test_every_constructor_takes_it(name):
 
 
 @pytest.mark.parametrize("name", ADDED)
-@pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e101, "wide", True])
-def test_out_of_range_it_is_refused_with_its_range(name, value):
-    with pytest.raises(InputError, match=f"{name} = .*: expected"):
-        Structure(**{name: value})
-
-
-@pytest.mark.parametrize("name", ADDED)
 @pytest.mark.parametrize("keys", FORMS)
 def test_files_have_it_with_all_keys_and_may_leave_it_out(tmp_path, keys, name):
     path = tmp_path / "beam.toml"
     path.write_text(f"[structure]\n{keys}\n{name} = 2e-5\n")
-    assert Structure.from_file(path).get(name) == 2e-5
-    write(path, structure=Structure.from_file(path))
     assert Structure.from_file(path).get(name) == 2e-5
     path.write_text(f"[structure]\n{keys}\n")
     assert Structure.from_file(path).get(name) == STRUCTURE[name].default

@@ -15,9 +15,3 @@ def test_preload_and_place_at_rest():
     for open_structure in (Structure(), Structure(clearance=0.4)):
         assert open_structure.preload == 0.0
         assert [str(x) for x in open_structure.at_rest] == ["0.0", "0.0"]  # no negative zero
-
-
-def test_a_bonded_structure_keeps_and_ignores_it():
-    bonded = Structure(clearance=-0.4).as_bonded()
-    assert (bonded.clearance, bonded.gap_offset, bonded.preload) == (-0.4, 0.0, 0.0)
-    assert bonded.as_delaminated() == Structure(clearance=-0.4)

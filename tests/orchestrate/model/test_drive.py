@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
-from orchestrate.model import Drive, Structure
+from orchestrate.model import Drive
 from orchestrate.model.ranges import DRIVE
 
 from .strategies import DRIVES, SMALL, STRUCTURES
@@ -46,14 +46,6 @@ def test_ranges_are_the_fmu_s(name):
     for value in (-1.0, 2.0 * quantity.maximum, math.nan, "1"):
         with pytest.raises(InputError, match=f"^{name} = .*: expected .*{name}"):
             drive.replace(**{name: value})
-
-
-def test_a_number_out_of_range():
-    numbers = {"epsilon": 0.001, "b": 0.02, "Omega_b": 0.1, "D_b": 0.005}
-    with pytest.raises(InputError, match="^beta = 0.0: expected 1e-24 <= beta"):
-        Drive.nondimensional(beta=0.0, **numbers, structure=Structure())
-    with pytest.raises(InputError, match=r"^beta = 1e-24, epsilon.* make box_mass = .*: expected"):
-        Drive.nondimensional(beta=1e-24, **numbers, structure=Structure())
 
 
 SHEET = {"rated_voltage": 24.0, "no_load_speed": 300.0, "stall_torque": 0.4}

@@ -14,16 +14,6 @@ from .strategies import EXCITATIONS, STRUCTURES
 ETA = st.floats(1e-3, 1e3)
 
 
-@given(ETA)
-def test_where_omega_is_1_the_fmu_gets_what_it_always_got(eta):
-    excitation = Excitation.nondimensional(eta, Structure())
-    expected = {"box_amplitude": 1.0 / (eta * eta), "box_frequency": eta, "phase_start": 0.0}
-    expected |= dict.fromkeys(("box_acceleration", "force1_amplitude", "force2_amplitude"), 0.0)
-    assert excitation.inputs() == expected
-    assert excitation.eta(Structure()) == eta
-    assert excitation.period == 2.0 * math.pi / eta
-
-
 @given(ETA, STRUCTURES)
 def test_with_eta_lengths_are_metres(eta, structure):
     excitation = Excitation.nondimensional(eta, structure)

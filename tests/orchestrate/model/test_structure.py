@@ -1,8 +1,6 @@
 """A structure in SI units and by the paper's numbers: both ways, scaled, changed, refused."""
 
-import dataclasses
 import math
-import pickle
 
 import numpy as np
 import pytest
@@ -18,14 +16,6 @@ from .strategies import NUMBERS, RATIO, SCALE, SMALL, STRUCTURES
 
 def near(value, expected):
     return math.isclose(value, expected, rel_tol=1e-12)
-
-
-@given(NUMBERS, SCALE, SCALE)
-def test_numbers_to_si_and_back_at_any_scale(numbers, m1, omega):
-    structure = Structure.nondimensional(**numbers, m1=m1, omega=omega)
-    for name, value in numbers.items():
-        assert near(structure.get(name), value), name
-    assert structure.m1 == m1 and near(structure.omega, omega)
 
 
 def test_the_operations_of_the_paper_s_sweeps():
@@ -45,14 +35,6 @@ def test_the_formulas_of_the_paper():
     omegas = [math.sqrt(k / m) / 2.0 for k, m in ((8.0, 2.0), (10.0, 3.0), (18.0, 5.0))]
     found = [structure.omega_1, structure.omega_2, structure.omega_3]
     assert all(map(near, found, omegas))
-
-
-def test_frozen_hashable_picklable():
-    structure = Structure(e=0.3)
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        structure.e = 0.5
-    assert {structure: 1}[Structure(e=0.3)] == 1
-    assert pickle.loads(pickle.dumps(structure)) == structure
 
 
 @given(STRUCTURES)
@@ -104,39 +86,6 @@ def test_ranges_are_the_fmu_s(name):
             Structure(**{name: value})
 
 
-@pytest.mark.parametrize("value", ["yes", 1, None])
-def test_bonded_is_true_or_false(value):
-    with pytest.raises(InputError, match="^bonded = .*: expected true or false"):
-        Structure(bonded=value)
-
-
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: Structure.nondimensional(mu=0.0), ["mu = 0.0: expected 1e-24 <= mu"]),
-        (lambda: Structure.nondimensional(D=-1.0), ["D = -1.0: expected 0 <= D "]),
-        (lambda: Structure.nondimensional(D2="a"), ["D2 = 'a': expected a number"]),
-        (
-            lambda: Structure.nondimensional(mu=1e15, D=1e11),
-            ["mu = 1000000000000000.0", "D = 1", "d2 = 2e+26 N.s/m: expected 0 <= d2 <= 1e+24"],
-        ),
-        (lambda: Structure().replace(omega=1e15), ["omega = 1000000000000000.0", "k1 = 1e+30"]),
-        (lambda: Structure().replace(kapa=2.0), ["kapa: no parameter", "did you mean kappa?"]),
-        (lambda: Structure().replace(mu=1.0, m2=2.0), ["mu and m2: expected one of them"]),
-        (lambda: Structure().replace(D=1.0, D1=2.0), ["D and D1: expected one of them"]),
-        (lambda: Structure().replace(e=2.0), ["e = 2.0: expected 0 <= e <= 1"]),
-        (lambda: Structure().get("gama"), ["gama: no parameter", "did you mean gamma?"]),
-        (lambda: Structure(d1=0.3).get("D"), ["D: D1 = 0.15 and D2 = 0.005; expected D1 or D2"]),
-    ],
-)
-def test_refusals_are_one_line(call, words):
-    with pytest.raises(InputError) as error:
-        call()
-    text = str(error.value)
-    assert all(word in text for word in words), text
-    assert "\n" not in text
-
-
 @pytest.mark.filterwarnings("ignore:.* of critical damping")
 @given(SCALE, SCALE, SMALL, SMALL, RATIO, RATIO)
 def test_halves_to_si_and_back(m1, m2, f1, f2, zeta1, zeta2):
@@ -171,26 +120,42 @@ def test_layers_together_are_the_beam_that_was_measured(mass, f, zeta, h1, h2):
     assert near(structure.f2 / structure.f1, h2 / h1)
 
 
-def test_an_unknown_keyword_names_the_known_ones():
-    with pytest.raises(InputError, match=r"zeta: no parameter here; .*zeta2.*did you mean zeta1"):
-        Structure.from_halves(m1=1.0, m2=1.0, f1=3.0, f2=4.0, zeta=0.1)
-    with pytest.raises(InputError, match="f1: no parameter here; .* m, k, d, f, zeta, e"):
-        Structure.one_mass(f1=42.0)
-    with pytest.raises(InputError, match="k1: no parameter here; expected one of mass, f, zeta"):
-        Structure.from_bonded(mass=1.0, f=3.0, thicknesses=(1.0, 1.0), k1=2.0)
-
-
-@pytest.mark.parametrize("thicknesses", [(0.0, 1.0), (1.0, -2.0), (1.0,), 3.0, (1.0, math.nan)])
-def test_thicknesses_are_two_numbers_above_zero(thicknesses):
-    with pytest.raises(InputError, match="thicknesses = .*expected two numbers > 0"):
-        Structure.from_bonded(mass=1.0, f=10.0, thicknesses=thicknesses)
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: Structure(bonded="yes"), "^bonded = 'yes'"),
+        (lambda: Structure(wall=1.0), "^wall = 1.0"),
+        (lambda: Structure(stroke=0.1, clearance=0.2), "stroke = 0.1 m: .* clearance = 0.2 m"),
+        (lambda: Structure.nondimensional(mu=0.0), "mu = 0.0: expected 1e-24 <= mu"),
+        (lambda: Structure.nondimensional(D2="a"), "D2 = 'a': expected a number"),
+        (lambda: Structure.nondimensional(mu=1e15, D=1e11), "mu = 1e?.*D = 1.*d2 = 2e.26"),
+        (lambda: Structure().replace(omega=1e15), "omega = 1.*k1 = 1e.30"),
+        (lambda: Structure().replace(kapa=2.0), "kapa: .*kappa"),
+        (lambda: Structure().replace(mu=1.0, m2=2.0), "mu and m2: expected one of them"),
+        (lambda: Structure().replace(D=1.0, D1=2.0), "D and D1: expected one of them"),
+        (lambda: Structure().replace(e=2.0), "e = 2.0: expected 0 <= e <= 1"),
+        (lambda: Structure().get("gama"), "gama: .*gamma"),
+        (lambda: Structure(d1=0.3).get("D"), "D: D1 = 0.15 and D2 = 0.005"),
+        (lambda: Structure.from_halves(m1=1, m2=1, f1=3, f2=4, zeta=0.1), "zeta: .*zeta1"),
+        (lambda: Structure.one_mass(f1=42.0), "f1: no parameter here"),
+        (lambda: Structure.one_mass(f=3.0, k=50.0), "f1 and k1: expected one of them"),
+        *(
+            (
+                lambda h=h: Structure.from_bonded(mass=1.0, f=10.0, thicknesses=h),
+                "thicknesses = .*expected two numbers > 0",
+            )
+            for h in ((0.0, 1.0), (1.0, -2.0), (1.0,), 3.0, (1.0, math.nan))
+        ),
+    ],
+)
+def test_refusals_are_one_line(call, words):
+    with pytest.raises(InputError, match=words) as error:
+        call()
+    assert "\n" not in str(error.value)
 
 
 def test_a_structure_is_a_line_and_in_notebooks_a_table():
     beam = Structure.from_halves(m1=1.5, m2=1.4, f1=11.9, f2=13.5, zeta1=0.005, zeta2=0.007, e=0.6)
-    line = str(beam.replace(clearance=-2e-5))
-    assert line.startswith(
-        "delaminated: masses 1.5 and 1.4 kg, natural frequencies 11.9 and 13.5 Hz"
-    )
-    assert "damping 0.5 and 0.7 %, e 0.6, clearance -2e-05 m" in line
+    for part in ("1.5 and 1.4 kg", "11.9 and 13.5 Hz", "0.5 and 0.7 %", "clearance -2e-05 m"):
+        assert part in str(beam.replace(clearance=-2e-5))
     assert "<td>bonded</td>" in beam.as_bonded()._repr_html_()

@@ -6,49 +6,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from orchestrate.errors import InputError, StoreError
+from orchestrate.errors import InputError
 from orchestrate.model import SETS, Drive, Excitation, Structure, read, resolve, write
-from orchestrate.model.ranges import ADDED
 
 from .strategies import DRIVES, STRUCTURES, WITH_FORCES
-
-QUICK = {
-    "structure": {
-        **{"m1": 0.2727272727272727, "m2": 0.2727272727272727},
-        **{"k1": 0.2727272727272727, "k2": 0.3272727272727272},
-        **{"d1": 0.010909090909090908, "d2": 0.010909090909090908},
-        **{
-            "e": 0.7,
-            "gamma": 3.6515e-4,
-            "bonded": False,
-            "wall": False,
-            **dict.fromkeys(ADDED, 0.0),
-        },
-    },
-    "drive": {
-        **{"box_mass": 1.0, "box_stiffness": 0.010000000000000002, "box_damping": 0.01},
-        **{"unbalance_mass": 0.01, "unbalance_radius": 100.0, "rotor_inertia": 1100.0},
-        **{"motor_constant": 1.0, "armature_resistance": 0.045454545454545456},
-        "armature_inductance": 0.0,
-    },
-}
-BEAM = {
-    "structure": {
-        **{"m1": 1.5, "m2": 1.5, "k1": 8437.5, "k2": 10125.0, "d1": 1.125, "d2": 1.125},
-        **{
-            "e": 0.7,
-            "gamma": 3.6515e-4,
-            "bonded": False,
-            "wall": False,
-            **dict.fromkeys(ADDED, 0.0),
-        },
-    },
-    "drive": {
-        **{"box_mass": 5.5, "box_stiffness": 309.375, "box_damping": 4.125},
-        **{"unbalance_mass": 0.025, "unbalance_radius": 0.02, "rotor_inertia": 5e-05},
-        **{"motor_constant": 0.06, "armature_resistance": 12.0, "armature_inductance": 0.0},
-    },
-}
 
 
 @pytest.fixture
@@ -72,19 +33,6 @@ def test_what_is_written_is_read(tmp_path, structure, excitation, drive):
     assert Structure.from_file(path) == structure
     assert Excitation.from_file(str(path)) == excitation
     assert Drive.from_file(path) == drive
-
-
-def test_nothing_is_half_written(tmp_path):
-    (tmp_path / "folder").mkdir()
-    with pytest.raises(StoreError, match="folder"):
-        write(tmp_path / "folder", structure=Structure())
-    assert [path.name for path in tmp_path.iterdir()] == ["folder"]
-
-
-@pytest.mark.parametrize(("name", "expected"), [("quick", QUICK), ("beam", BEAM)])
-def test_shipped_sets_to_the_last_bit(name, expected):
-    found = read(name)
-    assert {key: value.parameters() for key, value in found.items()} == expected
 
 
 def test_resolve(tmp_path):
@@ -139,8 +87,6 @@ def test_excitations(file, text, frequency, amplitude):
 def test_eta_refers_to_a_structure_given_elsewhere(file):
     path, structure = file("[excitation]\neta = 2"), Structure.nondimensional(omega=75.0)
     assert Excitation.from_file(path, structure).frequency == 150.0
-    with pytest.raises(InputError, match=r"mine.toml: excitation.eta = 2: .*\[structure\]"):
-        Excitation.from_file(path)
 
 
 def test_a_drive_by_numbers(file):
@@ -153,7 +99,6 @@ def test_a_drive_by_numbers(file):
         Drive.from_file(path)
 
 
-S, X, M = "[structure]\n", "[excitation]\n", "[motor]\n"
 MOTOR = """unbalance_mass = 0.025
 unbalance_radius = 0.02
 rotor_inertia = 5e-5
@@ -184,69 +129,6 @@ zeta1 = "0.7 %"
 zeta2 = 0.01
 e = 0.6
 """
-WRONG = [
-    ("e = 0.7", ["e = 0.7: outside of a section", "below one of [structure], [excitation]"]),
-    ("[struct]\ne = 0.7", ["struct: no section", "expected one of structure", "mean structure?"]),
-    ("structure = 3", ["structure = 3: expected a section [structure]"]),
-    ("[[structure]]\ne = 0.7", ["structure = [{'e': 0.7}]: expected a section [structure]"]),
-    ("[structure\ne = 1", ["not readable as TOML", "line 1"]),
-    (f"{S}m1 = 0.15 kg  # one", ['m1 = 0.15 kg: write m1 = "0.15 kg")']),
-    (f"{S}f1_hz = 46,5", ["f1_hz = 46,5: write f1_hz = 46.5, in Hz)"]),
-    (f"{S}f1_hz = 46,5 Hz", ['f1_hz = 46,5 Hz: write f1_hz = "46.5 Hz")']),
-    (f"{S}k1 = 1e3 N/m", ["k1 = 1e3 N/m: write k1 = 1e3, in N/m)"]),
-    (f"{S}e = 0.7\ne = 0.3\n", ["not readable as TOML", "Cannot overwrite", "line 3"]),
-    (f"{S}e = \nk1 = 1.0", ["not readable as TOML", "line 2"]),
-    (f"{S}e = 0.7\n{S}gamma = 1e-4", ["not readable as TOML", "line 3"]),
-    (f"{S}kapa = 1.2", ["structure.kapa = 1.2: no key", "did you mean kappa?"]),
-    (f"{S}zebra = 1", ["structure.zebra = 1: no key", "expected one of e, gamma"]),
-    (f"{S}e = 1.2", ["structure.e = 1.2: expected 0 <= e <= 1"]),
-    (f"{S}e = nan", ["structure.e = nan: expected 0 <= e <= 1"]),
-    (f"{S}m1 = inf", ["structure.m1 = inf kg: expected 1e-24 <= m1 <= 1e+24 kg"]),
-    (f"{S}d2 = -1e-9", ["structure.d2 = -1e-09 N.s/m: expected 0 <= d2"]),
-    (f'{S}e = "0.7"', ["structure.e = '0.7': expected a number, 0 <= e <= 1"]),
-    (f"{S}e = true", ["structure.e = True: expected a number"]),
-    (f'{S}bonded = "yes"', ["structure.bonded = 'yes': expected true or false"]),
-    (f"{S}mu = 1.0\nm2 = 1.0", ["structure.mu = 1.0: given with m2", "one kind", "kappa"]),
-    (f"{S}k1 = 1.0\nomega_hz = 1.0", ["structure.omega_hz = 1.0: given with k1", "one kind"]),
-    (f"{S}D = 0.1\nD1 = 0.1", ["structure.D1 = 0.1: given with D", "one kind: D, or D1, D2"]),
-    (f"{S}preload = -1e-5", ["structure.preload = -1e-05 m: expected 0 <= preload"]),
-    (f"{S}D1 = 0.1", ["structure.D2: missing", "expected all of D1, D2"]),
-    (f"{S}omega_hz = 1\nomega_rpm = 60", ["structure.omega_rpm = 60: conflicts with omega_hz"]),
-    (f"{S}omega_hz = 1e15", ["[structure]:", "omega = 628", "k1 = 3.9", "expected 1e-24 <= k1"]),
-    (
-        f"{S}mu = 1e15\nD = 1e15",
-        ["[structure]:", "mu = 1000000000000000.0", "D = 1000000000000000.0", "d2 = 2e+30"],
-    ),
-    (f"{X}amplitude = 1", ["[excitation]: expected one of frequency_hz", "eta"]),
-    (f"{X}frequency_hz = 1", ["[excitation]: expected one of amplitude, acceleration_g"]),
-    (f"{X}frequency = 1\namplitude = 1", ["excitation.frequency = 1: no key", "frequency_"]),
-    (f"{X}frequency_hz = 1\neta = 1", ["excitation.eta = 1: conflicts with frequency_hz"]),
-    (f"{X}frequency_hz = 1\namplitude = -1", ["excitation.amplitude = -1.0 m: expected 0 <="]),
-    (
-        f"{X}frequency_hz = 1\namplitude = 1\nacceleration_g = 1",
-        ["excitation.acceleration_g = 1: conflicts with amplitude"],
-    ),
-    (f"{S}{X}eta = 0", ["excitation.eta = 0.0: expected 1e-06 <= eta <= 1e+06"]),
-    (f"{M}{MOTOR}", ["no section [box]; expected [motor] and [box] together"]),
-    (BOX, ["no section [motor]"]),
-    (f"{M}{BOX}", ["motor.unbalance_mass: missing; expected all of unbalance_mass"]),
-    (f"{M}{MOTOR}[box]\nbox_mass = 1.0", ["box.box_stiffness: missing; expected all of box_mass"]),
-    (f"{M}{MOTOR}[box]\nOmega_b = 1\nD_b = 0", ["[box] with a SI [motor]: expected box_mass"]),
-    (f"{M}{MOTOR}b = 1\n{BOX}", ["motor.b = 1: given with unbalance_mass", "beta, epsilon, b"]),
-    (f"{M}beta = 1\nepsilon = 1\nb = 1\n{BOX}", ["[box] with a non-dimensional [motor]"]),
-    (f"{M}beta = 1\n[box]\nOmega_b = 1\nD_b = 0", ["motor.epsilon: missing"]),
-    (SHEET.format(more="rotor_inertia = 1"), ["[motor]", "expected one of no_load_speed_hz"]),
-    (SHEET.format(more="no_load_speed_rpm = 1"), ["expected one of rotor_inertia, mechanical"]),
-    (
-        SHEET.format(more="no_load_speed_rpm = 1\nrotor_inertia = 1\nmotor_constant = 1"),
-        ["motor.rated_voltage = 12.0", "given with motor_constant"],
-    ),
-    (HALVES.replace("f2_hz = 55.0", ""), ["structure.f2_hz", "missing", "m1, m2, f1_hz, f2_hz"]),
-    (f"{HALVES}wall = true", ["structure.m2 = 1.2: mass 2 is a wall; expected it left out"]),
-    (f"{S}wall = true\nf1_hz = 12", ["structure.zeta1: missing; expected all of f1_hz, zeta1"]),
-    (HALVES.replace("f2_hz = 55.0", "k2 = 5.0"), ["structure.k2 = 5.0: given with f1_hz"]),
-    (HALVES.replace("zeta2 = 0.01", "D2 = 0.01"), ["structure.D2 = 0.01: given with f1_hz"]),
-]
 
 
 @pytest.mark.parametrize("speed", ["rad_s = 200.0", "hz = 31.830988618379067"])
@@ -258,11 +140,6 @@ def test_a_motor_by_its_datasheet(file, speed, rotor):
     drive = Drive.from_file(file(SHEET.format(more=f"no_load_speed_{speed}\n{rotor}")))
     expected = Drive.from_file("beam").parameters()
     assert drive.parameters() == pytest.approx(expected, rel=1e-9)
-
-
-def test_halves_by_frequency_and_damping_ratio(file):
-    numbers = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": "1 %"}
-    assert read(file(HALVES))["structure"] == Structure.from_halves(**numbers, e=0.6)
 
 
 def test_one_mass_before_a_stop(file):
@@ -277,23 +154,6 @@ def test_one_mass_before_a_stop(file):
     ]
 
 
-@pytest.mark.parametrize(("text", "words"), WRONG, ids=[repr(text) for text, _ in WRONG])
-def test_mistakes_are_one_line(file, text, words):
-    path = file(text)
-    with pytest.raises(InputError) as error:
-        read(path)
-    line = str(error.value)
-    assert line.startswith(f"{path}: ") and "\n" not in line
-    assert "expected" in line
-    assert all(word in line for word in words), line
-
-
-@pytest.mark.parametrize("kind", [Structure, Excitation, Drive])
-def test_what_is_not_described(file, kind):
-    with pytest.raises(InputError, match=r"mine.toml: describes no \w+; expected \["):
-        kind.from_file(file(""))
-
-
 @given(st.text(max_size=40))
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25)
 def test_any_text_is_read_or_refused_in_one_line(file, text):
@@ -305,17 +165,69 @@ def test_any_text_is_read_or_refused_in_one_line(file, text):
         assert "\n" not in str(error)
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("[structure]\nm1 = 1 # " + "x" * 70_000, "at most 65536"),
-        ("[structure]\nm1 = " + "[" * 10_000 + "]" * 10_000, "nested too deeply"),
-    ],
-    ids=["huge", "deep"],
-)
-def test_what_is_no_file_of_parameters(tmp_path, text, words):
-    path = tmp_path / "own.toml"
-    path.write_text(text)
-    with pytest.raises(InputError, match=words) as told:
+WRONG = [
+    ("e = 0.7", "e = 0.7: outside of a section"),
+    ("[struct]\ne = 0.7", "struct: .*structure?"),
+    ("structure = 3", "structure = 3: expected a section"),
+    ("[[structure]]\ne = 0.7", "structure = .*: expected a section"),
+    ("[structure\ne = 1", "not readable as TOML.*line 1"),
+    ("[S]m1 = 0.15 kg  # one", 'm1 = 0.15 kg: write m1 = "0.15 kg"'),
+    ("[S]f1_hz = 46,5", "f1_hz = 46,5: write f1_hz = 46.5"),
+    ("[S]f1_hz = 46,5 Hz", 'f1_hz = 46,5 Hz: write f1_hz = "46.5 Hz"'),
+    ("[S]k1 = 1e3 N/m", "k1 = 1e3 N/m: write k1 = 1e3"),
+    ("[S]e = 0.7\ne = 0.3\n", "not readable as TOML.*line 3"),
+    ("[S]e = \nk1 = 1.0", "not readable as TOML.*line 2"),
+    ("[S]kapa = 1.2", "structure.kapa = 1.2: .*kappa"),
+    ("[S]e = 1.2", "structure.e = 1.2: expected 0 <= e <= 1"),
+    ("[S]m1 = inf", "structure.m1 = inf kg: expected 1e-24 <= m1"),
+    ('[S]e = "0.7"', "structure.e = '0.7': expected a number"),
+    ("[S]e = true", "structure.e = True: expected a number"),
+    ('[S]bonded = "yes"', "structure.bonded = 'yes': expected true or false"),
+    ("[S]mu = 1.0\nm2 = 1.0", "structure.mu = 1.0: given with m2"),
+    ("[S]k1 = 1.0\nomega_hz = 1.0", "structure.omega_hz = 1.0: given with k1"),
+    ("[S]preload = -1e-5", "structure.preload = -1e-05 m: expected 0 <= preload"),
+    ("[S]D1 = 0.1", "structure.D2: missing"),
+    ("[S]omega_hz = 1\nomega_rpm = 60", "structure.omega_rpm = 60: conflicts with omega_hz"),
+    ("[S]omega_hz = 1e15", "omega = 628.*k1 = 3.9.*expected 1e-24 <= k1"),
+    (f"{HALVES}wall = true", "structure.m2 = 1.2: mass 2 is a wall"),
+    ("[S]wall = true\nf1_hz = 12", "structure.zeta1: missing"),
+    (HALVES.replace("f2_hz = 55.0", ""), "structure.f2_hz.*missing"),
+    (HALVES.replace("f2_hz = 55.0", "k2 = 5.0"), "structure.k2 = 5.0: given with f1_hz"),
+    ("[X]amplitude = 1", "frequency_hz"),
+    ("[X]frequency_hz = 1", "amplitude, acceleration_g"),
+    ("[X]frequency_hz = 1\neta = 1", "excitation.eta = 1: conflicts with frequency_hz"),
+    ("[X]frequency_hz = 1\namplitude = -1", "excitation.amplitude = -1.0 m: expected 0 <="),
+    ("[X]eta = 2", r"excitation.eta = 2: .*\[structure\]"),
+    ("[S][X]eta = 0", "excitation.eta = 0.0: expected 1e-06 <= eta"),
+    (f"[M]{MOTOR}", r"no section \[box\]"),
+    (BOX, r"no section \[motor\]"),
+    (f"[M]{BOX}", "motor.unbalance_mass: missing"),
+    (f"[M]{MOTOR}[box]\nOmega_b = 1\nD_b = 0", "expected box_mass"),
+    (f"[M]{MOTOR}b = 1\n{BOX}", "motor.b = 1: given with unbalance_mass"),
+    ("[M]beta = 1\n[box]\nOmega_b = 1\nD_b = 0", "motor.epsilon: missing"),
+    (SHEET.format(more="rotor_inertia = 1"), "expected one of no_load_speed_hz"),
+    (
+        SHEET.format(more="no_load_speed_rpm = 1\nrotor_inertia = 1\nmotor_constant = 1"),
+        "motor.rated_voltage = 12.0.* given with motor_constant",
+    ),
+    ("[S]m1 = 1 # " + "x" * 70_000, "at most 65536"),
+    ("[S]m1 = " + "[" * 10_000 + "]" * 10_000, "nested too deeply"),
+]
+
+
+@pytest.mark.parametrize(("text", "words"), WRONG, ids=[repr(text[:50]) for text, _ in WRONG])
+def test_mistakes_are_one_line(file, text, words):
+    for short, section in (("[S]", "structure"), ("[X]", "excitation"), ("[M]", "motor")):
+        text = text.replace(short, f"[{section}]\n")
+    path = file(text)
+    with pytest.raises(InputError, match=words) as error:
         read(path)
-    assert len(str(told.value)) < 300
+    line = str(error.value)
+    assert line.startswith(f"{path}: ") and "\n" not in line and len(line) < 600
+    assert "expected" in line
+
+
+@pytest.mark.parametrize("kind", [Structure, Excitation, Drive])
+def test_what_is_not_described(file, kind):
+    with pytest.raises(InputError, match=r"mine.toml: describes no \w+"):
+        kind.from_file(file(""))

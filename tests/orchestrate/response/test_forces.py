@@ -10,11 +10,9 @@ import pytest
 import orchestrate
 from orchestrate import Excitation, InputError, Structure
 from orchestrate.dynamics.attractors import random_starts
-from orchestrate.model import write
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import traits_of
 
-from ...draws import draw_structure
 from ...fmu.event_driven import Motion
 
 OWN = Structure(m1=0.8, m2=1.1, k1=5.0, k2=7.5, d1=0.3, d2=0.4, e=0.6, clearance=0.05)
@@ -136,30 +134,6 @@ def test_one_mass_rests_at_its_clearance_from_the_wall():
     assert Structure.from_attributes(mass.parameters()) == mass
 
 
-@pytest.mark.parametrize("name", ["mu", "kappa", "D2", "D3", "f2", "zeta2", "omega_2", "alike"])
-def test_a_wall_has_no_second_mass(name):
-    with pytest.raises(InputError, match="mass 2 is a wall"):
-        getattr(WALL, name)
-    for change in ("m2", "k2", "d2", "mu", "kappa", "D2", "f2", "zeta2"):
-        with pytest.raises(InputError, match=f"^{change}: mass 2 is a wall"):
-            WALL.replace(**{change: 1.0})
-        with pytest.raises(InputError, match=f"^{change}: mass 2 is a wall"):
-            WALL.get(change)
-
-
-def test_structures_in_files_and_what_contradicts_itself(tmp_path):
-    path = write(tmp_path / "mass.toml", structure=WALL.replace(stroke=0.2))
-    assert Structure.from_file(path) == WALL.replace(stroke=0.2)
-    with pytest.raises(InputError, match="bonded = True with wall = True"):
-        WALL.as_bonded()
-    with pytest.raises(InputError, match=r"stroke = 0.1 m: expected at least clearance = 0.2 m"):
-        Structure(stroke=0.1, clearance=0.2)
-    with pytest.raises(InputError, match="wall = 1.0"):
-        Structure(wall=1.0)
-    pushed = Excitation(frequency=1.0, amplitude=1.0, force1=0.3, box_acceleration=-9.81)
-    assert Excitation.from_file(write(path, excitation=pushed)) == pushed
-
-
 def test_starts_lie_where_the_masses_can_be():
     for structure in (KINDS["play"], KINDS["wall and play"]):
         states = random_starts(50, 3.0, (1, 2), structure)
@@ -252,97 +226,12 @@ def test_impacts_have_to_come_only_where_that_is_known():
     assert (orchestrate.sweep(OWN, **touching).impacts_per_period > 0.0).all()
 
 
-SINE = orchestrate.SweptSine(first=0.05, last=0.5, duration=20.0, acceleration=1.0)
-SENSOR = orchestrate.Sensor(bandwidth=1.0)
-DRIVE = orchestrate.Drive.from_file("quick")
-REFUSING = {
-    "manifold": lambda s: orchestrate.manifold(s, start=None, eta=1.3),
-    "measure": lambda s: orchestrate.measure(orchestrate.simulate(s, eta=1.3), SENSOR),
-    "shaker": lambda s: orchestrate.shake(
-        s, SINE, shaker=orchestrate.Shaker.from_file("shaker_1kN")
-    ),
-    "contact_threshold": lambda s: orchestrate.contact_threshold(s, eta=1.0),
-    "cosimulate": lambda s: orchestrate.cosimulate(s, DRIVE, duration=1.0, step=0.1),
-    "couple": lambda s: orchestrate.couple(s, DRIVE, voltage=(1.0, 2.0), rate=0.1),
-    "passage": lambda s: orchestrate.passage(s, DRIVE, voltage=(1.0, 2.0)),
-    "capture": lambda s: orchestrate.capture(s, DRIVE, voltage=(1.0, 2.0)),
-    "jump_voltages": lambda s: orchestrate.jump_voltages(s, DRIVE, voltage=(1.0, 2.0)),
-    "drive_spectra": lambda s: orchestrate.drive_spectra(s, DRIVE),
-    "drive_branch": lambda s: orchestrate.drive_branch(s, DRIVE),
-    "plan_test": lambda s: orchestrate.plan_test(s),
-}
-
-
-STROKES = ("shaker", "cosimulate")  # that know one
-
-
-@pytest.mark.parametrize(
-    ("asked", "structure"),
-    [
-        *((asked, WALL) for asked in REFUSING),
-        *((asked, Structure(stroke=1.0)) for asked in REFUSING if asked not in STROKES),
-    ],
-)
-def test_what_does_not_know_them_refuses_them_by_name(asked, structure):
-    with pytest.raises(InputError, match="wall" if structure.wall else "stroke") as raised:
-        REFUSING[asked](structure)
-    assert "\n" not in str(raised.value)
-
-
-def test_diagnosis_refuses_them_by_name():
-    from orchestrate.diagnosis.fit import delaminated_guess
-    from orchestrate.diagnosis.signs import sound_structure
-
-    for check in (delaminated_guess, lambda s: sound_structure(s, None, None)):
-        with pytest.raises(InputError, match="wall = True"):
-            check(WALL)
-
-
-def test_what_has_no_formula_is_refused_by_name():
-    with pytest.raises(InputError, match="over = 'wall'"):
-        orchestrate.branch(Structure(), eta=1.3, over="wall", limits=(0.1, 1.0))
-    for pushed in ({"force1": 0.1}, {"box_acceleration": 0.1}):
-        (name,) = pushed
-        with pytest.raises(InputError, match=f"{name} = 0.1: a shaker does not know it yet"):
-            shaker = orchestrate.Shaker.from_file("shaker_1kN")
-            orchestrate.shake(OWN, SINE, shaker=shaker, frequency=1.0, **pushed)
-    with pytest.raises(InputError, match="force1 = 0.1: measure does not know it yet"):
-        orchestrate.measure(orchestrate.simulate(OWN, eta=1.0, force1=0.1), SENSOR)
-    with pytest.raises(InputError, match="force1 = 1.0: without its frequency"):
-        orchestrate.shake(OWN, SINE, force1=1.0)
-    for more in ({"force2": 1.0, "frequency": 1.0}, {}):
-        knock = orchestrate.Hammer(peak=1.0, width=0.1, half=1 if more else 2)
-        with pytest.raises(InputError, match="force2: mass 2 is a wall"):
-            orchestrate.shake(WALL, knock, **more)
-    with pytest.raises(InputError, match="force2: mass 2 is a wall"):
-        orchestrate.simulate(WALL, **BOX, force2=1.0)
-    for question in (orchestrate.resonance, orchestrate.spectra):
-        with pytest.raises(InputError, match="wall = True: .* nothing can be bonded"):
-            question(WALL, eta=[1.0, 1.1])
-    for function in (orchestrate.resonance, orchestrate.spectra):
-        with pytest.raises(InputError, match="mass 2 is a wall"):
-            function(WALL, eta=[1.0])
-    with pytest.raises(InputError, match=r"amplitude = 0.0: .*, or a force"):
-        orchestrate.sweep(OWN, frequency=[1.0], amplitude=0.0)
-
-
 def test_at_zero_they_change_no_bit():
     zeros = dict.fromkeys(("box_acceleration", "force1", "force2"), 0.0)
     for structure in (OWN, Structure()):
         asked = {"eta": [0.5, 1.3], "transient": 20, "samples": 8, **QUICK}
         plain, pushed = (orchestrate.sweep(structure, **asked, **more) for more in ({}, zeros))
         assert all((plain[name] == pushed[name]).all() for name in plain)
-
-
-def test_a_chain_over_the_clearance_goes_on_in_contact():
-    """The faces' distance, 0 but for rounding, counts from another clearance at every value."""
-    random, asked = np.random.default_rng(0), {"transient": 30, "samples": 8, **QUICK}
-    for _ in range(60):
-        structure, eta = draw_structure(random)
-        values = [*-random.uniform(0.5, 9.0, 3), 0.0, *-random.uniform(0.5, 9.0, 3), 0.0]
-        more = {"over": "clearance", "values": values, "direction": "given"}
-        found = orchestrate.sweep(structure.replace(e=0.2), eta=eta, **more, **asked)
-        assert (found.xi_rel.values >= 0.0).all()
 
 
 @pytest.mark.parametrize("e", [0.0, 0.7])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate import InputError, Structure
+from orchestrate import Structure
 
 PRESSED = Structure.from_halves(
     m1=1.0, m2=1.2, f1=42.0, f2=55.0, zeta1=0.01, zeta2=0.01, clearance=-2e-5
@@ -44,8 +44,3 @@ def test_resonance_at_levels_is_resonance_at_each(exported, direction):
     assert family.amplitude.dims == ("level", "frequency")
     figure = orchestrate.plot(family)
     assert "0.102 g" in [text.get_text() for text in figure.legends[0].get_texts()]
-
-
-def test_a_branch_does_not_vary_the_level():
-    with pytest.raises(InputError, match="over = 'level'"):
-        orchestrate.branch(Structure.nondimensional(), eta=2.0, over="level", limits=(1.0, 2.0))

@@ -18,7 +18,7 @@ from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.model import Excitation
 from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
-from orchestrate.response.multiplicity import MIN_RELATIVE_GAP, decide_multiplicity, find_repetition
+from orchestrate.response.multiplicity import decide_multiplicity, find_repetition
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import respond
 
@@ -65,47 +65,6 @@ def test_period_of_a_periodic_sequence(orbit, more):
     assert multiplicity(repeat(orbit, 4 * len(orbit) + more), TOLERANCE) == len(orbit)
 
 
-@given(st.floats(0.0, 1.0), st.integers(100, 200))
-def test_quasi_periodic_motion_never_repeats(phase, length):
-    angle = 2.0 * np.pi * (GOLDEN * np.arange(length) + phase)
-    assert multiplicity(four(np.cos(angle), np.sin(angle)), TOLERANCE) == 0
-
-
-@given(orbits(longest=6), st.integers(0, 1000))
-def test_the_earlier_half_does_not_count(orbit, seed):
-    samples = repeat(orbit, 60)
-    samples[:30] = 100.0 * np.random.default_rng(seed).normal(size=(30, 4)) * np.abs(orbit).max()
-    assert multiplicity(samples, TOLERANCE) == len(orbit)
-
-
-@given(st.integers(2, 10))
-def test_nothing_beyond_a_quarter_of_the_samples(n):
-    orbit = four(np.arange(1.0, n + 1.0))
-    assert multiplicity(repeat(orbit, 4 * n), TOLERANCE) == n
-    assert multiplicity(repeat(orbit, 4 * n - 1), TOLERANCE) == 0
-
-
-@pytest.mark.parametrize(("deviation", "expected"), [(0.9, 1), (1.1, 2)])
-@pytest.mark.parametrize("coordinate", range(4))
-def test_the_tolerance_is_relative_to_the_size_of_the_motion(coordinate, deviation, expected):
-    frequency = 8.0
-    samples = np.tile([0.0, -1000.0, 0.0, 0.0], (40, 1))
-    samples[::2, coordinate] += (
-        deviation * TOLERANCE * 1000.0 * (frequency if coordinate > 1 else 1)
-    )
-    assert multiplicity(samples, TOLERANCE, frequency) == expected
-
-
-def test_a_co_ordinate_that_passes_zero_at_the_sampled_phase_hides_nothing():
-    # a stable T response is left of its way to itself: each co-ordinate in turn is nearly 0
-    n = np.arange(200)
-    rest = 1e-4 * 0.98**n * np.cos(2.0 * np.pi * GOLDEN * n)
-    for coordinate in range(4):
-        samples = np.ones((200, 4))
-        samples[:, coordinate] = rest
-        assert multiplicity(samples, TOLERANCE, 1.0, 1.0) == 1
-
-
 @pytest.mark.parametrize(("deviation", "expected"), [(0.9, 1), (1.1, 2)])
 @pytest.mark.parametrize("coordinate", range(4))
 def test_a_gap_much_smaller_than_the_motion_has_a_size_of_its_own(coordinate, deviation, expected):
@@ -114,13 +73,6 @@ def test_a_gap_much_smaller_than_the_motion_has_a_size_of_its_own(coordinate, de
     samples[::2, coordinate] += deviation * TOLERANCE * gap * (frequency if coordinate > 1 else 1.0)
     assert multiplicity(samples, TOLERANCE, frequency) == 1
     assert multiplicity(samples, TOLERANCE, frequency, gap) == expected
-
-
-@given(st.integers(0, 1000))
-def test_a_gap_of_rounding_errors_is_none(seed):
-    noise = np.random.default_rng(seed).uniform(0.0, 1e-12, (40, 4))
-    assert multiplicity(np.ones((40, 4)) + noise, TOLERANCE, 1.0, 1e-12) == 1
-    assert MIN_RELATIVE_GAP * TOLERANCE > 1e-12
 
 
 @given(st.integers(0, 1000), st.integers(-200, 200))
@@ -160,26 +112,11 @@ def test_what_has_died_or_dies_fast_has_repeated(orbit, more, multiplier):
     assert decided == REPEATED
 
 
-@pytest.mark.parametrize("multiplier", [0.5, 0.9, 0.97])
-def test_a_stable_response_next_to_a_period_doubling_is_none_of_two_periods(multiplier):
-    assert decide(doubling(multiplier)) == (1, REPEATED)
-
-
 @pytest.mark.parametrize("width", [1e-7, 1e-5, 1e-3, 0.1])
 def test_the_tolerance_does_not_hide_a_narrow_period_doubling(width):
     states = doubling(0.8, width=width)
     assert find_repetition(states, 1.0, 1.0, TOLERANCE).multiplicity == (1 if width < 0.01 else 2)
     assert decide(states) == (2, REPEATED)
-
-
-@pytest.mark.parametrize("angle", [0.117, 0.291, GOLDEN])
-def test_a_deviation_that_dies_while_it_turns_round_repeats_after_one_period(angle):
-    def spiral(n, multiplier):
-        return 0.1 * multiplier**n * np.cos(2.0 * np.pi * angle * n)
-
-    assert decide(states_of(lambda n: spiral(n, 0.9))) == (1, REPEATED)
-    n, decided = decide(states_of(lambda n: spiral(n, 0.99)))
-    assert (n, decided) in [(1, REPEATED), (1, UNDECIDED)]
 
 
 def scaled(run):
@@ -336,10 +273,6 @@ def test_a_torus_has_repeated_after_no_number_of_periods(phase, angle):
     assert exact or decide(states).decided != REPEATED
 
 
-def test_what_leaves_an_unstable_orbit_is_undecided():
-    assert decide(states_of(lambda n: 1e-9 * 1.08**n)) == (1, UNDECIDED)
-
-
 def test_noise_narrower_than_the_tolerance_is_undecided_and_wider_irregular():
     noise = np.random.default_rng(3).uniform(-1.0, 1.0, (30, 200))
     narrow = [decide(states_of(lambda n, row=row: 1e-3 * row)) for row in noise]
@@ -382,11 +315,8 @@ def test_compiled_and_in_python_the_rule_is_the_same(seed):
     assert find_repetition(samples, 1.3, 2.0, TOLERANCE) == repeated
 
 
-def newton(instance, point, state, periods):
-    """Least period of the orbit that Newton's method finds from a state, and whether it attracts.
-
-    Returns None where there is none, or none near.
-    """
+def denied_by_newton(instance, point, state, periods):
+    """Whether Newton's method finds no stable orbit of as many periods near a state."""
     excitation = point.excitation
     numbers = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
     limits = ((0.999 * excitation.frequency, 1.001 * excitation.frequency),)
@@ -396,41 +326,15 @@ def newton(instance, point, state, periods):
         guess = guess_from_state(instance, point, setting.form(values), np.array(state), periods)
         family, root = solve_orbit(setting, guess, values)
     except NoConvergenceError:
-        return None
+        return True
     orbit = family.orbit(root.unknowns)
     begin = stroboscopic_states(orbit)[0]
     away = np.abs(begin - point.faces(np.array(state))).max()
     size = max(np.abs(begin).max(), np.abs(orbit.nodes).max(initial=0.0))
-    if why_no_motion(orbit) or away > 1e-3 * size:
-        return None
-    return least_periods(orbit), bool(np.abs(orbit.multipliers()).max() < 1.0)
-
-
-def checked_by_newton(points, transient, samples):
-    """How many responses from rest have repeated, and which of these Newton's method denies."""
-    count, wrong = 0, []
-    path = find(OSCILLATOR).path
-    with Instance(path) as plain, EventInstance(path) as eventful:
-        for point in points:
-            response = respond(plain, *point, (0.0,) * 4, transient, samples, TOLERANCE)
-            size = response.frequency, response.x_rel_max
-            n, decided = decide_multiplicity(response.samples, *size, TOLERANCE)
-            if decided != REPEATED:
-                continue
-            end = respond(plain, *point, response.end, 3000, 4, TOLERANCE).end
-            orbit = newton(eventful, point, end, n)
-            count += 1
-            if orbit != (n, True):
-                wrong.append((point, n, orbit))
-    return count, wrong
-
-
-def random_points(seed, count):
-    """Structures and excitations of all kinds."""
-    rng = np.random.default_rng(seed)
-    for _ in range(count):
-        structure, eta = draw_structure(rng)
-        yield Point(structure, Excitation.nondimensional(eta, structure))
+    stable = np.abs(orbit.multipliers()).max() < 1.0
+    return (
+        why_no_motion(orbit) or away > 1e-3 * size or least_periods(orbit) != periods or not stable
+    )
 
 
 @pytest.mark.usefixtures("exported")
@@ -439,24 +343,28 @@ def random_points(seed, count):
 def test_where_a_response_has_repeated_it_lies_on_a_stable_orbit_of_as_many_periods(
     samples, number
 ):
-    count, wrong = checked_by_newton(random_points(samples, number), 500, samples)
-    assert not wrong
+    rng, count, path = np.random.default_rng(samples), 0, find(OSCILLATOR).path
+    with Instance(path) as plain, EventInstance(path) as eventful:
+        for _ in range(number):
+            structure, eta = draw_structure(rng)
+            point = Point(structure, Excitation.nondimensional(eta, structure))
+            response = respond(plain, *point, (0.0,) * 4, 500, samples, TOLERANCE)
+            size = response.frequency, response.x_rel_max
+            n, decided = decide_multiplicity(response.samples, *size, TOLERANCE)
+            if decided == REPEATED:
+                end = respond(plain, *point, response.end, 3000, 4, TOLERANCE).end
+                assert not denied_by_newton(eventful, point, end, n), (point, n)
+                count += 1
     assert count > 0.65 * number
 
 
 @pytest.mark.parametrize(
     ("found", "impacts", "n", "same"),
     [
-        (200, 1, 1, True),
-        (201, 1, 1, True),  # one at phase 0 may be counted on either side
-        (202, 1, 1, False),
-        (198, 1, 1, False),
-        (134, 2, 3, True),  # 66 whole responses, and two thirds of one
-        (131, 2, 3, True),
-        (130, 2, 3, False),
-        (136, 2, 3, False),
-        (0, 0, 1, True),
-        (4, 0, 1, False),
+        *((200, 1, 1, True), (201, 1, 1, True), (202, 1, 1, False)),  # one may be at phase 0
+        *((198, 1, 1, False), (0, 0, 1, True), (4, 0, 1, False)),
+        *((134, 2, 3, True), (131, 2, 3, True)),  # 66 whole responses, and two thirds of one
+        *((130, 2, 3, False), (136, 2, 3, False)),
     ],
 )
 def test_impacts_of_all_samples_are_those_of_the_response(found, impacts, n, same):

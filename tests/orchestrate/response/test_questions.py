@@ -1,17 +1,10 @@
 """At what a question is asked: both forms of an excitation, one parameter, and what is refused."""
 
-import math
-
-import numpy as np
 import pytest
-import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from orchestrate import simulate
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
-from orchestrate.response.questions import checked_point, checked_states, excitation_numbers
 from orchestrate.response.sweep import SweepJob
 
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
@@ -72,72 +65,6 @@ def test_a_parameter_of_the_structure_is_replaced_and_eta_stays():
     assert [*found.etas] == [1.5, 1.5]
 
 
-@pytest.mark.parametrize(
-    ("asked", "text"),
-    [
-        ({}, "nothing given; expected eta="),
-        ({"eta": 1.0, "frequency": 1.0}, "eta= and frequency= given"),
-        ({"amplitude": 1.0}, "amplitude= given; expected"),
-        ({"eta": 0.0}, r"eta = 0\.0"),
-        ({"eta": math.inf}, "eta = inf"),
-        ({"eta": 1e7}, "expected 1e-06 <= eta <= 1e"),
-        ({"eta": "many"}, "eta = 'many': expected a number or a list"),
-        ({"eta": []}, "eta: 0 values"),
-        ({"eta": np.ones((2, 2))}, "eta: 2x2 values"),
-        ({"eta": [True]}, "expected a number"),
-        ({"frequency": 1.0, "amplitude": 0.0}, r"amplitude = 0\.0: expected finite numbers > 0"),
-        ({"frequency": [1.0, 2.0], "amplitude": [1.0, 2.0, 3.0]}, "3 values for 2 of frequency"),
-        ({"eta": 1.0, "values": [1.0]}, "values: expected with over="),
-        ({"eta": 1.0, "over": "e"}, "expected values="),
-        ({"eta": 1.0, "over": "eta", "values": [1.0]}, "is given as eta= too"),
-        ({"eta": [1.0, 2.0], "over": "e", "values": [0.5]}, "eta: is a list beside over"),
-        ({"eta": 1.0, "over": "kapa", "values": [1.0]}, r"did you mean kappa\?"),
-        ({"eta": 1.0, "over": "e", "values": [0.5, 1.5]}, r"e = 1\.5: expected 0 <= e <= 1"),
-        ({"eta": 1.0, "over": "e", "values": [math.nan]}, "values = nan"),
-    ],
-)
-def test_what_is_no_question_is_one_line(asked, text):
-    with pytest.raises(InputError, match=text) as caught:
-        along(**asked)
-    assert "\n" not in str(caught.value)
-    assert "expected" in str(caught.value)
-
-
-def test_a_single_excitation_is_no_list():
-    with pytest.raises(InputError, match="eta: 2 values; expected one number"):
-        checked_point(OWN, [1.0, 2.0], None, None)
-    with pytest.raises(InputError, match="structure = None: expected a Structure"):
-        checked_point(None, 1.0, None, None)
-
-
-@pytest.mark.parametrize(
-    ("state", "structure"),
-    [
-        ((0.0, -1e-9, 0.0, 0.0), OWN),
-        ((0.0, math.nan, 0.0, 0.0), OWN),
-        ((0.0, 0.0, 0.0), OWN),
-        ("rest", OWN),
-        ((0.0, 1e-9, 0.0, 0.0), OWN.as_bonded()),
-        ((0.0, 0.0, 0.0, 1e-9), OWN.as_bonded()),
-    ],
-)
-def test_states_that_cannot_be(state, structure):
-    with pytest.raises(InputError, match="start.*expected x"):
-        checked_states("start", state, structure)
-
-
-def test_a_dataset_is_no_state():
-    """It is not printed whole: a message is one line."""
-    with pytest.raises(InputError, match="^start = a dataset: expected x1, x2[^\n]*$"):
-        checked_states("start", xr.Dataset({"x1": 0.0}), Structure())
-
-
-def test_numbers_of_any_kind():
-    assert excitation_numbers("eta", np.float32(0.5)) == 0.5
-    assert excitation_numbers("eta", range(1, 3)) == (1.0, 2.0)
-    assert excitation_numbers("values", None) is None
-
-
 def test_the_call_is_one_that_can_be_made_again(exported):
     import orchestrate
 
@@ -150,16 +77,3 @@ def test_the_call_is_one_that_can_be_made_again(exported):
         found = ask(OWN, **asked)
         again = eval(found.attrs["call"], {**names, ask.__name__: ask})
         assert again.identical(found.assign_attrs(history=again.attrs["history"]))
-
-
-@pytest.mark.parametrize(
-    ("asked", "meant"),
-    [
-        ({"hz": 12.0}, r"'hz': .*; did you mean frequency=2\*pi\*Hz"),
-        ({"frequencey": 1.0}, "frequency\\?"),
-        ({"q": 1}, "'q': expected the function's own"),
-    ],
-)
-def test_an_unknown_keyword_is_named_with_the_one_that_is_meant(asked, meant):
-    with pytest.raises(TypeError, match=meant):
-        simulate(OWN, **asked)

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.response.resonance import resonance
 from orchestrate.response.sweep import sweep
@@ -77,10 +76,3 @@ def test_ranges_of_irregular_responses_reach_over_narrow_windows_alone(irregular
         window = [True, *[False] * 3, True]
         assert inside_irregular(window).tolist() == window
         assert inside_irregular([True, False, False, True]).all()
-
-
-def test_what_is_no_question():
-    with pytest.raises(InputError, match="expected one of up, down, both"):
-        resonance(BEAM, eta=1.0, direction="given")
-    with pytest.raises(InputError, match="jump = 0"):
-        resonance(BEAM, eta=1.0, jump=0)

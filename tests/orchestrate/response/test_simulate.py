@@ -8,32 +8,11 @@ import pytest
 from orchestrate.model import Structure
 from orchestrate.response.simulate import simulate
 
-from ...fmu.event_driven import Motion
-
 PAPER = Structure.nondimensional()
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=2.9, e=0.6)
 STRONG = Structure.nondimensional(D1=0.3, D2=1.2, mu=0.4, kappa=2.0, e=0.5)
-BOX = {"frequency": 130.0, "amplitude": 1e-3}
-START = (-1e-3, 2e-3, 0.05, -0.1)
 
 pytestmark = pytest.mark.usefixtures("exported")
-
-
-@pytest.mark.parametrize("phase", [0.0, 2.0])
-@pytest.mark.parametrize("structure", [OWN, OWN.replace(d1=200.0, e=0.9)])
-def test_against_an_integrator_with_events(structure, phase):
-    motion = simulate(structure, **BOX, periods=4, points=50, start=START, phase=phase)
-    names = ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma")
-    values = {name: getattr(structure, name) for name in names}
-    values |= {f"box_{name}": value for name, value in BOX.items()} | {"phase_start": phase}
-    values |= dict(zip(("x1_start", "x2_start", "v1_start", "v2_start"), START, strict=True))
-    exact = Motion(values)
-    states = np.array([exact.run(time).state.copy() for time in motion.time.values])
-    found = np.array([motion[name].values for name in ("x1", "v1", "x2", "v2")])
-    sizes = np.abs(states).max(axis=0)
-    np.testing.assert_allclose(found / sizes[:, None], (states / sizes).T, atol=1e-8)
-    np.testing.assert_allclose(motion.impact_time, exact.impacts, rtol=1e-9)
-    assert len(exact.impacts) >= 2
 
 
 @pytest.mark.parametrize("structure", [PAPER, OWN, STRONG, OWN.as_bonded()])

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.response.simulate import simulate
 from orchestrate.response.spectra import amplitude_spectrum, spectra
@@ -76,8 +75,3 @@ def test_lines_at_and_beside_zero_of_a_motion_with_impacts():
         mean = float(motion.impulse.sum()) / getattr(PAPER, f"m{mass}") / period
         assert float(felt[0]) == pytest.approx(mean, rel=1e-2)
         assert float(felt[1:].max()) < 1e-3 * mean
-
-
-def test_lines_beyond_half_the_rate_are_refused(exported):
-    with pytest.raises(InputError, match="highest = 40: expected at most points/2 = 16"):
-        spectra(PAPER, eta=1.0, points=32)

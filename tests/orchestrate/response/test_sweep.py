@@ -38,21 +38,6 @@ def test_values_keep_their_order_whatever_the_direction():
     assert (given.end_state != down.end_state).any()
 
 
-def test_both_directions_side_by_side():
-    both = sweep(PAPER, eta=ETAS, direction="both", **SHORT)
-    assert both.direction.values.tolist() == ["up", "down"]
-    for direction in ("up", "down"):
-        one = sweep(PAPER, eta=ETAS, direction=direction, **SHORT)
-        same(both.sel(direction=direction), one)
-
-
-def test_each_value_starts_from_the_end_of_the_last():
-    found = sweep(PAPER, eta=[0.9, 1.13], **SHORT)
-    first = found.isel(eta=0).end_state.values
-    alone = sweep(PAPER, eta=1.13, start=first, **SHORT)
-    same(found.isel(eta=1), alone.isel(eta=0))
-
-
 def test_responses_of_a_sweep_are_run_on_each_from_its_own_state(exported):
     """T/1 at D = 0.05 is unstable from 1.1154 on, which 500 periods from 1.115 do not see."""
     structure = Structure.nondimensional(D=0.05)

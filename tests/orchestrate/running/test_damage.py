@@ -13,7 +13,7 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StoreError
 from orchestrate.running.checksum import ATTRIBUTE, checksum
-from orchestrate.running.journal import Journal, checksum_of_parts, journal_path
+from orchestrate.running.journal import Journal, journal_path
 from orchestrate.running.runner import answer
 from orchestrate.running.store import load, write_netcdf
 from tests.faults import FILE_DAMAGE, ROW_DAMAGE, a_shorter_row, rows, too_many_rows
@@ -111,10 +111,6 @@ def test_a_row_damaged_while_the_job_runs_makes_no_shorter_result(journal, path,
     assert numbers(find, path) == SQUARES
 
 
-def test_a_seal_covers_where_parts_end():
-    assert checksum_of_parts(b"ab", b"c") != checksum_of_parts(b"a", b"bc")
-
-
 @pytest.mark.parametrize("stop", range(4))
 def test_killed_while_it_is_finished_it_leaves_nothing_behind(
     journal, path, find, tmp_path, monkeypatch, stop
@@ -136,13 +132,6 @@ def test_killed_while_it_is_finished_it_leaves_nothing_behind(
     assert journal.exists() == (stop == 0)
     assert numbers(find, path) == SQUARES
     assert {file.name for file in tmp_path.iterdir()} == {path.name, "model.fmu"}
-
-
-def test_rows_of_an_earlier_version_are_not_taken(journal, path, find):
-    """They had no seal of the journal itself."""
-    query(journal, "DELETE FROM about WHERE name = 'sha256'")
-    with pytest.raises(StoreError, match=r"earlier version.*remove it and compute it again"):
-        answer(JOB, {"store": path}, find)
 
 
 @pytest.mark.parametrize("ending", ["", ".journal", ".lock"])

@@ -1,10 +1,7 @@
 """Who computes changes no bit; workers that are lost are told in a line, and nothing is lost."""
 
 import os
-import sys
-import warnings
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
-from types import SimpleNamespace
 from typing import ClassVar
 
 import numpy as np
@@ -12,8 +9,8 @@ import pytest
 
 from orchestrate.errors import InputError, WorkerError
 from orchestrate.fmu import OSCILLATOR
-from orchestrate.running import cluster, executors, runner
-from orchestrate.running.executors import compute, processes
+from orchestrate.running import cluster, runner
+from orchestrate.running.executors import compute
 from orchestrate.running.runner import answer
 
 from .sums import Forgetful, Gathered, Squares, Sums
@@ -42,31 +39,6 @@ def test_all_give_what_this_process_gives(find, monkeypatch, where, dask):
         running = {"jobs": 2, "cluster": clusters.get(where)}
         for job, expected in zip(JOBS, alone, strict=True):
             assert answer(job, running, find).identical(expected)
-
-
-@pytest.mark.parametrize("text", ["was restarted while some jobs were", "stopped while some jobs"])
-def test_of_a_worker_that_is_replaced_the_user_hears_nothing(text, recwarn):
-    with processes(1):
-        warnings.warn(f"A worker {text} given to the executor ...", UserWarning, stacklevel=1)
-        warnings.warn("something else", UserWarning, stacklevel=1)
-    assert [str(warning.message) for warning in recwarn] == ["something else"]
-
-
-@pytest.mark.parametrize("ended", [False, True])
-def test_on_windows_a_worker_waits_for_the_end_of_its_parent(monkeypatch, ended):
-    waited = []
-
-    def open_process(rights, inherits, number):
-        if ended:
-            raise OSError(87, "no such process")
-        return rights, number
-
-    windows = SimpleNamespace(SYNCHRONIZE=0x100000, INFINITE=0xFFFFFFFF, OpenProcess=open_process)
-    windows.WaitForSingleObject = lambda process, limit: waited.append((process, limit))
-    monkeypatch.setitem(sys.modules, "_winapi", windows)
-    monkeypatch.setattr(sys, "platform", "win32")
-    executors.wait_for_end(42)
-    assert waited == ([] if ended else [((0x100000, 42), 0xFFFFFFFF)])
 
 
 class Dying(Squares):

@@ -54,10 +54,6 @@ def test_csv(data, tmp_path):
     assert pd.read_csv(written[2])["peak [m]"].tolist() == [2.5]
 
 
-def test_one_table_is_one_file(data, tmp_path):
-    assert formats.write(data[["x"]], tmp_path / "a.csv") == [tmp_path / "a.csv"]
-
-
 def test_xlsx(data, tmp_path):
     formats.write(data, tmp_path / "a.xlsx")
     book = openpyxl.load_workbook(tmp_path / "a.xlsx")

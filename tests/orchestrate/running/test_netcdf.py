@@ -1,13 +1,10 @@
 """NetCDF results of others: read elsewhere, the same dataset as the library's, or one line."""
 
-import sys
-
 import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
 
-from orchestrate import reader_process
 from orchestrate.errors import StoreError
 from orchestrate.running.store import load, load_foreign, write_netcdf
 
@@ -69,12 +66,3 @@ def test_a_forged_result_is_one_line(tmp_path, kind):
             read(path)
         assert str(error.value).isprintable() and len(str(error.value)) < 1200
         assert kind != "bomb" or "unpacks to 3200000000 bytes; expected at most" in str(error.value)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="processes of Linux")
-def test_a_reader_of_results_that_breaks_down_is_one_line(tmp_path, monkeypatch):
-    path = tmp_path / "a.nc"
-    forge(path, "time")
-    monkeypatch.setattr(reader_process, "START", "import os; os.abort()")
-    with pytest.raises(StoreError, match=r"damaged \(its reader broke down; expected a NetCDF"):
-        load_foreign(path)

@@ -10,8 +10,7 @@ import xarray as xr
 from orchestrate.errors import InputError, StaleError, StoreError
 from orchestrate.running import bar
 from orchestrate.running.journal import Journal, journal_path, lock_result
-from orchestrate.running.options import RunOptions
-from orchestrate.running.runner import answer, answer_all, compute_datasets
+from orchestrate.running.runner import answer
 
 from .conftest import Find
 from .sums import Gathered, Squares, Sums
@@ -46,39 +45,11 @@ def computed(monkeypatch):
     return items
 
 
-def test_a_job_without_a_store_is_answered_in_memory(find, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
-    result = answer(Squares("squares", size=7), {}, find)
-    assert np.array_equal(result.square, SQUARES[:7])
-    assert [path.name for path in tmp_path.iterdir()] == ["model.fmu"]
-    assert result.attrs["size"] == 7 and result.attrs["fmu_guid"] == "{1}"
-    assert result.attrs["call"] == "Squares(size=7, pause=0.0, fail_at=-1)"
-    assert result.attrs["history"] == f"1970-01-02T00:00:00Z: {result.attrs['call']}"
-
-
-def test_independent_series_know_nothing_of_each_other(find):
-    result = answer(Sums("sums", size=12), {}, find)["sum"]
-    squares = np.arange(12.0) ** 2
-    assert np.array_equal(result, [*np.cumsum(squares[:6]), *np.cumsum(squares[6:])])
-
-
 @pytest.mark.parametrize("size", [1, 3, 10])
 def test_what_gathers_starts_when_all_others_are_there(find, size):
     job = Gathered("all", size=size)
     assert [chunk.stop - chunk.start for chunk in job.chunks()][-1] == 1
     assert float(answer(job, {}, find)["whole"]) == (np.arange(size) ** 2.0).sum()
-
-
-def test_several_jobs_are_stored_in_a_folder(find, tmp_path):
-    paths = answer_all([JOB, Sums("sums")], tmp_path, RunOptions(), find)
-    assert np.array_equal(xr.load_dataset(paths["squares"]).square, SQUARES)
-    assert xr.load_dataset(paths["sums"]).sizes["number"] == 10
-
-
-def test_jobs_side_by_side_come_in_their_order(find):
-    first, second = compute_datasets([Squares("a"), Squares("b", size=3)], {}, find)
-    assert (first.sizes["number"], second.sizes["number"]) == (10, 3)
 
 
 # -- stored ---------------------------------------------------------------------------------------
@@ -204,18 +175,6 @@ def test_one_process_at_a_time(find, tmp_path):
 
 
 # -- keywords and the progress bar ----------------------------------------------------------------
-
-
-def test_an_unknown_keyword_is_an_error_of_pythons_kind(find):
-    with pytest.raises(TypeError, match="'job'"):
-        answer(JOB, {"job": 2}, find)
-
-
-def test_in_the_bar_a_last_chunk_counts_as_much_as_it_takes(find, monkeypatch, capfd):
-    monkeypatch.setattr(bar, "DELAY", 0.0)
-    monkeypatch.setattr(Gathered, "last_weight", 30)
-    answer(Gathered("all", size=10), {"jobs": 1}, find)
-    assert re.findall(r"(\d+)/40", capfd.readouterr().err)[-2:] == ["10", "40"]
 
 
 def test_in_a_log_the_bar_is_a_line_every_ten_per_cent(find, monkeypatch, capfd):
