@@ -237,8 +237,7 @@ class Plan(OfStructure, OfSensors, Asked, output.Results):
   {program} plan --structure beam.toml --hz 30:60 --g 0.05,0.1,0.2,0.5 --noise 30ug
   {program} plan --structure beam.toml --set clearance=-20um --range 50
   {program} plan --structure beam.toml --faces 1 --noise 1e-3
-The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s2)/sqrt(Hz); a wider
-bandwidth (--sensor) takes as many times longer."""
+The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s2)/sqrt(Hz)."""
 
     def ask(self) -> tuple[Structure, Keywords]:
         structure = self.read_structure()

@@ -39,7 +39,10 @@ class TimingSettings:
     periods: float = 10.0  # of a window
     bins: int = 32  # of a period; half as many of slow records
     tail: float = 1e-4  # probability of a bin by noise, in a window
-    loud: float = 0.3  # of the loudest window's power: windows that count
+    # windows that count: of the largest stroke (a sweep's ends, where noise is all that moves,
+    # reach 0.002) and of the loudest window's power
+    moves: float = 0.05
+    loud: float = 0.3
     # loudest bin over the quietest third's mean, over the limit of noise: what may be a strike
     # once a period, what may be one of a loose part, and what is one
     faint: float = 3.0
@@ -142,13 +145,15 @@ def strikes_at(
     """Measure what strikes at the first of these sensors, with the other one's blows."""
     columns = np.array(list(timed_windows(channels, rows, settings))).T
     heard, base, power, peak, moment, blow, second, opposite = columns[:-3].real
-    motion = columns[-3:]
-    top = int(np.argmax(np.where(heard > 1.0, power, 0.0)))
-    loud = (power >= settings.loud * power[top]) & (heard > 1.0)
+    motion, quiet = columns[-3:], heard <= 1.0
+    size = abs(motion[2])
+    power = np.where(size >= settings.moves * size.max(), power, 0.0)
+    top = int(np.argmax(power * ~quiet))
+    loud = (power >= settings.loud * power[top]) & ~quiet
     loud[top] = True
-    size, turned = abs(motion[2]), np.exp(1j * peak[loud])
+    turned = np.exp(1j * peak[loud])
     shut *= 1.0 - settings.known
-    rest, stiffness = stiffnesses(motion, loud, heard <= 1.0)
+    rest, stiffness = stiffnesses(motion, loud, quiet)
     grown = [
         float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
     ]

@@ -41,6 +41,7 @@ COVERED = (0.65, 1.4)  # of the bonded resonance, and a tenth beyond those of th
 WINDOWS = 5.0  # of the timing, while the sweep crosses the resonance's width
 SAMPLES = 25.6  # in a period of the highest frequency: fewer do not show when something strikes
 LONGEST = 120.0  # s
+MOST_PERIODS = 5400.0  # of the bonded resonance, of a sweep as slow as ISO 7626-2 asks for
 USUAL_NOISE = 1e-3  # (m/s2)/sqrt(Hz)
 USUAL_LEVELS = tuple(float(f"{level:.2g}") for level in np.geomspace(0.01, 1.0, 9))  # g
 
@@ -101,10 +102,11 @@ def plan_test(
     Notes
     -----
     Structure and twin are shaken (once, where their motion is proportional to the level), measured
-    at each level by the sensors as stated, and judged by
-    :meth:`orchestrate.diagnosis.decision_rule.Beam.verdict`. The sweep is as slow as ISO 7626-2
-    asks for, stays five windows of the impact timing in the resonance, and takes two minutes at
-    most. Where no level decides, the highest without overload is recommended.
+    at each level by the sensors as stated, with 25.6 samples in a period of the highest frequency
+    at most, and judged by :meth:`orchestrate.diagnosis.decision_rule.Beam.verdict`. The sweep is as
+    slow as ISO 7626-2 asks for in up to 5400 periods, stays five windows of the impact timing in
+    the resonance, and takes two minutes at most. Where no level decides, the highest without
+    overload is recommended.
 
     Examples
     --------
@@ -158,9 +160,9 @@ def usual_sensor(last: float, noise: float = USUAL_NOISE, range: float = math.in
 
 def slow_enough(f: float, zeta: float, first: float, last: float) -> float:
     """Return the duration, s, of a sweep that shows a resonance and what strikes in it."""
-    width = 2.0 * zeta * f
-    rate = min(sweep_rate(f, zeta), width * f / (WINDOWS * TIMING.periods))
-    return min((last - first) / max(rate, 1e-9), LONGEST)
+    seen, heard = sweep_rate(f, zeta), 2.0 * zeta * f**2 / (WINDOWS * TIMING.periods)
+    steady, timed = ((last - first) / max(rate, 1e-9) for rate in (seen, heard))
+    return min(max(timed, min(steady, MOST_PERIODS / f)), LONGEST)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,6 +178,17 @@ class PlanJob(Job):
     last: float
     duration: float  # s
     reserve: float
+
+    @property
+    def rehearsed(self) -> tuple[tuple[str, Sensor], ...]:
+        """Return the sensors, none faster than the rule needs: time grows with their rate."""
+        rate = SAMPLES * self.last
+        return tuple(
+            (name, replace(own, bandwidth=min(own.bandwidth, 0.39 * rate), sample_rate=rate))
+            if own.rate > rate
+            else (name, own)
+            for name, own in self.sensors
+        )
 
     def items(self) -> Sequence[float]:
         return self.levels
@@ -199,10 +212,10 @@ class PlanJob(Job):
         times = level / at
         rows = {
             name: own.digitised(times * felt[name].values, list(CHANNELS).index(name))
-            for name, own in self.sensors
+            for name, own in self.rehearsed
         }
         peak = max(float(np.abs(row).max()) for name, row in rows.items() if name != BOX)
-        rate, values = dict(self.sensors)[BOX].rate, np.array(list(rows.values()))
+        rate, values = dict(self.rehearsed)[BOX].rate, np.array(list(rows.values()))
         data = Channels(felt.time.values, rate, tuple(rows), values, "record")
         try:
             findings = record_findings(RecordData.from_channels(data), self.structure, True)
@@ -266,7 +279,7 @@ def readings(
     here: Running = {**HERE, "fmu": {name: str(path) for name, path in fmus}}
     history = shake(structure, sine, sample_rate=20.0 * job.last, **here)
     ideal = {
-        name: replace(own, noise=0.0, range=math.inf, resolution=0.0) for name, own in job.sensors
+        name: replace(own, noise=0.0, range=math.inf, resolution=0.0) for name, own in job.rehearsed
     }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import orchestrate
 import orchestrate.diagnosis.plan_test as rehearsed
 from orchestrate.diagnosis.opening import opening_force, sweep_rate
-from orchestrate.diagnosis.plan_test import PlanJob, bonded_mode, recommended_levels
+from orchestrate.diagnosis.plan_test import (
+    PlanJob,
+    bonded_mode,
+    recommended_levels,
+    slow_enough,
+)
 from orchestrate.errors import InputError
 
 HALVES = orchestrate.Structure.from_halves(
@@ -75,6 +82,28 @@ def test_what_is_proportional_to_the_level_is_shaken_once(monkeypatch, clearance
     rows = [job.rehearsal(own, level, {}) for level in job.levels]
     assert levels == shaken and [row[2] for row in rows] == [2e-3, 4e-3]
     assert job.rehearsal(own.as_bonded(), 4.0, {})[2] == 4e-3 and levels[-1] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("zeta", "periods"), [(0.03, 625.0), (0.01, 2083.0), (0.004, 5400.0), (0.003, 6250.0)]
+)
+def test_a_rehearsal_takes_as_many_periods_at_any_frequency(zeta, periods):
+    """At 950 Hz it took 12,900, six minutes on a busy computer."""
+    for f in (95.0, 950.0):
+        assert f * slow_enough(f, zeta, 0.65 * f, 1.4 * f) == pytest.approx(periods, rel=1e-3)
+
+
+def test_a_rehearsal_samples_no_faster_than_the_rule_needs():
+    """A sensor of 10 kHz on a beam of 45 Hz took three million samples."""
+    fast = orchestrate.Sensor(bandwidth=10e3, noise=0.01, sample_rate=30e3)
+    names, ends = ("box_acceleration", "acceleration1"), {"first": 20.0, "last": 80.0}
+    for own, rate, bandwidth in ((fast, 2048.0, 799.0), (SENSOR, 1536.0, 600.0)):
+        sensors = tuple(dict.fromkeys(names, own).items())
+        more = {"sensors": sensors, "levels": (2.0,), "duration": 2.0, "reserve": 2.0}
+        job = PlanJob(name="x", structure=HALVES, **ends, **more)
+        for one in dict(job.rehearsed).values():
+            assert (one.rate, one.bandwidth) == pytest.approx((rate, bandwidth), rel=1e-3)
+            assert replace(one, bandwidth=own.bandwidth, sample_rate=own.rate) == own
 
 
 @pytest.mark.parametrize(
