@@ -48,7 +48,7 @@ MISTAKES = {  # options of each command, then what its line says
         : frequency: nothing given | --eta | --hz | --rpm | --frequency
         --eta 1,2 : --eta 1,2 | 2 values | with a decimal point, 1.2
         --hz 1 --g 0,5 : --g 0,5: expected a number > 0 | with a decimal point, 0.5
-        --set f1=46,5 --eta 1 : --set f1=46,5: expected a number, with Hz | with a decimal point, 46.5
+        --set f1=46,5 --eta 1 : --set f1=46,5: expected a number, with Hz | decimal point, 46.5
         --eta 1 --frequency 2 : --eta and --frequency | one of them
         --frequency 2 : --frequency 2 | --amplitude | --g
         --structure beam --eta 1 : --eta 1 | 75 rad/s | --amplitude | --g
