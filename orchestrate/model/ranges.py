@@ -31,7 +31,8 @@ WRITTEN_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # in texts, over a qua
     ("rpm", "frequency_rpm"): {"rpm": "1"},
     ("g", "acceleration_g", "range"): {"g": "1"},
     ("box_acceleration",): {"m/s2": "1", "g": str(GRAVITY)},
-    ("noise",): {  # density of an acceleration, as data sheets have it
+    ("noise",): {"(m/s2)/sqrt(Hz)": "1"}  # density of an acceleration; as data sheets have it:
+    | {
         f"{prefix}g{root}": str(Decimal(factor) * Decimal(str(GRAVITY)))
         for root in ("", "/sqrt(Hz)", "/sqrtHz")
         for prefix, factor in (("u", "1e-6"), ("µ", "1e-6"), ("m", "1e-3"), ("", "1"))
