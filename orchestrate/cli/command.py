@@ -369,7 +369,10 @@ def suggestion(flag: str, error: exceptions.UnknownOptionError, command: type[Co
     if name in STRUCTURE_NAMES and "--set" in command.flags():
         words = error.root_input_tokens or []
         after = words[words.index(flag) + 1 :] if flag in words else []
-        return did_you_mean(f"--set {name}={''.join(after[:1]) or 'VALUE'}")
+        value = "".join(after[:1]) or "VALUE"
+        if "--over" in command.flags() and re.search("[:,]", value):
+            return did_you_mean(f"--over {name} --values {value}")
+        return did_you_mean(f"--set {name}={value}")
     said = MEANT.get(flag, "")
     if said.partition(" ")[0] in command.flags():
         return did_you_mean(said)

@@ -171,6 +171,7 @@ SYNTAX = """
     swep : swep: no command; did you mean sweep?
     jump : did you mean jump-voltages?
     sweep --e 0.3 : --e: | did you mean --set e=0.3?
+    map --eta 1,2 --e 0.1:0.9:0.1 : --e: | did you mean --over e --values 0.1:0.9:0.1?
     analyse --shw=psd x.csv : --shw: | did you mean --show?
     spectra --eta0=1 --volt 1 : --volt: | did you mean --voltage?
     resonance my.toml : my.toml: no option of resonance; did you mean --structure my.toml?
