@@ -211,21 +211,31 @@ def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
 def text_of(data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g") -> str:
     """Format an SI value with unit, in a dataset's display units: ``12.5 Hz``, ``eta = 0.8``."""
     number, word = shown_number(data, value, unit, form)
-    return f"eta = {number}" if word == "eta" else f"{number} {word}"
+    return f"eta = {number}" if word == "eta" else f"{number} {word}".rstrip()
 
 
 def range_text(data: xr.Dataset, low: float, high: float, unit: str, form: str = ".4g") -> str:
     """Format two SI values as a range in a dataset's display units: ``41 to 45 Hz``."""
     (first, word), (last, _) = (shown_number(data, end, unit, form) for end in (low, high))
-    return f"eta = {first} to {last}" if word == "eta" else f"{first} to {last} {word}"
+    return f"eta = {first} to {last}" if word == "eta" else f"{first} to {last} {word}".rstrip()
 
 
 def shown_number(
     data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g"
 ) -> tuple[str, str]:
     """Convert an SI value to a dataset's display unit; return its text and the unit's name."""
-    factor, word = scale_of(data, unit)
+    factor, word = text_scale(data, unit)
     return format(float(value) / factor, form), word
+
+
+def text_scale(data: xr.Dataset, unit: str) -> tuple[float, str]:
+    """Return divisor and unit as :func:`scale_of` does, of ratios no unit.
+
+    Where lengths are the paper's ratios, they have none, nor have speeds and accelerations.
+    """
+    factor, word = scale_of(data, unit)
+    is_ratio = word == unit in ("m", "m/s", "m/s2") and is_in_ratios(data)
+    return factor, "" if word == "1" or is_ratio else word
 
 
 def as_shown(data: xr.Dataset) -> xr.Dataset:

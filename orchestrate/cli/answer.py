@@ -13,16 +13,14 @@ import orchestrate
 from ..errors import InputError
 from ..lazy import xr
 from ..model import Structure
-from ..units import Units, with_readable_lengths, with_units
+from ..units import ALIKE, Units, with_readable_lengths, with_units
 from .command import Command, Keywords, Options, option, option_names
 from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
+from .options import UNITS
 from .output import Files, digest, result_name, write_result
 
-UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}
-UNIT_OF_KEY = {  # of a structure's file
-    **{"frequency_hz": "Hz", "frequency_rpm": "rpm", "frequency_rad_s": "rad/s", "eta": "eta"},
-}
+UNIT_OF_OPTION = {name: ALIKE.get(unit, unit) for name, unit in {**UNITS, "eta": "eta"}.items()}
 VARIED = ("eta", "frequency", "level", "values")
 Runs = Mapping[str, "xr.Dataset"]  # by structure, or by "" where there is one
 
@@ -175,7 +173,8 @@ class Asked(Command):
         given = [UNIT_OF_OPTION[name] for name in varied if name in UNIT_OF_OPTION]
         given += [unit for name, unit in UNIT_OF_OPTION.items() if getattr(self, name, None)]
         keys = self.section("excitation") if "frequency" in question and not given else ()
-        given += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
+        words = [key.removeprefix("frequency_") for key in keys]
+        given += [ALIKE.get(word, word) for word in words if word in (*UNITS.values(), "eta")]
         both = question.get("over") or ()  # of a border
         by_ratio = "eta" in question or (not isinstance(both, str) and "eta" in both)
         in_g = getattr(self, "g", None) is not None or "acceleration_g" in keys

@@ -15,7 +15,7 @@ from ..flags import flag_word
 from ..lazy import xr
 from ..model import PARAMETERS, Structure
 from ..model.ranges import PUSHES
-from ..units import is_in_ratios, number_of, range_text, units_of, with_units
+from ..units import is_in_ratios, number_of, range_text, text_of, units_of, with_units
 from . import printing
 from .answer import Asked, Runs, is_curve
 from .command import Keywords, option
@@ -192,8 +192,8 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
         sides = []
         for axis in (data[name] for name in map(str, data.attractor_of.dims)):
             unit = str(axis.attrs["units"])
-            text = range_text(data, axis.min().item(), axis.max().item(), unit)
-            sides.append(f"{axis.name} {printing.without_unit(data, text, unit)}")
+            ends = axis.min().item(), axis.max().item()
+            sides.append(f"{axis.name} {range_text(data, *ends, unit)}")
         yield f"{data.sizes['attractor']} found, of {started} starts in {', '.join(sides)}"
         yield from attractor_table(data)
         if overlapping:
@@ -243,7 +243,7 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
         yield "multipliers " + ", ".join(f"{real:.6f}{other:+.6f}i" for real, other in parts)
         for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
             if math.isfinite(time):
-                closing = printing.length_text(data, speed, "m/s")
+                closing = text_of(data, speed, "m/s")
                 yield f"impact at {printing.time_text(data, time, '.8g')}, closing at {closing}"
         names = "x1, x2, v1, v2" if is_in_ratios(data) else "x1, x2 in m, v1, v2 in m/s"
         for i, state in enumerate(data.state.values):

@@ -210,7 +210,7 @@ def peak_cells(data: xr.Dataset, values: xr.DataArray) -> list[str]:
     for channel in values.channel.values:
         flat = values.sel(channel=channel).stack(every=[d for d in values.dims if d != "channel"])
         peak = flat.isel(every=int(flat.fillna(-1.0).values.argmax()))
-        size = text_of(data, peak, str(values.attrs["units"]), ".4g").removesuffix(" 1")
+        size = text_of(data, peak, str(values.attrs["units"]), ".4g")
         when = f", {float(peak.time):.4g} s" if "time" in peak.coords else ""
         frequency = text_of(data, peak.frequency, "Hz", ".5g")
         cells.append(f"{size.replace('m2/s4', '(m/s2)2')} at {frequency}{when}")

@@ -53,8 +53,8 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g"
             title = f"{before or ('frequency' if name == 'eta' else name)} {unit}".rstrip()
             columns[title] = [number for _, number, _ in parts]
             continue
-        factor, word = units.scale_of(data, str(array.attrs.get("units", "1")))
-        title = f"{name} {word}" if word not in ("1", "SI") else name
+        factor, word = units.text_scale(data, str(array.attrs.get("units", "1")))
+        title = f"{name} {word.replace('SI', '')}".rstrip()
         if "flag_meanings" in array.attrs:
             words = flag_words(array.attrs)
             columns[title] = [words[int(value)] for value in values]
@@ -74,9 +74,9 @@ def extents(data: xr.Dataset, names: str, rms: bool = False) -> Iterator[str]:
             unit = str(array.attrs.get("units", "1"))
             meaning = str(array.attrs.get("long_name", array.name)).partition(",")[0]
             text = units.range_text(data, float(array.min()), float(array.max()), unit)
-            mean = length_text(data, float((array**2).mean()) ** 0.5, unit, ".4g")
+            mean = units.text_of(data, float((array**2).mean()) ** 0.5, unit, ".4g")
             ending = f", rms {mean}" if rms else ""
-            yield f"{meaning}: {without_unit(data, text, unit).removesuffix(' 1')}{ending}"
+            yield f"{meaning}: {text}{ending}"
 
 
 def impact_lines(data: xr.Dataset) -> Iterator[str]:
@@ -86,7 +86,7 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
         yield "no impacts"
         return
     first = int(data.impact_velocity.values.argmax())
-    speed = length_text(data, data.impact_velocity[first], "m/s", ".4g")
+    speed = units.text_of(data, data.impact_velocity[first], "m/s", ".4g")
     hardest = f"at {time_text(data, float(data.impact_time[first]))}"
     if not units.is_in_ratios(data):
         hardest = f"{float(data.impulse[first]):.4g} N s {hardest}"
@@ -100,17 +100,6 @@ def end_lines(ends: Collection[str]) -> Iterator[str]:
 
 
 # -- parameters and ranges ------------------------------------------------------------------------
-
-
-def without_unit(data: xr.Dataset, text: str, unit: str) -> str:
-    """Return a text without its unit of length where a result has the paper's ratios."""
-    of_length = unit in ("m", "m/s", "m/s2")
-    return text.removesuffix(f" {unit}") if of_length and units.is_in_ratios(data) else text
-
-
-def length_text(data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g") -> str:
-    """Format a length, speed or acceleration in display units; as a ratio without one."""
-    return without_unit(data, units.text_of(data, value, unit, form), unit)
 
 
 def time_text(data: xr.Dataset, time: float, form: str = ".4g") -> str:
@@ -157,8 +146,8 @@ def parameter_parts(
     if name == "level":
         shown = data if chosen.acceleration else units.with_units(data, "g")
         return ("", *units.shown_number(shown, value, "m/s2", form))
-    unit = unit_or_nothing(data[name]) if name in data.variables else ""
-    return (name, *units.shown_number(data, value, unit, form))
+    unit = data[name].attrs.get("units", "1") if name in data.variables else "1"
+    return (name, *units.shown_number(data, value, str(unit), form))
 
 
 def unit_or_nothing(array: xr.DataArray) -> str:

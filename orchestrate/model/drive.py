@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from dataclasses import dataclass
 from os import PathLike
@@ -49,6 +48,7 @@ class Drive(Described):
     (4.5, 0.2727, 0.000909)
     """
 
+    quantities = DRIVE
     box_mass: float
     box_stiffness: float
     box_damping: float
@@ -58,10 +58,6 @@ class Drive(Described):
     motor_constant: float
     armature_resistance: float
     armature_inductance: float = DRIVE["armature_inductance"].default
-
-    def __post_init__(self) -> None:
-        for name, quantity in DRIVE.items():
-            object.__setattr__(self, name, quantity.check(getattr(self, name)))
 
     @classmethod
     def nondimensional(
@@ -251,10 +247,6 @@ class Drive(Described):
     def energy(self, structure: Structure) -> float:
         """Return the unit of energy M_t (omega S/M_t)^2, J."""
         return self.box_mass * (structure.omega * self.length) ** 2
-
-    def replace(self, **changes: float) -> Drive:
-        """Return a copy of the drive with some SI values changed, given as keywords."""
-        return dataclasses.replace(self, **changes)
 
     def parameters(self) -> dict[str, float]:
         """Return the drive's SI values by name, as start values of the ``MotorShaker`` FMU."""

@@ -6,7 +6,6 @@ Excitations of all other kinds (sines that sweep, random vibration, shocks, reco
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -56,16 +55,13 @@ class Excitation(Described):
     (1.2, 0.069813)
     """
 
+    quantities = EXCITATION
     frequency: float
     amplitude: float
     phase: float = EXCITATION["phase"].default
     box_acceleration: float = 0.0
     force1: float = 0.0
     force2: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name, quantity in EXCITATION.items():
-            object.__setattr__(self, name, quantity.check(getattr(self, name)))
 
     @classmethod
     def nondimensional(
@@ -158,10 +154,6 @@ class Excitation(Described):
                     f"frequency of {name}, {natural!r} rad/s, with {dampers_text}; expected "
                     f"{' + '.join(dampers)} > 0, or a frequency further than 1e-6 of it away"
                 )
-
-    def replace(self, **changes: float) -> Excitation:
-        """Return a copy of the excitation with some numbers changed, given as keywords."""
-        return dataclasses.replace(self, **changes)
 
     def inputs(self) -> dict[str, float]:
         """Return the FMU's input and start values by name."""

@@ -27,11 +27,12 @@ WRITTEN_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # in texts, over a qua
         "m": "1",
     },
     ("zeta1", "zeta2", "D", "D1", "D2"): {"%": "0.01"},
-    ("f1", "f2", "f1_hz", "f2_hz", "hz", "frequency_hz"): {"Hz": "1", "hz": "1"},
+    ("f1", "f2", "f1_hz", "f2_hz", "hz", "frequency_hz"): {"Hz": "1"},
     ("rpm", "frequency_rpm"): {"rpm": "1"},
     ("g", "acceleration_g", "range"): {"g": "1"},
     ("box_acceleration",): {"m/s2": "1", "g": str(GRAVITY)},
-    ("noise",): {  # density of an acceleration, as data sheets have it
+    ("noise",): {"(m/s2)/sqrt(Hz)": "1"}  # density of an acceleration; as data sheets have it:
+    | {
         f"{prefix}g{root}": str(Decimal(factor) * Decimal(str(GRAVITY)))
         for root in ("", "/sqrt(Hz)", "/sqrtHz")
         for prefix, factor in (("u", "1e-6"), ("µ", "1e-6"), ("m", "1e-3"), ("", "1"))
@@ -92,6 +93,7 @@ def known_units(name: str) -> dict[str, str]:
 def number_with_unit(name: str, text: str) -> float | None:
     """Return the number of a text such as ``0.7 %``; None if it does not end in a unit."""
     known = known_units(name)
+    text = text.replace("hz", "Hz")
     unit = next((unit for unit in known if text.endswith(unit)), None)  # mm before m
     if unit is None:
         return None

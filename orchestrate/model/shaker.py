@@ -48,6 +48,7 @@ class Shaker(Described):
     22.5
     """
 
+    quantities = ELECTRODYNAMIC_SHAKER
     table_mass: float
     suspension_stiffness: float
     suspension_damping: float
@@ -60,8 +61,7 @@ class Shaker(Described):
     travel_limit: float = ELECTRODYNAMIC_SHAKER["travel_limit"].default
 
     def __post_init__(self) -> None:
-        for name, quantity in ELECTRODYNAMIC_SHAKER.items():
-            object.__setattr__(self, name, quantity.check(getattr(self, name)))
+        super().__post_init__()
         flag = checked_flag("current_control", self.current_control)
         object.__setattr__(self, "current_control", flag)
 
@@ -191,10 +191,6 @@ class Shaker(Described):
             coil = self.coil_resistance + rate * self.coil_inductance
             command = command * coil + rate * self.force_factor
         return abs(command) * acceleration / abs(rate) ** 2
-
-    def replace(self, **changes: float | bool) -> Shaker:
-        """Return a copy of the shaker with some values changed, given as keywords."""
-        return dataclasses.replace(self, **changes)  # type: ignore[arg-type]
 
     def parameters(self) -> dict[str, float | bool]:
         """Return the values by name, as start values of the ``ElectrodynamicShaker`` FMU."""

@@ -117,6 +117,7 @@ class Structure(StructureText, Described):
     orchestrate.errors.InputError: e = 1.5: expected 0 <= e <= 1
     """
 
+    quantities = STRUCTURE
     m1: float = STRUCTURE["m1"].default
     m2: float = STRUCTURE["m2"].default
     k1: float = STRUCTURE["k1"].default
@@ -132,8 +133,7 @@ class Structure(StructureText, Described):
     wall: bool = False
 
     def __post_init__(self) -> None:
-        for name, quantity in STRUCTURE.items():
-            object.__setattr__(self, name, quantity.check(getattr(self, name)))
+        super().__post_init__()
         for name in FLAGS:
             object.__setattr__(self, name, checked_flag(name, getattr(self, name)))
         if self.wall and self.bonded:

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..units import as_shown
-from .colours import BLACK, BLUE, DIRECTION_STYLES, GREEN, GREY, ORANGE, PURPLE, RED, STRUCTURES
+from .colours import BESIDES_RED, BLACK, BLUE, DIRECTION_STYLES, GREY, RED, STRUCTURES
 from .kinds import draws
 from .labels import in_shown_units, plain_title
 from .scales import label_with_unit, typeset_array_unit
@@ -21,7 +21,7 @@ from .style import draw_line, make_panels, set_title, styled, use_plain_log
 Results = dict[str, xr.Dataset]  # by label
 Reader = Callable[[xr.Dataset], xr.DataArray]
 CHANNEL_TITLES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
-COLOURS = (BLUE, RED, BLACK, ORANGE, GREEN, PURPLE)
+COLOURS = (BLUE, RED, *BESIDES_RED[1:4])
 FRF_OVER = {"1/kg": "force in 1/kg"}  # by the unit of the magnitude
 PHASE = {"ylim": (-280.0, 100.0), "yticks": (-270, -180, -90, 0, 90)}  # an axis in degrees
 
@@ -74,7 +74,7 @@ def iterate_records(results: Results, channel: str) -> Iterator[tuple[str, xr.Da
 
 def colours_by_label(results: Results) -> dict[str, str]:
     colours = {label: STRUCTURES[label] for label in results if label in STRUCTURES}
-    free = [colour for colour in COLOURS if colour not in (BLACK, *colours.values())]
+    free = [colour for colour in COLOURS if colour not in colours.values()]
     for number, label in enumerate(label for label in results if label not in colours):
         measured = label.startswith("measured") and BLACK not in colours.values()
         colours[label] = BLACK if measured else free[number % len(free)]

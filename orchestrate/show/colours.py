@@ -7,6 +7,7 @@ BLACK, GREY = "#000000", "#8c8c8c"
 BLUE, RED, GREEN = "#0072b2", "#d55e00", "#009e73"
 ORANGE, SKY, PURPLE, YELLOW = "#e69f00", "#56b4e9", "#cc79a7", "#f0e442"
 PALETTE = (BLUE, ORANGE, GREEN, RED, PURPLE, SKY, YELLOW)
+BESIDES_RED = tuple(colour for colour in PALETTE if colour != RED)  # where red has a meaning
 STRUCTURES = {"bonded": BLUE, "delaminated": RED}
 DIRECTIONS = {"up": BLUE, "down": RED}
 DIRECTION_STYLES = {"up": "-", "down": "--"}

@@ -12,14 +12,13 @@ from matplotlib.figure import Figure
 
 from ..units import as_shown
 from .analysis import note_hidden
-from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
+from .colours import BESIDES_RED, BLACK, BLUE, GREEN, GREY, ORANGE, RED
 from .kinds import draws
 from .labels import plain_title
 from .scales import label_with_unit, typeset_array_unit
 from .style import draw_line, legend_below, make_panels, styled, use_plain_log
 
 SENSOR_TITLES = {"acceleration1": "sensor 1", "acceleration2": "sensor 2", "motor": "motor"}
-COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY)
 FITS = (BLUE, ORANGE, GREEN)  # of the delaminated, of the best sound structure, of the bonded one
 PARTED, BONDED = "delaminated", "bonded"  # names of hypotheses begin so
 FEWEST_DECADES = (0.2, 10.0)  # of the signs' axis, at least
@@ -41,7 +40,7 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     for number, channel in enumerate(channels):
         positions = signs + share * (number - 0.5 * (len(channels) - 1))
         values, label = ratio.sel(channel=channel).values, SENSOR_TITLES.get(channel, channel)
-        colour = COLOURS[number % len(COLOURS)]
+        colour = BESIDES_RED[number % len(BESIDES_RED)]
         axes.barh(positions, np.nan_to_num(values), share, color=colour, label=label)
         write_values(axes, positions, values, data.value.sel(channel=channel).values, limit)
     lines: Any = {"linewidth": 1.0, "zorder": 3}

@@ -41,7 +41,7 @@ def slide_shape(size: str) -> tuple[float, float] | None:
         if not (0.1 <= width / height <= 10.0):
             raise ValueError
     except (ValueError, ZeroDivisionError):
-        raise InputError(f"size = {size!r}: expected W:H such as '16:9'") from None
+        raise InputError(f"size = {size}: expected W:H such as 16:9") from None
     return (width, height) if size else None
 
 

@@ -18,19 +18,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, PercentFor
 
 from ..flags import flag_words
 from . import style
-from .colours import (
-    BLACK,
-    BLUE,
-    DIRECTIONS,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    STRUCTURES,
-    YELLOW,
-)
+from .colours import BESIDES_RED, BLACK, BLUE, DIRECTIONS, GREY, RED, STRUCTURES
 from .kinds import BRANCHES, MORE, draws
 from .labels import branch_title, format_voltage, orbit_label, title_from_attributes
 from .overlay import Overlay, draw_bifurcations, draw_orbits, length_factors
@@ -41,7 +29,6 @@ MAX_DISTINCT = 600  # values along an axis at which marks can be distinguished
 CELLS = (1500, 750)  # of a panel, for samples that lie on each other
 SHADES = ((1, 0.35), (3, 0.6), (8, 1.0))  # from this number of samples in a cell on: opacity
 VERDICTS = {1: (RED, "o"), 0: (BLUE, "s"), -1: (BLACK, ".")}  # chaotic, neutral, periodic
-KINDS = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW)
 IRREGULAR, OTHER = "irregular", "other periodic"
 
 
@@ -299,9 +286,9 @@ def colours_by_kind(data: xr.Dataset) -> tuple[dict[str, str], np.ndarray]:
     for index in zip(*np.nonzero(np.isfinite(n)), strict=True):
         words[index] = orbit_label(n[index], rate[index]) or IRREGULAR
     counts = Counter(word for word in words.ravel() if word and word != IRREGULAR)
-    frequent = [word for word, _ in counts.most_common(len(KINDS))]
+    frequent = [word for word, _ in counts.most_common(len(BESIDES_RED))]
     words[np.isin(words, [*frequent, IRREGULAR, ""], invert=True)] = OTHER
-    colours = dict(zip(frequent, KINDS, strict=False))
+    colours = dict(zip(frequent, BESIDES_RED, strict=False))
     return {**colours, OTHER: GREY, IRREGULAR: RED}, words.astype(str)
 
 

@@ -17,7 +17,7 @@ from ..flags import flag_words
 from ..model import Structure
 from ..units import is_in_ratios, length_of_ratio, omega_of, scale_of, units_of
 from . import labels
-from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW
+from .colours import BESIDES_RED, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW
 from .kinds import MORE, draws
 from .labels import branch_title, has_frequency_unit, title_from_attributes
 from .scales import axis_values, in_unit, lengths, parameter_scale, varied_dimensions
@@ -36,7 +36,7 @@ SHADES = (  # of multiplicity
 )
 MULTIPLICITIES = ("1", "2", "3", "4", "5", "6", "7", "8+", "not\nperiodic")
 NOTHING = "#d9d9d9"  # no impacts
-BASINS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the first attractors
+BASINS = (*BESIDES_RED[:4], RED)  # of the first attractors
 OTHER = "#bbbbbb"
 BORDERS = {
     **{"fold": ORANGE, "period doubling": RED, "Neimark-Sacker": BLUE},

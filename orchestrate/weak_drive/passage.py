@@ -91,8 +91,8 @@ class PassageJob(couple.CoupleJob):
         if np.isfinite(jumps).any():
             return jumps[np.isfinite(jumps)], "around jumps"
         if math.isfinite(passed):
-            return np.array([passed]), "around the passage, there is no jump"
-        return np.array([self.schedule.duration - self.around]), "the end, there is no jump"
+            return np.array([passed]), "around the passage, the run shows no jump"
+        return np.array([self.schedule.duration - self.around]), "the end, the run shows no jump"
 
 
 def passage(

@@ -180,7 +180,7 @@ def test_a_rate_that_does_not_show_the_excitation_is_wondered_at(ask, rate, few)
 
 SENSORS = """
     --noise 1 : --noise: of sensors; expected --sensor HZ with it
-    --sensor 9 --noise 3ug/Hz : --noise 3ug/Hz: expected a number in (m/s2)/sqrt(Hz), or of g
+    --sensor 9 --noise 3ug/Hz : --noise 3ug/Hz: expected a number, with (m/s2)/sqrt(Hz) or ug
     --sensor 9 --set wall=true : wall = True: --sensor does not know it yet
 """
 

@@ -293,7 +293,7 @@ def test_the_picture_of_attractors_is_under_their_forces(ask, monkeypatch):
 
 def test_levels_do_not_know_forces(ask):
     asked = ("resonance", "--structure", "beam", "--hz", "12", "--g", "0.1,0.2", "--force2", "1")
-    ask(*asked).complaint("--force2: resonance_levels does not know it yet")
+    ask(*asked).complaint("--force2: expected one level, --g, with it")
 
 
 # -- branches over a picture -----------------------------------------------------------------------

@@ -145,6 +145,25 @@ def test_texts_of_options(reader, text, value):
             reader("--x", wrong)
 
 
+@pytest.mark.parametrize(
+    "option, text, value",
+    [
+        ("--amplitude", "20 um", 2e-5),
+        ("--box-acceleration", "-1g", -9.80665),
+        ("--g", "0.1g", 0.1),
+        ("--hz", "12hz", 12.0),
+        ("--noise", "30ug/sqrt(Hz)", 30 * 9.80665e-6),
+        ("--range", "50g", 50.0),
+    ],
+)
+def test_a_number_may_have_the_units_of_what_its_option_is(option, text, value):
+    assert grammar.read_number(option, text) == pytest.approx(value, rel=1e-15)
+    if value > 0.0:
+        assert grammar.parse_values(option, f"{text},{text}") == (value, value)
+    with pytest.raises(InputError, match=f"{option} 3parsec: expected a number, with "):
+        grammar.read_number(option, "3parsec")
+
+
 def test_the_default_range_has_7901_values_and_both_ends():
     etas = grammar.parse_values("--eta", "0.1:8.0:0.001")
     assert (len(etas), etas[0], etas[-1]) == (7901, 0.1, 8.0)

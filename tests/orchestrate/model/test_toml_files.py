@@ -74,6 +74,8 @@ def test_structures(file, text, expected):
         ("eta = 1.5", 112.5, 1.0 / 2.25),
         ("eta = 1.5\namplitude = 0.002", 112.5, 0.002),
         ("eta = 1.5\nacceleration_g = 0.5", 112.5, 0.5 * 9.80665 / 112.5**2),
+        ('frequency_hz = "15 Hz"\namplitude = "2 mm"', 2.0 * math.pi * 15.0, 0.002),
+        ('frequency_rad_s = 10\nacceleration_g = "2g"', 10.0, 2.0 * 9.80665 / 100.0),
     ],
 )
 def test_excitations(file, text, frequency, amplitude):
@@ -82,6 +84,12 @@ def test_excitations(file, text, frequency, amplitude):
     assert math.isclose(found.frequency, frequency, rel_tol=1e-15)
     assert math.isclose(found.amplitude, amplitude, rel_tol=1e-15)
     assert found.phase == 0.5
+
+
+def test_gravity_in_a_file(file):
+    box = "frequency_hz = 15\namplitude = 0"
+    found = Excitation.from_file(file(f'[excitation]\n{box}\nbox_acceleration = "-1 g"\n'))
+    assert found.box_acceleration == -9.80665
 
 
 def test_eta_refers_to_a_structure_given_elsewhere(file):

@@ -54,7 +54,7 @@ def test_one_answer(simulated):
 def test_a_slide_and_what_is_not_whole(simulated, continued):
     width, height = plot(simulated[1], size="16:9").get_size_inches()
     assert width / height == pytest.approx(16.0 / 9.0)
-    with pytest.raises(InputError, match="size = '16x9'; expected W:H"):
+    with pytest.raises(InputError, match="size = 16x9: expected W:H"):
         plot(simulated[1], size="16x9")
     with pytest.raises(InputError, match="varies over nothing; expected 1 of them"):
         plot(continued[0].isel(eta=0))
