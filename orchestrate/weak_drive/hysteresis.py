@@ -49,7 +49,7 @@ class HysteresisSettings(SettledSettings):
     width: float = 1e-4  # of a step that is not halved: widest bracket of a jump, if motions settle
     bend: float = 1e-3  # more or less of the speed over a step than by the slope before it
     same: float = 2e-3  # largest difference of two settled speeds of one motion
-    small: float = 4e-3  # difference of two motions' speeds up to which their exchange is no jump
+    small: float = 4.5e-3  # difference of two motions' speeds up to which their exchange is no jump
     clear: float = 5e-3  # the same from which on it is one
     landings: int = 6  # voltages past a small loss, or one against the voltage, that are tried
     lives: float = 5.0  # times that a motion has to last what it took to settle, or lasted past it
