@@ -3,30 +3,22 @@
 A jump is a loss of stability of the slow motion: two motions exist at one voltage, and the ramp
 loses the first. A steep but continuous branch is not a jump. The rule, for each ramp as a whole:
 
-- Voltages on a grid of steps `grid`, from the ramp's own state at its beginning to its end: the
-  voltage is raised to each at `rate` and held until the speed has settled (:mod:`.steady_speed`);
-  those at which it does not are left out.
-- Every step in which the speed gains `smallest` more or less than at the lower rate of the steps
-  next to it (without these: than the voltage), or moves by `against` against the voltage, is
-  halved, to `width`, and to `finest` where the speed comes back over it.
-- The motion before such a step has to last; if it does not, the motion that follows it is taken.
-  Where disturbances are known to grow (:mod:`.growth`), it is held for `growths` growth times, and
-  left out where these are longer than `patience` holds. Unless they are known to decay, it may be
-  a transient: it is held for `again` times as long as it took to settle, and for `lives` times the
-  longest time after which it was seen to be lost within the step, up to `patience` holds, and on a
-  ramp up to a `budget` of them.
-- It is *lost* over that step where the speed, taken back over it, is `clear` away and stays within
-  `same` when it is held `again` times. There is *no* jump where no such step is left but of
-  `finest`, over which the speed comes back, and on a way back over all of the ramp the speed is
-  nowhere `clear` away; from a voltage where it is only `same` away the ramp's motion is taken.
-- All else is *undecided*: a ramp's beginning or end, or a way back, that does not settle, two
-  motions nearer than `clear`, a step within which nothing settles or after `max_rounds` of this,
-  another motion on the way back, and what comes after these or a loss if the speed moves against
-  the voltage, unless a motion that had converged comes to one other at `landings` voltages past it.
+- From the ramp's own state at its beginning, the voltage is raised at `rate` from one value of a
+  `grid` to the next, and held until the speed has settled (:mod:`.steady_speed`).
+- In the ramp's order, a step over which the speed gains `bend` more or less than by the slope over
+  as long a step before is divided at `parts`, to `width`.
+- The motion before such a step has to last: if disturbances are known to grow (:mod:`.growth`), for
+  `growths` growth times; if that is unknown, `lives` times as long as it took to settle or lasted
+  past the step; both up to `patience` holds. If it does not, what it has become takes its place.
+- It is *lost* where the speed, taken back over the step, lasts `clear` away. There is *no* jump
+  where the speed comes back over each such step, to `same`, or the two motions are `small` apart,
+  and is nowhere `clear` away on a way back over all of the ramp.
+- All else is *undecided*: what does not settle, what is left after a `budget` of holds, and what
+  comes after a loss by less than `clear`, or against the voltage, unless the motion had converged
+  and comes to one other at each of some `landings` past it.
 
-From differences the `errors` of irregular motions' speeds are taken off, but not on the last way
-back. Non-dimensional: voltages over K omega, speeds over omega, times in 1/omega, in the mirror
-image in which the motor turns forward.
+Speeds of irregular motions have errors, which are taken off. Non-dimensional: voltages over K
+omega, speeds over omega, times in 1/omega, in the mirror image in which the motor turns forward.
 """
 
 from __future__ import annotations
@@ -35,7 +27,6 @@ import math
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -55,25 +46,17 @@ class HysteresisSettings(SettledSettings):
 
     grid: float = 0.02  # longest first step of the voltage
     rate: float = 5e-5  # of the voltage from one step to the next, in a time 1/omega
-    width: float = 1e-4  # widest bracket of a jump, where motions settle in time
-    finest: float = 1e-6  # shortest step of the voltage
-    # change of the speed over a step, beyond what its neighbours' are, up to which it may be one
-    # branch; below 0.866 of `clear`, so that no steps find a jump that others rule out
-    smallest: float = 4e-3
-    against: float = 1e-3  # the same where the speed moves against the voltage
-    neighbour: float = 0.25  # of a step, what one next to it is at least to be compared with
+    width: float = 1e-4  # of a step that is not halved: widest bracket of a jump, if motions settle
+    bend: float = 1e-3  # more or less of the speed over a step than by the slope before it
     same: float = 2e-3  # largest difference of two settled speeds of one motion
-    clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
-    again: int = 3  # times that a motion next to a jump is held again
+    small: float = 4.5e-3  # difference of two motions' speeds up to which their exchange is no jump
+    clear: float = 5e-3  # the same from which on it is one
+    landings: int = 6  # voltages past a small loss, or one against the voltage, that are tried
+    lives: float = 5.0  # times that a motion has to last what it took to settle, or lasted past it
     growths: float = 30.0  # growth times after which a motion is seen to last, or not
-    lives: float = 5.0  # of a motion beyond a step: how long that before it has to last
     patience: float = 10.0  # longest holds that these may be
-    budget: float = 40.0  # the same of a ramp's motions together, after which they are left out
-    landings: int = 6  # voltages, by `width`, at which one motion follows one that is lost
-    max_rounds: int = 150  # of looking at the largest step of a ramp
-    errors: float = 3.0  # standard errors that are taken off a difference of speeds
+    budget: float = 60.0  # longest holds of a ramp, beside its grid
     parts: tuple[float, ...] = (0.5, 0.25, 0.75)  # of a step: where a speed between is sought
-    left: float = 0.1  # of the way between two motions' speeds: with less to go, the first is left
 
 
 class HeldPoint(NamedTuple):
@@ -142,21 +125,14 @@ class HysteresisLoop:
         voltage = self.schedule.voltage((step + 0.5) * self.step) / self.volts
         return self.hold(self.state_before(step), voltage, voltage)
 
-    def hold_from(self, point: HeldPoint, voltage: float, limit: float | None = None) -> HeldPoint:
+    def hold_from(self, point: HeldPoint, voltage: float) -> HeldPoint:
         """Take the voltage slowly from a held point to another one, and hold it there."""
-        ends = None if limit is None else (point.speed, limit)
-        return self.hold(point.state, point.voltage, voltage, ends)
+        return self.hold(point.state, point.voltage, voltage)
 
     def hold(
-        self,
-        state: Table | None,
-        first: float,
-        voltage: float,
-        ends: tuple[float, float] | None = None,
-        least: float = 0.0,
+        self, state: Table | None, first: float, voltage: float, least: float = 0.0
     ) -> HeldPoint:
         """Take the voltage to another one at `rate`, and hold it until the speed settles."""
-        # with `ends`, until the speed has come from the first of two nearly to the second one;
         # for the time `least`, s, unless it has left
         settings = self.settings
         moves = math.ceil(abs(voltage - first) / settings.rate / self.omega / self.step)
@@ -174,17 +150,10 @@ class HysteresisLoop:
                 found, time = run.speeds(range(begin, end)), (end - moves) * self.step
                 speeds = np.append(speeds, np.abs(found) / self.omega)
                 speed, error = settled_speed(speeds, settings)
-                if math.isfinite(speed):
-                    away = abs(speed - speeds[: settings.block].mean()) - settings.errors * error
-                    if away > settings.clear or (begin - moves) * self.step >= least:
-                        break
-                    speed = math.nan
-                late = speeds[-settings.block :]
-                if ends and late.size:
-                    to_go = abs(float(late.mean()) - ends[1])
-                    if to_go < settings.left * abs(ends[0] - ends[1]):
-                        speed = ends[1]
-                        break
+                left = abs(speed - speeds[: settings.block].mean()) - error > settings.clear
+                if math.isfinite(speed) and (left or time >= least):
+                    break
+            self.spent += time
             return HeldPoint(voltage, speed, error, run.get_state(), time)
 
     # -- the rule --
@@ -206,51 +175,34 @@ class HysteresisLoop:
         points = self.hold_grid(first, last)
         if not points:
             return [Jump(UNDECIDED, first.voltage, last)]
-        jumps: dict[tuple[float, float], Jump] = {}
-        self.spent = 0.0
-        for _ in range(self.settings.max_rounds):
-            i = self.largest_step(points, jumps)
-            if i is None:
-                break
+        jumps: list[Jump] = []
+        self.spent, i = 0.0, 0
+        while i < len(points) - 1:
             low, high = points[i : i + 2]
-            if low.lasts < self.least(low, high):
-                point = self.lasting(low, high)
-                if math.isfinite(point.speed):
-                    points[i] = point
-                else:
+            least = self.least(low, high)
+            if self.excess(points, i, jumps) <= 0.0:
+                i += 1
+            elif self.spent > self.settings.budget * self.longest:
+                del points[i + 1 :]
+            elif self.insert_between(points, i):
+                continue
+            elif low.lasts < least:
+                points[i] = self.lasting(low, high, least)
+                if points[i].lasts:
+                    continue
+                if math.isnan(points[i].speed):
                     self.left_out.add(points.pop(i).voltage)
-                continue
-            is_wide = abs(high.voltage - low.voltage) > self.settings.width
-            if is_wide and self.insert_between(points, i):
-                continue
-            if jump := self.jump_over(points, i, sign):
-                jumps[low.voltage, points[i + 1].voltage] = jump
-        else:
-            del points[(self.largest_step(points, jumps) or 0) + 1 :]
-        steps = {(low.voltage, high.voltage) for low, high in pairwise(points)}
-        known = [jump for step, jump in jumps.items() if step in steps and jump.outcome != NONE]
+                jumps = [jump for jump in jumps if sign * (jump.high - low.voltage) < 0.0]
+                i = max(i - 1, 0)
+            elif jump := self.jump_over(points, i, jumps):
+                jumps.append(jump)
+                i += 1
+        known = [jump for jump in jumps if jump.outcome != NONE]
         if not known and not self.comes_back(points):
             return [Jump(UNDECIDED, first.voltage, last)]
         beyond = [(first.voltage, points[0].voltage), (points[-1].voltage, last)]
         unsettled = [Jump(UNDECIDED, *ends) for ends in beyond if ends[0] != ends[1]]
         return merge_overlapping([*known, *unsettled], sign)
-
-    def jump_over(self, points: list[HeldPoint], i: int, sign: float) -> Jump | None:
-        """Return the jump over a step, by the way back; None where the step is small or halved."""
-        low, high = points[i : i + 2]
-        landed = self.hold_beside(low, high.voltage, high)
-        points[i + 1] = high = landed if math.isfinite(landed.speed) else high
-        if low.lasts < self.least(low, high):
-            return None
-        outcome = self.way_back(low, landed)
-        if outcome == NONE and abs(high.voltage - low.voltage) > self.settings.finest:
-            if self.excess(points, i, {}) <= 0.0 or self.insert_between(points, i):
-                return None
-            outcome = UNDECIDED
-        is_against = outcome != NONE and sign * (high.speed - low.speed) < 0.0
-        if is_against and not self.lands_surely(low, high):
-            del points[i + 2 :]
-        return Jump(outcome, low.voltage, high.voltage, low.speed, high.speed)
 
     def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:
         """Step the voltage over the grid; return the points at which the speed settled."""
@@ -260,75 +212,99 @@ class HysteresisLoop:
             points.append(self.hold_from(points[-1], voltage))
         return [point for point in points if math.isfinite(point.speed)]
 
-    def largest_step(
-        self, points: list[HeldPoint], decided: dict[tuple[float, float], Jump]
-    ) -> int | None:
-        """Return the index of the largest undecided step of the speed; None if all are small."""
-        excess = [self.excess(points, i, decided) for i in range(len(points) - 1)]
-        i = int(np.argmax(excess)) if excess else 0
-        return i if excess and excess[i] > 0.0 else None
-
-    def excess(
-        self, points: list[HeldPoint], i: int, decided: dict[tuple[float, float], Jump]
-    ) -> float:
+    def excess(self, points: list[HeldPoint], i: int, jumps: list[Jump]) -> float:
         """Return by how much the speed changes more over a step than on one branch."""
         low, high = points[i : i + 2]
-        if (low.voltage, high.voltage) in decided:
-            return -math.inf
-        length, rates = abs(high.voltage - low.voltage), []
-        for a, b in (points[j : j + 2] for j in (i - 1, i + 1) if 0 <= j < len(points) - 1):
-            own = abs(b.voltage - a.voltage)
-            if own >= self.settings.neighbour * length and (a.voltage, b.voltage) not in decided:
-                rates.append((b.speed - a.speed) / (b.voltage - a.voltage))
-        gained = length * (high.speed - low.speed) / (high.voltage - low.voltage)
-        changed = abs(gained - length * min(rates, default=1.0)) - self.settings.smallest
-        scatter = min(self.error(low, high), self.settings.smallest)
-        return max(changed, -gained - self.settings.against) - scatter
+        length = abs(high.voltage - low.voltage)
+        begin = abs(jumps[-1].high - low.voltage) if jumps else math.inf
+        before = [p for p in points[:i] if abs(p.voltage - low.voltage) <= begin]
+        near, others = (low, before) if before else (high, points[i + 2 :])
+        slopes = {abs(abs(p.voltage - near.voltage) - length): slope(p, near) for p in others}
+        expected = slopes[min(slopes)] if slopes else 1.0  # over about as long a step
+        change = abs(slope(low, high) - expected) * length
+        return change - self.settings.bend - min(self.error(low, high), self.settings.same)
+
+    def insert_between(self, points: list[HeldPoint], i: int) -> bool:
+        """Hold voltages within a wide step until one settles; insert it and return whether any."""
+        low, high = points[i : i + 2]
+        change = high.voltage - low.voltage
+        for part in self.settings.parts if abs(change) > self.settings.width else ():
+            voltage = low.voltage + part * change
+            if voltage in self.left_out:
+                continue
+            point = self.hold_beside(low, voltage, high, lives=False)
+            if math.isfinite(point.speed):
+                points.insert(i + 1, point)
+                return True
+            self.left_out.add(voltage)
+        return False
+
+    def jump_over(self, points: list[HeldPoint], i: int, jumps: list[Jump]) -> Jump | None:
+        """Return the jump over a step, by the way back; None if its motions are to be held on."""
+        low, high = points[i : i + 2]
+        landed = self.hold_beside(low, high.voltage, high, lives=True)
+        points[i + 1] = high = landed if math.isfinite(landed.speed) else high
+        if low.lasts < self.least(low, high) or self.excess(points, i, jumps) <= 0.0:
+            return None
+        outcome, change = self.way_back(low, high), abs(high.speed - low.speed)
+        if outcome == NONE and abs(high.voltage - low.voltage) > self.settings.width:
+            outcome = UNDECIDED
+        is_clear = math.copysign(change, slope(low, high)) >= self.settings.clear
+        if outcome != NONE and not is_clear:
+            if not self.lands_surely(low, high):
+                del points[i + 2 :]
+            elif change < self.settings.small:
+                outcome = NONE
+        return Jump(outcome, low.voltage, high.voltage, low.speed, high.speed)
+
+    def way_back(self, low: HeldPoint, high: HeldPoint) -> int:
+        """Return whether two motions last at a step's lower voltage and the first is lost."""
+        back = self.hold_from(high, low.voltage)
+        if self.is_same(back, low):
+            return NONE
+        later = self.lasting(back, back, self.least(back, back))
+        if self.is_same(later, low):
+            return NONE
+        lasts = self.distance(later, back) <= self.settings.same
+        return LOST if lasts and self.distance(back, low) >= self.settings.clear else UNDECIDED
 
     def lands_surely(self, low: HeldPoint, high: HeldPoint) -> bool:
         """Return whether a motion that had converged comes to one other wherever it is lost."""
-        step = math.copysign(self.settings.width, high.voltage - low.voltage)
-        voltages = [high.voltage + n * step for n in range(1, self.settings.landings + 1)]
-        speeds = (self.hold_from(low, voltage).speed for voltage in voltages)
-        is_one = all(abs(speed - high.speed) < self.settings.clear for speed in speeds)
-        return low.error == 0.0 and is_one
-
-    def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
-        """Return whether two motions exist at a step's lower voltage and the first is lost."""
-        back = self.hold_from(landed, low.voltage)
-        later = back if self.is_same(back, low) else self.hold_again(back)
-        if self.is_same(later, low):
-            return NONE
-        is_clear = self.distance(back, low) >= self.settings.clear
-        return LOST if later is back and is_clear else UNDECIDED
+        step, point = math.copysign(self.settings.width, high.voltage - low.voltage), high
+        for n in range(self.settings.landings):
+            point = self.hold_from(point, high.voltage + 2**n * step)
+            if not self.is_same(self.hold_from(low, point.voltage), point):
+                return False
+        return low.error == 0.0
 
     def hold_beside(
-        self, low: HeldPoint, voltage: float, high: HeldPoint, limit: float | None = None
+        self, low: HeldPoint, voltage: float, high: HeldPoint, lives: bool
     ) -> HeldPoint:
-        """Hold a voltage from a point until it is there or has lost its motion for another one."""
-        point = self.hold_from(low, voltage, limit)
+        """Hold a voltage within a step or at its end; the motion before has to last, if it does."""
+        # a motion of which no growth is known only if it is held for `lives`
+        point = self.hold_from(low, voltage)
         if abs(point.speed - low.speed) < abs(point.speed - high.speed):
-            return self.lasting(point, high)
+            return self.lasting(point, high, self.least(point, high) if lives else 0.0)
         return point._replace(time=max(point.time, high.time))
 
     def least(self, low: HeldPoint, high: HeldPoint) -> float:
         """Return for how long, s, a motion before a step has to last if it may be a transient."""
-        settings = self.settings
-        least = max(settings.again * low.time, settings.lives * high.time)
-        return min(least, settings.patience * self.longest)
+        least = self.settings.lives * max(low.time, high.time)
+        return min(least, self.settings.patience * self.longest)
 
-    def lasting(self, point: HeldPoint, high: HeldPoint) -> HeldPoint:
+    def lasting(self, point: HeldPoint, high: HeldPoint, least: float) -> HeldPoint:
         """Hold a motion until it is known to last; return it, or what it has become."""
+        # for the time `least`, s, if it is not known how disturbances of it grow
         rate = self.growth_rate(point)
         if rate <= 0.0:
             return point._replace(lasts=math.inf)
         grown = self.settings.growths / rate if rate > 0.0 else 0.0
-        is_spent = self.spent > self.settings.budget * self.longest
-        if grown > self.settings.patience * self.longest or is_spent:
-            return point._replace(speed=math.nan)
-        least = max(grown, self.least(point, high) - point.lasts)
-        later = self.hold(point.state, point.voltage, point.voltage, least=least)
-        self.spent += later.time
+        if grown > self.settings.patience * self.longest:
+            return point._replace(speed=math.nan, lasts=0.0)
+        least = max(grown, least - point.lasts)
+        if least <= 0.0:
+            return point
+        later = self.hold(point.state, point.voltage, point.voltage, least)
         lasted = point.lasts + later.time
         if self.distance(later, point) <= self.settings.same:
             return later._replace(time=point.time, lasts=lasted)
@@ -342,29 +318,6 @@ class HysteresisLoop:
             run.set_state(point.state)
             speed = math.copysign(point.speed, self.volts) * self.omega
             return self.growth(run, point.voltage * self.volts, speed)
-
-    def hold_again(self, point: HeldPoint) -> HeldPoint:
-        """Hold a motion again and again; return its new point if it has left, else the point."""
-        later = point
-        for _ in range(self.settings.again):
-            later = self.hold_from(later, point.voltage)
-            if not self.distance(later, point) <= self.settings.same:  # or not settled
-                return later
-        return point
-
-    def insert_between(self, points: list[HeldPoint], i: int) -> bool:
-        """Hold voltages within a step until one settles, and insert it; return whether one does."""
-        low, high = points[i : i + 2]
-        change = high.voltage - low.voltage
-        limit = high.speed if abs(change) < 0.5 * self.settings.smallest else None
-        for voltage in (low.voltage + part * change for part in self.settings.parts):
-            if voltage in self.left_out:
-                continue
-            point = self.hold_beside(low, voltage, high, limit)
-            if math.isfinite(point.speed):
-                points.insert(i + 1, point)
-                return True
-        return False
 
     def comes_back(self, points: list[HeldPoint]) -> bool:
         """Return whether the speed comes back, less than `clear` away, over all voltages."""
@@ -394,7 +347,12 @@ class HysteresisLoop:
 
     def error(self, point: HeldPoint, other: HeldPoint) -> float:
         """Return the error of the difference between two settled speeds."""
-        return self.settings.errors * math.hypot(point.error, other.error)
+        return math.hypot(point.error, other.error)
+
+
+def slope(low: HeldPoint, high: HeldPoint) -> float:
+    """Return the change of the speed with the voltage over a step."""
+    return (high.speed - low.speed) / (high.voltage - low.voltage)
 
 
 def merge_overlapping(jumps: list[Jump], sign: float) -> list[Jump]:

@@ -8,8 +8,7 @@
   `slowest` a block, as by a fold, has not converged.
 - What has not settled by these, as an irregular motion, has where three long means, each a sixth of
   the record and a third of `blocks` or more, differ by less than the tolerance, or `scatter` of the
-  standard deviation of the blocks' means there; its speed has an error then, at least `deviation`
-  of that.
+  standard deviation of the blocks' means there; its speed has an error then: the larger of both.
 - All else has not settled.
 """
 
@@ -35,7 +34,6 @@ class SettledSettings:
     slowest: float = 0.95  # of a change, what the next one is at most
     agreement: float = 0.5  # of the tolerance
     scatter: float = 0.5  # of the standard deviation of the blocks' means
-    deviation: float = 0.35  # of the standard deviation of the blocks' means
 
 
 def settled_speed(speeds: np.ndarray, settings: SettledSettings) -> tuple[float, float]:
@@ -64,5 +62,5 @@ def settled_speed(speeds: np.ndarray, settings: SettledSettings) -> tuple[float,
     late = late[len(late) % 3 :]
     thirds, scatter = late.reshape(3, -1).mean(axis=1), float(np.std(late))
     if np.ptp(thirds) < max(settings.tolerance, settings.scatter * scatter):
-        return float(thirds.mean()), max(float(np.ptp(thirds)), settings.deviation * scatter)
+        return float(thirds.mean()), max(settings.tolerance, scatter)
     return math.nan, 0.0
