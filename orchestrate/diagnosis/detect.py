@@ -126,7 +126,7 @@ def detect(
     Warns
     -----
     UserWarning
-        Where the resonance is a factor of 1.2 or more from the guess's frequencies.
+        Where the resonance is a factor of 1.3 or more from the guess's frequencies.
 
     Notes
     -----

@@ -49,17 +49,20 @@ class TimingSettings:
     rattles: float = 5.0
     heard: float = 10.0
     base: float = 0.25  # of the sensor's ratio that the base may reach
-    locked: float = 0.7  # circular concentration of the peaks' phases
-    one_sided: float = 0.5  # first circular moment of a window's power
-    blow: float = 0.17  # median of orders 6 to 12 over order 2: rattling clamps make 0.157
+    # circular concentration of the peaks' phases: faces that meet at times make 0.66
+    locked: float = 0.62
+    # first circular moment of a window's power: clamps that strike both ways make 0.57, faces 0.61
+    one_sided: float = 0.59
+    # see `Strikes`: rattling clamps, which are soft, make 0.21, faces 0.36
+    blow: float = 0.28
     # correlation of both sensors' blows: clamps with torsion make -0.9, and above 0 it is one blow
     opposite: float = -0.95
     together: float = 0.0
-    order2: float = 0.045  # over order 1: parts of a percent of the mass make 0.042
+    order2: float = 0.02  # parts of some percent of the mass make 0.014, pressed faces 0.02
     # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.54 or less
     # before `at_end` of the stroke; a slow half that a moving one strikes up to 2
     softens: float = -0.5
-    at_end: float = 0.9
+    at_end: float = 0.83
     stiffens: float = 0.5
     stiffens_moving: float = 2.0
     middle: float = 0.6  # share of the windows for the spread: one by itself is chance
@@ -81,9 +84,11 @@ class Strikes:
     base: float  # of the base, the median: of many windows noise makes 4 in one
     locked: float  # circular concentration of the peaks' phases
     one_sided: float  # first circular moment of the power beyond the floor
-    blow: float  # median of orders 6 to 12 over order 2
+    # median of orders 6 to 12 over order 2, over the root of order 2 over order 1: the softer the
+    # contact, the larger the order 2 that it makes
+    blow: float
     opposite: float  # correlation of what both sensors hear in the loudest bin; NaN with one
-    order2: float  # over order 1, the largest
+    order2: float  # over order 1
     stiffens: float  # growth of the stiffness, over order 2: see `stiffness_growth`
     place: float  # where it strikes, over the stroke: -1 or 1 at its ends
     spread: float  # of the place in the `middle` of the windows, over the stroke
@@ -99,8 +104,8 @@ class Strikes:
 
         - "nothing heard" up to `faint`, and up to `rattles` unless the peaks' phases agree by
           `locked`; "base strikes" if the base has more than `faint` and `base` of it.
-        - "faces strike": the phases agree, orders 6 to 12 are above `blow` of order 2, and the
-          blows of two sensors are `opposite`.
+        - "faces strike": the phases agree, orders 6 to 12 make a `blow`, and those of two
+          sensors are `opposite`.
         - "something faint" up to `heard`; "not locked" if the phases do not agree, or the power is
           not on one side of the period by `one_sided`; "kinks" below `blow`; "something small
           strikes" with an order 2 below `order2`.
@@ -167,7 +172,7 @@ def strikes_at(
         one_sided=float(np.median(moment[loud])),
         blow=float(np.median(blow[loud])),
         opposite=float(np.median(opposite[loud])),
-        order2=float(second[loud].max()),
+        order2=float(np.median(second[loud])),
         stiffens=grown[is_known],
         place=float(np.median(turned.real)),
         spread=float(np.subtract(*np.quantile(position, ends))),
@@ -226,8 +231,9 @@ def timed_windows(
         heard, power, peak, moment, opposite = timed_power(errors, own, settings)
         base_heard = timed_power([at_base], own, settings)[0]
         high = np.abs(size[HIGH])[ORDERS[HIGH] < NYQUIST * samples]
-        blow = float(np.median(high)) / abs(size[1]) if len(high) else math.nan
-        quantities = heard, base_heard, power, peak, moment, blow, abs(size[1] / size[0])
+        second = abs(size[1] / size[0])
+        blow = float(np.median(high) / abs(size[1])) / math.sqrt(second) if len(high) else math.nan
+        quantities = heard, base_heard, power, peak, moment, blow, second
         motion = size[0], amplitudes(base, waves[:1])[0], amplitudes(stroke[part], waves[:1])[0]
         yield *quantities, opposite, *motion
 

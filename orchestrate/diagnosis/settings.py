@@ -36,8 +36,8 @@ class Settings:
     end_response: float = 0.7
     samples: float = 14.0  # in a period at the resonance: orders 6 to 12 show a blow
     # from the guess's frequencies to a resonance that is another beam's: none is softer than its
-    # slower half, and loose clamps make up to 1.7
-    guess_factor: float = 1.2
+    # slower half, but for what a guess misses: 1.23; loose clamps make 1.4 to 1.7
+    guess_factor: float = 1.3
 
     # -- what counts as seen: see `even_orders` --
     # order 2 over the noise, over the floor between the orders (which impacts raise too), and over
