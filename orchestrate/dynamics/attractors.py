@@ -25,6 +25,7 @@ from .clusters import (
     FEATURES,
     RUN_LENGTHS,
     AttractorSettings,
+    SettledResponse,
     SettlingRun,
     run_until_settled,
 )
@@ -244,7 +245,9 @@ class SizeFromRest(NamedTuple):
 
 def size_from_rest(instance: Instance, point: Point, settings: SettlingRun) -> SizeFromRest:
     """Run from rest until settled; return a state there, largest displacement and gap, m."""
-    response = run_until_settled(instance, point, REST, settings)[0].response
+    (settled,) = run_until_settled(instance, point, REST, settings)
+    assert isinstance(settled, SettledResponse), "no motion is known"
+    response = settled.response
     begin(instance, *point, response.end)
     span = 8 * point.excitation.period
     states = sampled(instance, 0.0, span, 512)

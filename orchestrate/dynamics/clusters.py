@@ -5,7 +5,7 @@ What a periodic response settles to is decided by its orbit: see :mod:`.decision
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
@@ -18,6 +18,7 @@ from ..model.arguments import checked_integer, checked_positive
 from ..response.questions import Point
 from ..response.respond import Response, responses_from
 from ..response.response_loop import LoopSettings, response_loop
+from .settled_motion import SettledMotion
 
 FEATURES = ("multiplicity", "impacts_per_period", "xi_rel_max", "mean", "deviation")
 ABOUT = "; mean and deviation are those of the samples of the gap"
@@ -100,25 +101,46 @@ class SettledResponse(NamedTuple):
     periods: int  # after which it was decided
 
 
+class ReachedMotion(NamedTuple):
+    """A known motion that a response has come to, where, and the periods that took at most."""
+
+    motion: SettledMotion
+    end: Floats  # state at phase 0
+    periods: int
+
+
 def run_until_settled(
-    instance: Instance, point: Point, starts: ArrayLike, settings: SettlingRun
-) -> list[SettledResponse]:
-    """Run starts at phase 0 until they repeat by :mod:`.decision`, or end; return the responses."""
+    instance: Instance,
+    point: Point,
+    starts: ArrayLike,
+    settings: SettlingRun,
+    known: Sequence[SettledMotion] = (),
+) -> list[SettledResponse | ReachedMotion]:
+    """Run starts at phase 0 until they repeat or come to a known motion by :mod:`.decision`."""
     ends, converged = np.reshape(np.asarray(starts, dtype=float), (-1, 4)), settings.converged
     loop, loose = response_loop(instance), settings.apart * converged
     dropped = transient_periods(
         settings.transient, settings.settle, point.excitation.eta(point.structure)
     )
-    settled: dict[int, SettledResponse] = {}
+    settled: dict[int, SettledResponse | ReachedMotion] = {}
     done, left = 0, np.arange(len(ends))
     before, deviation = np.zeros(len(ends), dtype=int), np.full(len(ends), np.inf)
     while len(left):
         rule = LoopSettings(
-            transient=dropped, samples=settings.samples, tolerance=converged, loose=loose
+            transient=dropped,
+            samples=settings.samples,
+            tolerance=converged,
+            loose=loose,
+            known=known,
         )
         results = loop.respond([point] * len(left), ends, rule)
         done += dropped + settings.samples
-        n, nearly = results.counts["multiplicity"], results.counts["nearly"]
+        n, nearly, reached = (
+            results.counts[name] for name in ("multiplicity", "nearly", "reached")
+        )
+        for row in np.flatnonzero(reached).tolist():
+            motion = known[reached[row] - 1]
+            settled[int(left[row])] = ReachedMotion(motion, results.ends[row], done)
         # a deviation that dies while it turns round is smaller after some periods than after one
         repeats = (n > 0) & (nearly == n)
         dying = (nearly > 0) & (nearly == before) & (2.0 * results.deviations < deviation)
@@ -128,7 +150,7 @@ def run_until_settled(
             points = [point] * len(rows)
             found = responses_from(results.rows(rows), points, tolerance, nearly[rows].tolist())
             settled |= settled_by_number(left[rows], found, done)
-        rest = np.flatnonzero(~(repeats | dying))
+        rest = np.flatnonzero(~(repeats | dying) & (reached == 0))
         left, ends = left[rest], results.ends[rest]
         before, deviation = nearly[rest], results.deviations[rest]
         if done >= settings.longest:

@@ -5,7 +5,8 @@
   with a deviation that dies: that halves from one stretch to the next.
 - It is on an *orbit* that Newton's method finds from its impacts over these periods: a possible
   motion, stable, to which the FMU `returns` with the same impacts, and to which the response, if
-  nearer than `near`, comes at least half as fast as the multipliers say, or lies within `same`.
+  nearer than `near`, comes at least half as fast as the multipliers say, or lies within `same`. It
+  is not run on when it comes, ever nearer, within `apart * converged` of an earlier start's orbit.
 - Without such an orbit, states that repeat within `converged` are *repeated*.
 - They are *undecided* near an unstable orbit, or without the impacts that such a motion must have.
 - All else is *irregular*, a torus or chaos; undecided if another start repeats only after half of
@@ -27,7 +28,7 @@ from ..fmu import STATE, EventInstance, Instance, begin, stroboscopic_samples
 from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, respond
-from .clusters import SettlingRun, run_until_settled
+from .clusters import ReachedMotion, SettledResponse, SettlingRun, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting, acting
 from .orbit_search import (
@@ -71,8 +72,22 @@ class MotionDecider:
 
     def decide_all(self, states: ArrayLike) -> list[tuple[SettledMotion, Floats, int]]:
         """Run from states at phase 0, as :meth:`decide` from one; and until when they repeat."""
-        settled = run_until_settled(self.plain, self.point, states, self.settings)
-        return [(*self.motion_of(*each), each.periods) for each in settled]
+        starts, decided = np.asarray(states), list[tuple[SettledMotion, Floats, int]]()
+        while len(decided) < len(starts):  # each time as many as before: these know the orbits
+            some = starts[len(decided) : 2 * len(decided) + 1]
+            orbits = [motion for motion in self.known if motion.decided == ORBIT]
+            settled = run_until_settled(self.plain, self.point, some, self.settings, orbits)
+            decided += [(*self.motion_reached(each), each.periods) for each in settled]
+        return decided
+
+    def motion_reached(
+        self, settled: SettledResponse | ReachedMotion
+    ) -> tuple[SettledMotion, Floats]:
+        """Return the motion that a response has come to, and a state on it."""
+        if isinstance(settled, SettledResponse):
+            return self.motion_of(*settled)
+        motion = settled.motion
+        return motion, motion.states[motion.nearest(settled.end)[0]]
 
     def motion_of(self, response: Response, done: int) -> tuple[SettledMotion, Floats]:
         """Run a settled response on until its motion is known; return it and a state on it."""

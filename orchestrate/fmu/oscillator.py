@@ -46,7 +46,7 @@ DEVIATING = (  # of deviations' growth
     *("wall", "clearance", "stroke", "e_slope"),
 )
 COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "contacts_after")
-COUNTS = (*COUNTED, "multiplicity", "decided", "nearly")
+COUNTS = (*COUNTED, "multiplicity", "decided", "nearly", "reached")
 START_VALUES = {  # before each start, with first values
     **Structure().parameters(),
     **dict.fromkeys(START_PARAMETERS, 0.0),
@@ -68,6 +68,16 @@ class OscillatorCalls(ctypes.Structure):
     ]
 
 
+class KnownMotions(ctypes.Structure):
+    """C struct of periodic motions, with which responses are compared: addresses of rows."""
+
+    _fields_ = [
+        ("count", c_size_t),
+        ("state", POINTER(c_uint)),
+        *((name, c_void_p) for name in ("states", "gaps", "periods")),
+    ]
+
+
 class ResponseTask(ctypes.Structure):
     """C struct of responses to compute: sizes and settings, then addresses of rows."""
 
@@ -78,7 +88,7 @@ class ResponseTask(ctypes.Structure):
         *((name, c_void_p) for name in ("transients", "reals", "booleans", "periods", "traits")),
         *((name, c_void_p) for name in ("starts", "memory", "states")),
         *((name, c_void_p) for name in ("ends", "largest", "impacts", "deviations", "peaks")),
-        ("counts", c_void_p),
+        *(("counts", c_void_p), ("known", POINTER(KnownMotions))),
     ]
 
 
@@ -87,7 +97,7 @@ class ResponseProgress(ctypes.Structure):
 
     _fields_ = [
         *((name, c_size_t) for name in ("response", "period")),
-        ("time", c_double),
+        *((name, c_double) for name in ("time", "away")),
         ("is_begun", c_bool),
     ]
 

@@ -6,22 +6,40 @@ The loop is ``fmu_src/kernels/loops/respond.c``, which calls the FMU's functions
 from __future__ import annotations
 
 from collections.abc import Sequence
-from ctypes import byref
+from ctypes import byref, pointer
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..fmu import START_VALUES, Instance, Oscillator, traits
-from ..fmu.fmi import BROKEN, PAUSED
-from ..fmu.oscillator import COUNTED, COUNTS, PEAKS, ResponseProgress, ResponseTask
+from ..fmu.fmi import BROKEN, PAUSED, references
+from ..fmu.impacts import STATE
+from ..fmu.oscillator import (
+    COUNTED,
+    COUNTS,
+    PEAKS,
+    KnownMotions,
+    ResponseProgress,
+    ResponseTask,
+)
 from .multiplicity import memory_size
 from .questions import Point
 
 MAX_WORK = 200_000  # periods and impacts of one call: between two calls an interrupt is heard
 __all__ = ["COUNTED", "COUNTS", "PEAKS"]
 Floats = NDArray[np.float64]
+
+
+class PeriodicMotion(Protocol):
+    """A motion that repeats: its states at phase 0, (periods, 4), and its largest gap, m."""
+
+    @property
+    def states(self) -> Floats: ...
+
+    @property
+    def gap(self) -> float: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +55,10 @@ class LoopSettings:
     # gap between unloaded springs that the first start of a chain belongs to, m, where it is known
     chain_gap: float | None = None
     peak_periods: int = 0  # periods looked at for peaks, at most
+    # periodic motions of the one point that all responses have: a response is not run on that
+    # comes within `loose` of one, nearer than `compared` periods before; `reached` counts it from 1
+    known: Sequence[PeriodicMotion] = ()
+    compared: int = 16
 
 
 class Responses(NamedTuple):
@@ -106,15 +128,23 @@ class ResponseLoop:
             counts=dict(zip(COUNTS, counts.T, strict=True)),
             must_impact=rows.traits[:, -1] != 0.0,
         )
-        memory = np.empty(memory_size(chosen.samples))
+        piece = chosen.compared if chosen.known else MAX_WORK
+        lengths = np.array([len(motion.states) for motion in chosen.known], np.uintp)
+        memory = np.empty(memory_size(max(chosen.samples, *lengths.tolist(), 1)))
         transients = np.full(count, chosen.transient, dtype=np.uint64)
         inputs = (transients, *rows, np.ascontiguousarray(starts, dtype=float), memory)
         task = ResponseTask(
-            *(count, chosen.samples, chosen.peak_periods, MAX_WORK),
+            *(count, chosen.samples, chosen.peak_periods, piece),
             *(chosen.tolerance, chosen.loose, chosen.chain_gap or 0.0),
             *(chosen.decides, chosen.is_chain, chosen.chain_gap is not None),
             *(table.ctypes.data for table in (*inputs, *results[:6], counts)),
         )
+        if chosen.known:
+            states = np.concatenate([motion.states for motion in chosen.known])
+            gaps = np.array([motion.gap for motion in chosen.known])
+            tables = (table.ctypes.data for table in (states, gaps, lengths))
+            state = references(self.oscillator.instance, STATE)
+            task.known = pointer(KnownMotions(len(gaps), state, *tables))
         self.run(task)
         return results
 

@@ -22,6 +22,13 @@ typedef struct {  /* an FMU of the oscillator */
     double *kept;  /* room for the samples of a step */
 } Oscillator;
 
+typedef struct {  /* motions that are known at the point of all responses: one that comes to one of them is not run on */
+    size_t count;
+    const unsigned *state;  /* x1, x2, v1, v2 */
+    const double *states, *gaps;  /* at phase 0 of successive periods of all of them, and the largest gap of each */
+    const size_t *periods;  /* of each, after which it repeats */
+} Known;
+
 typedef struct {  /* what there is to do: a row a response */
     size_t count, samples, peak_periods;  /* the periods looked at for peaks, at most; 0: none */
     size_t piece;  /* periods of a transient from one step to the next */
@@ -36,15 +43,16 @@ typedef struct {  /* what there is to do: a row a response */
     double *memory;  /* of the rule */
     double *states, *ends, *largest, *impacts, *deviations, *peaks;  /* results */
     int32_t *counts;
+    const Known *known;  /* or NULL */
 } Task;
 
 typedef struct {  /* what is done */
     size_t response, period;  /* of this response the periods of its transient */
-    double time;
+    double time, away;  /* from known motions, when they were compared last */
     bool is_begun;
 } Progress;
 
-enum { BEFORE, CONTACTS_BEFORE, TOUCHES, AFTER, CONTACTS_AFTER, PERIODS, HOW, NEARLY, COUNTS };  /* of each response */
+enum { BEFORE, CONTACTS_BEFORE, TOUCHES, AFTER, CONTACTS_AFTER, PERIODS, HOW, NEARLY, REACHED, COUNTS };  /* of each response */
 
 EXPORT const unsigned sizes_of_respond[] = {sizeof(Oscillator), sizeof(Task), sizeof(Progress)};  /* Python has to have the same */
 
@@ -265,6 +273,34 @@ static bool run_on(Oscillator *o, const Task *task, size_t i) {
     return true;
 }
 
+/* How near states of a motion come to a state, over the motion's size; the memory has the number of that state. */
+EXPORT double nearest_state(const double *states, size_t count, double frequency, double gap, const double *state, double *memory) {
+    memory[COUNT] = (double)count;
+    memory[FREQUENCY] = frequency;
+    memory[GAP] = gap;
+    for (size_t k = 0; k < STATES; k++) memory[GIVEN + k] = state[k];
+    for (size_t k = 0; k < STATES * count; k++) memory[HEAD + k] = states[k];
+    kernel_nearest(memory, 0.0);
+    return memory[DISTANCE];
+}
+
+/* Note the known motion that a response has reached, from one: within the wider tolerance, and nearer than when it was compared before; its state is the end. */
+static bool compare(Oscillator *o, const Task *task, Progress *progress) {
+    size_t i = progress->response;
+    const Known *known = task->known;
+    const double *states = known->states;
+    double *state = task->ends + STATES * i, nearest = 0.0;
+    int32_t motion = 0;
+    if (!get_reals(&o->fmi, known->state, STATES, state, STATES)) return false;
+    for (size_t k = 0; k < known->count; states += STATES * known->periods[k++]) {
+        double away = nearest_state(states, known->periods[k], task->traits[TRAITS * i + BOX_FREQUENCY], known->gaps[k], state, task->memory);
+        if (!k || away < nearest) nearest = away, motion = (int32_t)k + 1;
+    }
+    task->counts[COUNTS * i + REACHED] = nearest < task->loose && nearest < progress->away ? motion : 0;
+    progress->away = nearest;
+    return true;
+}
+
 /* Sample a response whose transient is over, and decide. */
 static bool finish(Oscillator *o, const Task *task, size_t i) {
     Fmi *fmi = &o->fmi;
@@ -303,13 +339,15 @@ EXPORT int respond(Oscillator *o, const Task *task, Progress *progress, size_t b
         size_t i = progress->response;
         int32_t impacts = 0, *counts = task->counts + COUNTS * i;
         if (!progress->is_begun && !begin(o, task, i)) return BROKEN;
-        if (!progress->is_begun) progress->period = 0, progress->time = 0.0;
+        if (!progress->is_begun) progress->period = 0, progress->time = progress->away = 0.0;
         else if (!get_integer(&o->fmi, o->impact_count, &impacts)) return BROKEN;
         progress->is_begun = true;
-        while (progress->period < task->transients[i]) {
+        while (progress->period < task->transients[i] && !counts[REACHED]) {
             if (work >= budget) return PAUSED;
             if (!drop(o, task, progress, &impacts, &work)) return BROKEN;
+            if (task->known && !compare(o, task, progress)) return BROKEN;
         }
+        if (counts[REACHED]) continue;
         if (work >= budget) return PAUSED;
         if (!finish(o, task, i)) return BROKEN;
         work += task->samples + (size_t)(counts[AFTER] - counts[BEFORE]);
@@ -322,16 +360,5 @@ EXPORT size_t memory_size(size_t samples) { return HEAD + (STATE + COLUMNS + 1) 
 EXPORT int decide_multiplicity(double *memory) { return kernel_decide(memory, 0.0); }
 
 EXPORT int find_repetition(double *memory) { return kernel_repeat(memory, 0.0); }
-
-/* How near states of a motion come to a state, over the motion's size; the memory has the number of that state. */
-EXPORT double nearest_state(const double *states, size_t count, double frequency, double gap, const double *state, double *memory) {
-    memory[COUNT] = (double)count;
-    memory[FREQUENCY] = frequency;
-    memory[GAP] = gap;
-    for (size_t k = 0; k < STATES; k++) memory[GIVEN + k] = state[k];
-    for (size_t k = 0; k < STATES * count; k++) memory[HEAD + k] = states[k];
-    kernel_nearest(memory, 0.0);
-    return memory[DISTANCE];
-}
 
 EXPORT int rest_and_threshold(double *memory) { return kernel_rest_and_threshold(memory, 0.0); }

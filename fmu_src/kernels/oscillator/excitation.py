@@ -16,9 +16,10 @@ from .secular import set_secular
 
 def inputs_changed(m):
     """Return whether the present inputs call for a new segment."""
-    for i in range(3):
-        if m[at.CUBIC + 6 * i + at.ON] != 0.0 and m[at.CUBIC_SET + i] != 0.0:
-            return True
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
+        for i in range(3):
+            if m[at.CUBIC + 6 * i + at.ON] != 0.0 and m[at.CUBIC_SET + i] != 0.0:
+                return True
     changed = False
     for i in range(6):
         if m[at.SEGMENT_INPUTS + i] != m[at.BOX_AMPLITUDE + i]:
@@ -116,12 +117,11 @@ def set_drive(m, b):
 
 
 def harmonic_drive(m, b, cosine, sine):  # inline
-    """Return the harmonic forcing of one oscillator and its first derivative, at a phase."""
-    eta, d_cos, d_sin = m[at.ETA], m[b + at.DRIVE], m[b + at.DRIVE + 1]
-    value, rate = d_sin * sine, d_sin * eta * cosine
-    if d_cos != 0.0:  # rarely
-        value, rate = value + d_cos * cosine, rate - d_cos * eta * sine
-    return value, rate
+    """Return the harmonic forcing of one oscillator, by sine alone, and its first derivative, at a
+    phase.
+    """
+    d_sin = m[b + at.DRIVE + 1]
+    return d_sin * sine, d_sin * m[at.ETA] * cosine
 
 
 def set_harmonic(m, b, harmonic):
@@ -144,10 +144,15 @@ def drive_at(m, b, cosine, sine, tau):
     """Return a forcing and its first derivative at a phase, ``tau`` after the present state's
     start.
     """
+    return drive_by_ages(m, b, cosine, sine, cubic_ages(m, tau))
+
+
+def drive_by_ages(m, b, cosine, sine, ages):
+    """Return a forcing and its first derivative at a phase, so long after the cubics began."""
     value, rate = harmonic_drive(m, b, cosine, sine)
     if m[at.CUBIC_PRESENT] == 0.0:
         return value, rate
-    q0, q1, _, _ = cubic_drive(m, b, tau)
+    q0, q1, _, _ = cubic_by_ages(m, b, ages)
     return value + q0, rate + q1
 
 

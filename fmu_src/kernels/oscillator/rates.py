@@ -6,7 +6,7 @@ where an input jumps, to what comes before the jump of an input and after the im
 
 from . import memory as at
 from .excitation import drive_at
-from .outputs import accelerations, last_written_point, unit_of_length
+from .outputs import accelerations, drives, last_written_point, unit_of_length
 from .stepper import local_time
 
 
@@ -19,7 +19,9 @@ def differentiate(m, time):
         OK.
     """
     tau = local_time(m, m[at.TIME])
-    a1, a2 = accelerations(m, last_written_point(m, tau))
+    point = last_written_point(m, tau)
+    first, second = drives(m, point, False)
+    a1, a2 = accelerations(m, point[0], first[0], second[0], False)
     omega = m[at.OMEGA]
     v1, v2, v_rel = m[at.V1], m[at.V2], m[at.V_REL]
     unit = unit_of_length(m)

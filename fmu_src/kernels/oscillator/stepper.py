@@ -28,6 +28,7 @@ from .outputs import (
     SHORT,
     finite_check_sum,
     impulse,
+    is_plain,
     last_written_point,
     outputs_at,
     point_of,
@@ -86,7 +87,7 @@ def initialize(m, time):
     begin_first_state(m, x1, x2, gap)
     if m[at.NARROW] != 0.0:  # rarely
         return at.TOO_NARROW
-    seen = outputs_at(m, 0.0)
+    seen = outputs_at(m, 0.0, False)
     write_outputs(m, seen)
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     if m[at.PEAKS_ON] != 0.0:
@@ -215,7 +216,7 @@ def advance(m, time):
         m[at.PHASE_COSINE] = m[at.COSINE]
         m[at.PHASE_SINE] = m[at.SINE]
         if m[at.WALL] != 0.0:  # rarely
-            m[at.BOX_FORCE] = outputs_at(m, 0.0)[0][9]
+            m[at.BOX_FORCE] = outputs_at(m, 0.0, False)[0][9]
         if is_too_fast(m):
             return at.TOO_FAST
     if not is_countable(m, local_time(m, time)):  # rarely
@@ -265,7 +266,10 @@ def coast(m, time):
         if not is_without_summit(m, now, tau):
             return at.UNFINISHED
     m[at.WORK] = 0.0
-    return finish_step(m, time, tau, last_written_point(m, now), highest, True)
+    left = last_written_point(m, now)
+    if is_plain(m):  # usually
+        return write_point(m, time, tau, left, highest, True, True)
+    return finish_step(m, time, tau, left, highest, True)
 
 
 def lasts_beyond(m, tau):
@@ -284,11 +288,16 @@ def is_without_summit(m, start, stop):
 
 
 def finish_step(m, time, tau, left, highest, same):
+    """Do what :func:`write_point` does, whatever is there."""
+    return write_point(m, time, tau, left, highest, same, False)
+
+
+def write_point(m, time, tau, left, highest, same, plain):  # inline
     """Write all outputs at the point ``time``, at the present state's age ``tau``, if all are
     finite.
 
     ``left`` is the point that the step has left, ``highest`` the largest gap in between, ``same``
-    whether no impact and no change of state was.
+    whether no impact and no change of state was, ``plain`` as :func:`.outputs.is_plain` has it.
 
     Returns
     -------
@@ -296,11 +305,12 @@ def finish_step(m, time, tau, left, highest, same):
         OK, or NOT_FINITE; then nothing is written.
     """
     h = time - m[at.TIME]
-    seen = outputs_at(m, tau)
+    seen = outputs_at(m, tau, plain)
     reached = point_of(m, seen, tau)
-    at_wall = m[at.WALL] != 0.0 and m[at.MODE] != at.FLIGHT  # no momentum: nothing cancels
+    # no momentum at a wall: nothing cancels
+    at_wall = not plain and m[at.WALL] != 0.0 and m[at.MODE] != at.FLIGHT
     if same and not at_wall and h * m[at.OMEGA] * m[at.RATE] < SHORT:
-        force, moment = short_impulse(m, h, left, reached)
+        force, moment = short_impulse(m, h, left, reached, plain)
     else:
         force, moment = impulse(m, h, left, reached)
     gap = seen[0][4]
@@ -308,7 +318,9 @@ def finish_step(m, time, tau, left, highest, same):
         highest = gap
     last = m[at.IMPACT_TIME] + m[at.IMPACT_VELOCITY] + m[at.IMPACT_ENERGY]
     sums = finite_check_sum(seen) + (force + moment) + (highest + last)
-    code = check_finite(sums + sum_of_peaks(m))
+    if m[at.PEAKS_ON] != 0.0:  # rarely
+        sums += sum_of_peaks(m)
+    code = check_finite(sums)
     if code == at.OK:
         m[at.TIME] = time
         m[at.STEP] = h

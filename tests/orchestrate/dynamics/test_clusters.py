@@ -88,6 +88,7 @@ def test_each_threshold_of_a_response_that_is_run_on(
         done[0] += rule.transient + rule.samples
         deviation = early if done[0] < 1e4 else before if done[0] < 2e4 else last
         n = {"multiplicity": [deviation <= rule.tolerance], "nearly": [deviation <= rule.loose]}
+        n["reached"] = [0]
         counts = {name: np.array(one, dtype=int) for name, one in n.items()}
         told = SimpleNamespace(counts=counts, deviations=np.array([deviation]), ends=ends)
         told.rows = lambda chosen: told

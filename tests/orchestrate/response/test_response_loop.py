@@ -2,14 +2,25 @@
 
 import ctypes
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from orchestrate.errors import FmuError, InputError
-from orchestrate.fmu import OSCILLATOR, Instance, find, respond_library, sampled
+from orchestrate.fmu import (
+    OSCILLATOR,
+    Instance,
+    begin,
+    find,
+    gap_between,
+    respond_library,
+    sampled,
+    stroboscopic_samples,
+)
 from orchestrate.fmu.oscillator import OscillatorCalls, ResponseProgress, ResponseTask
-from orchestrate.model import Excitation
+from orchestrate.model import Excitation, Structure
+from orchestrate.response.multiplicity import nearest_state
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import LoopSettings, response_loop
 
@@ -122,6 +133,27 @@ def test_samples_are_more_than_a_step_keeps(instance):
     end = 1700 * point.excitation.period
     states = sampled(instance, end, end + 9.0, 4500)
     assert states[-1].tolist() == instance.get("x1", "x2", "v1", "v2")
+
+
+@pytest.mark.parametrize("loose", [0.3, 1e-2, 1e-3, 1e-9])
+def test_a_response_ends_where_it_comes_near_a_known_motion(instance, loose):
+    """At the first look from which on it is within the tolerance, and nearer than before."""
+    structure = Structure.nondimensional()
+    point = Point(structure, Excitation.nondimensional(1.0, structure))
+    frequency, period = point.excitation.frequency, point.excitation.period
+    begin(instance, *point, (0.0, 1.0, 0.0, 0.0))
+    states, gap = stroboscopic_samples(instance, period, 0, 960)
+    orbit = SimpleNamespace(states=states[-1:], gap=gap)
+    far = SimpleNamespace(states=states[-2:] + 20.0, gap=gap)
+    away = [nearest_state(orbit.states, frequency, gap, states[k - 1])[1] for k in range(8, 401, 8)]
+    pairs = enumerate(zip([0.0, *away], away, strict=False))
+    looks = [look for look, (before, now) in pairs if now < loose and now < before]
+    settings = LoopSettings(transient=400, samples=8, loose=loose, known=(far, orbit), compared=8)
+    results = response_loop(instance).respond([point] * 2, [(0.0, 1.0, 0.0, 0.0)] * 2, settings)
+    assert results.counts["reached"].tolist() == [2 if looks else 0] * 2
+    assert bool(looks) == (loose > 1e-8)
+    if looks:
+        assert results.ends == pytest.approx(states[[8 * looks[0] + 7] * 2], rel=1e-9, abs=1e-9)
 
 
 def test_structures_have_the_sizes_of_the_source():
