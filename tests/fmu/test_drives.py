@@ -6,7 +6,7 @@ import pytest
 
 from ..kernels.electrodynamic_shaker.truth import Shaker
 from ..kernels.motor_shaker.truth import solve
-from .driver import DRIVES, FORMS, path_of, run
+from .driver import DRIVES, FORMS, path_of
 from .programs.driver import Refused, open_fmu
 
 MOTOR, COIL = DRIVES
@@ -17,17 +17,6 @@ LIMITED = {  # from limit to limit within half a second
 }
 COMMANDED = {**LIMITED, "current_control": True, "coil_inductance": 0.0}
 drives = pytest.mark.parametrize("model", DRIVES)
-
-
-def test_all_communication_points_and_forms_give_the_same_bits(tmp_path):
-    """The coil's motion is exact between limits; in pure Python too, and in a fresh process."""
-    for values in (LIMITED, COMMANDED):
-        ends = []
-        for form, pure in (*((form, False) for form in FORMS), ("fmi2-python", True)):
-            arguments = (path_of(COIL, form), values, 0.5)
-            ends += run("drives.grids", *arguments, cwd=tmp_path, pure=pure)
-        assert len(ends) == 3 * (len(FORMS) + 1)
-        assert all(end == ends[0] for end in ends)
 
 
 RESUMED = {  # start values, and inputs set at each step
@@ -142,14 +131,3 @@ def test_mistakes_are_named_and_others_live_on(form):
         assert [part for part in parts.split("; ") if part not in text] == [], text
     assert living[MOTOR].step(0.1).one("angle") > 0.0
     assert living[COIL].step(0.1).one("box_position") > 0.0
-
-
-@drives
-def test_a_failed_step_leaves_the_instance_where_it_was(model, form):
-    """A step that would not finish, and one into a stop."""
-    values = {"voltage": 5.0, "armature_inductance": 1e-4}
-    values = values if model == MOTOR else {"command": 40.0, "travel_limit": 0.01}
-    f, other = (open_fmu(path_of(model, form)).start(**values).step(0.01) for _ in range(2))
-    f.refused("doStep", 0.01, 10.0)
-    assert f.motion() == other.motion()
-    assert f.step(0.02).motion() == other.step(0.02).motion()
