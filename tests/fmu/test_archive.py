@@ -13,7 +13,7 @@ from fmpy.validation import validate_fmu
 
 from ..fresh import ROOT
 from .driver import FMUS, MODELS, path_of
-from .programs.driver import describe, open_fmu
+from .programs.driver import open_fmu
 
 PYTHON = FMUS["fmi2-python"]
 
@@ -22,15 +22,6 @@ def contents(fmu):
     """Files of an FMU by name."""
     with zipfile.ZipFile(fmu) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
-
-
-def test_guid_belongs_to_the_sources(changed):
-    """Another number in the table, another GUID and other names of modules. Which files count is
-    for tests/export.
-    """
-    assert fmpy.read_model_description(str(changed)).guid != describe(PYTHON).guid
-    ours = {name for name in contents(changed) if re.match(r"resources/(fmu_|TwoMass)", name)}
-    assert ours and not ours & set(contents(PYTHON))
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -18,6 +18,7 @@ import time
 from pathlib import Path
 
 import pytest
+from hypothesis import Phase, settings
 
 from .breakages import breakages
 from .in_memory import become
@@ -106,7 +107,11 @@ def break_module(module, table, budget, seed, seconds, again, thresholds):
     if budget and budget < len(chosen):
         chosen = random.Random(seed).sample(chosen, budget)
     token = digest(tests)
-    for name in ("tests/conftest.py", *tests):  # how many examples properties take, and no clock
+    loaded("tests/conftest.py")  # how many examples properties take, and no clock
+    quick = settings(settings.default, phases=(Phase.explicit, Phase.generate))  # none is shrunk
+    settings.register_profile("quick", quick)
+    settings.load_profile("quick")
+    for name in tests:
         loaded(name)
     assert module.removesuffix(".py").replace("/", ".") in sys.modules, f"{module}: not tested"
     own = loaded(module)
