@@ -15,14 +15,14 @@ def kernel(*names):
 
 
 SUBJECTS = {
-    "fmu_src/kernels/numerics/first_root.py": (FIRST, *kernel("roots", "maximum")),
-    "fmu_src/kernels/oscillator/hermite.py": kernel("hermite", "roots", "maximum", "nodes"),
-    "fmu_src/kernels/oscillator/roots.py": kernel("roots", "nodes", "maximum", "motion"),
-    "fmu_src/kernels/oscillator/event_function.py": kernel("event_function", "secular", "roots"),
-    "fmu_src/kernels/oscillator/impact.py": kernel("impact", "chattering", "motion"),
+    "fmu_src/kernels/numerics/first_root.py": (FIRST, *kernel("roots", "outputs")),
+    "fmu_src/kernels/oscillator/hermite.py": kernel("hermite", "roots", "outputs"),
+    "fmu_src/kernels/oscillator/roots.py": kernel("roots", "hermite", "outputs", "motion"),
+    "fmu_src/kernels/oscillator/event_function.py": kernel("event_function", "roots"),
+    "fmu_src/kernels/oscillator/impact.py": kernel("impact", "motion"),
     "fmu_src/kernels/oscillator/contact.py": kernel("contact", "event_function", "motion"),
-    "fmu_src/kernels/oscillator/series.py": kernel("series", "chattering", "motion"),
-    "fmu_src/kernels/oscillator/motion.py": kernel("motion", "chattering", "contact"),
+    "fmu_src/kernels/oscillator/series.py": kernel("series", "impact", "motion"),
+    "fmu_src/kernels/oscillator/motion.py": kernel("motion", "impact", "contact"),
     "fmu_src/kernels/repetition.py": ("tests/orchestrate/response/test_multiplicity.py",),
     "orchestrate/weak_drive/hysteresis.py": (f"{DRIVE}/test_hysteresis.py",),
     "orchestrate/weak_drive/steady_speed.py": (f"{DRIVE}/test_steady_speed.py",),
