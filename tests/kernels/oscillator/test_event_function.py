@@ -76,12 +76,15 @@ def size(signal):
 )
 def test_value_and_derivatives(make, values, state, age):
     m, signal = make(values, state)
-    found = event_function.evaluate(m, age)[:5]
+    node, at_node = m[at.RIGHT_AGE], m[at.RIGHT_VALUES : at.RIGHT_VALUES + 3]
+    work, found = m[at.WORK], event_function.evaluate(m, age)[:5]
+    assert m[at.WORK] == work + 1.0
     fastest = max(1.0, signal.fastest_rate())
     growth = (1.0 + age) ** 3  # of the cubic
     for order, value in enumerate(found):
         scale = (size(signal) + 1.0) * fastest**order * growth
         assert abs(value - float(signal(age))) <= 2e-13 * scale
+        assert order > 2 or abs(at_node[order] - float(signal(node))) <= 2e-13 * scale
         signal = signal.derivative()
 
 
@@ -164,6 +167,10 @@ def test_nothing_ends_a_state_in_which_nothing_moves(moves):
     assert m[at.MODE] == at.FLIGHT and m[at.CLEAR] < INFINITE
 
 
+def test_free_parts_of_one_size_are_not_nothing():
+    assert started(**APART, x1_start=-0.1, x2_start=0.1)[at.CLEAR] < INFINITE
+
+
 def grown_size(values, age):
     """What the motion's terms may have grown to, from states of about 1."""
     return 4.0 + values["box_frequency"] * (1.0 + age)
@@ -197,12 +204,14 @@ def test_it_is_the_closed_form(damping, detuning, phase, time):
 @given(resonances(), STATES, AGES)
 def test_value_and_derivatives_of_the_event_function(make, values, state, age):
     m, signal = make(values, state)
+    node, at_node = m[at.RIGHT_AGE], m[at.RIGHT_VALUES : at.RIGHT_VALUES + 3]
     found = event_function.evaluate(m, age)[:5]
     assert m[at.SECULAR] == 1.0
     rate = fastest(values)
     for order, value in enumerate(found):
         scale = grown_size(values, age) * rate ** (order + 2) * (1.0 + age) ** 3
         assert abs(value - float(signal(age))) <= 1e-13 * scale, order
+        assert order > 2 or abs(at_node[order] - float(signal(node))) <= 1e-13 * scale
         signal = signal.derivative()
 
 
