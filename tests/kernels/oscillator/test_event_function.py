@@ -167,6 +167,22 @@ def test_nothing_ends_a_state_in_which_nothing_moves(moves):
     assert m[at.MODE] == at.FLIGHT and m[at.CLEAR] < INFINITE
 
 
+def test_a_cubic_that_is_gone_is_not_read():
+    m = flight(-0.5, 0.2, 0.5, -0.1, clearance=0.3)
+    other = list(m)
+    other[at.EVENT_CUBIC : at.EVENT_CUBIC + 4] = [1e3] * 4
+    event_function.set_node_values(other, at.RIGHT_VALUES, at.RIGHT, m[at.RIGHT_AGE])
+    values = slice(at.RIGHT_VALUES, at.RIGHT_VALUES + 3)
+    assert other[values] == m[values]
+    assert event_function.evaluate(other, 0.3) == event_function.evaluate(m, 0.3)
+
+
+@pytest.mark.parametrize("drive", [{"box_crackle": 1e-3}, {"d1": 0.0, "box_frequency": 1.0}])
+def test_rounding_grows_with_what_it_is_of(drive):
+    m = flight(-0.5, 0.2, 0.5, -0.1, **drive)
+    assert event_function.event_rounding(m, 1e3) > 5.0 * event_function.event_rounding(m, 0.0)
+
+
 def test_free_parts_of_one_size_are_not_nothing():
     assert started(**APART, x1_start=-0.1, x2_start=0.1)[at.CLEAR] < INFINITE
 
