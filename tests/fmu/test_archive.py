@@ -2,9 +2,7 @@
 the machine that made it.
 """
 
-import os
 import re
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -14,9 +12,8 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from ..fresh import ROOT
-from .copies import copy_sources
 from .driver import FMUS, MODELS, path_of
-from .programs.driver import describe, open_fmu
+from .programs.driver import open_fmu
 
 PYTHON = FMUS["fmi2-python"]
 
@@ -25,31 +22,6 @@ def contents(fmu):
     """Files of an FMU by name."""
     with zipfile.ZipFile(fmu) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
-
-
-def test_guid_belongs_to_the_sources(changed):
-    """Another number in the table, another GUID and other names of modules. Which files count is
-    for tests/export.
-    """
-    assert fmpy.read_model_description(str(changed)).guid != describe(PYTHON).guid
-    ours = {name for name in contents(changed) if re.match(r"resources/(fmu_|TwoMass)", name)}
-    assert ours and not ours & set(contents(PYTHON))
-
-
-@pytest.mark.slow
-def test_two_complete_builds_are_the_same_bytes(tmp_path):
-    """In different folders and surroundings; the release workflow does it on another system."""
-    program = (
-        "import sys; from pathlib import Path; from fmu_src.export.forms import export\n"
-        "for form in sys.argv[1:]: export('TwoMassImpactOscillator', form, Path('made'))"
-    )
-    roots = [copy_sources(tmp_path / place) for place in ("one", "another place")]
-    command = [sys.executable, "-c", program, "fmi2-python", "fmi2", "fmi3-plain"]
-    for root, seed, zone in zip(roots, "12", ("UTC", "Asia/Tokyo"), strict=True):
-        environment = {**os.environ, "PYTHONHASHSEED": seed, "TZ": zone, "LC_ALL": "C.UTF-8"}
-        subprocess.run(command, cwd=root, check=True, env=environment)
-    one, other = ([p.read_bytes() for p in sorted(r.glob("made/*/*.fmu"))] for r in roots)
-    assert len(one) == 3 and one == other
 
 
 @pytest.mark.parametrize("model", MODELS)

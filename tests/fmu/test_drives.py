@@ -2,11 +2,13 @@
 resume, the motion of the equations, inputs that are seen at once, and mistakes that are named.
 """
 
+import numpy as np
 import pytest
 
-from ..kernels.electrodynamic_shaker.truth import Shaker
-from ..kernels.motor_shaker.truth import solve
-from .driver import DRIVES, FORMS, path_of, run
+from ..sparing import ordinary
+from .coil_truth import Shaker
+from .driver import DRIVES, FORMS, path_of
+from .motor_truth import solve
 from .programs.driver import Refused, open_fmu
 
 MOTOR, COIL = DRIVES
@@ -15,19 +17,11 @@ LIMITED = {  # from limit to limit within half a second
     **{"command": 1.0, "command_1": 120.0, "command_2": -900.0, "command_3": 2000.0},
     **{"box_force": 5.0, "box_force_1": -100.0, "box_force_2": 900.0},
 }
-COMMANDED = {**LIMITED, "current_control": True, "coil_inductance": 0.0}
+ENERGIES = {  # given, given, lost, (lost,) kept
+    MOTOR: ("motor_energy", "box_force_work", "box_damper_energy", "stored_energy"),
+    COIL: ("energy", "box_force_work", "coil_heat", "suspension_loss", "stored_energy"),
+}
 drives = pytest.mark.parametrize("model", DRIVES)
-
-
-def test_all_communication_points_and_forms_give_the_same_bits(tmp_path):
-    """The coil's motion is exact between limits; in pure Python too, and in a fresh process."""
-    for values in (LIMITED, COMMANDED):
-        ends = []
-        for form, pure in (*((form, False) for form in FORMS), ("fmi2-python", True)):
-            arguments = (path_of(COIL, form), values, 0.5)
-            ends += run("drives.grids", *arguments, cwd=tmp_path, pure=pure)
-        assert len(ends) == 3 * (len(FORMS) + 1)
-        assert all(end == ends[0] for end in ends)
 
 
 RESUMED = {  # start values, and inputs set at each step
@@ -62,26 +56,130 @@ def test_states_resume_with_the_same_bits_in_all_forms(model):
     assert abs(ends[0]["box_position"]) > 1e-4
 
 
-def test_a_motor_turns_by_the_equations(form):
-    values = {"voltage": 8.0, "box_force": 2.0}
-    values |= {"box_force_1": 30.0, "box_force_2": -500.0, "box_force_3": 1e4}
-    f = open_fmu(path_of(MOTOR, form)).start(**values).step(0.25)
+@pytest.mark.parametrize("inductance", [0.0, 0.05])
+def test_a_motor_turns_by_the_equations(form, inductance):
+    """In steps too, over which the force runs on; its energy is kept."""
+    values = {"voltage": 8.0, "armature_inductance": inductance}
+    values |= {"box_force": 2.0, "box_force_1": 30.0, "box_force_2": -500.0, "box_force_3": 1e4}
+    f, whole = (open_fmu(path_of(MOTOR, form)).start(**values) for _ in range(2))
     expected = solve(values, (0.0,) * 5, 0.25)
-    found = f.get("box_position", "box_velocity", "angle", "speed", "motor_energy")
-    assert found == pytest.approx([*expected[:4], expected[5]], rel=1e-11)
+    names = ("box_position", "box_velocity", "angle", "speed", "motor_energy", "box_acceleration")
+    found = whole.step(0.25).get(*names)
+    assert found[:5] == pytest.approx([*expected[:4], expected[5]], rel=1e-11)
+    parts = f.at(0.0171, 0.05, 0.0833, 0.25).get(*names)
+    assert parts == pytest.approx(found, rel=1e-10)
+    spent, given, lost, kept = whole.get(*ENERGIES[MOTOR])
+    assert inductance or abs(spent + given - lost - kept) < 1e-12 * (1.0 + abs(given))
 
 
-@pytest.mark.parametrize("values", [LIMITED, COMMANDED], ids=["voltage", "current"])
-def test_a_coil_moves_by_the_equations(form, values):
-    f = open_fmu(path_of(COIL, form)).start(**values).step(0.5)
+def draw_coil(seed):
+    """Random values of a shaker: voltage or current control, with and without inductance, no limit,
+    one or both, cubic command and force over a second, start values.
+    """
+    rng = np.random.default_rng(seed)
+    lags, commanded, voltage, current = (bool(seed >> bit & 1) for bit in range(4))
+    values = {
+        **{"table_mass": rng.uniform(0.5, 5.0), "suspension_stiffness": rng.uniform(1e2, 4e3)},
+        **{"suspension_damping": rng.uniform(0.0, 30.0), "force_factor": rng.uniform(5.0, 40.0)},
+        **{"coil_resistance": rng.uniform(0.5, 5.0), "current_control": commanded},
+        **{"coil_inductance": rng.uniform(2e-3, 5e-2) if lags else 0.0},
+        **{"voltage_limit": rng.uniform(0.5, 6.0) if voltage else 0.0},
+        **{"current_limit": rng.uniform(1.0, 2.0) if current else 0.0},
+        **{"position_start": 0.01 * rng.normal(), "velocity_start": 0.3 * rng.normal()},
+        "current_start": rng.uniform(-1.0, 1.0),
+    }
+    for name, size in (("command", 1.0), ("box_force", 20.0)):
+        for order in range(4):
+            values[f"{name}_{order}" if order else name] = size * 8.0**order * rng.normal()
+    return values
+
+
+KINDS = range(16)  # voltage or current control, with and without inductance, no limit to both
+
+
+@pytest.mark.parametrize("kind", ordinary(KINDS, [2, 5, 9, 14, 15]))
+def test_random_coils_move_by_the_equations(kind):
+    """By scipy to 1e-10, over cubics that take the amplifier from limit to limit."""
+    values = draw_coil(kind)
+    f = open_fmu(path_of(COIL, "fmi3")).start(**values)
+    free = values["current_control"] and not values["voltage_limit"]
+    current = f.one("current") if free else values["current_start"]
     shaker = Shaker(**values)
-    start = [values["position_start"], *[0.0] * 6]
-    shaker.begin(0.0, start)
-    state = shaker.run(start, 0.0, 0.5)
-    current, _, voltage = shaker.electric(0.5, state)
-    assert shaker.changes >= 3
-    found = f.get("box_position", "box_velocity", "current", "voltage", "energy")
-    assert found == pytest.approx([*state[:2], current, voltage, state[3]], rel=1e-10)
+    state = [values["position_start"], values["velocity_start"], current, *[0.0] * 4]
+    shaker.begin(0.0, state)
+    state = shaker.run(state, 0.0, 1.0)
+    current, _, voltage = shaker.electric(1.0, state)
+    expected = [*state[:2], current, voltage, shaker.acceleration(1.0, state), *state[3:]]
+    names = ("box_position", "box_velocity", "current", "voltage", "box_acceleration", "energy")
+    found = f.step(1.0).get(*names, "coil_heat", "suspension_loss", "box_force_work")
+    assert found == pytest.approx(expected, rel=1e-10, abs=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_coils_bits_and_energy_on_any_grid(kind):
+    """In all forms, at random points, some in quick succession; its energies close."""
+    values, rng = draw_coil(kind + 48), np.random.default_rng(kind)
+    whole = open_fmu(path_of(COIL, "fmi3")).start(**values).step(1.0).motion()
+    f = open_fmu(path_of(COIL, FORMS[kind % 3])).start(**values)
+    before = f.one("stored_energy") - f.one("energy")  # a commanded current has jumped
+    for time in sorted([*rng.uniform(0.0, 1.0, 30), 0.5, 0.5 + 1e-15, 1.0]):
+        f.step(float(time))
+        spent, given, heat, loss, kept = terms = f.get(*ENERGIES[COIL])
+        balance = spent + given - heat - loss - kept + before
+        assert abs(balance) < 3e-13 * (sum(map(abs, terms)) + abs(before))
+    assert f.motion() == whole
+
+
+@pytest.mark.parametrize("lags", [0.0, 0.02])
+@pytest.mark.parametrize("commanded", [False, True])
+def test_limits_of_a_coil_are_kept_and_told(form, commanded, lags):
+    """The commanded quantity, and the other one too where the table does not drive the coil beyond
+    it; ``limited`` says so.
+    """
+    limits, seen = np.array([3.0, 0.5]), set()
+    values = {"voltage_limit": 3.0, "current_limit": 0.5, "coil_inductance": lags}
+    values |= {"command": 0.3, "command_1": 4.0, "command_2": -40.0, "command_3": 70.0}
+    f = open_fmu(path_of(COIL, form)).start(**values, current_control=commanded)
+    for k in range(1, 401):
+        parts = np.abs(f.step(k / 200).get("voltage", "current")) / limits
+        assert (parts <= 1.0 + 1e-12).all()
+        assert f.one("limited") == (parts > 1.0 - 1e-9).any()
+        seen.add((f.one("limited"), parts[0] > 1.0 - 1e-9))
+    assert len(seen) >= 2
+
+
+def test_each_cubic_of_a_coil_begins_where_its_own_inputs_are_set():
+    """The command runs on while the force is set in each step."""
+    values = {"command": 1.0, "command_1": 2.0, "command_2": -6.0, "coil_inductance": 0.01}
+    f = open_fmu(path_of(COIL, "fmi2")).start(**values)
+    for k in range(8):
+        f.set(box_force=0.0, box_force_1=0.0).step((k + 1) / 8)
+    assert f.one("voltage") == pytest.approx(1.0 + 2.0 - 3.0, abs=1e-14)
+    f.set(command=1.0).step(1.5)  # to the value that it has as an input: it begins anew
+    assert f.one("voltage") == pytest.approx(1.0 + 2.0 * 0.5 - 3.0 * 0.5**2, abs=1e-14)
+
+
+def test_no_event_of_a_coil_is_missed():
+    """A command that is a ten millionth beyond its limit for 0.6 ms, at its limit or just beyond,
+    and a stop that a free table reaches by a millionth of a millimetre, in long steps.
+    """
+    path = path_of(COIL, "fmi3")
+    for command in (2.0, 2.0 + 1e-12, -2.0, 2.0 - 1e-12):
+        f = open_fmu(path).start(command=command, voltage_limit=2.0)
+        for _ in range(2):
+            limited = abs(command) > 2.0
+            assert f.get("voltage", "limited") == [max(-2.0, min(2.0, command)), limited]
+            f.step(5.0)
+    for excess in (1e-7, -1e-7):  # command = 2 + excess - (t - 1)^2
+        cubic = {"command": 1.0 + excess, "command_1": 2.0, "command_2": -2.0}
+        f = open_fmu(path).start(**cubic, voltage_limit=2.0).step(1.0)
+        assert f.one("limited") == (excess > 0.0)
+        assert f.step(1.0 + 2.0 * 1e-7**0.5).one("limited") == 0.0
+    swing = {"force_factor": 0.0, "suspension_damping": 0.0, "velocity_start": 0.1}
+    highest = 0.1 / np.sqrt(1375.0 / 5.5)
+    open_fmu(path).start(**swing, travel_limit=highest + 1e-9).step(50.0)
+    f = open_fmu(path).start(**swing, travel_limit=highest - 1e-9)
+    assert "box_position = 0.0063" in f.refused("doStep", 0.0, 50.0)
 
 
 def test_a_commanded_current_puts_the_energy_of_its_first_jump_in(form):
@@ -142,14 +240,3 @@ def test_mistakes_are_named_and_others_live_on(form):
         assert [part for part in parts.split("; ") if part not in text] == [], text
     assert living[MOTOR].step(0.1).one("angle") > 0.0
     assert living[COIL].step(0.1).one("box_position") > 0.0
-
-
-@drives
-def test_a_failed_step_leaves_the_instance_where_it_was(model, form):
-    """A step that would not finish, and one into a stop."""
-    values = {"voltage": 5.0, "armature_inductance": 1e-4}
-    values = values if model == MOTOR else {"command": 40.0, "travel_limit": 0.01}
-    f, other = (open_fmu(path_of(model, form)).start(**values).step(0.01) for _ in range(2))
-    f.refused("doStep", 0.01, 10.0)
-    assert f.motion() == other.motion()
-    assert f.step(0.02).motion() == other.step(0.02).motion()

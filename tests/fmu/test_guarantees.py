@@ -39,11 +39,11 @@ def grids(end):
     [
         (0.4, {}),
         (1.13, {}),
-        (2.9, {}),
-        (1.13, {"clearance": 0.25}),
+        (1.13, {"m1": 1.3, "k1": 2.1}),  # its unit of time is no power of two
+        (1.13, {"clearance": 0.25, "k1": 1.1}),
         (1.13, {"clearance": -0.25, "e_slope": 0.3}),
-        (1.13, FORCES),
-        (1.13, {**FORCES, "wall": True, "clearance": 0.25}),
+        (1.13, {**FORCES, "m1": 0.7}),
+        (1.13, {**FORCES, "wall": True, "clearance": 0.25, "m1": 1.3}),
         (2.9, {"wall": True, "clearance": -0.01}),
         (1.13, {"stroke": 0.4}),
         (0.4, {"stroke": 2.0, "clearance": 1.5, "wall": True, **FORCES}),
@@ -58,7 +58,7 @@ def test_communication_grid_does_not_matter(fmu, eta, more):
         with open_fmu(fmu) as f:
             found[name] = f.start(**harmonic(eta), **more).at(*times).outputs()
     reference = found["one step"]
-    assert reference["impact_count"] > 100
+    assert reference["impact_count"] > 80
     assert [name for name, outputs in found.items() if outputs != reference] == []
 
 
@@ -210,7 +210,7 @@ def test_momentum_is_kept_at_impacts_and_starts_of_contact(fmu, values, contacts
     assert len(found) > 8
     assert any(begun for *_, begun in found) == contacts
     for u1, u2, v1, v2, closing, _ in found:
-        assert m1 * abs(u1 - v1) > 1e-3  # something is exchanged
         assert m1 * v1 + m2 * v2 == pytest.approx(m1 * u1 + m2 * u2, abs=5e-7)
         assert closing == pytest.approx(u1 - u2, abs=5e-7)
         assert v2 - v1 == pytest.approx(e * closing / (1.0 + slope * closing), abs=5e-7)
+        assert m1 * abs(u1 - v1) > 1e-3  # something is exchanged

@@ -2,15 +2,12 @@
 process of its own, through chaos.
 """
 
-from pathlib import Path
-
 import pytest
 
+from ..fmu.driver import PROGRAMS
 from ..fmu.programs.driver import COMMON, STATE, harmonic, open_fmu
 from ..fresh import run_fresh
 from ..sparing import ordinary
-
-PROGRAMS = Path(__file__).with_name("programs")
 
 
 def run(fmu, tmp_path, end, count, values, **options):

@@ -1,6 +1,5 @@
 """Which function may be called when, and what a call that may not be changes: nothing."""
 
-import ctypes
 import re
 
 import pytest
@@ -8,7 +7,7 @@ import pytest
 from fmu_src.export import native_form
 
 from ..fmu.driver import MODELS, path_of
-from ..fmu.programs.driver import ERROR, open_fmu
+from ..fmu.programs.driver import open_fmu
 from .conftest import VERSIONS
 
 NEW, INITIALIZING, STEPPING, TERMINATED, BETWEEN_EVENTS, AT_EVENT = range(6)
@@ -86,22 +85,3 @@ def functions_of_header(version):
     """Every function the standard's header declares: some importers look for all of them."""
     text = native_form.fmi_headers(version)[f"{version}Functions.h"].decode()
     return sorted(set(re.findall(rf"_Export\s+{version}\w+TYPE\s+({version}\w+)\s*;", text)))
-
-
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("version", VERSIONS)
-def test_no_instance_and_null_pointers_are_an_error(exported, version, model):
-    """Every function without an instance, then with one and nothing else."""
-    f = open_fmu(path_of(model, version))
-    bare, nothing = ctypes.CDLL(f.fmu.dll._name), [None] * 14
-    for name in functions_of_header(version):
-        if re.search("Instantiate|GetVersion|GetTypesPlatform", name):
-            continue
-        function = getattr(bare, name)
-        if name.endswith("FreeInstance"):
-            function(*nothing)
-            continue
-        assert function(*nothing) == ERROR, name
-        component = ctypes.c_void_p(f.fmu.component)
-        assert function(component, *nothing) in range(ERROR + 1), name
-    f.reset().start().step(1.0)

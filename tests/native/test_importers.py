@@ -2,8 +2,6 @@
 calls that nobody would think of, and every byte accounted for.
 """
 
-import hashlib
-import os
 import random
 import re
 import shutil
@@ -21,8 +19,6 @@ from .conftest import VERSIONS
 
 HERE = Path(__file__).parent
 MODELS = tuple(forms.MODELS)
-SECONDS = int(os.environ.get("FUZZ_SECONDS", "600"))  # of the coverage-guided fuzzer, each
-CORPUS = Path(os.environ["FUZZ_CORPUS"]) if "FUZZ_CORPUS" in os.environ else None  # kept there
 VALGRIND = ("valgrind", "-q", "--error-exitcode=9", "--leak-check=full")
 VALGRIND += ("--errors-for-leak-kinds=all", "--show-leak-kinds=all")
 SANITIZERS = {"address": importers.SANITIZE, "thread": ("-fsanitize=thread",)}
@@ -132,41 +128,3 @@ def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, pair, sa
     importer = importers.importer_with_sanitizer(*pair, exported, tmp_path, options)
     clean(importer.run(*RANDOM, timeout=1800))
     clean(importer.run("many", 100, 40, 1000, timeout=1800))
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(shutil.which("clang") is None, reason="clang is not installed")
-@pytest.mark.parametrize("pair", PAIRS, ids="-".join)
-def test_a_coverage_guided_fuzzer_finds_nothing(exported, fmus, tmp_path, pair):
-    """libFuzzer with its sanitizers in the shim, for FUZZ_SECONDS (600 by default) each."""
-    version, model = pair
-    path, guards = exported / version / f"{model}.fmu", "address,undefined"
-    folder, number = tmp_path / "fuzzer", version[-1]
-    importers.compile_importer(version, path, folder)  # leaves the headers there
-    library = importers.rebuild_shim(
-        version,
-        tmp_path / "shim",
-        importers.kernel_objects(model),
-        (f"-fsanitize=fuzzer-no-link,{guards}", "-fno-sanitize-recover=all"),
-        forms.MODELS[model],
-        ("clang",),
-    )
-    units = [importers.HERE / f"{unit}.c" for unit in ("importer", f"fuzz{number}", "fuzz")]
-    options = ["-std=gnu11", "-O1", "-g", f"-fsanitize=fuzzer,{guards}"]
-    options += [f"-I{folder}", f"-I{importers.HERE}"]
-    command = ["clang", *options, HERE / "fuzzer.c", *units, "-ldl", "-lm", "-o", "fuzzer"]
-    importers.run_compiler(command, folder)
-    corpus = CORPUS / f"{version}-{model}" if CORPUS else folder / "corpus"
-    corpus.mkdir(parents=True, exist_ok=True)
-    for line in seeds(version):
-        (corpus / hashlib.sha1(bytes.fromhex(line)).hexdigest()).write_bytes(bytes.fromhex(line))
-    limits = [f"-max_total_time={SECONDS}", "-max_len=512", "-timeout=60", "-print_final_stats=1"]
-    done = subprocess.run(
-        ["./fuzzer", corpus, *limits],
-        cwd=folder,
-        env={**os.environ, "FMU_BINARY": str(library)},
-        capture_output=True,
-        text=True,
-    )
-    print("\n".join(done.stderr.splitlines()[-12:]))
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]

@@ -14,10 +14,10 @@ from fmpy.validation import validate_fmu
 
 from fmu_src.export import compiler, forms
 
+from ..fmu.driver import PROGRAMS
 from ..fmu.programs.driver import COMMON, harmonic
 from ..fresh import run_fresh
 from ..sparing import ordinary
-from .test_bit_identity import PROGRAMS
 
 GCC = shutil.which("gcc")
 BARE = ("-std=c99", "-ffp-contract=off")

@@ -2,6 +2,8 @@
 hold for all later times.
 """
 
+import math
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -9,14 +11,25 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.numerics.first_root import INFINITE
-from fmu_src.kernels.oscillator import event_function
+from fmu_src.kernels.oscillator import event_function, secular
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.contact import first_nonzero_derivative
 from fmu_src.kernels.oscillator.motion import begin_common
 from fmu_src.kernels.oscillator.nodes import LONGEST
 from tests import exact_motion as truth
 
-from .kernel import DEFAULTS, examples, flight, rest_together, sizes, started, structures, unloaded
+from .kernel import (
+    DEFAULTS,
+    advanced,
+    examples,
+    flight,
+    resonances,
+    rest_together,
+    sizes,
+    started,
+    structures,
+    unloaded,
+)
 
 AGES = st.floats(0.0, 40.0)
 STATES = st.tuples(
@@ -63,12 +76,15 @@ def size(signal):
 )
 def test_value_and_derivatives(make, values, state, age):
     m, signal = make(values, state)
-    found = event_function.evaluate(m, age)[:5]
+    node, at_node = m[at.RIGHT_AGE], m[at.RIGHT_VALUES : at.RIGHT_VALUES + 3]
+    work, found = m[at.WORK], event_function.evaluate(m, age)[:5]
+    assert m[at.WORK] == work + 1.0
     fastest = max(1.0, signal.fastest_rate())
     growth = (1.0 + age) ** 3  # of the cubic
     for order, value in enumerate(found):
         scale = (size(signal) + 1.0) * fastest**order * growth
         assert abs(value - float(signal(age))) <= 2e-13 * scale
+        assert order > 2 or abs(at_node[order] - float(signal(node))) <= 2e-13 * scale
         signal = signal.derivative()
 
 
@@ -149,3 +165,139 @@ def test_nothing_ends_a_state_in_which_nothing_moves(moves):
         m = started(clearance=0.5, wall=1.0, d1=0.0, box_frequency=1.0)
         assert m[at.SECULAR] != 0.0
     assert m[at.MODE] == at.FLIGHT and m[at.CLEAR] < INFINITE
+
+
+def test_a_cubic_that_is_gone_is_not_read():
+    m = flight(-0.5, 0.2, 0.5, -0.1, clearance=0.3)
+    other = list(m)
+    other[at.EVENT_CUBIC : at.EVENT_CUBIC + 4] = [1e3] * 4
+    event_function.set_node_values(other, at.RIGHT_VALUES, at.RIGHT, m[at.RIGHT_AGE])
+    values = slice(at.RIGHT_VALUES, at.RIGHT_VALUES + 3)
+    assert other[values] == m[values]
+    assert event_function.evaluate(other, 0.3) == event_function.evaluate(m, 0.3)
+
+
+@pytest.mark.parametrize("drive", [{"box_crackle": 1e-3}, {"d1": 0.0, "box_frequency": 1.0}])
+def test_rounding_grows_with_what_it_is_of(drive):
+    m = flight(-0.5, 0.2, 0.5, -0.1, **drive)
+    assert event_function.event_rounding(m, 1e3) > 5.0 * event_function.event_rounding(m, 0.0)
+
+
+def test_free_parts_of_one_size_are_not_nothing():
+    assert started(**APART, x1_start=-0.1, x2_start=0.1)[at.CLEAR] < INFINITE
+
+
+def grown_size(values, age):
+    """What the motion's terms may have grown to, from states of about 1."""
+    return 4.0 + values["box_frequency"] * (1.0 + age)
+
+
+def fastest(values):
+    """The fastest oscillation, over omega."""
+    return max(1.0, math.sqrt(values["k2"] / values["m2"]), values["box_frequency"])
+
+
+@examples(60)
+@given(
+    st.just(0.0) | sizes(1e-16, 1e-4),
+    st.just(0.0) | sizes(1e-16, 2e-4),
+    st.floats(0.0, 6.28),
+    sizes(0.1, 1e6),
+)
+def test_it_is_the_closed_form(damping, detuning, phase, time):
+    """In high precision: the growing part, and what it is of any age."""
+    values = {"d1": damping, "box_frequency": 1.0 + detuning, "m2": 1e-9, "k2": 1e-9, "d2": 0.0}
+    m = started(bonded=1.0, phase_start=phase, **values)
+    assert m[at.SECULAR] == 1.0
+    advanced(m, time)
+    both = truth.contact_motion({**DEFAULTS, **values}, 0.0, 0.0, mp.mpf(m[at.PHASE_START]))[0]
+    grown = min(time, 1.0 / max(detuning, damping, 1e-300))
+    assert abs(m[at.X1] - both(time)) <= 5e-15 * (2.0 + grown) * (1.0 + 0.1 * time)
+
+
+@MAKERS
+@examples(40)
+@given(resonances(), STATES, AGES)
+def test_value_and_derivatives_of_the_event_function(make, values, state, age):
+    m, signal = make(values, state)
+    node, at_node = m[at.RIGHT_AGE], m[at.RIGHT_VALUES : at.RIGHT_VALUES + 3]
+    found = event_function.evaluate(m, age)[:5]
+    assert m[at.SECULAR] == 1.0
+    rate = fastest(values)
+    for order, value in enumerate(found):
+        scale = grown_size(values, age) * rate ** (order + 2) * (1.0 + age) ** 3
+        assert abs(value - float(signal(age))) <= 1e-13 * scale, order
+        assert order > 2 or abs(at_node[order] - float(signal(node))) <= 1e-13 * scale
+        signal = signal.derivative()
+
+
+@MAKERS
+@examples(40)
+@given(resonances(), STATES, AGES)
+def test_bounds_hold_as_long_as_they_are_used(make, values, state, age):
+    m, signal = make(values, state)
+    spacing = m[at.SPACING]
+    limits = {order: sum(event_function.derivative_bounds(m, order)) for order in (5, 6, 7, 8)}
+    sixth = m[at.REMAINDER] / m[at.HERMITE + 2]
+    fifth = event_function.evaluate(m, age)[5]
+    later = spacing * np.linspace(0.0, secular.LONGEST_DRIVEN, 24)
+    rounding = 1e-12 * grown_size(values, age) * fastest(values) ** 8
+    for order in range(1, 9):
+        signal = signal.derivative()
+        if order == 5:
+            ahead = np.linspace(0.0, event_function.AHEAD, 8)
+            highest = max(abs(signal(age + part * spacing)) for part in ahead)
+            assert highest <= fifth * (1 + 1e-9) + rounding
+        if order == 6:
+            assert max(abs(signal(t)) for t in later) <= sixth * (1 + 1e-9) + rounding
+        if order in limits:
+            assert max(abs(signal(t)) for t in later) <= limits[order] * (1 + 1e-9) + rounding
+
+
+@examples(30)
+@given(STATES, sizes(1e-16, 2e-5), sizes(1e-12, 0.1), st.sampled_from((0.0, 1e-9, 1e-5)), AGES)
+def test_a_gap_of_nearly_equal_oscillators_is_bounded_by_its_own(state, near, gap, damping, age):
+    """Without what rounding takes from the displacements, and far below the sum of both."""
+    values = {"k2": 1.0 + near, "d1": damping, "d2": damping * (1.0 - near), "box_frequency": 1.0}
+    x1, v1, rise, speed = state
+    m = started(
+        x1_start=x1, v1_start=v1, x2_start=x1 + gap * rise, v2_start=v1 + gap * speed, **values
+    )
+    assert event_function.are_nearly_equal(m)
+    starts = (m[at.X1_START], m[at.V1_START], m[at.X2_START], m[at.V2_START])
+    first, second = truth.free_motion({**DEFAULTS, **values}, starts, mp.mpf(0))
+    signal = second - first
+    for _ in range(5):
+        signal = signal.derivative()
+    found, spacing = event_function.evaluate(m, age)[5], m[at.SPACING]
+    ahead = np.linspace(0.0, event_function.AHEAD, 8)
+    assert max(abs(signal(age + part * spacing)) for part in ahead) <= found
+    sixth, found = signal.derivative(), m[at.REMAINDER] / m[at.HERMITE + 2]
+    later = spacing * np.linspace(0.0, secular.LONGEST_DRIVEN, 30)
+    assert max(abs(sixth(t)) for t in later) <= found
+    assert found <= 1e3 * (gap + near * spacing * secular.LONGEST_DRIVEN + 1e-13)
+
+
+ALIKE = {"m2": 1.0, "k2": 1.0, "d1": 0.0, "d2": 0.0, "box_frequency": 1.0, "phase_start": 1.0}
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        *({**ALIKE, "m2": eta**-2, "d1": 0.01, "box_frequency": eta} for eta in (0.4, 0.5, 2.0)),
+        {**ALIKE, "force1_amplitude": 0.3},
+        {**ALIKE, "force2_amplitude": 0.3, "k2": 1.0 + 1e-9},
+    ],
+)
+def test_what_a_quintic_may_miss_of_a_growing_amplitude(values):
+    """Mass 2 is driven on its natural frequency, below that of mass 1 and above it; or both are
+    alike, and a force drives one of them.
+    """
+    m, signal = flight_and_gap(values, (-1e-3, 0.0, 1e-3, 0.0))
+    assert m[at.SECULAR] != 0.0
+    for _ in range(6):
+        signal = signal.derivative()
+    found = m[at.REMAINDER] / m[at.HERMITE + 2]
+    ages = np.linspace(0.0, secular.LONGEST_DRIVEN * m[at.SPACING], 200)
+    largest = np.abs(signal.sample(ages)).max()
+    assert 0.3 * found < largest <= found

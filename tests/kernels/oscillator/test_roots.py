@@ -7,12 +7,21 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator import nodes
+from fmu_src.kernels.oscillator import nodes, stepper
 from fmu_src.kernels.oscillator.event_function import evaluate, event_rounding, set_node_values
 from fmu_src.kernels.oscillator.roots import cross_clear_intervals, value_on_decided_side, walk
 from tests import exact_motion as truth
 
-from .kernel import DEFAULTS, examples, flight, resonances, rest_together, started, structures
+from .kernel import (
+    DEFAULTS,
+    examples,
+    flight,
+    resonances,
+    rest_together,
+    started,
+    structures,
+    unstarted,
+)
 from .test_event_function import STATES, flight_and_gap
 
 
@@ -178,3 +187,18 @@ def test_the_side_at_the_boundary_is_kept_up_to_rounding_and_until_it_crosses():
         (0.0, 1.1 * slope, 0.0),
     ):
         assert value_on_decided_side(m, 0.3, h0, h1) == value
+
+
+@pytest.mark.parametrize(
+    ("values", "code"),
+    [
+        ({"d2": 1e75, "x2_start": 1.0, "v2_start": -1.0}, at.NOT_FINITE),
+        ({"d2": 1e48, "x2_start": 1e100}, at.LIMITED),
+    ],
+)
+def test_no_event_is_excluded_by_a_bound_that_overflows(monkeypatch, values, code):
+    """The walk looks on, and fails where nothing is certain."""
+    monkeypatch.setattr(nodes, "FASTEST_RATE", 1e80)
+    m = unstarted(evaluation_limit=1000.0, **values)
+    assert (stepper.initialize(m, 0.0), stepper.advance(m, 1.0)) == (at.OK, code)
+    assert m[at.WORK] > 0.0 and not m[at.IMPACT_COUNT]

@@ -2,6 +2,8 @@
 closed form is relative to the displacements.
 """
 
+from unittest.mock import patch
+
 import mpmath as mp
 import pytest
 from hypothesis import assume, example, given
@@ -14,7 +16,7 @@ from fmu_src.kernels.oscillator.motion import state_at
 from fmu_src.kernels.oscillator.parameters import SAME
 from tests import exact_motion as truth
 
-from .kernel import DEFAULTS, examples, flight, sizes, structures, unloaded
+from .kernel import DEFAULTS, examples, flight, rest_together, sizes, structures, unloaded
 
 PLACES = st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)
 
@@ -73,14 +75,42 @@ def test_a_short_flight_is_that_of_the_gap(values, x, v, slope):
         assert largest <= m[at.SERIES_BOUND]
 
 
-def test_a_gap_that_is_not_concave_is_walked():
+@examples(200)
+@given(pressed_or_open(), *PLACES, sizes(1e-9, 0.1), st.sampled_from((8, 12)))
+@example({"clearance": -3.0, "phase_start": 1.0, "m2": 0.4, "force1_3": 3.0}, -0.5, 0.7, 1e-3, 12)
+@example({"clearance": 0.0, "phase_start": 1.0, "box_crackle": 3.0, "d2": 0.3}, 0.5, 0.7, 0.1, 12)
+def test_all_derivatives_at_the_start_are_newtons(values, x, v, slope, order):
+    """And nothing is left of the series before."""
+    m, first, gap = leaving(values, x, v, slope)
+    size = 10.0 + abs(values["clearance"]) * (1.0 + m[at.RATE] ** 2)
+    place = x - (rest_together(values)[0] if values["clearance"] > 0.0 else 0.0)
+    for k in range(13):
+        m[at.SERIES_GAP + 2 * k] = m[at.SERIES_X + 2 * k] = 1e3
+    series.set_series(m, float(place), v, v + slope - v, order)
+    for k in range(1, order + 1):
+        first, gap, size = first.derivative(), gap.derivative(), size * m[at.RATE]
+        assert abs(m[at.SERIES_X + 2 * k] - first(0)) <= 1e-12 * size, k
+        assert abs(m[at.SERIES_GAP + 2 * k] - gap(0)) <= 1e-12 * size, k
+    assert not any(m[at.SERIES_GAP + 2 * k] for k in range(order + 1, 13))
+
+
+@pytest.mark.parametrize(
+    ("third", "fourth", "fifth"),
+    [(0.3, 0.3, 0.4), (0.53, 0.3, 0.17), (0.3, 0.53, 0.17), (-1.0, 0.9, 0.1), (0.7, -1.0, 0.3)],
+)
+def test_a_gap_that_may_not_be_concave_is_walked(third, fourth, fifth):
+    """Where the derivatives that bend it, and the bound, add up to what turns the curvature within
+    half again of the parabola's time.
+    """
     m = flight(1.0, 0.0, 1.0, 1e-3, box_amplitude=0.0)
-    assert series.short_flight_duration(m, 8) == m[at.END] > 0.0
-    m[at.OSCILLATOR_1 + at.DRIVE + 1] = 1e9
-    assert series.short_flight_duration(m, 8) == 0.0
-    m[at.OSCILLATOR_1 + at.DRIVE + 1] = 0.0
-    m[at.SERIES_GAP + 6] = 1e3
-    assert series.short_flight_duration(m, 8) == 0.0
+    bend = -m[at.SERIES_GAP + 4]
+    longest = 1.5 * 2.0 * 1e-3 / bend
+    m[at.SERIES_GAP + 6] = third * bend / longest
+    m[at.SERIES_GAP + 8] = fourth * 2.0 * bend / longest**2
+    for more, walked in ((-0.03, False), (0.03, True)):
+        bound = (fifth + more) * 6.0 * bend / longest**3
+        with patch.object(series, "fifth_bound", lambda _, size=bound: size):
+            assert (series.short_flight_duration(m, 8) == 0.0) == walked
 
 
 @pytest.mark.parametrize(
@@ -95,14 +125,32 @@ def test_the_order_of_a_series_goes_by_the_flights_angle(angle, order):
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_all_that_moves_the_masses_raises_the_bound(sign):
-    """Each part of drive and state by its size, whichever way it acts."""
-    m = flight(0.1, 0.2, 0.1, 0.3, k2=3.0, d1=0.3, d2=0.1, box_acceleration=0.1, box_jerk=0.2)
-    drive = at.OSCILLATOR_1 + at.DRIVE
-    for slot in (drive, drive + 1, at.REST_1, at.SERIES_X, at.SERIES_X + 2, at.PRELOAD):
-        m[slot] = 0.0
+@pytest.mark.parametrize("force", [0.0, 0.01])
+def test_all_that_moves_the_masses_raises_the_bound(sign, force):
+    """Each part of drive and state by its size, whichever way it acts: at least by 9.8 R^4 times
+    what it makes of V, and not by much more.
+    """
+    m = flight(0.1, 0.2, 0.1, 0.3, k2=3.0, d1=0.3, d2=0.1, box_acceleration=0.1, force1=force)
+    rate, drive, apart = m[at.RATE], at.OSCILLATOR_1 + at.DRIVE, at.GAP + at.DRIVE
+    driven = 1.35 * (abs(m[at.FORCE_V]) + abs(m[at.FORCE_X]) / rate)  # of a part of Z, over R
+    parts = {drive: driven / rate**2, drive + 1: driven / rate**2, at.REST_1: driven / rate**2}
+    parts |= {at.SERIES_X: driven, at.SERIES_X + 2: driven / rate, at.SERIES_GAP + 2: 1.0}
+    parts |= {at.PRELOAD: 1.35 / rate}
+    if force:
+        parts |= {apart: 1.35 / rate, apart + 1: 1.35 / rate}
+    box = m[at.OSCILLATOR_1 + at.SHARES] if force else 1.0
+    parts |= {at.CUBIC + k: abs(box) * 1.35 * driven / rate ** (2 + k) for k in range(4)}
+    if force:  # the gap feels the box as both masses do
+        gap = abs(m[at.GAP + at.SHARES])
+        for k in range(4):
+            parts[at.CUBIC + k] += gap * 1.35 / rate ** (1 + k)
+    for slot, part in parts.items():
         bounds = []
         for size in (0.0, 1.0, 2.0):
-            m[slot] = sign * size
-            bounds.append(series.fifth_bound(m))
-        assert 0.0 < bounds[0] < bounds[1] < bounds[2]
+            other = list(m)
+            if at.CUBIC <= slot < at.CUBIC + 4:
+                other[at.CUBIC : at.CUBIC + 4] = [0.0] * 4
+            other[slot] = size if slot == at.SERIES_GAP + 2 else sign * size  # it opens
+            bounds.append(series.fifth_bound(other))
+        for low, high in zip(bounds, bounds[1:], strict=False):
+            assert 9.8 * part <= (high - low) / rate**4 <= 10.1 * part, slot

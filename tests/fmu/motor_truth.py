@@ -3,23 +3,9 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
-DEFAULTS = {
-    "box_mass": 5.5,
-    "box_stiffness": 309.375,
-    "box_damping": 4.125,
-    "unbalance_mass": 0.025,
-    "unbalance_radius": 0.02,
-    "rotor_inertia": 5e-5,
-    "motor_constant": 0.06,
-    "armature_resistance": 12.0,
-    "armature_inductance": 0.0,
-    "evaluation_limit": 1e7,
-    "voltage": 0.0,
-    "box_force": 0.0,
-    "box_force_1": 0.0,
-    "box_force_2": 0.0,
-    "box_force_3": 0.0,
-}
+from fmu_src.models.motor_shaker.variables import VARIABLES
+
+DEFAULTS = {v.name: float(v.start) for v in VARIABLES if not v.calculated}
 STATES = ("box_position", "box_velocity", "angle", "speed", "motor_current")
 
 
@@ -33,12 +19,8 @@ def right_hand_side(values):
         y, v, phi, w, current, _ = s
         if L == 0.0:
             current = (p["voltage"] - K * w) / R
-        force = (
-            p["box_force"]
-            + p["box_force_1"] * t
-            + p["box_force_2"] * t**2 / 2
-            + p["box_force_3"] * t**3 / 6
-        )
+        f0, f1, f2, f3 = (p[f"box_force{order}"] for order in ("", "_1", "_2", "_3"))
+        force = f0 + t * (f1 + t * (f2 / 2 + t * f3 / 6))
         matrix = [
             [p["box_mass"], unbalance * np.cos(phi)],
             [unbalance * np.cos(phi), p["rotor_inertia"]],
