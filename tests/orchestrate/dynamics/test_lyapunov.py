@@ -93,9 +93,7 @@ def test_linear_motions_have_exact_exponents(structure, expected):
 
 @pytest.mark.usefixtures("exported")
 def test_too_few_impacts_are_no_uncertainty():
-    with pytest.raises(InputError, match=r"periods = 20: 10 impacts at eta = 4; expected periods"):
-        lyapunov(PAPER, eta=4.0, transient=2000, periods=20)
-    with pytest.raises(InputError, match=r"at least 16 impacts \(periods >= 32\)"):
+    with pytest.raises(InputError, match=r"10 impacts at eta = 4.* 16 impacts \(periods >= 32\)"):
         lyapunov(PAPER, eta=4.0, transient=2000, periods=20)
     assert lyapunov(PAPER, eta=4.0, transient=2000, periods=40).standard_error > 0.0
     assert min_impacts(5) == 10
@@ -106,14 +104,11 @@ def test_a_sweep_s_responses_are_followed_on():
     etas = [1.2, 1.13, 0.8]
     swept = sweep(PAPER, eta=etas, transient=100, samples=20)
     found = lyapunov(PAPER, eta=etas, start=swept, transient=0, periods=60)
-    states = lyapunov(PAPER, eta=etas, start=swept.end_state.values, transient=0, periods=60)
-    np.testing.assert_array_equal(found.exponent, states.exponent)
     alone = lyapunov(PAPER, eta=0.8, start=swept.end_state.values[2], transient=0, periods=60)
     assert alone.exponent[0] == found.exponent[2]
-    with pytest.raises(InputError, match="expected a sweep in one direction over the same values"):
-        lyapunov(PAPER, eta=0.9, start=swept)
-    with pytest.raises(InputError, match="2 states; expected one, or one for each of 3"):
-        lyapunov(PAPER, eta=etas, start=swept.end_state.values[:2])
+    for start, words in ((swept, "the same values"), (swept.end_state[:2], "2 states; expected")):
+        with pytest.raises(InputError, match=words):
+            lyapunov(PAPER, eta=[*etas, 0.9], start=start)
 
 
 @pytest.mark.usefixtures("exported")

@@ -165,8 +165,3 @@ def test_its_bits_are_the_same_with_the_kernels_of_any_processor():
         "print(hashlib.sha256(m.state.values.tobytes()).hexdigest())"
     )
     assert len(set(printed_on_each(["-c", code], ("Haswell", "Nehalem")).values())) == 1
-
-
-def test_the_largest_distance_that_is_named_leaves_the_gap_open():
-    """Starts reach as far as the first image of the distance."""
-    orchestrate.manifold(PAPER, eta=3.0, length=0.1, distance=0.0029, **QUIET)

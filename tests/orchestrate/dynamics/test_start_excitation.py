@@ -6,7 +6,6 @@ import xarray as xr
 from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.branches import branch, complete_excitation
 from orchestrate.dynamics.orbits import orbit
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.response import questions
 
@@ -46,10 +45,3 @@ def test_what_pushes_at_the_start_is_kept(monkeypatch):
     monkeypatch.setattr(manifolds.ManifoldJob, "saddle", lambda job: None)
     kept = manifolds.manifold(PAPER, start=start)
     assert {name: getattr(kept, name) for name in pushes} == pushes
-
-
-def test_a_branch_leaves_along_the_parameter_of_the_one_that_it_leaves():
-    attributes = {"over": "frequency", "excitation": BY_FREQUENCY}
-    start = xr.Dataset({"node_kind": (("point", "node"), [[0]])}, attrs=attributes)
-    with pytest.raises(InputError, match="over = 'e': .* along 'frequency'; expected the same"):
-        branch(BEAM, start=start, switch=0, over="e", limits=(0.6, 0.8))

@@ -154,7 +154,6 @@ def test_an_own_fmu_is_taken_as_it_is(maker, tmp_path, real):
         (lambda: find("Oscillator"), "model Oscillator: expected one of TwoMassImpactOscillator"),
         (lambda: find(OSCILLATOR, "fmi4"), "form fmi4: expected one of fmi2-python, fmi2, fmi3"),
         (lambda: build(names=["Shaker"]), "model Shaker: expected one of"),
-        (lambda: build(forms=["fmi1"]), "form fmi1: expected one of"),
         (lambda: finder({"fmu": {"Oscillator": "a.fmu"}}), "model Oscillator: expected one of"),
         (lambda: finder({"fmu": "no.fmu"})(OSCILLATOR), "FMU no.fmu: no such file; expected"),
     ],
@@ -165,10 +164,20 @@ def test_refusals(maker, places, call, words):
     assert words in str(error.value) and "\n" not in str(error.value)
 
 
-def test_build_writes_all(maker, places, tmp_path):
-    written = build(tmp_path / "out")
-    names = {path.relative_to(tmp_path / "out").as_posix() for path in written}
-    assert names == {f"{form}/{model}.fmu" for form in FORMS for model in MODELS}
+def test_build_writes_all_that_can_be_made(maker, places, tmp_path, caplog, real):
+    def names(**what):
+        written = build(tmp_path / "out", **what)
+        return {path.relative_to(tmp_path / "out").as_posix() for path in written}
+
+    assert names() == {f"{form}/{model}.fmu" for form in FORMS for model in MODELS}
+    maker.without.update({"fmi2", "fmi3"})
+    assert names(names=[OSCILLATOR]) == {f"fmi2-python/{OSCILLATOR}.fmu"}
+    assert caplog.text.count(REASON) == 2
+    maker.without.update(FORMS)
+    put(real["fmi3"], places[1])  # those of a wheel are copied
+    assert names(names=[OSCILLATOR]) == {f"fmi3/{OSCILLATOR}.fmu"}
+    with pytest.raises(InputError, match="cannot be made: ziglang"):  # other platforms than it has
+        exported.build(tmp_path / "other", ["fmi3"], [OSCILLATOR], ["aarch64-linux"])
 
 
 def test_a_clone_has_its_own_folder(monkeypatch, tmp_path):
@@ -204,13 +213,3 @@ def test_who_waits_for_an_export_does_not_make_it_again(maker, places, monkeypat
         found = list(threads.map(lambda _: find(OSCILLATOR).path, range(2)))
     assert found == [places[0] / "fmi3" / f"{OSCILLATOR}.fmu"] * 2
     assert len(maker.asked) == 1
-
-
-def test_without_a_compiler_those_of_a_wheel_are_copied(maker, places, real, tmp_path):
-    maker.without |= {"fmi3", "fmi2-python"}
-    put(real["fmi3"], places[1])
-    copied = exported.build(tmp_path / "mine", ["fmi3"], [OSCILLATOR])
-    assert copied == [tmp_path / "mine" / "fmi3" / f"{OSCILLATOR}.fmu"]
-    assert copied[0].read_bytes() == real["fmi3"].read_bytes()
-    with pytest.raises(InputError, match="cannot be made"):  # other platforms than it has
-        exported.build(tmp_path / "other", ["fmi3"], [OSCILLATOR], ["aarch64-linux"])

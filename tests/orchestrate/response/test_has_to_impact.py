@@ -75,13 +75,6 @@ def test_attractors_without_their_impacts_are_not_periodic(numbers, frequency, a
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_it_has_no_exact_exponent(case):
-    structure, (asked, _) = case[0], place_of(*case)
-    found = orchestrate.impact_statistics(structure, **asked, transient=250, periods=50, **QUIET)
-    assert float(found.impacts[0]) == 0.0 and np.isnan(found.exponent[0])
-
-
-@pytest.mark.parametrize("case", CASES)
 def test_below_the_level_all_is_decided_as_before(case):
     structure, frequency = case[0], place_of(*case)[1].frequency
     level = orchestrate.contact_threshold(structure, frequency=frequency)

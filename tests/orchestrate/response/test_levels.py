@@ -42,5 +42,3 @@ def test_resonance_at_levels_is_resonance_at_each(exported, direction):
         peaks = family.peak_hertz.values[family.peak_level.values == level]
         np.testing.assert_array_equal(peaks, alone.peak_hertz.values)
     assert family.amplitude.dims == ("level", "frequency")
-    figure = orchestrate.plot(family)
-    assert "0.102 g" in [text.get_text() for text in figure.legends[0].get_texts()]

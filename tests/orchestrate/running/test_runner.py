@@ -52,9 +52,6 @@ def test_what_gathers_starts_when_all_others_are_there(find, size):
     assert float(answer(job, {}, find)["whole"]) == (np.arange(size) ** 2.0).sum()
 
 
-# -- stored ---------------------------------------------------------------------------------------
-
-
 def test_an_interrupted_job_goes_on_and_is_read_when_it_is_finished(find, tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     whole, broken = tmp_path / "whole.nc", tmp_path / "results" / "sums.nc"
@@ -116,37 +113,30 @@ def test_a_result_stays_until_the_one_computed_anew_is_whole(find, tmp_path, mon
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
 
 
+@pytest.mark.parametrize("damage", ["", "noise", "no chunk"])
 @pytest.mark.parametrize("stored", [False, True])
-@pytest.mark.parametrize("damage", [b"", b"noise" * 1000])
-def test_force_never_reads_a_journal(find, tmp_path, monkeypatch, stored, damage):
+def test_force_never_reads_a_journal_and_an_older_result_stays(
+    find, tmp_path, monkeypatch, stored, damage
+):
+    """Where the run with force cannot be resumed either."""
     path = tmp_path / "squares.nc"
     if stored:
         answer(JOB, {"store": path}, find)
     interrupted(monkeypatch, JOB, {"store": path, "force": stored}, find, 7)
-    if damage:
-        journal_path(path, anew=stored).write_bytes(damage)
-    items = computed(monkeypatch)
-    assert np.array_equal(answer(JOB, {"store": path, "force": True}, find).square, SQUARES)
-    assert items == list(range(10))
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
-
-
-@pytest.mark.parametrize("damage", ["noise", "no chunk"])
-def test_a_run_with_force_that_cannot_be_resumed_leaves_the_older_result(
-    find, tmp_path, monkeypatch, damage
-):
-    path = tmp_path / "squares.nc"
-    answer(JOB, {"store": path}, find)
-    interrupted(monkeypatch, JOB, {"store": path, "force": True}, find, 7)
+    place = journal_path(path, anew=stored)
     if damage == "noise":
-        journal_path(path, anew=True).write_bytes(b"noise" * 1000)
-    else:
-        journal = Journal(journal_path(path, anew=True), {}, "")
+        place.write_bytes(b"noise" * 1000)
+    elif damage:
+        journal = Journal(place, {}, "")
         for index in journal.indices():
             journal.drop(index, "")
         journal.close()
     items = computed(monkeypatch)
-    assert np.array_equal(answer(JOB, {"store": path}, find).square, SQUARES) and not items
+    if stored and damage:
+        assert np.array_equal(answer(JOB, {"store": path}, find).square, SQUARES) and not items
+    assert np.array_equal(answer(JOB, {"store": path, "force": True}, find).square, SQUARES)
+    assert items == list(range(10))
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
 
 
 @pytest.mark.parametrize("kind", ["NetCDF with an identity", "text", "empty"])
@@ -172,9 +162,6 @@ def test_one_process_at_a_time(find, tmp_path):
     lock.release()
     answer(JOB, {"store": path}, find)
     assert {path.name for path in tmp_path.iterdir()} == {"model.fmu", "squares.nc"}
-
-
-# -- keywords and the progress bar ----------------------------------------------------------------
 
 
 def test_in_a_log_the_bar_is_a_line_every_ten_per_cent(find, monkeypatch, capfd):
