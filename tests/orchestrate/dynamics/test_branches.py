@@ -1,13 +1,16 @@
 """Branches and bifurcations against closed forms, and the branches that leave there."""
 
 import functools
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
+from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.branches import branch
+from orchestrate.dynamics.branches import branch, complete_excitation
 from orchestrate.dynamics.continuation import (
     NoConvergenceError,
     newton_correct,
@@ -16,6 +19,7 @@ from orchestrate.dynamics.orbits import orbit
 from orchestrate.flags import flag_words
 from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
 from orchestrate.model import Excitation, Structure
+from orchestrate.response import questions
 
 from ...sparing import ordinary
 from .single_impact import SingleImpact, border
@@ -201,3 +205,30 @@ def test_a_root_is_known_by_its_residual():
 
     with pytest.raises(NoConvergenceError, match="the residual is"):
         newton_correct(Steep(), np.zeros(2), np.array([0.0, 1.0]))
+
+
+@pytest.mark.parametrize("over", ["k1", "m1", "omega", "f1"])
+def test_where_omega_varies_the_frequency_is_kept_that_was_asked_for(over):
+    beam, at = Structure.from_file("beam"), {"eta": 1.3, "frequency": 97.4, "amplitude": 1e-4}
+    asked = (("frequency", 97.4), ("amplitude", 1e-4)), (("eta", 1.3),)
+    for one in asked:
+        start = xr.Dataset(coords=at, attrs={"excitation": json.dumps(one)})
+        for varied in ((over,), ("e", over)):
+            assert complete_excitation(start, varied, (), (0.0, 1.0), beam, {}) == one
+        assert complete_excitation(start, ("e",), (), (0.0, 1.0), beam, {}) == asked[1]
+
+
+def test_what_pushes_at_the_start_is_kept(monkeypatch):
+    """Of an orbit that is stable, whose manifold is refused after that."""
+    pushes = {"box_acceleration": 0.05, "force1": 0.02}
+    start = orbit(PAPER, eta=1.7, **pushes)
+    monkeypatch.setattr(questions, "answer", lambda job, *rest: job)
+    kept = branch(PAPER, start=start, limits=(1.6, 1.8))
+    assert dict(kept.setting.excitation) == pushes
+    given = branch(PAPER, start=start, limits=(1.6, 1.8), box_acceleration=0.0)
+    assert dict(given.setting.excitation) == {"force1": 0.02}
+    along = branch(PAPER, start=start, over="box_acceleration", limits=(0.0, 0.1))
+    assert along.value == 0.05 and dict(along.setting.excitation)["force1"] == 0.02
+    monkeypatch.setattr(manifolds.ManifoldJob, "saddle", lambda job: None)
+    kept = manifolds.manifold(PAPER, start=start)
+    assert {name: getattr(kept, name) for name in pushes} == pushes
