@@ -4,18 +4,15 @@ import re
 from functools import cache
 
 import numpy as np
-import pandas as pd
 import pytest
 import xarray as xr
 
 import orchestrate
 from orchestrate import InputError, Structure
-from orchestrate.running import formats
 from orchestrate.show.labels import title_from_attributes
 from orchestrate.show.scales import displayed_gaps
 from orchestrate.units import (
     Units,
-    as_shown,
     length_of_ratio,
     scale_of,
     text_of,
@@ -97,35 +94,6 @@ def test_numbers_are_divided_by_what_the_unit_says():
     beam = xr.Dataset({"x": ("t", [2e-5, 0.0], {"units": "m"})}, attrs={"k1": 4.0, "m1": 1.0})
     assert str(units_of(*with_readable_lengths(beam))) == "um"
     assert scale_of(with_units(xr.Dataset(), "eta"), "rad/s") == (1.0, "rad/s")  # no omega
-
-
-@pytest.mark.parametrize("kind", ["resonance_levels", "simulate", "sweep"])
-def test_tables_have_the_units_in_their_columns(kind, tmp_path):
-    answer = answers()[kind]
-    shown = with_units(answer, "rpm, um, g")
-    assert shown.drop_attrs(deep=False).identical(answer.drop_attrs(deep=False))  # in SI
-    table = as_shown(shown)
-    assert as_shown(table).identical(table)
-    factors = {"rad/s": TURN / 60.0, "m": 1e-6, "m/s": 1e-3, "m/s2": G}
-    names = {"rad/s": "rpm", "m": "um", "m/s": "mm/s", "m/s2": "g"}
-    changed = 0
-    for name, array in answer.variables.items():
-        unit = array.attrs.get("units")
-        if unit in factors and array.dtype.kind == "f":
-            assert table[name].attrs["units"] == names[unit]
-            expected = array.values / factors[unit]
-            np.testing.assert_allclose(table[name].values, expected, rtol=1e-14)
-            changed += 1
-        else:
-            assert table.variables[name].identical(array)
-    assert changed > 3
-    columns = set()
-    for path in formats.write(with_units(answer, "rpm, um, g"), tmp_path / "a.csv"):
-        columns |= set(pd.read_csv(path).columns)
-    assert any(column.endswith("[um]") for column in columns)
-    assert not any(re.search(r"\[(m|rad/s|m/s|m/s2)\]", column) for column in columns)
-    plain = formats.write(answer, tmp_path / "b.csv")
-    assert any("[m]" in column for path in plain for column in pd.read_csv(path).columns)
 
 
 def test_pictures_are_in_the_units_asked_for_and_in_no_other():

@@ -6,14 +6,11 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, basin
-from orchestrate.fmu import OSCILLATOR, REST, STATE, Instance, begin, find, finder
+from orchestrate.dynamics.basins import Plane, PlaneAxis, basin
+from orchestrate.fmu import OSCILLATOR, REST, STATE, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
-from orchestrate.running.runner import answer
-
-from .settling import settling_run
 
 PAPER = Structure.nondimensional()
 ETA = 1.315
@@ -30,14 +27,6 @@ def starts(x, y, at=AT):
 @pytest.fixture(scope="module")
 def found(exported):
     return basin(PAPER, eta=ETA, **SIDES)
-
-
-def test_gap_coordinates_keep_the_means():
-    states, _ = starts(("x_rel", 0.0, 3.0, 4), ("v_rel", -2.0, 2.0, 3))
-    np.testing.assert_allclose(states[..., :2].mean(axis=-1), 0.5)
-    np.testing.assert_allclose(states[..., 2:].mean(axis=-1), 0.1)
-    np.testing.assert_allclose(states[1, :, 1] - states[1, :, 0], [0.0, 1.0, 2.0, 3.0])
-    np.testing.assert_allclose(states[:, 0, 3] - states[:, 0, 2], [-2.0, 0.0, 2.0])
 
 
 def test_each_start_leads_where_it_says(found):
@@ -105,14 +94,3 @@ def test_the_default_plane_holds_the_attractors_and_shows_both_basins(monkeypatc
     assert (gap < found.x_rel.max()).all() and (abs(rate) < found.v_rel.max()).all()
     scale = 1e-4 * 1.315**2
     assert 0.5 < float(found.x_rel.max()) / scale < 2.0  # of the size of the motion
-
-
-def test_what_is_known_is_told_though_no_start_of_the_plane_leads_there(found):
-    one, two = (found.state.values[found.multiplicity.values == n][0] for n in (1, 2))
-    x, y = (PlaneAxis(f"v{i - 1}", one[i] - 1e-4, one[i] + 1e-4, 2) for i in (2, 3))
-    asked = {"name": "basin", "structure": PAPER, "excitation": POINT.excitation, "x": x, "y": y}
-    states = {"at": tuple(one.tolist()), "known": (tuple(two.tolist()),)}
-    job = BasinJob(**asked, **states, settings=settling_run())
-    near = answer(job, {}, finder({}))
-    assert near.share.values.tolist() == [1.0, 0.0]
-    assert near.multiplicity.values.tolist() == [1.0, 2.0]

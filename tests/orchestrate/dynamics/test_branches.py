@@ -11,10 +11,6 @@ import xarray as xr
 from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.branches import branch, complete_excitation
-from orchestrate.dynamics.continuation import (
-    NoConvergenceError,
-    newton_correct,
-)
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.flags import flag_words
 from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
@@ -187,24 +183,6 @@ def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
     for value in found.bifurcation_value.values:
         truth = SingleImpact(float(value), 1, D=0.06876)
         assert np.abs(truth.multipliers + 1.0).min() < 1e-9
-
-
-def test_a_root_is_known_by_its_residual():
-    """Short steps alone do not make one: a wrong derivative makes them anywhere."""
-
-    class Steep:
-        """x = 1 with a derivative that is far too large; the second unknown is free."""
-
-        scale, accuracy = np.ones(2), 1e-9
-
-        def residual(self, unknowns):
-            return unknowns[:1] - 1.0
-
-        def jacobian(self, unknowns, at_root=False):
-            return np.array([[1e9, 0.0]])
-
-    with pytest.raises(NoConvergenceError, match="the residual is"):
-        newton_correct(Steep(), np.zeros(2), np.array([0.0, 1.0]))
 
 
 @pytest.mark.parametrize("over", ["k1", "m1", "omega", "f1"])

@@ -52,16 +52,6 @@ def test_chattering_into_permanent_contact_leaves_two_multipliers():
     assert found.multiplier_product.item() == 0.0
 
 
-def test_an_orbit_without_impacts():
-    """Where the box's acceleration holds the gap open the response is harmonic."""
-    found = orbit(PAPER, eta=1.5, box_acceleration=30.0)
-    assert not (found.node_kind.values >= 0).any()
-    assert found.fmu_same_impacts
-    assert found.fmu_return < 1e-10
-    decay = np.exp(-0.005 * 2.0 * np.pi / 1.5)
-    assert np.abs(multipliers(found)) == pytest.approx([decay] * 4)
-
-
 @pytest.mark.parametrize("form", ["state", "times", "orbit"])
 def test_guesses_in_all_forms(form):
     near = known(3.02)

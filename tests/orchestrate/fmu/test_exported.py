@@ -2,9 +2,6 @@
 
 import shutil
 import sys
-import threading
-import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -178,38 +175,3 @@ def test_build_writes_all_that_can_be_made(maker, places, tmp_path, caplog, real
     assert names(names=[OSCILLATOR]) == {f"fmi3/{OSCILLATOR}.fmu"}
     with pytest.raises(InputError, match="cannot be made: ziglang"):  # other platforms than it has
         exported.build(tmp_path / "other", ["fmi3"], [OSCILLATOR], ["aarch64-linux"])
-
-
-def test_a_clone_has_its_own_folder(monkeypatch, tmp_path):
-    assert exported.default_folder() == exported.CLONE / "build"
-    (tmp_path / "build").mkdir()  # PyPA's package of that name beside ours in site-packages
-    monkeypatch.setattr(exported, "CLONE", tmp_path)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "caches"))
-    folder = exported.default_folder()
-    assert "build" not in folder.parts and "vibroimpact" in folder.parts
-    if sys.platform == "linux":
-        assert folder.is_relative_to(tmp_path / "caches")
-
-
-def test_who_waits_for_an_export_does_not_make_it_again(maker, places, monkeypatch):
-    quick, met = exported.sources.export, threading.Barrier(2, timeout=10.0)
-    check = exported.up_to_date
-
-    def slow(*arguments):
-        time.sleep(0.5)
-        return quick(*arguments)
-
-    def both_find_nothing(*arguments):
-        there = check(*arguments)
-        if not there and len(seen) < 2:
-            seen.append(there)
-            met.wait()
-        return there
-
-    seen = []
-    monkeypatch.setattr(exported.sources, "export", slow)
-    monkeypatch.setattr(exported, "up_to_date", both_find_nothing)
-    with ThreadPoolExecutor(2) as threads:
-        found = list(threads.map(lambda _: find(OSCILLATOR).path, range(2)))
-    assert found == [places[0] / "fmi3" / f"{OSCILLATOR}.fmu"] * 2
-    assert len(maker.asked) == 1

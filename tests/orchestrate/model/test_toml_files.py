@@ -84,21 +84,6 @@ def test_excitations(file, text, frequency, amplitude):
     assert found.phase == 0.5
 
 
-def test_eta_refers_to_a_structure_given_elsewhere(file):
-    path, structure = file("[excitation]\neta = 2"), Structure.nondimensional(omega=75.0)
-    assert Excitation.from_file(path, structure).frequency == 150.0
-
-
-def test_a_drive_by_numbers(file):
-    motor = "[motor]\nbeta = 0.25\nepsilon = 0.001\nb = 0.02\n"
-    path = file(f"{motor}[box]\nOmega_b = 0.1\nD_b = 0.005\n")
-    structure = Structure.nondimensional(omega=75.0)
-    numbers = {"beta": 0.25, "epsilon": 0.001, "b": 0.02, "Omega_b": 0.1, "D_b": 0.005}
-    assert Drive.from_file(path, structure) == Drive.nondimensional(**numbers, structure=structure)
-    with pytest.raises(InputError, match=r"motor.beta = 0.25: .*\[structure\]"):
-        Drive.from_file(path)
-
-
 MOTOR = """unbalance_mass = 0.025
 unbalance_radius = 0.02
 rotor_inertia = 5e-5

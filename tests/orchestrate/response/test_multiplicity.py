@@ -60,11 +60,6 @@ def repeat(orbit, length):
     return np.tile(orbit, (length // len(orbit) + 1, 1))[:length]
 
 
-@given(orbits(), st.integers(0, 60))
-def test_period_of_a_periodic_sequence(orbit, more):
-    assert multiplicity(repeat(orbit, 4 * len(orbit) + more), TOLERANCE) == len(orbit)
-
-
 @pytest.mark.parametrize(("deviation", "expected"), [(0.9, 1), (1.1, 2)])
 @pytest.mark.parametrize("coordinate", range(4))
 def test_a_gap_much_smaller_than_the_motion_has_a_size_of_its_own(coordinate, deviation, expected):
@@ -271,15 +266,6 @@ def test_a_torus_has_repeated_after_no_number_of_periods(phase, angle):
     states = states_of(lambda n: 0.3 * np.cos(turn(n)), of_velocity=lambda n: np.sin(turn(n)))
     exact = min(abs(angle * n - round(angle * n)) for n in range(1, 51)) < 1e-4
     assert exact or decide(states).decided != REPEATED
-
-
-def test_noise_narrower_than_the_tolerance_is_undecided_and_wider_irregular():
-    noise = np.random.default_rng(3).uniform(-1.0, 1.0, (30, 200))
-    narrow = [decide(states_of(lambda n, row=row: 1e-3 * row)) for row in noise]
-    assert {found.multiplicity for found in narrow} == {1}
-    assert sum(found.decided == UNDECIDED for found in narrow) >= 28  # chance may look like dying
-    wide = {decide(states_of(lambda n, row=row: 0.2 * row)) for row in noise}
-    assert wide == {(0, IRREGULAR)}
 
 
 @pytest.mark.parametrize(

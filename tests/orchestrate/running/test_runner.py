@@ -1,6 +1,5 @@
 """Results are stored, resumed and read; they are never taken for another question's."""
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +7,11 @@ import pytest
 import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError
-from orchestrate.running import bar
 from orchestrate.running.journal import Journal, journal_path, lock_result
 from orchestrate.running.runner import answer
 
 from .conftest import Find
-from .sums import Gathered, Squares, Sums
+from .sums import Squares, Sums
 
 JOB = Squares("squares")
 SQUARES = np.arange(10.0) ** 2
@@ -43,13 +41,6 @@ def computed(monkeypatch):
 
     monkeypatch.setattr(Squares, "work", note)
     return items
-
-
-@pytest.mark.parametrize("size", [1, 3, 10])
-def test_what_gathers_starts_when_all_others_are_there(find, size):
-    job = Gathered("all", size=size)
-    assert [chunk.stop - chunk.start for chunk in job.chunks()][-1] == 1
-    assert float(answer(job, {}, find)["whole"]) == (np.arange(size) ** 2.0).sum()
 
 
 def test_an_interrupted_job_goes_on_and_is_read_when_it_is_finished(find, tmp_path, monkeypatch):
@@ -162,19 +153,3 @@ def test_one_process_at_a_time(find, tmp_path):
     lock.release()
     answer(JOB, {"store": path}, find)
     assert {path.name for path in tmp_path.iterdir()} == {"model.fmu", "squares.nc"}
-
-
-def test_in_a_log_the_bar_is_a_line_every_ten_per_cent(find, monkeypatch, capfd):
-    """Its label is short; what the last chunk does is said before, as the bar stands still then."""
-    monkeypatch.setattr(bar, "DELAY", 0.0)
-    monkeypatch.setattr("orchestrate.running.runner.DELAY", 0.0)
-    monkeypatch.setattr(
-        Sums, "progress_note", lambda self, first: "counting again" if first >= 396 else ""
-    )
-    monkeypatch.setattr(Sums, "independent_series", lambda self: 1)
-    answer(Sums("a name of very many letters", size=400), {"jobs": 1}, find)
-    lines = capfd.readouterr().err.splitlines()
-    assert lines[0].startswith("a name of very many l...:   0%|")
-    assert lines[-1].startswith("counting again: 100%|")
-    shares = [int(share) for share in re.findall(r"(\d+)%\|", "\n".join(lines))]
-    assert shares == sorted(shares) and 10 <= len(lines) <= 14 and max(map(len, lines)) < 81
