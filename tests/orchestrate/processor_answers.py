@@ -35,7 +35,6 @@ def of_an_orbit_branch(limits):
 
 
 def of_a_drive(system):
-    """Branches of a drive."""
     decided, places = [], []
     for leg in branch_of(system, most=60, range_=(0.995, 1.018))[0]:
         stable = [int(abs(one.multipliers[0]) < 1.0) for one in leg.points]
@@ -60,7 +59,6 @@ def of_the_averaged_theory(count):
 
 
 def main():
-    """Print the answers."""
     answers = {"branch": of_an_orbit_branch((0.79, 0.8)), "rig": of_a_drive(RIG)}
     answers["averaged"] = of_the_averaged_theory(2)
     print(json.dumps({"kernels": kernels(), "answers": answers}, default=np.ndarray.tolist))

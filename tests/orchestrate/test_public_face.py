@@ -29,7 +29,6 @@ UNIT = Structure.nondimensional()
 
 
 def motor() -> Drive:
-    """A motor and a box of the size of ``OWN``."""
     return Drive.nondimensional(
         beta=0.25, epsilon=1e-3, b=0.02, Omega_b=0.1, D_b=0.005, structure=OWN
     )
@@ -79,7 +78,6 @@ def questions() -> dict[str, xr.Dataset]:
 
 @pytest.fixture(scope="module")
 def answers(exported, tmp_path_factory) -> dict[str, xr.Dataset]:
-    """The answers to ``questions``."""
     return once(tmp_path_factory, "answers", questions)
 
 

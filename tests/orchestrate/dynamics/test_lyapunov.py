@@ -32,7 +32,6 @@ PUSHED = {"force1": 0.3, "force2": -0.4, "box_acceleration": 0.1}
 
 @pytest.fixture(scope="module")
 def instances(exported):
-    """One instance without and one with events."""
     fmu = find(OSCILLATOR).path
     with Instance(fmu) as plain, EventInstance(fmu) as eventful:
         yield plain, eventful

@@ -28,7 +28,6 @@ UNLIKE = (
 
 @pytest.fixture(scope="module")
 def instances(exported):
-    """One instance without and one with events."""
     fmu = find(OSCILLATOR).path
     with Instance(fmu) as plain, EventInstance(fmu) as eventful:
         yield plain, eventful
@@ -67,7 +66,6 @@ def moving(point):
 
 
 def monodromy(impacts, point, periods=1):
-    """Monodromy matrix over some periods from phase 0, impacts included."""
     form = ClosedForm.from_structure(*point)
     end = periods * period_in_tau(form.eta)
     first = impacts.time[0] if len(impacts.time) else end

@@ -28,7 +28,6 @@ REASON = "ziglang, which compiles the kernel, is not installed: expected " + EXT
 
 @pytest.fixture
 def real(oscillator_in):
-    """The true FMUs of the oscillator, to copy."""
     return {form: oscillator_in(form) for form in FORMS}
 
 
@@ -64,7 +63,6 @@ def places(monkeypatch, tmp_path):
 
 
 def put(source, folder, form="fmi3", model=OSCILLATOR):
-    """Copy an FMU into a build folder."""
     target = folder / form / f"{model}.fmu"
     target.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy(source, target)

@@ -23,7 +23,6 @@ def instance(any_fmu):
 
 
 def trajectory(instance, start, steps=25):
-    """Values along some steps."""
     values = []
     for n in range(steps):
         instance.step(start + 2.0 * n, start + 2.0 * n + 2.0)

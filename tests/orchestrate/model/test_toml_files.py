@@ -14,7 +14,6 @@ from .strategies import DRIVES, STRUCTURES, WITH_FORCES
 
 @pytest.fixture
 def file(tmp_path):
-    """Write a TOML file, give its path."""
 
     def put(text):
         path = tmp_path / "mine.toml"

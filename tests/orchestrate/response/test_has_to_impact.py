@@ -31,7 +31,6 @@ CASES = [(OPEN, 0.9995066730201216, None), (PRESSED, 0.9997454727152408, 1.93030
 
 
 def place_of(structure, eta, amplitude):
-    """Arguments of an analysis, and the excitation."""
     unit = Excitation.nondimensional(eta, structure)
     excitation = unit if amplitude is None else unit.replace(amplitude=amplitude)
     asked = {"frequency": excitation.frequency, "amplitude": excitation.amplitude}

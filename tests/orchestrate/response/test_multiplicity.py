@@ -56,7 +56,6 @@ def four(*columns):
 
 
 def repeat(orbit, length):
-    """Take the first ``length`` states of a periodic sequence."""
     return np.tile(orbit, (length // len(orbit) + 1, 1))[:length]
 
 

@@ -9,7 +9,6 @@ OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
 
 
 def along(structure=OWN, **asked):
-    """The points of a sweep."""
     rest = {"direction": "given", "transient": 0, "samples": 1, "tolerance": 0.1, "peak_periods": 1}
     return SweepJob(name="", structure=structure, **rest, **asked).series
 

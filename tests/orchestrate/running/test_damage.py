@@ -25,7 +25,6 @@ JOB = Squares("squares", size=30)
 
 @pytest.fixture
 def path(tmp_path) -> Path:
-    """Place of the result."""
     return tmp_path / "squares.nc"
 
 
@@ -47,7 +46,6 @@ def journal(find, path, monkeypatch) -> Path:
 
 
 def numbers(find, path, **running) -> list[float]:
-    """The answer's numbers."""
     values: list[float] = answer(JOB, {"store": path, **running}, find).square.values.tolist()
     return values
 
@@ -72,7 +70,6 @@ def test_a_damaged_journal(journal, path, find, damage, seed):
 
 
 def query(journal: Path, text: str, *values: object) -> None:
-    """Change something in a journal."""
     opened = Journal(journal, {}, "")
     opened._query(text, *values)
     opened.close()

@@ -74,8 +74,6 @@ def test_an_fmu_of_somebody_else_runs_in_a_process(find, monkeypatch, tmp_path):
 
 
 class Where(Squares):
-    """The process that computes it."""
-
     in_threads: ClassVar[bool] = True
 
     def count(self):

@@ -17,7 +17,6 @@ from orchestrate.units import with_units
 
 
 def metres(dims, values):
-    """A length."""
     return dims, np.asarray(values, dtype=float), {"units": "m", "long_name": "length"}
 
 

@@ -32,7 +32,6 @@ def interrupted(monkeypatch, job, running, find, item):
 
 
 def computed(monkeypatch):
-    """List of the items that are computed from now on."""
     items, work = [], Squares.work
 
     def note(self, fmus, chunk, previous):
