@@ -88,27 +88,13 @@ def test_over_a_parameter_of_the_structure(name, values):
     assert found[name].attrs["units"]
 
 
-@given(
-    st.integers(-8, 8),
-    st.integers(-4, 4),
-    st.floats(0.3, 3.0),
-    st.floats(0.7, 2.0),
-    st.floats(0.1, 0.9),
-)
+@given(st.integers(-8, 8), st.integers(-4, 4), st.floats(0.3, 3.0), st.floats(0.7, 2.0))
 @settings(max_examples=15, deadline=None)
-def test_the_unit_of_mass_and_time_does_not_matter(mass, time, eta, kappa, e):
-    unit = Structure.nondimensional(kappa=kappa, e=e, mu=1.5)
-    m, omega = 2.0**mass, 2.0**time
-    other = Structure(
-        m1=m * unit.m1,
-        m2=m * unit.m2,
-        k1=m * omega**2 * unit.k1,
-        k2=m * omega**2 * unit.k2,
-        d1=m * omega * unit.d1,
-        d2=m * omega * unit.d2,
-        e=e,
-    )
-    one, two = (sweep(s, eta=eta, transient=20, samples=5) for s in (unit, other))
+def test_the_unit_of_mass_and_time_does_not_matter(mass, time, eta, kappa):
+    numbers, omega = {"kappa": kappa, "e": 0.4, "mu": 1.5}, 2.0**time
+    other = Structure.nondimensional(**numbers, m1=2.0**mass, omega=omega)
+    both = Structure.nondimensional(**numbers), other
+    one, two = (sweep(s, eta=eta, transient=20, samples=5) for s in both)
     same(one, two, ("xi_rel", "xi_rel_max", "end_state", "xi1_max"))
     np.testing.assert_allclose(two.a1_max, omega**2 * one.a1_max, rtol=1e-12)
 
