@@ -4,7 +4,6 @@ import math
 
 import pytest
 from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
 from orchestrate.model import SETS, Drive, Excitation, Structure, read, resolve, write
@@ -136,17 +135,6 @@ def test_one_mass_before_a_stop(file):
     assert [stop.get(one) for one in ("m1", "k1", "d1", "clearance")] == [
         same.get(one) for one in ("m1", "k1", "d1", "clearance")
     ]
-
-
-@given(st.text(max_size=40))
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25)
-def test_any_text_is_read_or_refused_in_one_line(file, text):
-    path = file("")
-    path.write_text(f"[structure]\n{text}", encoding="utf-8", errors="ignore")
-    try:
-        read(path)
-    except InputError as error:
-        assert "\n" not in str(error)
 
 
 WRONG = [

@@ -76,7 +76,10 @@ def test_a_chain_goes_on_from_the_end_before_it_with_the_same_gap(instance):
         alone = LoopSettings(transient=30, **SETTINGS)
         found = response_loop(instance).respond([point], [start], alone)
         assert found.states.tobytes() == chain.states[i].tobytes(), i
-        gap = offset
+        gap, speeds = offset, chain.ends[i, 2:]
+        digit = np.ldexp(1.0, np.frexp(np.abs(speeds).max())[1] - 44)  # ends are rounded to 44 bits
+        assert not (speeds % digit).any()
+        assert speeds == pytest.approx(chain.states[i, -1, 2:], abs=0.51 * digit)
 
 
 @pytest.mark.parametrize("form", ["fmi2", "fmi2-python", "fmi2-plain"])
