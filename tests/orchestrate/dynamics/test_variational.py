@@ -108,25 +108,6 @@ def test_monodromy_equals_differences_of_the_fmu(instances, structure, eta, push
     assert not structure.stroke or 0 < outside.sum() < len(outside)
 
 
-@pytest.mark.parametrize("structure", [ALIKE[0], *UNLIKE])
-@pytest.mark.parametrize(("eta", "pushed"), [(0.2, 0.0), (0.35, 0.0), (0.35, 0.7)])
-def test_releases_are_those_of_the_fmu(instances, structure, eta, pushed):
-    plain, eventful = instances
-    point = pushed_point(structure, eta, pushed)
-    span = period_in_tau(eta)
-    impacts = follow_impacts(eventful, point, REST, 4)
-    ends = np.append(impacts.time[1:], 4 * span)
-    _, found = deviations(impacts, 4 * span, point)
-    for stick in np.flatnonzero(impacts.sticks):
-        release = impacts.time[stick] + found[stick]
-        touching = []
-        for tau in (release - 1e-7 * span, release + 1e-7 * span):
-            begin(plain, *point, REST)
-            plain.step(0.0, tau / structure.omega)
-            touching += plain.get("in_contact")
-        assert touching == [True, release >= ends[stick]]
-
-
 @pytest.mark.parametrize("above", [1e-5, 5e-4])
 def test_short_openings_are_seen_wherever_a_contact_begins(above):
     """On the common steady motion, which opens for less than a sample, by 400,000 of its phases."""
