@@ -67,5 +67,4 @@ def exported(request, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def python_fmu(exported):
-    """The oscillator's FMU by pythonfmu."""
     return exported / "fmi2-python" / "TwoMassImpactOscillator.fmu"

@@ -32,22 +32,18 @@ class Signal:
         self._coarse = [(complex(c), complex(s)) for c, s in terms], [float(p) for p in polynomial]
 
     def __sub__(self, other: Signal) -> Signal:
-        """Return the difference of two signals."""
         return self + -1 * other
 
     def __add__(self, other: Signal) -> Signal:
-        """Return the sum of two signals."""
         pairs = zip(self.polynomial, other.polynomial, strict=True)
         return Signal(self.terms + other.terms, [a + b for a, b in pairs])
 
     def __rmul__(self, factor: Any) -> Signal:
-        """Return the signal times a number."""
         return Signal(
             [(factor * c, s) for c, s in self.terms], [factor * p for p in self.polynomial]
         )
 
     def derivative(self) -> Signal:
-        """Return the signal's derivative by time."""
         return Signal([(c * s, s) for c, s in self.terms], [*self.polynomial[1:], mp.mpf(0)])
 
     def __call__(self, t: Any) -> Any:
@@ -64,7 +60,6 @@ class Signal:
         return sum((c * np.exp(s * t)).real for c, s in terms) + taylor_polynomial(polynomial, t)
 
     def fastest_rate(self) -> float:
-        """Return the largest rate of change of a term, 1/s."""
         return max([abs(s) for _, s in self._coarse[0]] + [1e-3])
 
 
@@ -151,7 +146,6 @@ def free_motion(
 
 
 def gap_signal(values: Mapping[str, float], first: Signal, second: Signal) -> Signal:
-    """Return the gap as a ``Signal``: clearance plus the displacements' difference."""
     constant = [mp.mpf(values.get("clearance", 0.0)), 0, 0, 0]
     return second - first + Signal([], constant)
 
@@ -177,7 +171,6 @@ def contact_motion(
 
 
 def refine_root(signal: Signal, low: Any, high: Any) -> Any:
-    """Return a signal's root inside a bracket, in high precision."""
     return mp.findroot(signal, (mp.mpf(low), mp.mpf(high)), solver="anderson", verify=False)
 
 

@@ -24,14 +24,12 @@ Damage = Callable[[Path, random.Random], None]
 
 
 def flip_a_bit(path: Path, draw: random.Random) -> None:
-    """One bit of a file."""
     data = bytearray(path.read_bytes())
     data[draw.randrange(len(data))] ^= 1 << draw.randrange(8)
     path.write_bytes(data)
 
 
 def truncate(path: Path, draw: random.Random) -> None:
-    """Any part of a file's end is lost."""
     os.truncate(path, draw.randrange(path.stat().st_size))
 
 
@@ -60,7 +58,6 @@ FILE_DAMAGE: Mapping[str, Damage] = {
 
 
 def rows(path: Path) -> list[tuple[int, bytes]]:
-    """Chunks of a journal."""
     with closing(sqlite3.connect(path)) as database:
         return list(database.execute("SELECT i, CAST(data AS BLOB) FROM chunks ORDER BY i"))
 
@@ -73,19 +70,16 @@ def put_row(path: Path, index: int, data: bytes) -> None:
 
 
 def rows_of_nan(path: Path, draw: random.Random) -> None:
-    """Numbers that are none."""
     index, data = draw.choice(rows(path))
     put_row(path, index, pack({name: array * np.nan for name, array in arrays(data).items()}))
 
 
 def a_shorter_row(path: Path, draw: random.Random) -> None:
-    """An item less."""
     index, data = draw.choice(rows(path))
     put_row(path, index, pack({name: array[:-1] for name, array in arrays(data).items()}))
 
 
 def an_empty_row(path: Path, draw: random.Random) -> None:
-    """No bytes at all."""
     put_row(path, draw.choice(rows(path))[0], b"")
 
 
@@ -96,7 +90,6 @@ def too_many_rows(path: Path, draw: random.Random) -> None:
 
 
 def a_moved_row(path: Path, draw: random.Random) -> None:
-    """Two rows change places, checksums and all."""
     (one, _), (other, _) = draw.sample(rows(path), 2)
     with closing(sqlite3.connect(path, isolation_level=None)) as database:
         for old, new in ((one, -7), (other, one), (-7, other)):
@@ -104,14 +97,12 @@ def a_moved_row(path: Path, draw: random.Random) -> None:
 
 
 def another_identity(path: Path, draw: random.Random) -> None:
-    """What the journal says it is of."""
     with closing(sqlite3.connect(path, isolation_level=None)) as database:
         text = draw.choice(["", "[]", "null", "{}", "{", '{"question": 1}'])
         database.execute("UPDATE about SET text = ? WHERE name = 'identity'", (text,))
 
 
 def arrays(data: bytes) -> dict[str, np.ndarray]:
-    """Arrays of a row."""
     from orchestrate.running.journal import unpack
 
     return unpack(data)
@@ -147,7 +138,6 @@ class Surroundings:
     memory: int = 0
 
     def shell(self, command: Sequence[str | Path]) -> list[str]:
-        """The command as a shell starts it."""
         ends = {"pipe": "", "closed": "&-"}
         text = 'exec "$@"'
         for number, where in ((1, self.stdout), (2, self.stderr)):
@@ -156,7 +146,6 @@ class Surroundings:
         return ["sh", "-c", text, "sh", *map(str, command)]
 
     def limit(self) -> None:
-        """Set the limits, in the process that is to become the command."""
         if self.open_files:
             resource.setrlimit(resource.RLIMIT_NOFILE, (self.open_files, self.open_files))
         if self.memory:

@@ -25,7 +25,6 @@ def is_ours(place):
 
 
 def leave_the_project():
-    """Take the project from the path."""
     sys.path[:] = [place for place in sys.path if not is_ours(place)]
     try:
         import_module("fmu_src")
@@ -35,7 +34,6 @@ def leave_the_project():
 
 
 def main(folder, module, function, arguments):
-    """Call the function and print what it returns."""
     sys.path.insert(0, folder)
     answer = getattr(import_module(module), function)(*arguments)
     print("ANSWER " + json.dumps(answer))

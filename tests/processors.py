@@ -19,7 +19,6 @@ ROOT = Path(__file__).parents[1]
 
 
 def surroundings(processor):
-    """The environment of a process with the kernels of a processor."""
     return {**os.environ, "OPENBLAS_CORETYPE": processor, "OPENBLAS_NUM_THREADS": "1"}
 
 

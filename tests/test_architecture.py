@@ -88,12 +88,10 @@ ONLY_IN = {  # packages of others, and the one place of ours that may know them
 
 @functools.cache
 def tree_of(file: str) -> ast.Module:
-    """Syntax tree of a source file."""
     return ast.parse((ROOT / file).read_text(encoding="utf-8"), file)
 
 
 def module_name(file: str) -> str:
-    """Dotted name of a source file's module."""
     return file.removesuffix("i").removesuffix(".py").removesuffix("/__init__").replace("/", ".")
 
 
@@ -120,12 +118,10 @@ def imports(tree: ast.Module, file: str) -> Iterator[str]:
 
 @functools.cache
 def imports_of(file: str) -> frozenset[str]:
-    """Absolute names of all that a source file imports."""
     return frozenset(imports(tree_of(file), file))
 
 
 def users(package: str) -> set[str]:
-    """The files that import a package."""
     return {f for f in FILES if any(f"{n}.".startswith(f"{package}.") for n in imports_of(f))}
 
 

@@ -6,6 +6,10 @@ from pathlib import Path
 
 import pytest
 
+import orchestrate
+from fmu_src.export import forms
+from fmu_src.export.sources import load_model
+from fmu_src.version import VERSION
 from orchestrate import cli
 from orchestrate.fmu import find
 from tools import assets
@@ -49,3 +53,15 @@ def test_the_fmu_of_the_example_is_one_that_the_first_command_makes():
     made = inspect.signature(find).parameters["form"].default
     (block,) = (part for part in re.findall(r"```python\n(.*?)```", README, re.S) if "fmpy" in part)
     assert re.findall(r'"build/([\w-]+)/', block) == [made]
+
+
+def test_the_version_stands_in_one_place_and_elsewhere_it_is_said_as_there():
+    """Results say that of the code, not of the last ``pip install -e``."""
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    told = (
+        re.search(r"^version: (.*)$", citation, re.M)[1],
+        re.search(r"^## (\S+)", changes, re.M)[1],
+    )
+    models = {load_model(folder).version for folder in forms.MODELS.values()}
+    assert {*told, orchestrate.__version__, *models} == {VERSION}

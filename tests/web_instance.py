@@ -19,7 +19,6 @@ class WebInstance:
     """An oscillator in the WebAssembly module, driven by FMI's functions."""
 
     def __init__(self, kernel: WebKernel) -> None:
-        """Instantiate the WebAssembly module and an FMU in it."""
         import wasmtime
 
         self.model, self.variables = load_model(FOLDER), kernel.variables[FOLDER]
@@ -34,7 +33,6 @@ class WebInstance:
         (self.instance,) = self.read(self.room, "u4", 1)
 
     def read(self, place: int, kind: str, count: int) -> NDArray[Any]:
-        """Return numbers at a place of the module's memory."""
         size = count * np.dtype(kind).itemsize
         return np.frombuffer(self.exports["memory"].read(self.store, place, place + size), kind)
 
@@ -44,7 +42,6 @@ class WebInstance:
         return place
 
     def call(self, name: str, *numbers: float) -> bool:
-        """Call a function of FMI; return whether it answered OK."""
         function = self.exports[f"{FOLDER}_fmi3{name}"]
         return bool(function(self.store, int(self.instance), *numbers) == 0)
 
@@ -61,7 +58,6 @@ class WebInstance:
         return saved[-8 * self.model.memory_size - 8 : -8]
 
     def memory(self) -> NDArray[np.float64]:
-        """Return the instance's memory as numbers, a variable's at its value reference."""
         return np.frombuffer(self.bytes())
 
     def set(self, **values: float) -> bool:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate.files import HeldFolder, HeldLock, write_whole
+from orchestrate.files import HeldLock, write_whole
 
 ROOT = Path(__file__).resolve().parents[2]
 WRITE = """
@@ -76,25 +76,15 @@ def test_what_a_process_writes_stays_until_it_is_killed(writer, tmp_path, contai
     """Whoever cleans up: in another container its number means nothing."""
     if container and not in_other_containers():
         pytest.skip("no containers can be made here")
-    process, half = writer([])
-    assert writer(container)[0].communicate("\n")[0] == ""
-    assert half.read_text() == "half of it" and (tmp_path / "out.txt").read_text() == "whole"
-    process.kill()
-    process.communicate()
-    assert half.exists()
-    writer(container)[0].communicate("\n")
-    assert names(tmp_path) == ["out.txt"]
-
-
-def test_a_killed_container_holds_nothing(writer, tmp_path):
-    if not in_other_containers():
-        pytest.skip("no containers can be made here")
-    process, half = writer(OTHER_CONTAINER)
-    os.killpg(process.pid, signal.SIGKILL)
-    process.communicate()  # until all in it have ended
-    assert half.exists()
-    write_whole(tmp_path / "out.txt", lambda place: place.write_text("whole"))
-    assert names(tmp_path) == ["out.txt"]
+    for first, second in (([], container), (container, [])):
+        process, half = writer(first)
+        assert writer(second)[0].communicate("\n")[0] == ""
+        assert half.read_text() == "half of it" and (tmp_path / "out.txt").read_text() == "whole"
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()  # until all in it have ended
+        assert half.exists()
+        write_whole(tmp_path / "out.txt", lambda place: place.write_text("whole"))
+        assert names(tmp_path) == ["out.txt"]
 
 
 def test_a_lock_whose_file_was_removed_is_not_the_one_of_the_next(tmp_path):
@@ -123,25 +113,3 @@ def test_a_fork_that_ends_releases_nothing(tmp_path):
     command = [sys.executable, "-W", "ignore", "-c", script, str(tmp_path / "lock")]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.stdout == "held\n"
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="/proc")
-def test_where_open_files_cannot_be_removed(tmp_path, monkeypatch):
-    """As on Windows: they are closed first."""
-    unlink, refused = os.unlink, []
-
-    def unlink_closed(path, *, dir_fd=None):
-        folder = Path() if dir_fd is None else Path(f"/proc/self/fd/{dir_fd}").readlink()
-        mine = [one for one in Path("/proc/self/fd").iterdir() if one.is_symlink()]
-        if folder / path in [one.readlink() for one in mine]:
-            refused.append(path)
-            raise PermissionError(13, "[WinError 32] in use by this process")
-        unlink(path, dir_fd=dir_fd)
-
-    monkeypatch.setattr(os, "unlink", unlink_closed)
-    lock, folder = HeldLock(tmp_path / "lock"), HeldFolder(tmp_path, "folder")
-    lock.release()
-    folder.remove()
-    assert names(tmp_path) == [] and len(refused) >= 2
-    write_whole(tmp_path / "out.txt", lambda place: place.write_text("whole"))
-    assert names(tmp_path) == ["out.txt"]

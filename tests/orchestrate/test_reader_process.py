@@ -72,18 +72,6 @@ def test_no_module_in_the_folders_of_a_user_is_imported(tmp_path, monkeypatch):
     assert not list(tmp_path.glob("ran"))
 
 
-def test_what_a_reader_prints_goes_nowhere(tmp_path, capfd):
-    path = tmp_path / "a.py"
-    noises = "print(5)", "sys.stderr.write('5')", "os.write(1, b'5')", "os.system('echo 5')"
-    path.write_text("import logging, os, sys, warnings\n" + "\n".join(noises))
-    path.write_text(
-        f"{path.read_text()}\nlogging.error('5')\nwarnings.warn('5')\nraise OSError('6')"
-    )
-    with pytest.raises(InputError, match="6; better"):
-        read_in_process(runpy.run_path, path, expected="better")
-    assert capfd.readouterr() == ("", "")
-
-
 @pytest.mark.parametrize("kind", ["f8", ">i2", "c16", "?", "U5", "S3"])
 @pytest.mark.parametrize("shape", [(), (0,), (2, 3)])
 def test_arrays_come_back_with_their_bits(tmp_path, kind, shape):

@@ -51,11 +51,9 @@ class SingleImpact:
 
     @property
     def largest(self):
-        """Absolute value of the largest multiplier."""
         return float(np.abs(self.multipliers).max())
 
     def gap(self, times):
-        """The gap some times after the impact."""
         rates, vectors = np.linalg.eig(self.a)
         free = self.restitution @ self.state - (self.response * np.exp(1j * self.phase)).imag
         parts = (GAP @ vectors) * np.linalg.solve(vectors, free)

@@ -7,7 +7,6 @@ import pytest
 
 from orchestrate.dynamics.attractors import AttractorsJob, attractors
 from orchestrate.dynamics.clusters import AttractorSettings, transient_periods
-from orchestrate.errors import InputError
 from orchestrate.model import Structure
 from orchestrate.model.outcomes import IRREGULAR, ORBIT, UNDECIDED
 from orchestrate.response.sweep import sweep
@@ -48,10 +47,6 @@ def test_scale_is_three_times_the_largest_gap_from_rest():
     asked = {**ASKED, "eta": TWO, "starts": 4}
     one, two = attractors(PAPER, **asked), attractors(PAPER, **asked, scale=3.0 * gap)
     np.testing.assert_allclose(one.features, two.features, rtol=1e-9)
-    with pytest.raises(InputError, match="scale: 2 values for 1 of eta"):
-        attractors(PAPER, **asked, scale=[1.0, 2.0])
-    with pytest.raises(InputError, match=r"scale = -1\.0: expected numbers > 0"):
-        attractors(PAPER, **asked, scale=-1.0)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate.dynamics.basin_entropy import box_entropies
 
 
 def basins(labels):
@@ -41,14 +40,6 @@ def test_the_basins_of_newtons_method_are_fractal():
     found = orchestrate.basin_entropy(basins(newton(600)))
     assert float(found.boundary_dimension) == pytest.approx(1.43, abs=0.04)
     assert float(found.boundary_basin_entropy) > math.log(2.0)
-
-
-def test_the_entropy_of_a_box_is_that_of_its_shares():
-    labels = np.array([[0, 0, 1, 1], [0, 1, 1, 1], [2, 2, 0, 1], [2, 2, -1, 1]])
-    found = box_entropies(labels, 2)
-    mixed = -(0.75 * math.log(0.75) + 0.25 * math.log(0.25))
-    np.testing.assert_allclose(np.sort(found), [0.0, 0.0, mixed])  # one overlaps
-    assert np.mean(found > 0.0) == pytest.approx(1.0 / 3.0)
 
 
 def test_one_basin_has_no_boundary():

@@ -1,20 +1,21 @@
 """Branches and bifurcations against closed forms, and the branches that leave there."""
 
 import functools
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
+from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.branches import branch
-from orchestrate.dynamics.continuation import (
-    NoConvergenceError,
-    newton_correct,
-)
+from orchestrate.dynamics.branches import branch, complete_excitation
 from orchestrate.dynamics.orbits import orbit
+from orchestrate.flags import flag_words
 from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
 from orchestrate.model import Excitation, Structure
+from orchestrate.response import questions
 
 from ...sparing import ordinary
 from .single_impact import SingleImpact, border
@@ -25,6 +26,10 @@ FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST = range(6)
 HALVING = 8
 STARTS = {1: 1.5, 2: 4.0, 3: 6.0, 4: 8.0}
 LIMITS = {1: (1.37, 8.0), 2: (1.37, 8.0), 3: (1.37, 8.0), 4: (1.37, 9.5)}
+BORDERS = {  # of stability, from both sides
+    **{1: [(2.5, 2.7)], 2: [(3.55, 3.65), (4.7, 4.8)]},
+    **{3: [(5.65, 5.75), (6.8, 6.9)], 4: [(7.7, 7.85), (8.9, 9.0)]},
+}
 PERIODS = ordinary(STARTS, [2])  # of the others nothing is written otherwise
 
 
@@ -36,23 +41,6 @@ def windows(period):
 
 def values(found, kind):
     return found.bifurcation_value.values[found.bifurcation_kind.values == kind]
-
-
-TRUE_BORDERS = [
-    (1, 2.5, 2.7),
-    *((2, 3.55, 3.65), (2, 4.7, 4.8)),
-    *((3, 5.65, 5.75), (3, 6.8, 6.9)),
-    *((4, 7.7, 7.85), (4, 8.9, 9.0)),
-]
-
-
-@pytest.mark.parametrize(
-    ("period", "low", "high"), ordinary(TRUE_BORDERS, TRUE_BORDERS[1:3], several_names=True)
-)
-def test_borders_of_stability_are_those_of_the_closed_form(period, low, high):
-    truth = border(period, low, high)
-    found = values(windows(period), TORUS)
-    assert np.abs(found - truth).min() < 1e-9
 
 
 @pytest.mark.parametrize("period", PERIODS)
@@ -67,6 +55,8 @@ def test_all_orbits_of_a_branch_are_those_of_the_closed_form(period):
             1e-8 * truth.largest
         )
     assert found.fmu_same_impacts.values.mean() > 0.99  # but where a flight grazes
+    for low, high in BORDERS[period]:
+        assert np.abs(values(found, TORUS) - border(period, low, high)).min() < 1e-9
 
 
 def test_period_doubling_against_a_wall():
@@ -171,21 +161,15 @@ def contacts(instance, eta, found):
 @pytest.mark.parametrize("period", PERIODS)
 def test_the_table_in_the_documentation_is_this(period):
     """Eight digits each; the T/1 branch is followed further down there."""
-    label = f"{'' if period == 1 else period}T/1"
     lines = (DOCS / "bifurcations.md").read_text("utf-8").splitlines()
-    rows = [line.split("|")[1:] for line in lines if line.startswith(f"| {label} |")]
-    printed = {(float(row[1]), row[2].strip()) for row in rows if float(row[1]) > 1.37}
+    rows = [line.split("|")[1:] for line in lines if line.startswith(f"| {period}T/1 |")]
     found = windows(period)
-    names = [w.replace("_", " ") for w in found.bifurcation_kind.attrs["flag_meanings"].split()]
-    own = {
-        (round(float(value), 8), names[kind])
-        for value, kind in zip(
-            found.bifurcation_value.values, found.bifurcation_kind.values, strict=True
-        )
-    }
-    assert {name for _, name in own} == {name for _, name in printed}
-    values_own, values_printed = sorted(v for v, _ in own), sorted(v for v, _ in printed)
-    assert values_own == pytest.approx(values_printed, abs=1.1e-8)
+    names = flag_words(found.bifurcation_kind.attrs)
+    pairs = zip(found.bifurcation_kind.values, found.bifurcation_value.values, strict=True)
+    own = sorted((names[kind], float(value)) for kind, value in pairs)
+    printed = sorted((row[2].strip(), float(row[1])) for row in rows)
+    assert [name for name, _ in own] == [name for name, _ in printed]
+    assert [v for _, v in own] == pytest.approx([v for _, v in printed], abs=1.1e-8)
 
 
 @pytest.mark.parametrize("longest", ordinary([1.0, 0.2, 0.03]))
@@ -201,19 +185,28 @@ def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
         assert np.abs(truth.multipliers + 1.0).min() < 1e-9
 
 
-def test_a_root_is_known_by_its_residual():
-    """Short steps alone do not make one: a wrong derivative makes them anywhere."""
+@pytest.mark.parametrize("over", ["k1", "m1", "omega", "f1"])
+def test_where_omega_varies_the_frequency_is_kept_that_was_asked_for(over):
+    beam, at = Structure.from_file("beam"), {"eta": 1.3, "frequency": 97.4, "amplitude": 1e-4}
+    asked = (("frequency", 97.4), ("amplitude", 1e-4)), (("eta", 1.3),)
+    for one in asked:
+        start = xr.Dataset(coords=at, attrs={"excitation": json.dumps(one)})
+        for varied in ((over,), ("e", over)):
+            assert complete_excitation(start, varied, (), (0.0, 1.0), beam, {}) == one
+        assert complete_excitation(start, ("e",), (), (0.0, 1.0), beam, {}) == asked[1]
 
-    class Steep:
-        """x = 1 with a derivative that is far too large; the second unknown is free."""
 
-        scale, accuracy = np.ones(2), 1e-9
-
-        def residual(self, unknowns):
-            return unknowns[:1] - 1.0
-
-        def jacobian(self, unknowns, at_root=False):
-            return np.array([[1e9, 0.0]])
-
-    with pytest.raises(NoConvergenceError, match="the residual is"):
-        newton_correct(Steep(), np.zeros(2), np.array([0.0, 1.0]))
+def test_what_pushes_at_the_start_is_kept(monkeypatch):
+    """Of an orbit that is stable, whose manifold is refused after that."""
+    pushes = {"box_acceleration": 0.05, "force1": 0.02}
+    start = orbit(PAPER, eta=1.7, **pushes)
+    monkeypatch.setattr(questions, "answer", lambda job, *rest: job)
+    kept = branch(PAPER, start=start, limits=(1.6, 1.8))
+    assert dict(kept.setting.excitation) == pushes
+    given = branch(PAPER, start=start, limits=(1.6, 1.8), box_acceleration=0.0)
+    assert dict(given.setting.excitation) == {"force1": 0.02}
+    along = branch(PAPER, start=start, over="box_acceleration", limits=(0.0, 0.1))
+    assert along.value == 0.05 and dict(along.setting.excitation)["force1"] == 0.02
+    monkeypatch.setattr(manifolds.ManifoldJob, "saddle", lambda job: None)
+    kept = manifolds.manifold(PAPER, start=start)
+    assert {name: getattr(kept, name) for name in pushes} == pushes

@@ -77,23 +77,6 @@ def test_the_equations_have_exact_derivatives(seed):
     assert np.abs(np.transpose(seen) - exact).max() < 1e-7 * max(1.0, np.abs(exact).max())
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_segments_follow_the_equations_of_motion(seed):
-    orbit, step = random_orbit(seed), 1e-5
-    segment = np.arange(orbit.count)
-    middle = 0.5 * (orbit.begins + orbit.ends)
-    states, form = orbit.states(segment, middle), orbit.form
-    ends = [orbit.states(segment, middle + sign * step * form.eta) for sign in (1, -1)]
-    moving = [0, 2] if form.wall else slice(None)
-    rates = form.field(states, middle, orbit.modes)[:, moving]
-    seen = (ends[0] - ends[1])[:, moving] / (2.0 * step)
-    assert rates == pytest.approx(seen, abs=1e-7)
-    if not (form.wall and orbit.contact.any()):
-        for phase, state in ((orbit.begins, orbit.starts), (orbit.ends, orbit.arrivals)):
-            found = orbit.states(segment, phase)[:, moving]
-            assert found == pytest.approx(state[:, moving], abs=1e-12)
-
-
 @pytest.mark.parametrize("damping", [0.0, 0.3, 1.0 - 1e-12, 1.0, np.nextafter(1.0, 2.0), 2.0, 50.0])
 def test_the_flow_of_one_oscillator_is_a_matrix_exponential(damping):
     """Critically damped too, and where one exponential has long vanished."""

@@ -13,8 +13,6 @@ from orchestrate.dynamics.decision import (
     count_impacts_from_pause,
     middle_of_longest_run,
 )
-from orchestrate.dynamics.orbit_search import least_periods
-from orchestrate.dynamics.settled_motion import same_nodes
 from orchestrate.fmu import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
@@ -39,115 +37,6 @@ pytestmark = pytest.mark.usefixtures("exported")
 
 def point_of(structure, eta):
     return Point(structure, Excitation.nondimensional(eta, structure))
-
-
-def decided_from(structure, eta, start=REST, settings=USUAL, form="fmi3"):
-    path = find(OSCILLATOR, form=form).path
-    with Instance(path) as plain, EventInstance(find(OSCILLATOR).path) as eventful:
-        events = eventful if form == "fmi3" else None
-        decider = MotionDecider(plain, events, point_of(structure, eta), settings)
-        return decider.decide(start)
-
-
-def told(data):
-    """Multiplicity and impacts of all attractors at the only value."""
-    here = data.isel({next(iter(data.number.dims)): 0})
-    n = here.multiplicity.values
-    return sorted(zip(n.tolist(), (n * here.impacts_per_period.values).tolist(), strict=True))
-
-
-@pytest.mark.parametrize(
-    ("structure", "eta", "asked", "expected"),
-    [
-        (CONTACT, 3.0952, {"starts": 60, "seed": 3}, [(2, 1), (11, 32)]),
-        (HEAVY, 2.67054, {"starts": 60}, [(2, 1), (5, 9)]),
-        (PAPER, 1.3048, {"starts": 60}, [(1, 1), (2, 3)]),
-    ],
-    ids=["11T once", "no 5T with 8 impacts", "T before its period doubling"],
-)
-def test_attractors_are_those_that_newtons_method_confirms(structure, eta, asked, expected):
-    found = attractors(structure, eta=eta, **asked)
-    assert told(found) == [tuple(map(float, pair)) for pair in expected]
-    for k in range(found.sizes["attractor"]):
-        one = found.isel(eta=0, attractor=k)
-        n = int(one.multiplicity)
-        confirmed = orbit(structure, eta=eta, period=n, guess=one.state.values)
-        assert bool(confirmed.stable)
-        assert np.isfinite(confirmed.impact_time).sum() == n * float(one.impacts_per_period)
-        sizes = np.hypot(*confirmed.multipliers.transpose("part", "multiplier").values)
-        assert float(one.multiplier) == pytest.approx(sizes.max(), rel=1e-6)
-        assert int(one.decided_by) == ORBIT
-
-
-@pytest.mark.parametrize(("eta", "e"), [(0.4, 0.7), (0.6, 0.2), (0.6, 0.0)])
-def test_chattering_that_ends_in_contact_is_decided_by_its_orbit(eta, e):
-    structure = PAPER.replace(e=e)
-    motion, state = decided_from(structure, eta)
-    confirmed = orbit(structure, eta=eta, guess=state)
-    assert (motion.decided, motion.multiplicity) == (ORBIT, 1)
-    assert motion.impacts_per_period == np.isfinite(confirmed.impact_time).sum()
-
-
-def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
-    motion, _ = decided_from(CONTACT, 3.0952, settings=settling_run(transient=2000))
-    assert motion.multiplicity in (2, 11)
-    with Instance(find(OSCILLATOR).path) as instance:
-        counts = {
-            count_impacts_from_pause(instance, motion.point, state, motion.multiplicity)
-            for state in motion.states
-        }
-    assert counts == {round(motion.impacts_per_period * motion.multiplicity)}
-
-
-def test_an_fmu_without_events_decides_by_repeated_states():
-    motion, _ = decided_from(PAPER, 1.315, form="fmi2", settings=settling_run(longest=1500))
-    other, _ = decided_from(PAPER, 1.315)
-    assert (motion.decided, other.decided) == (REPEATED, ORBIT)
-    assert motion.features == pytest.approx(other.features, rel=1e-4)
-
-
-def test_what_stays_near_an_unstable_orbit_is_undecided_and_settles_when_run_on():
-    """At D = 0.05 T/1 is unstable at 1.116: deviations take thousands of periods to grow."""
-    damped = PAPER.replace(D=0.05)
-    near = sweep(damped, eta=1.115, transient=3000, samples=10).end_state.values[0]
-    start = orbit(damped, eta=1.116, guess=near).state.values[0]
-    early, _ = decided_from(
-        damped, 1.116, start, settling_run(transient=100, settle=1.0, longest=300)
-    )
-    late, _ = decided_from(damped, 1.116, near)
-    assert (early.decided, early.impacts_per_period) == (UNDECIDED, 1.0)
-    assert (late.decided, late.multiplicity, late.impacts_per_period) == (ORBIT, 2, 1.5)
-
-
-def test_a_torus_and_chaos_are_irregular():
-    for eta in (2.655, 0.8):
-        motion, _ = decided_from(PAPER, eta)
-        assert (motion.decided, motion.multiplicity) == (IRREGULAR, 0)
-        assert np.isnan(motion.multiplier)
-
-
-def two_periods():
-    """A motion of two periods with three impacts."""
-    with Instance(find(OSCILLATOR).path) as plain, EventInstance(find(OSCILLATOR).path) as events:
-        point = point_of(PAPER, 1.28)
-        motion, _ = MotionDecider(plain, events, point, settling_run()).decide(REST)
-    return motion
-
-
-def test_orbits_are_one_whatever_period_they_begin_with():
-    orbit = two_periods().orbit
-    nodes = orbit.nodes.copy()
-    nodes[:, 0] += 2.0 * np.pi
-    later = type(orbit)(orbit.sequence, orbit.form, np.roll(nodes, 1, axis=0))
-    assert same_nodes(orbit, later) and same_nodes(later, orbit)
-    nodes[0, 3] += 1e-4
-    assert not same_nodes(orbit, type(orbit)(orbit.sequence, orbit.form, nodes))
-    twice = type(orbit)(
-        orbit.sequence.doubled(),
-        orbit.form,
-        np.vstack([orbit.nodes, orbit.nodes + [4.0 * np.pi, 0.0, 0.0, 0.0]]),
-    )
-    assert (least_periods(orbit), least_periods(twice)) == (2, 2)
 
 
 @pytest.mark.parametrize(
@@ -276,3 +165,87 @@ def test_each_threshold_of_newtons_method(monkeypatch, nodes, residual, found):
     monkeypatch.setattr(decision, "without_copies", lambda orbit: orbit)
     guess = SimpleNamespace(kinds=range(nodes)), None
     assert (Scripted().solve(guess) is not None) == found
+
+
+def decided_from(structure, eta, start=REST, settings=USUAL, form="fmi3"):
+    path = find(OSCILLATOR, form=form).path
+    with Instance(path) as plain, EventInstance(find(OSCILLATOR).path) as eventful:
+        events = eventful if form == "fmi3" else None
+        decider = MotionDecider(plain, events, point_of(structure, eta), settings)
+        return decider.decide(start)
+
+
+def told(data):
+    """Multiplicity and impacts of all attractors at the only value."""
+    here = data.isel({next(iter(data.number.dims)): 0})
+    n = here.multiplicity.values
+    return sorted(zip(n.tolist(), (n * here.impacts_per_period.values).tolist(), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("structure", "eta", "asked", "expected"),
+    [
+        (CONTACT, 3.0952, {"starts": 60, "seed": 3}, [(2, 1), (11, 32)]),
+        (HEAVY, 2.67054, {"starts": 60}, [(2, 1), (5, 9)]),
+    ],
+    ids=["11T once", "no 5T with 8 impacts"],
+)
+def test_attractors_are_those_that_newtons_method_confirms(structure, eta, asked, expected):
+    found = attractors(structure, eta=eta, **asked)
+    assert told(found) == [tuple(map(float, pair)) for pair in expected]
+    for k in range(found.sizes["attractor"]):
+        one = found.isel(eta=0, attractor=k)
+        n = int(one.multiplicity)
+        confirmed = orbit(structure, eta=eta, period=n, guess=one.state.values)
+        assert bool(confirmed.stable)
+        assert np.isfinite(confirmed.impact_time).sum() == n * float(one.impacts_per_period)
+        sizes = np.hypot(*confirmed.multipliers.transpose("part", "multiplier").values)
+        assert float(one.multiplier) == pytest.approx(sizes.max(), rel=1e-6)
+        assert int(one.decided_by) == ORBIT
+
+
+@pytest.mark.parametrize(("eta", "e"), [(0.4, 0.7), (0.6, 0.2), (0.6, 0.0)])
+def test_chattering_that_ends_in_contact_is_decided_by_its_orbit(eta, e):
+    structure = PAPER.replace(e=e)
+    motion, state = decided_from(structure, eta)
+    confirmed = orbit(structure, eta=eta, guess=state)
+    assert (motion.decided, motion.multiplicity) == (ORBIT, 1)
+    assert motion.impacts_per_period == np.isfinite(confirmed.impact_time).sum()
+
+
+def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
+    motion, _ = decided_from(CONTACT, 3.0952, settings=settling_run(transient=2000))
+    assert motion.multiplicity in (2, 11)
+    with Instance(find(OSCILLATOR).path) as instance:
+        counts = {
+            count_impacts_from_pause(instance, motion.point, state, motion.multiplicity)
+            for state in motion.states
+        }
+    assert counts == {round(motion.impacts_per_period * motion.multiplicity)}
+
+
+def test_an_fmu_without_events_decides_by_repeated_states():
+    motion, _ = decided_from(PAPER, 1.315, form="fmi2", settings=settling_run(longest=1500))
+    other, _ = decided_from(PAPER, 1.315)
+    assert (motion.decided, other.decided) == (REPEATED, ORBIT)
+    assert motion.features == pytest.approx(other.features, rel=1e-4)
+
+
+def test_what_stays_near_an_unstable_orbit_is_undecided_and_settles_when_run_on():
+    """At D = 0.05 T/1 is unstable at 1.116: deviations take thousands of periods to grow."""
+    damped = PAPER.replace(D=0.05)
+    near = sweep(damped, eta=1.115, transient=3000, samples=10).end_state.values[0]
+    start = orbit(damped, eta=1.116, guess=near).state.values[0]
+    early, _ = decided_from(
+        damped, 1.116, start, settling_run(transient=100, settle=1.0, longest=300)
+    )
+    late, _ = decided_from(damped, 1.116, near)
+    assert (early.decided, early.impacts_per_period) == (UNDECIDED, 1.0)
+    assert (late.decided, late.multiplicity, late.impacts_per_period) == (ORBIT, 2, 1.5)
+
+
+def test_a_torus_and_chaos_are_irregular():
+    for eta in (2.655, 0.8):
+        motion, _ = decided_from(PAPER, eta)
+        assert (motion.decided, motion.multiplicity) == (IRREGULAR, 0)
+        assert np.isnan(motion.multiplier)

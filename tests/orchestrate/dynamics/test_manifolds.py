@@ -15,7 +15,6 @@ from orchestrate.fmu import OSCILLATOR, Instance, begin
 from orchestrate.model.ranges import PUSHES
 from orchestrate.response.questions import make_point
 
-from ...processors import printed_on_each
 from .single_impact import GAP, SingleImpact
 
 PAPER = Structure.nondimensional()
@@ -154,19 +153,3 @@ def test_breaks_are_rows_of_nan_and_never_connected():
     rates = part.v_rel.values[[hole - 1, hole + 1]]
     assert max(rates) == pytest.approx(-PAPER.e * min(rates), rel=1e-5)
     assert abs(int(first.break_impacts)) == 1
-
-
-@pytest.mark.slow
-def test_its_bits_are_the_same_with_the_kernels_of_any_processor():
-    """Its far points lie on a chaotic attractor: a last bit more would be another curve."""
-    code = (
-        "import hashlib, orchestrate as o;"
-        "m = o.manifold(o.Structure.nondimensional(), eta=3.0, length=1.0, progress=False);"
-        "print(hashlib.sha256(m.state.values.tobytes()).hexdigest())"
-    )
-    assert len(set(printed_on_each(["-c", code], ("Haswell", "Nehalem")).values())) == 1
-
-
-def test_the_largest_distance_that_is_named_leaves_the_gap_open():
-    """Starts reach as far as the first image of the distance."""
-    orchestrate.manifold(PAPER, eta=3.0, length=0.1, distance=0.0029, **QUIET)

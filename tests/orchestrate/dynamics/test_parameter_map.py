@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from orchestrate.dynamics.lyapunov import lyapunov
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.dynamics.parameter_map import map
 from orchestrate.model import Structure
@@ -64,17 +63,6 @@ def test_the_largest_impulse_is_that_of_the_motion(found):
     speed = float(motion.impact_velocity.max())
     expected = 0.5 * (1.0 + SLOWER.restitution(speed)) * speed
     assert float(found.impulse_max.sel(eta=1.6, e=0.7)) == pytest.approx(expected, rel=1e-9)
-
-
-def test_exponents_are_those_of_the_responses(found):
-    states = sweep(SLOWER, eta=1.13, transient=339, samples=60).end_state.values
-    one = lyapunov(SLOWER, eta=1.13, start=states, transient=0, periods=100)
-    there = found.sel(eta=1.13, e=0.7)
-    assert float(there.exponent) == one.exponent.item()
-    assert float(there.standard_error) == one.standard_error.item()
-    assert there.verdict.item() == one.verdict.item()
-    short = map(PAPER, eta=[4.0, 4.1], e=ES, exponent=True, periods=4, transient=5, settle=1.0)
-    assert np.isnan(short.exponent).any()
 
 
 def test_any_two_parameters_in_any_unit():

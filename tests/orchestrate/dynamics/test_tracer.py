@@ -9,8 +9,6 @@ from orchestrate.dynamics.tracer import NO_CONVERGENCE, BranchTracer
 
 
 class Circle:
-    """x^2 + y^2 = 1."""
-
     scale, accuracy = np.ones(2), 1e-12
 
     def residual(self, unknowns):

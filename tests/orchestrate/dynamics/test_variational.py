@@ -28,7 +28,6 @@ UNLIKE = (
 
 @pytest.fixture(scope="module")
 def instances(exported):
-    """One instance without and one with events."""
     fmu = find(OSCILLATOR).path
     with Instance(fmu) as plain, EventInstance(fmu) as eventful:
         yield plain, eventful
@@ -67,7 +66,6 @@ def moving(point):
 
 
 def monodromy(impacts, point, periods=1):
-    """Monodromy matrix over some periods from phase 0, impacts included."""
     form = ClosedForm.from_structure(*point)
     end = periods * period_in_tau(form.eta)
     first = impacts.time[0] if len(impacts.time) else end
@@ -108,25 +106,6 @@ def test_monodromy_equals_differences_of_the_fmu(instances, structure, eta, push
     np.testing.assert_allclose(found[moving(point), moving(point)], expected, atol=2e-5)
     outside = np.diff(impacts.state[:, :2])[:, 0] > 0.5 * structure.stroke / point.length
     assert not structure.stroke or 0 < outside.sum() < len(outside)
-
-
-@pytest.mark.parametrize("structure", [ALIKE[0], *UNLIKE])
-@pytest.mark.parametrize(("eta", "pushed"), [(0.2, 0.0), (0.35, 0.0), (0.35, 0.7)])
-def test_releases_are_those_of_the_fmu(instances, structure, eta, pushed):
-    plain, eventful = instances
-    point = pushed_point(structure, eta, pushed)
-    span = period_in_tau(eta)
-    impacts = follow_impacts(eventful, point, REST, 4)
-    ends = np.append(impacts.time[1:], 4 * span)
-    _, found = deviations(impacts, 4 * span, point)
-    for stick in np.flatnonzero(impacts.sticks):
-        release = impacts.time[stick] + found[stick]
-        touching = []
-        for tau in (release - 1e-7 * span, release + 1e-7 * span):
-            begin(plain, *point, REST)
-            plain.step(0.0, tau / structure.omega)
-            touching += plain.get("in_contact")
-        assert touching == [True, release >= ends[stick]]
 
 
 @pytest.mark.parametrize("above", [1e-5, 5e-4])

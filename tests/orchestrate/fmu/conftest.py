@@ -26,13 +26,11 @@ def any_fmu(request, oscillator_in):
 
 @pytest.fixture
 def python_fmu(oscillator_in):
-    """The FMU by pythonfmu."""
     return oscillator_in("fmi2-python")
 
 
 @pytest.fixture
 def event_fmu(oscillator_in):
-    """The FMI 3.0 FMU, which has events."""
     return oscillator_in("fmi3")
 
 

@@ -90,7 +90,6 @@ def exported(library: Path) -> list[str]:
 
 
 def program(names: list[str], kind: str, function: str, first: int) -> str:
-    """The library's source."""
     wrong = "fmi3GetFloat64" if kind == "NaN" else function
     quoted = ", ".join(f'"{name}"' for name in names)
     parts = [HEAD % (len(names), quoted)]

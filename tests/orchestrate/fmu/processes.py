@@ -9,7 +9,6 @@ from orchestrate.temporary import process_folder
 
 
 def work(path: str) -> None:
-    """Make an instance and take a step."""
     with Instance(path) as instance:
         instance.initialize()
         instance.step(0.0, 1.0)

@@ -31,7 +31,6 @@ SAMPLES = np.sort(np.concatenate([RANDOM.uniform(0.0, NODES[-1], 900), NODES, NO
 
 
 def bits(played):
-    """All that a loop answers."""
     impacts = played.impacts
     arrays = (impacts.time, impacts.state, impacts.closing, impacts.sticks)
     return [array.tobytes() for array in (played.rows, played.touching, *arrays)]

@@ -2,13 +2,15 @@
 
 import math
 
+import numpy as np
 import pytest
 
-from orchestrate.errors import FmuError
-from orchestrate.fmu import Instance
+from orchestrate.errors import FmuError, InputError
+from orchestrate.fmu import REST, STATE, EventInstance, Instance, begin
+from orchestrate.model import Excitation, Structure
 
 CHAOS = {"box_amplitude": 1.0 / 1.2**2, "box_frequency": 1.2}
-STATE = ("x1", "x2", "v1", "v2", "x_rel", "x_rel_max", "impact_time", "impact_energy", "phase")
+VALUES = ("x1", "x2", "v1", "v2", "x_rel", "x_rel_max", "impact_time", "impact_energy", "phase")
 
 
 @pytest.fixture
@@ -21,11 +23,10 @@ def instance(any_fmu):
 
 
 def trajectory(instance, start, steps=25):
-    """Values along some steps."""
     values = []
     for n in range(steps):
         instance.step(start + 2.0 * n, start + 2.0 * n + 2.0)
-        values.append(instance.get(*STATE, "impact_count", "in_contact"))
+        values.append(instance.get(*VALUES, "impact_count", "in_contact"))
     return values
 
 
@@ -83,3 +84,35 @@ def test_reset(instance):
     instance.reset()
     instance.initialize(**CHAOS)
     assert trajectory(instance, 0.0) == once
+
+
+def test_every_impact_is_there(event_fmu):
+    structure = Structure.nondimensional(mu=0.7, kappa=1.3, D=0.013, e=0.6)
+    chaos = Excitation.nondimensional(1.2, structure)
+    with EventInstance(event_fmu) as events, Instance(event_fmu) as instance:
+        for one in (events, instance):
+            begin(one, structure, chaos)
+        impacts = events.impacts(0.0, 300.0)
+        instance.step(0.0, 300.0)
+        count, last, contacts = instance.get("impact_count", "impact_time", "contact_count")
+    assert len(impacts.time) == count > 50
+    assert impacts.time[-1] == last and impacts.sticks.sum() == contacts
+    assert np.all(np.diff(impacts.time) > 0.0) and np.all(impacts.closing >= 0.0)
+
+
+def test_begin_sets_all(any_fmu):
+    structure = Structure(m1=2.0, m2=3.0, k1=4.0, k2=5.0, d1=0.1, d2=0.2, e=0.3, gamma=1e-5)
+    excitation = Excitation(frequency=2.0, amplitude=0.5, phase=1.0)
+    with Instance(any_fmu) as instance:
+        begin(instance, structure, excitation, (0.1, 0.2, 0.3, 0.4))
+        values = {**structure.parameters(), **excitation.inputs()}
+        assert instance.get(*values) == list(values.values())
+        assert instance.get(*STATE, "phase") == [0.1, 0.2, 0.3, 0.4, 1.0]
+        assert instance.get("x_rel_max_on") == [False]
+        begin(instance, structure.as_bonded(), excitation, REST, x_rel_max_on=True)
+        assert instance.get("bonded", "x_rel_max_on", "x2") == [True, True, 0.0]
+
+
+def test_fmi_2_has_no_events(oscillator_in):
+    with pytest.raises(InputError, match=r"is FMI 2.0; expected FMI 3.0, which has events"):
+        EventInstance(oscillator_in("fmi2-python"))

@@ -1,15 +1,12 @@
 """Parameters that the variable table has beside the paper's: what follows from the row of each."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 
 import orchestrate
 from orchestrate import InputError, Structure
 from orchestrate.cli.grammar import parse_changes
-from orchestrate.model.ranges import ADDED, OF_LENGTH, STRUCTURE, Quantity
-from orchestrate.model.structure import with_table
+from orchestrate.model.ranges import ADDED, OF_LENGTH, STRUCTURE
 
 HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0}
 BONDED = {"mass": 2.0, "f": 50.0, "thicknesses": (3.0, 2.0)}
@@ -18,29 +15,6 @@ FORMS = [
     "mu = 1.0\nkappa = 1.2\nD = 0.005",
     "m1 = 1.0\nm2 = 1.0\nf1_hz = 1.0\nf2_hz = 1.1\nzeta1 = 0.01\nzeta2 = 0.01",
 ]
-
-
-def test_its_fields_are_the_rows_of_the_table(monkeypatch):
-    fields = [field.name for field in dataclasses.fields(Structure)]
-    assert fields == [*STRUCTURE, "bonded", "wall"]
-    row = Quantity("drag", "N.s/m", "Drag of the air", 0.0, 1.0, 0.25)
-    monkeypatch.setitem(STRUCTURE, "drag", row)
-
-    @dataclasses.dataclass(frozen=True, kw_only=True)
-    @with_table
-    class Later(Structure):
-        """A structure of a table with one row more.
-
-        bonded : bool
-        """
-
-        bonded: bool = False
-
-    assert "drag : float\n        Drag of the air, N.s/m." in Later.__doc__
-    assert (Later().drag, Later.nondimensional(drag=0.5).drag) == (0.25, 0.5)
-    assert Later(drag=0.5).replace(e=0.3).parameters()["drag"] == 0.5
-    with pytest.raises(InputError, match="drag = 2.0 N.s/m: expected 0 <= drag <= 1"):
-        Later(drag=2.0)
 
 
 @pytest.mark.parametrize("name", ADDED)

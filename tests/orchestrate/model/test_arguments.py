@@ -52,10 +52,8 @@ MASKED = np.ma.array([0.9, 1.0, 1.1, 1.2], mask=[0, 1, 0, 0])
     [
         ("eta", lambda: orchestrate.sweep(Structure(), eta=MASKED)),
         ("frequency", lambda: orchestrate.sweep(Structure(), frequency=MASKED, amplitude=1.0)),
-        ("e", lambda: orchestrate.map(Structure(), eta=[0.9, 1.0], e=MASKED)),
         ("start", lambda: orchestrate.simulate(Structure(), eta=1.0, start=MASKED)),
         ("acceleration", lambda: orchestrate.Sampled(acceleration=MASKED, sample_rate=9.0)),
-        ("acceleration1", lambda: orchestrate.record(sample_rate=9.0, acceleration1=MASKED)),
         ("level", lambda: CURVE(level=MASKED)),
         ("voltages", lambda: orchestrate.Course(times=[0, 1, 2, 3], voltages=MASKED)),
         ("voltage", lambda: orchestrate.couple(*QUICK, voltage=MASKED[:2])),

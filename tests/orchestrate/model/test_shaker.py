@@ -8,7 +8,6 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from orchestrate.errors import InputError
 from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, Instance, find
 from orchestrate.model import Shaker, ranges, read, write
 from orchestrate.model.toml_files import SHAKERS
@@ -72,22 +71,3 @@ def test_the_sets_give_their_rated_force(exported, name):
             limited.add(bool(acts))
     assert max(forces) == pytest.approx(float(name[7:].replace("kN", "e3").strip("N")))
     assert limited == {False, True}
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("table_mass = 1", "shaker.force_factor: missing"),
-        ("force_factor = 1\ncoil_resistance = 1\nmass = 1", "shaker.mass = 1: no key of"),
-        (
-            "force_factor = 1\ncoil_resistance = 1\ntable_mass = 1\nmoving_mass = 1",
-            "shaker.moving_mass = 1: given with table_mass; expected keys of one kind",
-        ),
-        ("force_factor = 1\ncoil_resistance = 1\ncurrent_control = 1", "current_control = 1:"),
-    ],
-)
-def test_bad_files(tmp_path, text, words):
-    path = tmp_path / "mine.toml"
-    path.write_text(f"[shaker]\n{text}\n")
-    with pytest.raises(InputError, match=words):
-        Shaker.from_file(path)

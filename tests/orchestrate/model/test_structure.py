@@ -7,11 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from orchestrate import model
 from orchestrate.errors import InputError
-from orchestrate.model import Structure
+from orchestrate.model import Excitation, Structure
 from orchestrate.model.ranges import ADDED, STRUCTURE
 
-from .strategies import NUMBERS, RATIO, SCALE, SMALL, STRUCTURES
+from .strategies import DRIVES, EXCITATIONS, NUMBERS, RATIO, SCALE, SMALL, STRUCTURES
 
 
 def near(value, expected):
@@ -37,9 +38,9 @@ def test_the_formulas_of_the_paper():
     assert all(map(near, found, omegas))
 
 
-@given(STRUCTURES)
-def test_repr_can_be_evaluated(structure):
-    assert eval(repr(structure)) == structure
+@given(STRUCTURES, EXCITATIONS, DRIVES)
+def test_repr_can_be_evaluated(structure, excitation, drive):
+    assert all(eval(repr(one), vars(model)) == one for one in (structure, excitation, drive))
 
 
 @given(NUMBERS, st.sampled_from(["mu", "kappa", "D1", "D2"]), SMALL)
@@ -159,3 +160,47 @@ def test_a_structure_is_a_line_and_in_notebooks_a_table():
     for part in ("1.5 and 1.4 kg", "11.9 and 13.5 Hz", "0.5 and 0.7 %", "clearance -2e-05 m"):
         assert part in str(beam.replace(clearance=-2e-5))
     assert "<td>bonded</td>" in beam.as_bonded()._repr_html_()
+
+
+def test_preload_and_place_at_rest():
+    """Both springs pull with the preload, and the faces touch."""
+    pressed = Structure(k1=2.0, k2=6.0, clearance=-0.4)
+    x1, x2 = pressed.at_rest
+    assert pressed.preload == pytest.approx(0.4 * 12.0 / 8.0)
+    assert (-2.0 * x1, 6.0 * x2) == pytest.approx((pressed.preload, pressed.preload))
+    assert x2 - x1 + pressed.clearance == pytest.approx(0.0, abs=1e-16)
+    for open_structure in (Structure(), Structure(clearance=0.4)):
+        assert open_structure.preload == 0.0
+        assert [str(x) for x in open_structure.at_rest] == ["0.0", "0.0"]  # no negative zero
+
+
+ETA = st.floats(1e-3, 1e3)
+
+
+@given(ETA, STRUCTURES)
+def test_with_eta_lengths_are_metres(eta, structure):
+    excitation = Excitation.nondimensional(eta, structure)
+    assert excitation.length(structure) == 1.0
+    assert math.isclose(excitation.eta(structure), eta, rel_tol=1e-15)
+
+
+@given(EXCITATIONS, STRUCTURES)
+def test_length_is_a_eta_squared(excitation, structure):
+    expected = excitation.amplitude * (excitation.frequency / structure.omega) ** 2
+    assert math.isclose(excitation.length(structure), expected, rel_tol=1e-14)
+
+
+@pytest.mark.parametrize("natural", [1.0, math.sqrt(1.2), math.sqrt(1.1)])
+@pytest.mark.parametrize("detuning", [0.0, 0.9e-6, 1.1e-6])
+@pytest.mark.parametrize("damping", [0.0, 0.9e-6, 1.1e-6])
+def test_no_periodic_response_is_looked_for_at_a_resonance_without_damping(
+    natural, detuning, damping
+):
+    structure = Structure.nondimensional(D=damping * natural)
+    excitation = Excitation(frequency=natural * (1.0 + detuning), amplitude=0.5)
+    if math.hypot(detuning, damping) < 1e-6:
+        with pytest.raises(InputError, match=f"frequency = {excitation.frequency!r} rad/s"):
+            excitation.check(structure)
+    else:
+        excitation.check(structure)
+    excitation.replace(amplitude=0.0).check(structure)

@@ -4,7 +4,6 @@ import math
 
 import pytest
 from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
 from orchestrate.model import SETS, Drive, Excitation, Structure, read, resolve, write
@@ -14,7 +13,6 @@ from .strategies import DRIVES, STRUCTURES, WITH_FORCES
 
 @pytest.fixture
 def file(tmp_path):
-    """Write a TOML file, give its path."""
 
     def put(text):
         path = tmp_path / "mine.toml"
@@ -86,27 +84,6 @@ def test_excitations(file, text, frequency, amplitude):
     assert found.phase == 0.5
 
 
-def test_gravity_in_a_file(file):
-    box = "frequency_hz = 15\namplitude = 0"
-    found = Excitation.from_file(file(f'[excitation]\n{box}\nbox_acceleration = "-1 g"\n'))
-    assert found.box_acceleration == -9.80665
-
-
-def test_eta_refers_to_a_structure_given_elsewhere(file):
-    path, structure = file("[excitation]\neta = 2"), Structure.nondimensional(omega=75.0)
-    assert Excitation.from_file(path, structure).frequency == 150.0
-
-
-def test_a_drive_by_numbers(file):
-    motor = "[motor]\nbeta = 0.25\nepsilon = 0.001\nb = 0.02\n"
-    path = file(f"{motor}[box]\nOmega_b = 0.1\nD_b = 0.005\n")
-    structure = Structure.nondimensional(omega=75.0)
-    numbers = {"beta": 0.25, "epsilon": 0.001, "b": 0.02, "Omega_b": 0.1, "D_b": 0.005}
-    assert Drive.from_file(path, structure) == Drive.nondimensional(**numbers, structure=structure)
-    with pytest.raises(InputError, match=r"motor.beta = 0.25: .*\[structure\]"):
-        Drive.from_file(path)
-
-
 MOTOR = """unbalance_mass = 0.025
 unbalance_radius = 0.02
 rotor_inertia = 5e-5
@@ -160,17 +137,6 @@ def test_one_mass_before_a_stop(file):
     assert [stop.get(one) for one in ("m1", "k1", "d1", "clearance")] == [
         same.get(one) for one in ("m1", "k1", "d1", "clearance")
     ]
-
-
-@given(st.text(max_size=40))
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25)
-def test_any_text_is_read_or_refused_in_one_line(file, text):
-    path = file("")
-    path.write_text(f"[structure]\n{text}", encoding="utf-8", errors="ignore")
-    try:
-        read(path)
-    except InputError as error:
-        assert "\n" not in str(error)
 
 
 WRONG = [

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate import Excitation, InputError, Structure
-from orchestrate.dynamics.attractors import random_starts
+from orchestrate import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import traits_of
 
@@ -116,37 +115,6 @@ def test_apart_the_response_to_forces_and_gravity_is_linear():
     assert felt.sel(mass=2, kind="bonded").item() == pytest.approx(glued * w * w, rel=1e-6)
 
 
-def test_one_mass_rests_at_its_clearance_from_the_wall():
-    nothing = {"frequency": 1.0, "amplitude": 0.0, "box_acceleration": 1e-12, "periods": 1}
-    for clearance, gap in ((0.3, 0.3), (0.0, 0.0), (-0.2, 0.0)):
-        mass = Structure.one_mass(m=2.0, k=50.0, d=0.1, clearance=clearance, stroke=0.5)
-        motion = orchestrate.simulate(mass, **nothing)
-        assert motion.x_rel.values == pytest.approx(gap, abs=1e-12)
-        assert mass.at_rest == (motion.x1.values[0], 0.0) == (min(clearance, 0.0), 0.0)
-        assert motion.contact_force.values[0] == pytest.approx(mass.preload, abs=1e-11)
-    assert (mass.D1, mass.omega, mass.replace(D=0.1).D1) == (0.005, 5.0, 0.1)
-    assert mass.replace(omega=3.0).k1 == 18.0 and mass.replace(f1=1.0).get("D") == mass.D1
-    assert "wall" in mass.label() and "wall" in str(mass)
-    tuned = Structure.one_mass(m=2.0, k=50.0, zeta=0.1), Structure.one_mass(f=3.0, d=0.2)
-    assert (tuned[0].d1, tuned[1].f1, tuned[1].d1) == (pytest.approx(2.0), 3.0, 0.2)
-    with pytest.raises(InputError, match="f1 and k1: expected one of them"):
-        Structure.one_mass(f=3.0, k=50.0)
-    assert Structure.from_attributes(mass.parameters()) == mass
-
-
-def test_starts_lie_where_the_masses_can_be():
-    for structure in (KINDS["play"], KINDS["wall and play"]):
-        states = random_starts(50, 3.0, (1, 2), structure)
-        gaps = states[:, 1] - states[:, 0] + structure.clearance
-        assert (gaps >= 0.0).all() and (gaps <= 0.15).all() and np.ptp(gaps) > 0.1
-        assert not structure.wall or not states[:, 1::2].any()
-    sweep = {**BOX, "force1": 0.1, **QUICK}
-    with pytest.raises(InputError, match="x2 = 0 and v2 = 0 of a wall"):
-        orchestrate.sweep(WALL, **sweep, start=[0.0, 0.1, 0.0, 0.0])
-    with pytest.raises(InputError, match=r"at most stroke = 0.15 m"):
-        orchestrate.sweep(KINDS["play"], **sweep, start=[0.0, 0.3, 0.0, 0.0])
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_attractors_basins_and_sections_agree(kind):
     """By orbits with forces and gravity, at a wall and at both ends of a stroke."""
@@ -224,14 +192,6 @@ def test_impacts_have_to_come_only_where_that_is_known():
     for structure, pushed in ((OWN, box.replace(force1=0.1)), (WALL, box), (KINDS["play"], box)):
         assert traits_of(Point(structure, pushed))[-1] == 0.0
     assert (orchestrate.sweep(OWN, **touching).impacts_per_period > 0.0).all()
-
-
-def test_at_zero_they_change_no_bit():
-    zeros = dict.fromkeys(("box_acceleration", "force1", "force2"), 0.0)
-    for structure in (OWN, Structure()):
-        asked = {"eta": [0.5, 1.3], "transient": 20, "samples": 8, **QUICK}
-        plain, pushed = (orchestrate.sweep(structure, **asked, **more) for more in ({}, zeros))
-        assert all((plain[name] == pushed[name]).all() for name in plain)
 
 
 @pytest.mark.parametrize("e", [0.0, 0.7])

@@ -11,7 +11,7 @@ import orchestrate
 from orchestrate import Structure
 from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
 from orchestrate.model import Excitation
-from orchestrate.model.outcomes import REPEATED, UNDECIDED
+from orchestrate.model.outcomes import UNDECIDED
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import traits_of
 
@@ -31,7 +31,6 @@ CASES = [(OPEN, 0.9995066730201216, None), (PRESSED, 0.9997454727152408, 1.93030
 
 
 def place_of(structure, eta, amplitude):
-    """Arguments of an analysis, and the excitation."""
     unit = Excitation.nondimensional(eta, structure)
     excitation = unit if amplitude is None else unit.replace(amplitude=amplitude)
     asked = {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
@@ -72,24 +71,6 @@ def test_attractors_without_their_impacts_are_not_periodic(numbers, frequency, a
     codes, impacts = (found[name].values.ravel() for name in ("decided_by", "impacts_per_period"))
     said = {words[int(code)] for code in codes[impacts == 0.0]}
     assert "undecided" in said and said <= {"undecided", "irregular"}
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_it_has_no_exact_exponent(case):
-    structure, (asked, _) = case[0], place_of(*case)
-    found = orchestrate.impact_statistics(structure, **asked, transient=250, periods=50, **QUIET)
-    assert float(found.impacts[0]) == 0.0 and np.isnan(found.exponent[0])
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_below_the_level_all_is_decided_as_before(case):
-    structure, frequency = case[0], place_of(*case)[1].frequency
-    level = orchestrate.contact_threshold(structure, frequency=frequency)
-    below = {"frequency": frequency, "amplitude": 0.9 * float(level.threshold_amplitude[0])}
-    swept = orchestrate.sweep(structure, **below, transient=4000, samples=60, **QUIET)
-    assert int(swept.multiplicity_decided.squeeze()) == REPEATED
-    found = orchestrate.impact_statistics(structure, **below, transient=4000, periods=50, **QUIET)
-    assert float(found.impacts[0]) == 0.0 and float(found.exponent[0]) < 0.0
 
 
 @pytest.mark.parametrize("structure", [OPEN, PRESSED])

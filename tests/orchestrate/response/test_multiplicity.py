@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fmu_src.kernels import repetition
@@ -56,13 +56,7 @@ def four(*columns):
 
 
 def repeat(orbit, length):
-    """Take the first ``length`` states of a periodic sequence."""
     return np.tile(orbit, (length // len(orbit) + 1, 1))[:length]
-
-
-@given(orbits(), st.integers(0, 60))
-def test_period_of_a_periodic_sequence(orbit, more):
-    assert multiplicity(repeat(orbit, 4 * len(orbit) + more), TOLERANCE) == len(orbit)
 
 
 @pytest.mark.parametrize(("deviation", "expected"), [(0.9, 1), (1.1, 2)])
@@ -273,15 +267,6 @@ def test_a_torus_has_repeated_after_no_number_of_periods(phase, angle):
     assert exact or decide(states).decided != REPEATED
 
 
-def test_noise_narrower_than_the_tolerance_is_undecided_and_wider_irregular():
-    noise = np.random.default_rng(3).uniform(-1.0, 1.0, (30, 200))
-    narrow = [decide(states_of(lambda n, row=row: 1e-3 * row)) for row in noise]
-    assert {found.multiplicity for found in narrow} == {1}
-    assert sum(found.decided == UNDECIDED for found in narrow) >= 28  # chance may look like dying
-    wide = {decide(states_of(lambda n, row=row: 0.2 * row)) for row in noise}
-    assert wide == {(0, IRREGULAR)}
-
-
 @pytest.mark.parametrize(
     ("n", "expected"),
     [(16, UNDECIDED), (18, UNDECIDED), (45, UNDECIDED), (46, IRREGULAR)],  # of 60 samples
@@ -295,12 +280,14 @@ def test_a_period_longer_than_the_samples_can_show_is_undecided(n, expected):
 
 
 @given(st.integers(0, 2**32 - 1))
+@settings(max_examples=200)
 def test_compiled_and_in_python_the_rule_is_the_same(seed):
     random = np.random.default_rng(seed)
-    n, count, decay = random.integers(1, 30), random.choice([1, 7, 40, 60, 200]), random.uniform()
+    n, count = random.integers(1, 30), random.choice([1, 7, 8, 16, 40, 60, 200])
+    decay = random.choice([random.uniform(), 1.0])
     samples = random.normal(size=(n, 4))[np.arange(count) % n]
     samples += (
-        10.0 ** random.uniform(-9, 0)
+        10.0 ** random.uniform(-12, 0)
         * random.normal(size=4)
         * decay ** np.arange(count).reshape(-1, 1)
     )

@@ -1,8 +1,6 @@
 """At what a question is asked: both forms of an excitation, one parameter, and what is refused."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from orchestrate.model import Structure
 from orchestrate.response.sweep import SweepJob
@@ -11,7 +9,6 @@ OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
 
 
 def along(structure=OWN, **asked):
-    """The points of a sweep."""
     rest = {"direction": "given", "transient": 0, "samples": 1, "tolerance": 0.1, "peak_periods": 1}
     return SweepJob(name="", structure=structure, **rest, **asked).series
 
@@ -48,14 +45,6 @@ def test_what_is_a_list_is_the_dimension(asked, name, count):
         assert dims == name
         assert len(values) == count
         assert attributes["units"] and attributes["long_name"]
-
-
-@given(st.floats(0.05, 20.0), st.floats(1e-6, 1e3))
-def test_both_forms_are_the_same_question(eta, length):
-    amplitude = length / eta**2
-    physical = along(frequency=eta * OWN.omega, amplitude=amplitude)
-    assert physical.etas[0] == pytest.approx(eta, rel=1e-15)
-    assert physical.points[0].length == pytest.approx(length, rel=1e-14)
 
 
 def test_a_parameter_of_the_structure_is_replaced_and_eta_stays():

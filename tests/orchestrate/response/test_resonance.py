@@ -1,14 +1,15 @@
-"""Resonance curves against what is known: linear theory, sweeps, scaling."""
+"""Resonance curves, at levels too: against linear theory, sweeps, and curves that are known."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import orchestrate
 from orchestrate.model import Structure
 from orchestrate.response.resonance import resonance
 from orchestrate.response.sweep import sweep
-from orchestrate.response.turns_and_jumps import inside_irregular
+from orchestrate.response.turns_and_jumps import inside_irregular, jump_indices, prominent_maxima
 
 BEAM = Structure.from_file("beam")
 OMEGA = 2.0 * np.pi * np.linspace(8.0, 20.0, 60)
@@ -76,3 +77,69 @@ def test_ranges_of_irregular_responses_reach_over_narrow_windows_alone(irregular
         window = [True, *[False] * 3, True]
         assert inside_irregular(window).tolist() == window
         assert inside_irregular([True, False, False, True]).all()
+
+
+GRID = np.linspace(0.5, 1.5, 401)
+
+
+def test_the_peak_of_a_linear_oscillator():
+    damping = 0.02
+    curve = 1.0 / np.hypot(1.0 - GRID**2, 2.0 * damping * GRID)
+    exact = np.sqrt(1.0 - 2.0 * damping**2)
+    assert GRID[prominent_maxima(curve, 0.1)] == pytest.approx([exact], abs=0.0013)
+
+
+def test_ripples_are_no_peaks_and_zeros_do_no_harm():
+    ripples = 1.0 + 0.04 * np.sin(80.0 * GRID)
+    assert len(prominent_maxima(ripples, 0.1)) == 0 and len(prominent_maxima(ripples, 0.05)) > 10
+    assert len(prominent_maxima(np.zeros(5), 0.1)) == 0
+
+
+@pytest.mark.parametrize("size", [1, 2, 3])
+def test_curves_of_few_values(size):
+    assert len(prominent_maxima(np.ones(size), 0.1)) == len(jump_indices(np.ones(size), 0.1)) == 0
+
+
+def test_a_jump_and_what_is_none():
+    steep, jumping = np.exp(6.0 * GRID), np.where(GRID > 1.2, 0.6, 1.0) * GRID
+    assert len(jump_indices(steep, 0.01)) == 0
+    (at,) = jump_indices(jumping, 0.15)
+    assert GRID[at] <= 1.2 < GRID[at + 1]
+    irregular = np.random.default_rng(1).uniform(1.0, 1.5, 400)
+    assert len(jump_indices(irregular, 0.15)) < 8
+
+
+PRESSED = Structure.from_halves(
+    m1=1.0, m2=1.2, f1=42.0, f2=55.0, zeta1=0.01, zeta2=0.01, clearance=-2e-5
+)
+HERTZ = (2.0 * np.pi) * 47.0
+LEVELS = [0.05, 1.0, 6.0]
+SHORT = {"transient": 60, "samples": 6, "progress": False}
+
+
+def test_a_sweep_over_the_level_is_one_over_the_amplitude(exported):
+    over = {"over": "level", "values": LEVELS}
+    by_level = orchestrate.sweep(PRESSED, frequency=HERTZ, **over, **SHORT)
+    amplitudes = [level / HERTZ**2 for level in LEVELS]
+    by_amplitude = orchestrate.sweep(PRESSED, frequency=HERTZ, amplitude=amplitudes, **SHORT)
+    assert by_level.xi_rel.dims == ("level", "sample")
+    assert by_level.level.attrs["units"] == "m/s2"
+    np.testing.assert_array_equal(by_level.xi_rel.values, by_amplitude.xi_rel.values)
+    np.testing.assert_array_equal(by_level.amplitude.values, amplitudes)
+    gaps = by_level.xi_rel_max.values
+    assert gaps[0] == 0.0 and (gaps[1:] > 0.0).all()  # it opens between the first two
+
+
+@pytest.mark.parametrize("direction", ["up", "both"])
+def test_resonance_at_levels_is_resonance_at_each(exported, direction):
+    frequency = (2.0 * np.pi) * np.arange(44.0, 52.0, 1.0)
+    shared = {"frequency": frequency, "direction": direction, **SHORT}
+    family = orchestrate.resonance_levels(PRESSED, level=LEVELS, **shared)
+    for level in LEVELS:
+        alone = orchestrate.resonance(PRESSED, amplitude=level / frequency**2, **shared)
+        for name in ("x1_max", "a2_max", "x_rel_max", "multiplicity", "permanent_contact"):
+            assert family[name].dims == ("level", *alone[name].dims)
+            np.testing.assert_array_equal(family[name].sel(level=level), alone[name])
+        peaks = family.peak_hertz.values[family.peak_level.values == level]
+        np.testing.assert_array_equal(peaks, alone.peak_hertz.values)
+    assert family.amplitude.dims == ("level", "frequency")

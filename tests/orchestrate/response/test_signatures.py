@@ -1,20 +1,16 @@
 """Public functions as questions: their signatures are the one place of names, types, defaults."""
 
-import ast
 import dataclasses
 import inspect
 import math
-import textwrap
 import typing
 
-import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate import InputError, Structure
-from orchestrate.model.arguments import Count, checks_of
+from orchestrate import InputError
+from orchestrate.model.arguments import checks_of
 from orchestrate.response.questions import Question
-from orchestrate.response.signatures import as_given, question
 
 from ..running.test_kills import kinds_of_questions
 
@@ -24,47 +20,6 @@ KINDS = {
     if issubclass(kind, Question)
 }
 ASKED = [name for name in KINDS if name != "cosimulate"]  # by a job that it makes itself
-
-
-class EchoJob(Question):
-    """A job that answers with its fields."""
-
-    doubled: int
-
-    def work(self, fmus, items, previous):
-        """Return the fields."""
-        return {"row": np.array([[self.count_of, self.doubled]])}
-
-    def dataset(self, table):
-        """Return them as a dataset."""
-        return orchestrate.lazy.xr.Dataset({"row": ("n", table["row"][0])})
-
-
-@question(EchoJob)
-def echo(structure: Structure, *, count_of: Count = 3, loud: bool = False, **running: typing.Any):
-    """Answer with numbers."""
-    return as_given(doubled=2 * count_of)
-
-
-@pytest.mark.usefixtures("exported")
-def test_a_keyword_is_a_field_with_its_check():
-    found = echo(Structure(), count_of=4, progress=False)
-    assert found.row.values.tolist() == [4, 8]
-    assert (found.attrs["count_of"], found.attrs["loud"]) == (4, 0)
-    assert found.attrs["call"].startswith("echo(Structure(")
-    assert [field.name for field in dataclasses.fields(EchoJob)][2:] == [
-        "doubled",
-        "count_of",
-        "loud",
-    ]
-    with pytest.raises(InputError, match="count_of = 0: expected a whole number from 1"):
-        echo(Structure(), count_of=0)
-    with pytest.raises(InputError, match="loud = 'yes': expected true or false"):
-        echo(Structure(), loud="yes")
-    with pytest.raises(TypeError, match="quiet"):
-        echo(Structure(), quiet=True)
-    with pytest.raises(InputError, match="structure = 3: expected a Structure"):
-        echo(3)
 
 
 @pytest.mark.parametrize("name", ASKED)
@@ -78,19 +33,6 @@ def test_every_public_signature_is_known_at_run_time_and_is_its_job(name):
             assert (key in fields) != (key in kind.replaced), key
     assert set(checks_of(kind)) <= set(fields)
     assert kind.asked == function.__name__ == name
-
-
-@pytest.mark.parametrize("name", KINDS)
-def test_what_a_job_reads_of_itself_is_there(name):
-    """As a type checker would find where the class said its fields."""
-    kind = KINDS[name]
-    known = {*dir(kind), *(field.name for field in dataclasses.fields(kind))}
-    for parent in kind.__mro__:
-        if parent.__module__.startswith("orchestrate."):
-            tree = ast.parse(textwrap.dedent(inspect.getsource(parent)))
-            for node in ast.walk(tree):
-                if isinstance(node, ast.Attribute) and ast.unparse(node.value) == "self":
-                    assert node.attr in known, f"{parent.__name__}: self.{node.attr}"
 
 
 @pytest.mark.parametrize("name", ASKED)

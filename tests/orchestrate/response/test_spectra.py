@@ -6,7 +6,7 @@ from scipy.integrate import trapezoid
 
 from orchestrate.model import Structure
 from orchestrate.response.simulate import simulate
-from orchestrate.response.spectra import amplitude_spectrum, spectra
+from orchestrate.response.spectra import spectra
 
 PAPER = Structure.nondimensional()
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=1.9, e=0.6)
@@ -50,16 +50,6 @@ def test_a_bonded_structure_has_one_line():
         reach = complex(structure.omega_3**2 - eta**2, 2.0 * structure.D3 * eta)
         assert float(part.sel(order=1.0)) == pytest.approx(abs(1.0 + eta**2 / reach), rel=1e-6)
         assert float(part.sel(order=slice(1.5, None)).max()) < 1e-6
-
-
-@pytest.mark.parametrize("count", [256, 257])
-def test_amplitudes_of_sines(count):
-    time = np.arange(count) / count
-    signal = 0.5 + 3.0 * np.sin(10 * np.pi * time) + 2.0 * np.cos(100 * np.pi * time)
-    frequency, amplitude = amplitude_spectrum([signal, 2.0 * signal], 1.0 / count)
-    assert frequency[5] == pytest.approx(10.0 * np.pi)
-    assert amplitude[0, [5, 50]] == pytest.approx([3.0, 2.0])
-    np.testing.assert_allclose(amplitude[1], 2.0 * amplitude[0])
 
 
 @pytest.mark.usefixtures("exported")

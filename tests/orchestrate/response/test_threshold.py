@@ -9,7 +9,6 @@ import orchestrate
 from orchestrate import Structure
 from orchestrate.fmu import OSCILLATOR, Instance, begin, find
 from orchestrate.model import Excitation
-from orchestrate.show import plot
 
 from ...sparing import ordinary
 
@@ -80,27 +79,20 @@ def test_the_fmu_opens_and_touches_at_the_threshold(exported, seed):
     assert level.event == ("opens" if structure.clearance < 0.0 else "touches")
 
 
-def test_forms_units_and_limits():
+def test_forms_and_limits():
     pressed = Structure(clearance=-0.25)
     by_eta = orchestrate.contact_threshold(pressed, eta=[0.5, 1.0])
     by_frequency = orchestrate.contact_threshold(pressed, frequency=[0.5, 1.0])
-    assert by_eta.threshold_amplitude.dims == ("eta",)
     assert np.array_equal(by_eta.threshold_amplitude, by_frequency.threshold_amplitude)
     squares = by_eta.frequency.values**2
     assert np.allclose(by_eta.threshold_acceleration, by_eta.threshold_amplitude * squares)
-    for data in (by_eta, by_frequency):
-        assert all({"units", "long_name"} <= set(v.attrs) for v in data.variables.values())
     assert orchestrate.contact_threshold(Structure(), eta=1.0).threshold_amplitude[0] == 0.0
     alike = Structure(k2=1.0, clearance=-0.25)
     assert orchestrate.contact_threshold(alike, eta=1.0).threshold_amplitude[0] == np.inf
-    twice = orchestrate.contact_threshold(pressed.replace(clearance=-0.5), eta=[0.5, 1.0])
-    assert np.array_equal(twice.threshold_amplitude, 2.0 * by_eta.threshold_amplitude)
 
 
-def test_resonance_has_the_threshold_as_a_curve_and_the_picture_shows_it():
-    """A preload that the box's level exceeds around the resonance alone: the gap opens there, and
-    nowhere that the threshold is higher than the level.
-    """
+def test_resonance_opens_where_the_level_is_above_the_threshold():
+    """A preload that the box's level exceeds around the resonance alone."""
     pressed = Structure(d1=0.1, d2=0.15, clearance=-0.15)
     frequency = np.linspace(0.6, 1.6, 21)
     asked = {"frequency": frequency, "amplitude": 0.4 / frequency**2, "direction": "up"}
@@ -109,15 +101,7 @@ def test_resonance_has_the_threshold_as_a_curve_and_the_picture_shows_it():
     assert np.array_equal(data.threshold_amplitude, level.threshold_amplitude)
     opened = data.x_rel_max.sel(structure="delaminated").squeeze().values > 0.0
     above = data.amplitude.values > data.threshold_amplitude.values
-    assert 0 < above.sum() < len(above)
-    assert np.array_equal(opened, above)
-    figure = plot.plot(data)
-    assert len(figure.axes) == 6
-    words = {line.get_label() for axes in figure.axes for line in axes.get_lines()}
-    assert {"level at which it opens", "level of the box"} <= words
-    shut = pressed.replace(clearance=0.0)
-    without = orchestrate.resonance(shut, **asked, transient=20, samples=4)
-    assert "threshold_amplitude" not in without
+    assert 0 < above.sum() < len(above) and np.array_equal(opened, above)
 
 
 def fine_scan(structure, low, high):

@@ -74,8 +74,6 @@ def test_an_fmu_of_somebody_else_runs_in_a_process(find, monkeypatch, tmp_path):
 
 
 class Where(Squares):
-    """The process that computes it."""
-
     in_threads: ClassVar[bool] = True
 
     def count(self):
@@ -93,20 +91,18 @@ class Lost:
     def __init__(self, when="", error=None):
         self.when, self.error = when, error
 
-    def asked(self, name):
-        if name == self.when:  # the client itself may not know yet
-            self.status = self.status if name == "ncores" else "connecting"
-            raise OSError(f"in <TCP (closed)> {name}")
-
     def ncores(self):
-        self.asked("ncores")
+        if self.when == "ncores":
+            raise OSError("in <TCP (closed)>")
         return {"one": 1}
 
     def get_executor(self, **_):
         return self
 
     def submit(self, *_):
-        self.asked("submit")
+        if self.when == "submit":
+            self.status = "connecting"  # the client itself may not know before
+            raise OSError("in <TCP (closed)>")
         future = Future()
         future.set_exception(self.error or CancelledError())
         return future
@@ -115,17 +111,14 @@ class Lost:
         raise OSError("in <TCP (closed)>")
 
 
-@pytest.mark.parametrize("when", ["ncores", "submit", ""])
-def test_a_scheduler_that_ends_is_told(find, when):
-    with pytest.raises(WorkerError, match=r"has ended; .* repeat the call to resume"):
-        answer(JOB, {"cluster": Lost(when)}, find)
-
-
-def test_workers_of_a_cluster_that_die_are_told(find):
-    distributed = pytest.importorskip("distributed")
-    died = distributed.KilledWorker("compute", None, 3)
-    with pytest.raises(WorkerError, match=r"workers of the cluster ended without a word"):
-        answer(JOB, {"cluster": Lost(error=died)}, find)
+@pytest.mark.parametrize("when", ["ncores", "submit", "", "workers"])
+def test_a_scheduler_that_ends_and_workers_that_die_are_told(find, when):
+    distributed, error, words = pytest.importorskip("distributed"), None, "has ended; .* resume"
+    if when == "workers":
+        error = distributed.KilledWorker("compute", None, 3)
+        words = "workers of the cluster ended"
+    with pytest.raises(WorkerError, match=words):
+        answer(JOB, {"cluster": Lost(when, error)}, find)
 
 
 @pytest.mark.parametrize("error", [OSError("refused"), MemoryError("an array of 3 EiB")])

@@ -17,7 +17,6 @@ from orchestrate.units import with_units
 
 
 def metres(dims, values):
-    """A length."""
     return dims, np.asarray(values, dtype=float), {"units": "m", "long_name": "length"}
 
 
@@ -51,33 +50,24 @@ def test_csv(data, tmp_path):
     assert table["kind"].tolist() == ["at rest", "moves", "moves"]
     long = pd.read_csv(written[1]).set_index(["name", "time [s]"])["gap [m]"]
     assert long["down", 1.0] == 4.0 and len(long) == 6
-    assert pd.read_csv(written[2])["peak [m]"].tolist() == [2.5]
-
-
-def test_xlsx(data, tmp_path):
-    formats.write(data, tmp_path / "a.xlsx")
-    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
-    assert book.sheetnames == ["time", "name_time", "numbers", "about"]
-    rows = list(book["time"].values)
-    assert rows[0] == ("time [s]", "x [m]", "kind") and rows[2] == (1, 1.0 / 3.0, "moves")
-    assert ("x", "m", "length") in list(book["about"].values)
-    assert ("e", None, "0.7") in list(book["about"].values)
 
 
 TEXTS = ['=HYPERLINK("http://example.org","x").csv', "#REF!", "+1", "-2", "@SUM(1)"]
 
 
-def test_texts_are_no_formulas_of_a_sheet(tmp_path):
+def test_texts_are_no_formulas_of_a_sheet(data, tmp_path):
     """The name of a record, whoever gave it, runs nothing."""
-    names = [text.replace("/", ":") for text in TEXTS]
-    data = xr.Dataset({"word": ("name", TEXTS)}, {"name": names}, {"source": TEXTS[0]})
-    data["=1+1"] = "name", np.arange(5.0)
-    formats.write(data, tmp_path / "a.xlsx")
+    words = xr.Dataset({"word": ("text", TEXTS)}, {"text": TEXTS}, {"source": TEXTS[0]})
+    formats.write(data.merge(words).assign_attrs(words.attrs), tmp_path / "a.xlsx")
     with zipfile.ZipFile(tmp_path / "a.xlsx") as archive:
         assert not any(b"<f>" in archive.read(name) for name in archive.namelist())
     book = openpyxl.load_workbook(tmp_path / "a.xlsx")
-    assert [row[1] for row in book["name"].values] == ["word", *TEXTS]
-    assert ("source", None, TEXTS[0]) in list(book["about"].values)
+    assert book.sheetnames == ["time", "name_time", "numbers", "text", "about"]
+    rows = list(book["time"].values)
+    assert rows[0] == ("time [s]", "x [m]", "kind") and rows[2] == (1, 1.0 / 3.0, "moves")
+    assert [row[1] for row in book["text"].values] == ["word", *TEXTS]
+    about = list(book["about"].values)
+    assert ("x", "m", "length") in about and ("source", None, TEXTS[0]) in about
 
 
 def test_mat(data, tmp_path):
@@ -90,22 +80,17 @@ def test_mat(data, tmp_path):
     assert found["dimensions"]["gap"] == "name, time"
 
 
-def test_what_does_not_fit_or_is_unknown(data, tmp_path, monkeypatch):
-    monkeypatch.setattr(formats, "MAX_SHEET_ROWS", 2)
-    with pytest.raises(InputError, match="has 3 rows, a sheet at most 2; expected csv"):
-        formats.write(data, tmp_path / "a.xlsx")
-    with pytest.raises(InputError, match="format 'doc'; expected one of csv"):
-        formats.write(data, tmp_path / "a.doc")
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("ending", formats.WRITERS)
-def test_whole_or_not_at_all(data, tmp_path, ending):
-    place = tmp_path / f"a.{ending}"
-    place.mkdir()
-    with pytest.raises(StoreError, match="cannot be written"):
+@pytest.mark.parametrize("ending", [*formats.WRITERS, "doc", "too long"])
+def test_whole_or_not_at_all(data, tmp_path, ending, monkeypatch):
+    if ending == "too long":
+        monkeypatch.setattr(formats, "MAX_SHEET_ROWS", 2)
+    place = tmp_path / f"a.{ending.replace('too long', 'xlsx')}"
+    if ending in formats.WRITERS:
+        place.mkdir()
+    words = {"doc": "'doc'; expected", "too long": "3 rows"}.get(ending, "cannot be written")
+    with pytest.raises((StoreError, InputError), match=words):
         formats.write(data[["x"]], place)
-    assert [path.name for path in tmp_path.iterdir()] == [place.name]
+    assert [p.name for p in tmp_path.iterdir()] == [place.name] * (ending in formats.WRITERS)
 
 
 def test_a_frequency_stands_once_and_without_the_digits_of_a_conversion(tmp_path):

@@ -71,7 +71,3 @@ def test_a_long_list_is_told_by_its_ends_and_a_digest():
     etas[17] += 1e-15
     assert json_data(etas)["sha256"] != told["sha256"]
     assert brief(told) == "0.1 ... 8 by 0.001 (7901 values)"
-
-
-def test_a_rule_among_the_kernels_is_part_of_the_code():
-    assert "fmu_src.kernels.repetition" in code_digests("orchestrate.response.sweep")

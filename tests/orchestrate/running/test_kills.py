@@ -37,7 +37,6 @@ Ask = Callable[..., xr.Dataset]
 
 
 def fit(**running: Any) -> xr.Dataset:
-    """A sound curve."""
     hertz = np.linspace(42.0, 52.0, 21)
     ratio = abs((1 + 0.02j * hertz / 47) / (1 - (hertz / 47) ** 2 + 0.02j * hertz / 47))
     curve = orchestrate.resonance_curve(frequency=hertz, level=4.0, amplitude1=ratio, unit="1")
@@ -45,13 +44,11 @@ def fit(**running: Any) -> xr.Dataset:
 
 
 def detect(**running: Any) -> xr.Dataset:
-    """A sound record."""
     history = orchestrate.shake(BEAM.as_bonded(), SWEPT, sample_rate=600.0, progress=False)
     return orchestrate.detect(history, BEAM.replace(f1=44.0), **running)
 
 
 def border(**running: Any) -> xr.Dataset:
-    """From a window of stable motion."""
     window = orchestrate.branch(UNIT, eta=2.6, limits=(2.5, 2.7), progress=False)
     limits = [(2.5, 2.7), (0.69, 0.71)]
     return orchestrate.border(

@@ -1,6 +1,5 @@
 """Results are stored, resumed and read; they are never taken for another question's."""
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +7,11 @@ import pytest
 import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError
-from orchestrate.running import bar
 from orchestrate.running.journal import Journal, journal_path, lock_result
 from orchestrate.running.runner import answer
 
 from .conftest import Find
-from .sums import Gathered, Squares, Sums
+from .sums import Squares, Sums
 
 JOB = Squares("squares")
 SQUARES = np.arange(10.0) ** 2
@@ -34,7 +32,6 @@ def interrupted(monkeypatch, job, running, find, item):
 
 
 def computed(monkeypatch):
-    """List of the items that are computed from now on."""
     items, work = [], Squares.work
 
     def note(self, fmus, chunk, previous):
@@ -43,16 +40,6 @@ def computed(monkeypatch):
 
     monkeypatch.setattr(Squares, "work", note)
     return items
-
-
-@pytest.mark.parametrize("size", [1, 3, 10])
-def test_what_gathers_starts_when_all_others_are_there(find, size):
-    job = Gathered("all", size=size)
-    assert [chunk.stop - chunk.start for chunk in job.chunks()][-1] == 1
-    assert float(answer(job, {}, find)["whole"]) == (np.arange(size) ** 2.0).sum()
-
-
-# -- stored ---------------------------------------------------------------------------------------
 
 
 def test_an_interrupted_job_goes_on_and_is_read_when_it_is_finished(find, tmp_path, monkeypatch):
@@ -116,37 +103,30 @@ def test_a_result_stays_until_the_one_computed_anew_is_whole(find, tmp_path, mon
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
 
 
+@pytest.mark.parametrize("damage", ["", "noise", "no chunk"])
 @pytest.mark.parametrize("stored", [False, True])
-@pytest.mark.parametrize("damage", [b"", b"noise" * 1000])
-def test_force_never_reads_a_journal(find, tmp_path, monkeypatch, stored, damage):
+def test_force_never_reads_a_journal_and_an_older_result_stays(
+    find, tmp_path, monkeypatch, stored, damage
+):
+    """Where the run with force cannot be resumed either."""
     path = tmp_path / "squares.nc"
     if stored:
         answer(JOB, {"store": path}, find)
     interrupted(monkeypatch, JOB, {"store": path, "force": stored}, find, 7)
-    if damage:
-        journal_path(path, anew=stored).write_bytes(damage)
-    items = computed(monkeypatch)
-    assert np.array_equal(answer(JOB, {"store": path, "force": True}, find).square, SQUARES)
-    assert items == list(range(10))
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
-
-
-@pytest.mark.parametrize("damage", ["noise", "no chunk"])
-def test_a_run_with_force_that_cannot_be_resumed_leaves_the_older_result(
-    find, tmp_path, monkeypatch, damage
-):
-    path = tmp_path / "squares.nc"
-    answer(JOB, {"store": path}, find)
-    interrupted(monkeypatch, JOB, {"store": path, "force": True}, find, 7)
+    place = journal_path(path, anew=stored)
     if damage == "noise":
-        journal_path(path, anew=True).write_bytes(b"noise" * 1000)
-    else:
-        journal = Journal(journal_path(path, anew=True), {}, "")
+        place.write_bytes(b"noise" * 1000)
+    elif damage:
+        journal = Journal(place, {}, "")
         for index in journal.indices():
             journal.drop(index, "")
         journal.close()
     items = computed(monkeypatch)
-    assert np.array_equal(answer(JOB, {"store": path}, find).square, SQUARES) and not items
+    if stored and damage:
+        assert np.array_equal(answer(JOB, {"store": path}, find).square, SQUARES) and not items
+    assert np.array_equal(answer(JOB, {"store": path, "force": True}, find).square, SQUARES)
+    assert items == list(range(10))
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
 
 
 @pytest.mark.parametrize("kind", ["NetCDF with an identity", "text", "empty"])
@@ -172,22 +152,3 @@ def test_one_process_at_a_time(find, tmp_path):
     lock.release()
     answer(JOB, {"store": path}, find)
     assert {path.name for path in tmp_path.iterdir()} == {"model.fmu", "squares.nc"}
-
-
-# -- keywords and the progress bar ----------------------------------------------------------------
-
-
-def test_in_a_log_the_bar_is_a_line_every_ten_per_cent(find, monkeypatch, capfd):
-    """Its label is short; what the last chunk does is said before, as the bar stands still then."""
-    monkeypatch.setattr(bar, "DELAY", 0.0)
-    monkeypatch.setattr("orchestrate.running.runner.DELAY", 0.0)
-    monkeypatch.setattr(
-        Sums, "progress_note", lambda self, first: "counting again" if first >= 396 else ""
-    )
-    monkeypatch.setattr(Sums, "independent_series", lambda self: 1)
-    answer(Sums("a name of very many letters", size=400), {"jobs": 1}, find)
-    lines = capfd.readouterr().err.splitlines()
-    assert lines[0].startswith("a name of very many l...:   0%|")
-    assert lines[-1].startswith("counting again: 100%|")
-    shares = [int(share) for share in re.findall(r"(\d+)%\|", "\n".join(lines))]
-    assert shares == sorted(shares) and 10 <= len(lines) <= 14 and max(map(len, lines)) < 81
