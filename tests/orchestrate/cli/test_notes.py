@@ -76,25 +76,26 @@ SIMULATE = "simulate --periods 2 --plot none --set f1=42 --set f2=55 "
 MASSES = "--set m1=1.5 --set m2=1.2 "
 ZETAS = "--set zeta1=0.7% --set zeta2=0.007 "
 G = "--g 0.3 "
+MOVES = "times what this level moves"
 QUIET = "--hz 20 --g 0.001 --set clearance="
 LEVEL = "resonance --structure beam --transient 2 --samples 4 --plot none "
 SHAKE = "shake --structure beam --swept-sine 8:10 --duration 1 --g 0.02 --plot none --sample-rate "
-SAID = {  # a command; what is printed (or not, after a minus), and what is warned of
+SAID = {  # a command; what is printed (or not, after a "!"), and what is warned of
     SIMULATE + "--hz 42 " + G: (
         "assumed, as in the set paper|m1 = 1 kg|zeta1 = 0.5 %|e = 0.7|only the ratio of the masses",
         "",
     ),
-    SIMULATE + MASSES + ZETAS + "--set e=0.6 --hz 42 " + G: ("-assumed|-are in kg", ""),
-    SIMULATE + "--set mu=0.8 --hz 42 " + G: ("-m1 =", ""),
+    SIMULATE + MASSES + ZETAS + "--set e=0.6 --hz 42 " + G: ("!assumed, as|!are in kg", ""),
+    SIMULATE + "--set mu=0.8 --hz 42 " + G: ("!m1 =", ""),
     SIMULATE + "--set m1=20.1kg --set m2=1 --hz 42 " + G: ("masses are in kg", ""),
     SIMULATE + "--set zeta1=0.7 --hz 42 " + G: ("", "zeta1 = 0.7 is 70 %"),
     SIMULATE + MASSES + "--set clearance=-20 --hz 42 " + G: ("", "clearance = -20 m"),
     SIMULATE + MASSES + "--frequency 42 " + G: ("", "is --hz meant?"),
     SIMULATE + MASSES + "--hz 264 " + G: ("", "is --frequency meant?"),
     SIMULATE + MASSES + "--rpm 2500 " + G: ("", ""),
-    SIMULATE + MASSES + QUIET + "-2e-5": ("opens at|is linear|no impacts|um, it first", ""),
-    SIMULATE + MASSES + QUIET + "1.5e-3": ("touches at|is linear|no impacts", ""),
-    SIMULATE + MASSES + "--set clearance=-2e-5 --hz 48 --g 3": ("-is linear|-no impacts", ""),
+    SIMULATE + MASSES + QUIET + "-2e-5": ("opens at|is linear|no impacts|um, it first", MOVES),
+    SIMULATE + MASSES + QUIET + "1.5e-3": ("touches at|is linear|no impacts", MOVES),
+    SIMULATE + MASSES + "--set clearance=-2e-5 --hz 48 --g 3": ("!is linear|!no impacts", ""),
     "simulate --set wall=true --set f1=12 --set zeta1=1% --set clearance=0.3mm --hz 11 --g 0.1"
     " --periods 2 --plot none": ("assumed, as in the set paper: m1 = 1 kg, e = 0.7|impacts", ""),
     "branch --structure beam --over hz --limits 16.5:16.6 --plot none --g 0.02": (
@@ -116,7 +117,7 @@ def test_what_is_assumed_or_implausible_is_said_in_one_line(ask, command):
     done = ask(*command.split())
     assert done.code == 0, done.err
     for words in filter(None, printed.split("|")):
-        assert (words.removeprefix("-") in done.out) != words.startswith("-"), (words, done.out)
+        assert (words.removeprefix("!") in done.out) != words.startswith("!"), (words, done.out)
     assert [warned in line for line in done.complaints] == [True] * bool(warned), done.complaints
 
 
@@ -158,7 +159,7 @@ def test_a_stored_result_brings_its_structure(ask, tmp_path, monkeypatch, comman
     call = {"call": "branch(...)", "over": "frequency", "identity": json.dumps({"question": {}})}
     xr.Dataset({"stable": ("point", [1])}, attrs={**attributes, **call}).to_netcdf(path)
     place = "orchestrate.explorer.page.explore" if command == "explore" else command
-    function = getattr(orchestrate, command)
+    function = getattr(orchestrate, command, Structure)
 
     @functools.wraps(function)
     def ask_only(structure, **question):
