@@ -11,12 +11,8 @@ from ..sparing import ordinary
 
 PUBLISHED = {  # clamped-clamped, delaminated in the middle of span and thickness: Wang, Liu and
     # Gibby (1982), Della and Shu (2005), as tabled by Erdelyi and Hashemi (2016): modes 1 and 2
-    0.1: (22.37, 60.76),
-    0.2: (22.36, 55.97),
-    0.3: (22.24, 49.00),
-    0.4: (21.83, 43.87),
-    0.5: (20.88, 41.45),
-    0.6: (19.29, 40.93),
+    **{0.1: (22.37, 60.76), 0.2: (22.36, 55.97), 0.3: (22.24, 49.00)},
+    **{0.4: (21.83, 43.87), 0.5: (20.88, 41.45), 0.6: (19.29, 40.93)},
 }
 
 
@@ -57,15 +53,6 @@ def test_a_delamination_at_the_free_end_makes_two_beams():
     whole = intact_frequency(beam)
     frequencies = beam.modes(2)[0] / TURN
     assert frequencies == pytest.approx([0.4 * whole, 0.6 * whole], rel=1e-2)
-
-
-def test_all_modes_together_have_the_mass_of_what_is_free():
-    beam = DelaminatedBeam(elements=20)
-    stiffness, _, _ = beam.matrices
-    _, _, participation = beam.modes(len(stiffness))
-    held = beam.section(1.0).mass * beam.length / beam.elements  # at most an element's
-    mass = beam.section(1.0).mass * beam.length
-    assert mass - held < (participation**2).sum() < mass
 
 
 def test_accelerometers_are_where_the_first_mode_moves_as_a_mass_on_a_spring():

@@ -1,6 +1,5 @@
 """The integration of benches against closed forms and an adaptive method with tight tolerances."""
 
-import itertools
 import math
 
 import numpy as np
@@ -11,8 +10,6 @@ from scipy.special import ellipk
 from tests.benches.integrator import equilibrium, integrate
 from tests.benches.lumped import TURN, Faces, Halves, cubic_stiffness, frequency_change
 from tests.benches.recipe import OPENED
-
-from ..sparing import ordinary
 
 HALVES = Halves(zeta1=0.03, zeta2=0.03)
 LAWS = ("linear", "hunt-crossley", "hertz")
@@ -26,8 +23,7 @@ def driven(frequency, seconds, step, level=5.0):
 
 
 def test_a_bonded_beam_has_the_closed_transfer_function():
-    system, step = HALVES.bonded(), 1.0 / 24_000.0
-    whole = HALVES.bonded_beam()
+    system, step, whole = HALVES.bonded(), 1.0 / 24_000.0, HALVES.bonded_beam()
     for frequency in (25.0, whole.f, 80.0):
         moved = integrate(system, driven(frequency, 4.0, step), step).acceleration
         r = frequency / whole.f
@@ -68,17 +64,9 @@ def speeds(system, base, times, parts):
     return np.array(found).T, impacts
 
 
-@pytest.mark.parametrize(
-    ("law", "clearance"),
-    ordinary(
-        itertools.product(LAWS, CLEARANCES),
-        [*zip(LAWS, CLEARANCES, strict=True)],
-        several_names=True,
-    ),
-)
+@pytest.mark.parametrize(("law", "clearance"), [*zip(LAWS, CLEARANCES, strict=True)])
 def test_motion_with_contact_is_that_of_an_adaptive_method(law, clearance):
-    """The stated error: half a percent of the largest speed through the first impacts, 2 % where a
-    dashpot's force jumps at each of them.
+    """Half a percent of the largest speed, 2 % where a dashpot's force jumps at each impact.
 
     Later motions part, as chaotic ones do. A quarter of the step leaves a third of it or less.
     """
@@ -88,8 +76,7 @@ def test_motion_with_contact_is_that_of_an_adaptive_method(law, clearance):
     def base(t):
         return 8.0 * np.sin(TURN * 44.0 * np.asarray(t))
 
-    known = reference(system, base, times)
-    worst = []
+    known, worst = reference(system, base, times), []
     for steps in (60, 240):
         found, impacts = speeds(system, base, times, round(steps * 1000.0 * float(times[1])))
         assert clearance < 0.0 or impacts > 5
@@ -98,79 +85,61 @@ def test_motion_with_contact_is_that_of_an_adaptive_method(law, clearance):
     assert worst[0] < stated and worst[1] < max(worst[0] / 3.0, 1e-6), worst
 
 
-def free(faces):
-    """Two masses on nearly no springs."""
-    return Halves(m1=1.5, m2=0.7, f1=1e-4, f2=1e-4, zeta1=0.0, zeta2=0.0).delaminated(faces)
-
-
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("e", [0.3, 0.6, 0.9])
+@pytest.mark.parametrize("e", [0.3, 0.9])
 def test_a_collision_has_the_restitution_that_was_asked_for(law, e):
-    speed, step = 0.05, 1e-6
-    system = free(Faces(law=law, restitution=e, speed=speed, frequency=800.0))
-    apart = np.array([-5e-6, 0.0])  # of mass 1 from mass 2, m
-    start = apart * np.sqrt([1.5, 0.7])
-    velocity = np.array([speed, 0.0]) * np.sqrt([1.5, 0.7])
-    done = integrate(system, np.zeros(8001), step, start, velocity)
-    v1, v2 = done.velocity / np.sqrt([1.5, 0.7])
+    """Of two masses on nearly no springs."""
+    speed, masses = 0.05, np.sqrt([1.5, 0.7])
+    faces = Faces(law=law, restitution=e, speed=speed, frequency=800.0)
+    halves = Halves(m1=1.5, m2=0.7, f1=1e-4, f2=1e-4, zeta1=0.0, zeta2=0.0)
+    start = np.array([-5e-6, 0.0]) * masses, np.array([speed, 0.0]) * masses
+    done = integrate(halves.delaminated(faces), np.zeros(8001), 1e-6, *start)
+    v1, v2 = done.velocity / masses
     assert (v2 - v1) / speed == pytest.approx(e, rel=1e-3)
     assert 1.5 * v1 + 0.7 * v2 == pytest.approx(1.5 * speed, rel=1e-9)
     assert done.impacts[0] == 1 and done.restitution[0] == pytest.approx(e, rel=2e-2)
 
 
-def test_pressed_faces_rest_where_the_forces_balance():
-    clearance = -5e-4
-    system = HALVES.delaminated(Faces(clearance=clearance))
-    x1, x2 = equilibrium(system) / np.sqrt([HALVES.m1, HALVES.m2])
-    k1, k2 = HALVES.m1 * (TURN * HALVES.f1) ** 2, HALVES.m2 * (TURN * HALVES.f2) ** 2
-    contact = system.contacts.stiffness[0]
-    force = -clearance / (1.0 / k1 + 1.0 / k2 + 1.0 / contact)
-    assert (x1, x2) == (pytest.approx(-force / k1, rel=1e-6), pytest.approx(force / k2, rel=1e-6))
-
-
 @pytest.mark.parametrize(("part", "opens"), [(0.93, True), (1.07, False)])
 def test_pressed_faces_part_where_the_dynamic_force_is_larger(part, opens):
-    """It is what mass 1 needs beside its own spring to move as the bonded beam does."""
+    """It is what mass 1 needs beside its own spring to move as the bonded beam does; at rest the
+    forces balance.
+    """
     own, frequency, level = HALVES, 44.0, 5.0
-    whole, w = own.bonded_beam(), TURN * frequency
+    whole, w, w1 = own.bonded_beam(), TURN * frequency, TURN * own.f1
     r = frequency / whole.f
     moved = -level / (TURN * whole.f) ** 2 / (1.0 - r * r + 2j * whole.zeta * r)
-    w1 = TURN * own.f1
     force = own.m1 * abs(level + (w1 * w1 - w * w + 2j * own.zeta1 * w1 * w) * moved)
-    compliance = sum(1.0 / (m * (TURN * f) ** 2) for m, f in ((own.m1, own.f1), (own.m2, own.f2)))
-    faces = Faces(law="linear", frequency=3000.0, clearance=-part * force * compliance)
+    k1, k2 = own.m1 * w1**2, own.m2 * (TURN * own.f2) ** 2
+    faces = Faces(law="linear", frequency=3000.0, clearance=-part * force * (1 / k1 + 1 / k2))
+    system = own.delaminated(faces)
+    x1, x2 = equilibrium(system) / np.sqrt([own.m1, own.m2])
+    pressed = part * force * (1 / k1 + 1 / k2)
+    pressed /= 1 / k1 + 1 / k2 + 1 / system.contacts.stiffness[0]
+    assert (x1, x2) == pytest.approx((-pressed / k1, pressed / k2), rel=1e-6)
     base = driven(frequency, 1.5, 1e-5, level)
-    slowly = 200_000.0  # half steps, so that it does not overshoot
-    base *= np.minimum(np.arange(len(base)) / slowly, 1.0)
-    gap = integrate(own.delaminated(faces), base, 1e-5).largest_gap[0]
+    base *= np.minimum(np.arange(len(base)) / 200_000.0, 1.0)  # so that it does not overshoot
+    gap = integrate(system, base, 1e-5).largest_gap[0]
     assert (gap > OPENED) == opens and abs(gap) > 1e-9
 
 
 @pytest.mark.parametrize("change", [0.3, -0.1])
 def test_a_cubic_spring_changes_the_frequency_as_asked(change):
-    """Its free period by an elliptic integral."""
+    """Its free period by an elliptic integral; dry friction takes the same from each swing."""
     f, amplitude, step = 45.0, 2e-3, 1e-5
     own = Halves(f1=f, f2=f, zeta1=0.0, zeta2=0.0)
+    root, w2 = math.sqrt(own.bonded_beam().mass), (TURN * f) ** 2
     cubic = cubic_stiffness(change, f, amplitude)
     assert frequency_change(cubic, f, amplitude) == pytest.approx(change)
-    start = np.array([amplitude * math.sqrt(own.bonded_beam().mass)])
+    start = np.array([amplitude * root])
     moved = integrate(own.bonded(cubic=cubic), np.zeros(20_001), step, start)
     signs = np.flatnonzero(np.diff(np.signbit(moved.acceleration[0])))
     period = 2.0 * step * (signs[-1] - signs[0]) / (len(signs) - 1)
-    w2, part = (TURN * f) ** 2, cubic * amplitude**2
+    part = cubic * amplitude**2
     exact = 4.0 * float(ellipk(0.5 * part / (w2 + part))) / math.sqrt(w2 + part)
     assert period == pytest.approx(exact, rel=1e-3)
     assert 1.0 / (f * period) - 1.0 == pytest.approx(change, rel=0.06)
     assert moved.spring_peaks[0] == pytest.approx(amplitude)
-
-
-def test_dry_friction_takes_the_same_from_each_swing():
-    f, step, dry = 45.0, 1e-5, 0.4
-    own = Halves(f1=f, f2=f, zeta1=0.0, zeta2=0.0)
-    root = math.sqrt(own.bonded_beam().mass)
-    w2 = (TURN * f) ** 2
-    moved = integrate(
-        own.bonded(friction=dry), np.zeros(2 * 8889 + 1), step, np.array([2e-3 * root])
-    )
-    assert 8889 * step == pytest.approx(4.0 / f, rel=1e-3)
-    assert abs(moved.position[0] / root) == pytest.approx(2e-3 - 4 * 4.0 * dry / w2, rel=5e-3)
+    rubs = integrate(own.bonded(friction=0.4), np.zeros(2 * 8889 + 1), step, start)  # four periods
+    expected = amplitude - 4 * 4.0 * 0.4 / w2
+    assert abs(rubs.position[0] / root) == pytest.approx(expected, rel=5e-3)

@@ -6,12 +6,12 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
-from scipy.signal import butter, freqs, welch
+from scipy.signal import butter, freqs
 
 import orchestrate
 from tests.benches import recipe, tutorial, verdicts
 from tests.benches.bench import Bench
-from tests.benches.excitation import Random, Swept
+from tests.benches.excitation import Swept
 from tests.benches.lumped import TURN, Halves
 from tests.benches.sensors import Sensor
 
@@ -29,18 +29,6 @@ def test_a_sweep_goes_from_end_to_end(log, ends):
     assert frequency[50_000] == pytest.approx(middle, rel=1e-6)
     assert abs(sweep(time)).max() == pytest.approx(3.0, rel=1e-3)
     assert sweep(time)[0] == 0.0 == pytest.approx(sweep(time)[-1], abs=1e-9)
-
-
-def test_noise_has_its_band_and_its_level():
-    noise = Random(20.0, 90.0, duration=60.0, level=3.0, seed=4)
-    time = np.arange(60_000) / 1e3
-    values = noise(time)
-    assert values.std() == pytest.approx(3.0, rel=0.03)
-    frequency, density = welch(values, 1e3, nperseg=4000)
-    inside = (frequency > 22.0) & (frequency < 88.0)
-    assert density[inside].mean() == pytest.approx(9.0 / 70.0, rel=0.05)
-    assert density[(frequency < 18.0) | (frequency > 92.0)].max() < 1e-3 * density[inside].mean()
-    assert np.array_equal(values, Random(20.0, 90.0, 60.0, 3.0, seed=4)(time))
 
 
 def test_a_sensor_filters_delays_and_scales():

@@ -1,4 +1,4 @@
-"""A command ended by force goes on where it was: its results have the uninterrupted bytes."""
+"""A command ended by force, by Ctrl-C or by a drive that hangs, and what it says of going on."""
 
 from __future__ import annotations
 
@@ -6,46 +6,51 @@ import os
 import signal
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
+from orchestrate import Structure, cosimulate, sweep
 from orchestrate.cli import main
+from orchestrate.errors import FmuError, WorkerError
+from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, OSCILLATOR, find
+from tests.orchestrate.fmu.misbehaving import misbehaving
 
-from .commands import all_end, below, end, wait_for
+from .commands import all_end, below, end, kill, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups and /proc")
 RESUME = "repeat the command (without --force) to resume"
 INTERRUPTED = f"interrupted: what was stored is kept; {RESUME}"
 BEGINS_ANEW = "interrupted: nothing was stored; repeat the command to start again"
-
-
+NO_PLOT = ("--plot", "none")
 GRID = ("--eta", "1.1:1.4:0.005", "--over", "e", "--values", "0.3:0.9:0.005")
-MAP = ("map", *GRID, "--jobs", "2")
+MAP = ("map", *GRID, "--jobs", "2", "--transient", "20000")
 RECORD = ("docs/records/beam_a.csv", "--structure", "docs/records/beam.toml")
 ALONE = ("sweep", "--eta", "1.1:1.2:0.001", "--transient", "1000000", "--jobs", "1")  # in one chunk
+SWEEP = ("sweep", "--eta", "1,1.1", "--transient", "5", "--samples", "3", *NO_PLOT)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "command", "processes"),
     [
-        (signal.SIGINT, (*MAP, "--transient", "20000"), 4),
-        (signal.SIGTERM, (*MAP, "--transient", "20000"), 4),
+        (signal.SIGINT, MAP, 4),
+        (signal.SIGTERM, MAP, 4),
         (signal.SIGINT, ALONE, 0),
         (signal.SIGINT, ("diagnose", *RECORD), 0),
     ],
 )
 def test_a_signal_ends_a_command_whatever_computes(commands, number, command, processes):
-    process = commands.start(*command, "--plot", "none")
+    process = commands.start(*command, *NO_PLOT)
     wait_for(lambda: commands.files(), process, "it computed", pause=0.05)
     wait_for(lambda: len(list(below(process.pid))) >= processes, process, "workers were there")
     time.sleep(1.0)
     started = list(below(process.pid))
     begun = time.monotonic()
     os.killpg(process.pid, number)
-    word = "interrupted" if number == signal.SIGINT else "terminated"
     done = end(process)
     assert done.code == 128 + number and "Traceback" not in done.err, done.err
+    word = "interrupted" if number == signal.SIGINT else "terminated"
     assert done.err.splitlines()[-1].startswith(f"{word}: ")
     assert time.monotonic() - begun < 10.0
     assert all_end(started) and list(commands.temporary.iterdir()) == []
@@ -55,30 +60,83 @@ def interrupt(*_, **__):
     raise KeyboardInterrupt
 
 
-@pytest.mark.parametrize(
-    ("place", "line"),
-    [
-        ("orchestrate.response.sweep.SweepJob.work", BEGINS_ANEW),
-        ("orchestrate.running.store.Disk.finish", INTERRUPTED),
-        (
-            "orchestrate.cli.output.Files.write",
-            f"interrupted: the result is stored; {RESUME}",
-        ),
-    ],
-)
+PLACES = {
+    "orchestrate.response.sweep.SweepJob.work": BEGINS_ANEW,
+    "orchestrate.running.store.Disk.finish": INTERRUPTED,
+    "orchestrate.cli.output.Files.write": f"interrupted: the result is stored; {RESUME}",
+}
+
+
+@pytest.mark.parametrize("place", PLACES)
 def test_an_interrupted_command_says_whether_there_is_anything_to_go_on_from(
-    tmp_path, capsys, monkeypatch, place, line
+    tmp_path, capsys, monkeypatch, place
 ):
     for _ in range(2):  # the second time in a process that has stored something
-        asked = ["sweep", "--eta", "1:1.1:0.1", "--transient", "5", "--plot", "none"]
+        asked = ["sweep", "--eta", "1:1.1:0.1", "--transient", "5", *NO_PLOT]
         with monkeypatch.context() as patch:
             patch.setattr(place, interrupt)
             assert main([*asked, "--output", str(tmp_path)]) == 130
-        assert capsys.readouterr().err.splitlines()[-1] == line
+        assert capsys.readouterr().err.splitlines()[-1] == PLACES[place]
         assert main([*asked, "--output", str(tmp_path / "other")]) == 0
-
-
-def test_an_interrupted_command_without_a_store_says_so(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("orchestrate.explorer.page.render_page", interrupt)
+    capsys.readouterr()
+    monkeypatch.setattr("orchestrate.explorer.page.render_page", interrupt)  # without a store
     assert main(["explore", "--no-open", "--output", str(tmp_path / "page.html")]) == 130
     assert capsys.readouterr().err.splitlines() == [BEGINS_ANEW]
+
+
+# -- FMUs of somebody else that crash, exit or hang ------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def bad(exported, tmp_path_factory):
+    """FMUs by what they do wrong, made once."""
+    folder = tmp_path_factory.mktemp("bad")
+
+    def made(kind, model=OSCILLATOR):
+        path = folder / f"{kind}-{model}.fmu".replace(" ", "-")
+        return path if path.exists() else misbehaving(find(model).path, path, kind)
+
+    return made
+
+
+def test_a_drive_that_ends_its_process_and_numbers_that_are_none_are_told(bad):
+    drive, connect = bad("crashes", ELECTRODYNAMIC_SHAKER), ("box_acceleration", "box_force")
+    motion = {"connect": {name: name for name in connect}, "duration": 0.1, "step": 0.01}
+    with pytest.raises(WorkerError, match="by SIGSEGV"):
+        cosimulate(Structure(), drive, inputs={"command": 1.0}, **motion)
+    with pytest.raises(FmuError, match="TwoMassImpactOscillator answers x1_sample = nan"):
+        sweep(Structure(), eta=[1.0], transient=5, samples=3, fmu=bad("NaN"))
+
+
+@pytest.mark.parametrize("kind", ["crashes", pytest.param("exits", marks=pytest.mark.slow)])
+def test_a_command_ends_in_a_line_and_leaves_nothing_behind(commands, bad, kind):
+    done = commands.run(*SWEEP, "--fmu", bad(kind))
+    done.complaint("error: a worker process ended without a word", code=1)
+    assert done.out == "" and commands.files() == []
+    assert list(commands.temporary.iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "number"),
+    [("hangs", signal.SIGINT), ("spins", signal.SIGTERM), ("spins", signal.SIGKILL)],
+)
+def test_a_signal_ends_a_command_whose_fmu_hangs(commands, bad, kind, number):
+    process = commands.start(*SWEEP, "--fmu", bad(kind))
+
+    def loaded():
+        maps = [Path(f"/proc/{pid}/maps") for pid in below(process.pid)]
+        return any("good.so" in place.read_text() for place in maps if place.exists())
+
+    wait_for(loaded, process, "the FMU was loaded", pause=0.05)
+    time.sleep(0.3)
+    started = list(below(process.pid))
+    if number == signal.SIGKILL:  # of the command alone: the FMU ends with it
+        process.kill()
+        assert all_end(started, patience=3.0)
+        end(process)
+        return
+    done = kill(process, number)  # sent to all processes, as a terminal does
+    word = "interrupted" if number == signal.SIGINT else "terminated"
+    assert done.complaint(code=128 + number) == BEGINS_ANEW.replace("interrupted", word)
+    assert all_end(started) and list(commands.temporary.iterdir()) == []

@@ -1,6 +1,9 @@
-"""From which numbers on a user is asked whether they are meant: each just inside, just outside."""
+"""What a command takes for granted, and what somebody hardly means: said, from which number on."""
 
+import functools
+import json
 import logging
+import re
 import warnings
 from types import SimpleNamespace
 
@@ -8,12 +11,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import orchestrate
 from orchestrate import Structure
 from orchestrate.cli import notes
 
 TURN = 2.0 * np.pi
-BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=40.0, f2=50.0, zeta1=0.01, zeta2=0.01, e=0.5)
-PRESSED = BEAM.replace(clearance=-2e-5)
+HALVES = Structure.from_halves(m1=1.5, m2=1.2, f1=40.0, f2=50.0, zeta1=0.01, zeta2=0.01, e=0.5)
+PRESSED = HALVES.replace(clearance=-2e-5)
 
 
 def said(ask, caplog):
@@ -27,33 +31,158 @@ def said(ask, caplog):
 
 def frequency_notes(hertz, **options):
     arguments = SimpleNamespace(structure="mine", set=[], **options)
-    return lambda: notes.print_frequency_notes(arguments, BEAM, {"frequency": TURN * hertz})
+    return lambda: notes.print_frequency_notes(arguments, HALVES, {"frequency": TURN * hertz})
 
 
-@pytest.mark.parametrize(
-    ("ratio", "far"), [(24.9, False), (25.1, True), (1 / 24.9, False), (1 / 25.1, True)]
-)
-def test_frequencies_far_from_the_structures(caplog, ratio, far):
-    assert ("are far from it" in said(frequency_notes(ratio * 40.0), caplog)) == far
-
-
-@pytest.mark.parametrize(
-    ("radians", "asked"), [(40 / 1.09, True), (40 / 1.11, False), (50 / 0.91, True), (56.0, False)]
-)
-def test_radians_that_would_fit_as_hertz(caplog, radians, asked):
-    """Within a tenth of one of the structure's own frequencies in the other unit."""
-    told = said(frequency_notes(radians / TURN, frequency=f"{radians:g}"), caplog)
-    assert ("own frequencies are 40 and 50 Hz; is --hz meant?" in told) == asked
-
-
-@pytest.mark.parametrize(("times", "doubted"), [(199.0, False), (201.0, True)])
-def test_a_clearance_that_is_hardly_meant(caplog, times, doubted):
+def clearance_notes(times):
     given = {"frequency": np.array([TURN * 20.0]), "level": np.array([1.0])}
     given["level"] = notes.threshold_over_level(PRESSED, given) / times
-    told = said(lambda: notes.clearance_notes(PRESSED, given, xr.Dataset()), caplog)
-    assert (f"{times:.3g} times what this level moves" in told) == doubted
+    return lambda: notes.clearance_notes(PRESSED, given, xr.Dataset())
 
 
-@pytest.mark.parametrize(("mass", "heavy"), [(19.9, False), (20.1, True)])
-def test_a_heavy_half_of_a_beam(mass, heavy):
-    assert bool(notes.heavy_mass_note(BEAM.replace(m2=mass))) == heavy
+def voltage_notes(*ratios):
+    return lambda: notes.warn_of_voltage("--voltage x", tuple(6.5 * r for r in ratios), 6.5)
+
+
+@pytest.mark.parametrize(
+    ("ask", "inside", "outside", "words"),
+    [
+        (frequency_notes, {"hertz": 24.9 * 40}, {"hertz": 25.1 * 40}, "are far from it"),
+        (frequency_notes, {"hertz": 40 / 24.9}, {"hertz": 40 / 25.1}, "are far from it"),
+        *(
+            (
+                frequency_notes,
+                *({"hertz": r / TURN, "frequency": f"{r:g}"} for r in pair),
+                "own frequencies are 40 and 50 Hz; is --hz meant?",
+            )
+            for pair in ((40 / 1.11, 40 / 1.09), (56.0, 50 / 0.91))  # within a tenth of one
+        ),
+        (clearance_notes, {"times": 199.0}, {"times": 201.0}, "201 times what this level moves"),
+    ],
+)
+def test_each_number_from_which_one_is_asked(caplog, ask, inside, outside, words):
+    assert words not in said(ask(**inside), caplog)
+    caplog.clear()
+    assert words in said(ask(**outside), caplog)
+
+
+def test_voltages_and_masses_that_are_hardly_meant(caplog):
+    for ratios, far in (((0.4, 0.49), 1), ((0.4, 0.51), 0), ((5.1, 9.0), 1), ((4.9, 9.0), 0)):
+        assert ("omega with 6.5 V (eta0 = 1)" in said(voltage_notes(*ratios), caplog)) == far
+    assert notes.heavy_mass_note(HALVES.replace(m2=20.1)) and not notes.heavy_mass_note(
+        HALVES.replace(m2=19.9)
+    )
+
+
+SIMULATE = "simulate --periods 2 --plot none --set f1=42 --set f2=55 "
+MASSES = "--set m1=1.5 --set m2=1.2 "
+ZETAS = "--set zeta1=0.7% --set zeta2=0.007 "
+G = "--g 0.3 "
+MOVES = "times what this level moves"
+QUIET = "--hz 20 --g 0.001 --set clearance="
+LEVEL = "resonance --structure beam --transient 2 --samples 4 --plot none "
+SHAKE = "shake --structure beam --swept-sine 8:10 --duration 1 --g 0.02 --plot none --sample-rate "
+SAID = {  # a command; what is printed (or not, after a "!"), and what is warned of
+    SIMULATE + "--hz 42 " + G: (
+        "assumed, as in the set paper|m1 = 1 kg|zeta1 = 0.5 %|e = 0.7|only the ratio of the masses",
+        "",
+    ),
+    SIMULATE + MASSES + ZETAS + "--set e=0.6 --hz 42 " + G: ("!assumed, as|!are in kg", ""),
+    SIMULATE + "--set mu=0.8 --hz 42 " + G: ("!m1 =", ""),
+    SIMULATE + "--set m1=20.1kg --set m2=1 --hz 42 " + G: ("masses are in kg", ""),
+    SIMULATE + "--set zeta1=0.7 --hz 42 " + G: ("", "zeta1 = 0.7 is 70 %"),
+    SIMULATE + MASSES + "--set clearance=-20 --hz 42 " + G: ("", "clearance = -20 m"),
+    SIMULATE + MASSES + "--frequency 42 " + G: ("", "is --hz meant?"),
+    SIMULATE + MASSES + "--hz 264 " + G: ("", "is --frequency meant?"),
+    SIMULATE + MASSES + "--rpm 2500 " + G: ("", ""),
+    SIMULATE + MASSES + QUIET + "-2e-5": ("opens at|is linear|no impacts|um, it first", MOVES),
+    SIMULATE + MASSES + QUIET + "1.5e-3": ("touches at|is linear|no impacts", MOVES),
+    SIMULATE + MASSES + "--set clearance=-2e-5 --hz 48 --g 3": ("!is linear|!no impacts", ""),
+    "simulate --set wall=true --set f1=12 --set zeta1=1% --set clearance=0.3mm --hz 11 --g 0.1"
+    " --periods 2 --plot none": ("assumed, as in the set paper: m1 = 1 kg, e = 0.7|impacts", ""),
+    "branch --structure beam --over hz --limits 16.5:16.6 --plot none --g 0.02": (
+        "--g 0.02: is --amplitude 1.82483e-05 at 16.5 Hz, constant along the branch",
+        "",
+    ),
+    LEVEL + "--amplitude 49mm --hz 12": ("", ""),
+    LEVEL + "--amplitude 51mm --hz 12": ("", "beyond what shakers do"),
+    LEVEL + "--g 99 --hz 40": ("", ""),
+    LEVEL + "--g 101,120 --hz 40": ("", "the box moves by up to "),
+    SHAKE + "19": ("", "default is 200"),
+    SHAKE + "21": ("", ""),
+}
+
+
+@pytest.mark.parametrize("command", SAID)
+def test_what_is_assumed_or_implausible_is_said_in_one_line(ask, command):
+    printed, warned = SAID[command]
+    done = ask(*command.split())
+    assert done.code == 0, done.err
+    for words in filter(None, printed.split("|")):
+        assert (words.removeprefix("!") in done.out) != words.startswith("!"), (words, done.out)
+    assert [warned in line for line in done.complaints] == [True] * bool(warned), done.complaints
+
+
+FILES = {  # of a structure; a command, and what its line says ("": nothing is assumed)
+    "m1 = 1.0\nm2 = 1.0\nf1_hz = 4\nf2_hz = 5\nzeta1 = 0\nzeta2 = 0": ("simulate --set e=0.5", ""),
+    "wall = true\nf_hz = 12\nzeta = 0.01": ("simulate --set zeta=2% --set e=0.5", ""),
+    "f1_hz = 42\nf2_hz = 55\nzeta1 = 0\nzeta2 = 0": ("simulate", "structure.m1|missing|m1, m2"),
+    "m1 = 1\nm2 = 1\nf1 = 42\nf2_hz = 55": ("simulate", "structure.f1|did you mean f1_hz"),
+}
+
+
+@pytest.mark.parametrize("text", FILES)
+def test_files_of_structures(ask, tmp_path, text):
+    command, words = FILES[text]
+    path = tmp_path / "beam.toml"
+    path.write_text(f"[structure]\n{text}\n")
+    more = ("--structure", path, "--hz", "5", "--g", "1", "--periods", "2", "--plot", "none")
+    done = ask(*command.split(), *more)
+    if words:
+        done.complaint(*words.split("|"))
+    else:
+        assert done.code == 0 and "assumed" not in done.out, done.err
+
+
+# -- the structure of a stored result --------------------------------------------------------------
+
+BEAM = Structure.from_file("beam")
+STORED = BEAM.replace(e=0.65)
+HERTZ = ("--over", "hz", "--limits", "14:18")
+COMMANDS = {"branch": HERTZ, "border": ("--over", "hz,e", "--limits", "14:18,0.6:0.8")}
+COMMANDS |= {"manifold": ()}
+
+
+@pytest.mark.parametrize("command", [*COMMANDS, "explore"])
+def test_a_stored_result_brings_its_structure(ask, tmp_path, monkeypatch, command):
+    """Another one is taken and said in one line."""
+    asked, path = [], tmp_path / "stored.nc"
+    attributes = {name: float(value) for name, value in STORED.parameters().items()}
+    call = {"call": "branch(...)", "over": "frequency", "identity": json.dumps({"question": {}})}
+    xr.Dataset({"stable": ("point", [1])}, attrs={**attributes, **call}).to_netcdf(path)
+    place = "orchestrate.explorer.page.explore" if command == "explore" else command
+    function = getattr(orchestrate, command, Structure)
+
+    @functools.wraps(function)
+    def ask_only(structure, **question):
+        asked.append(structure)
+        raise RuntimeError("not computed")
+
+    monkeypatch.setattr(place if "." in place else f"orchestrate.{place}", ask_only)
+    flag = "--branches" if command == "explore" else "--start"
+    words = (command, flag, path, *(("--no-open",) if command == "explore" else COMMANDS[command]))
+    assert ask(*words).out == "" and asked.pop() == STORED
+    others = [(("--structure", "paper"), Structure(), "m1 = 1.5 there, 1 here")]
+    if command != "explore":
+        others += [(("--set", "e=0.6"), STORED.replace(e=0.6), "e = 0.65 there, 0.6 here")]
+        assert ask(*words, "--structure", "beam", "--set", "e=0.65").out == ""
+        asked.pop()
+    for options, structure, difference in others:
+        (line,) = ask(*words, *options).out.splitlines()
+        assert asked.pop() == structure
+        assert line.startswith(f"{flag} {path} was computed for another structure: {difference}")
+    xr.Dataset({"x": ("t", [1.0])}, attrs={"call": "analyse(...)"}).to_netcdf(path, mode="w")
+    if command == "branch":
+        ask(*words).complaint(f"--start {path}", "over t, without a structure", "expected an orbit")
+        line = ask("branch", "--eta", "2.5", "--limits", "2.4:2.8").out
+        assert re.fullmatch("", line) and asked.pop() == Structure()

@@ -19,51 +19,29 @@ from .commands import ROOT
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full, limits, /proc")
 ASKED = ("sweep", "--eta", "1.2", "--transient", "5", "--samples", "2", "--plot", "none")
+PLACES = [  # how it may end, and what is left
+    ({"stderr": "closed"}, (0,), [".nc"]),
+    ({"stderr": "/dev/full"}, (0,), [".nc"]),
+    ({"stdout": "closed", "stderr": "closed"}, (0,), [".nc"]),
+    ({"open_files": 12}, (0,), [".nc"]),
+    ({"stdout": "/dev/full"}, (1,), [".nc"]),
+    *(({"open_files": count}, (0, 1), None) for count in (5, 6, 7, 8)),
+]
 
 
-def ask(folder, **where):
-    """A short command, and its result's name where there is one."""
+@pytest.mark.slow
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize(("where", "codes", "left"), PLACES)
+def test_a_run_goes_on_or_ends_in_a_line(tmp_path, where, codes, left):
     command = [sys.executable, "-m", "orchestrate", *ASKED, "--output", "results"]
-    done = Surroundings(**where).run(command, folder, PYTHONPATH=str(ROOT))
-    assert "Traceback" not in done.stderr, done.stderr
-    assert "Broken pipe" not in done.stderr
-    return done, [path.suffix for path in (folder / "results").glob("*")]
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("exported")
-@pytest.mark.parametrize(
-    "where",
-    [
-        {"stderr": "closed"},
-        {"stderr": "/dev/full"},
-        {"stdout": "closed"},
-        {"stdout": "closed", "stderr": "closed"},
-        {"open_files": 12},
-    ],
-)
-def test_the_run_goes_on(tmp_path, where):
-    done, results = ask(tmp_path, **where)
-    assert done.returncode == 0, done.stderr
-    assert results == [".nc"]
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("exported")
-def test_a_full_output_is_told_and_the_result_kept(tmp_path):
-    done, results = ask(tmp_path, stdout="/dev/full")
-    assert done.returncode == 1
-    assert "standard output: No space left on device" in done.stderr
-    assert results == [".nc"]
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("exported")
-@pytest.mark.parametrize("open_files", [5, 6, 7, 8])
-def test_too_few_files_are_told(tmp_path, open_files):
-    done, _ = ask(tmp_path, open_files=open_files)
-    assert done.returncode in (0, 1)
-    assert "another process" not in done.stderr
+    done = Surroundings(**where).run(command, tmp_path, PYTHONPATH=str(ROOT))
+    for words in ("Traceback", "Broken pipe", "another process"):
+        assert words not in done.stderr
+    assert done.returncode in codes, done.stderr
+    results = [path.suffix for path in (tmp_path / "results").glob("*")]
+    assert left is None or results == left
+    full = "standard output: No space left on device" in done.stderr
+    assert full == (where.get("stdout") == "/dev/full")
 
 
 class Broken(io.StringIO):
@@ -73,55 +51,37 @@ class Broken(io.StringIO):
         raise BrokenPipeError
 
 
-def test_an_output_that_nobody_reads_ends_nothing(monkeypatch):
+def test_an_output_that_nobody_reads_ends_nothing_and_what_is_lost_is_known(monkeypatch):
     monkeypatch.setattr(sys, "stdout", Broken())
     monkeypatch.setattr(sys, "stderr", Broken())
     assert main(["--help"]) == 0
     assert main(["sweep", "--eta", "nothing"]) == 2
-
-
-def test_what_is_lost_is_known():
-    stream = SafeStream(Broken())
-    stream.write("told")
-    assert stream.failure() == ""
     closed = io.StringIO()
     closed.close()
-    stream = SafeStream(closed)
-    assert stream.write("told") == 4
-    assert "closed file" in stream.failure()
+    for stream, words in ((Broken(), ""), (closed, "closed file")):
+        safe = SafeStream(stream)
+        assert safe.write("told") == 4 and words in safe.failure()
+        assert bool(safe.failure()) == bool(words)
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1251", "cp932"])
+def test_a_console_without_some_letters_gets_the_others(encoding):
+    """It had got nothing at all, because of one accent."""
+    stream = io.TextIOWrapper(io.BytesIO(), encoding=encoding)
+    safe = SafeStream(stream)
+    safe.write("Poincaré \u2192 map\nsweep\n")
+    safe.flush()
+    assert safe.error is None
+    lines = stream.buffer.getvalue().decode(encoding).splitlines()
+    assert lines[0].startswith("Poincar") and lines[0].endswith("map") and lines[1] == "sweep"
 
 
 @pytest.mark.parametrize("error", [MemoryError, ImportError("libx.so: cannot map\nmore")])
 def test_too_little_memory_is_a_line(monkeypatch, capsys, error):
-    def fail(_):
-        raise error
-
-    monkeypatch.setattr(responses.Sweep, "__call__", fail)
+    monkeypatch.setattr(responses.Sweep, "__call__", Mock(side_effect=error))
     assert main(["sweep"]) == 1
     told = capsys.readouterr().err
-    assert told.count("\n") == 1
-    assert "out of memory, or the installation is incomplete" in told
-
-
-IN_A_CALLBACK = """
-import signal, sys, time, weakref
-from orchestrate.__main__ import main
-from orchestrate.cli import responses
-
-class Thing:
-    pass
-
-def run(_):
-    thing = Thing()
-    kept = weakref.ref(thing, lambda _: signal.raise_signal(signal.{signal}))
-    del thing
-    time.sleep(60)
-
-signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background
-responses.Sweep.__call__ = run
-sys.argv = ["vibroimpact", "sweep"]
-sys.exit(main())
-"""
+    assert told.count("\n") == 1 and "out of memory" in told
 
 
 def test_a_command_loads_nothing_of_dask(tmp_path):
@@ -136,49 +96,41 @@ def test_a_command_loads_nothing_of_dask(tmp_path):
     assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "[]")
 
 
-@pytest.mark.parametrize(
-    ("name", "code", "word"), [("SIGINT", 130, "interrupted"), ("SIGTERM", 143, "terminated")]
-)
-def test_a_signal_in_a_callback_ends_the_command(name, code, word):
+IN_A_CALLBACK = """
+import signal, sys, time, weakref
+from orchestrate.__main__ import main
+from orchestrate.cli import responses
+
+class Thing:
+    pass
+
+def run(_):
+    thing = Thing()
+    kept = weakref.ref(thing, lambda _: signal.raise_signal(signal.SIGTERM))
+    del thing
+    time.sleep(60)
+
+responses.Sweep.__call__ = run
+sys.argv = ["vibroimpact", "sweep"]
+sys.exit(main())
+"""
+
+
+def test_a_signal_in_a_callback_ends_the_command():
     """There Python drops what a signal raises, and goes on."""
-    script = IN_A_CALLBACK.format(signal=name)
-    begun = time.monotonic()
-    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
-    assert time.monotonic() - begun < 50.0
-    assert (done.returncode, done.stdout) == (code, "")
-    assert done.stderr.startswith(f"{word}: ")
-    assert done.stderr.count("\n") == 1
+    begun, how = time.monotonic(), {"cwd": ROOT, "capture_output": True, "text": True}
+    done = subprocess.run([sys.executable, "-c", IN_A_CALLBACK], **how)
+    assert time.monotonic() - begun < 50.0 and (done.returncode, done.stdout) == (143, "")
+    assert done.stderr.startswith("terminated: ") and done.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("place", ["make_app", "set_up_logging"])
-def test_an_interrupt_before_the_command_has_begun(monkeypatch, capfd, place):
-    def interrupt(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(cli, place, interrupt)
-    assert cli.main(["sweep", "--eta", "1"]) == 130
-    assert capfd.readouterr().err.startswith("interrupted: ")
-
-
-def test_an_interrupt_while_modules_are_read(monkeypatch, capfd):
+def test_an_interrupt_before_the_command_has_begun(monkeypatch, capfd):
+    for place in ("make_app", "set_up_logging"):
+        with monkeypatch.context() as patch:
+            patch.setattr(cli, place, Mock(side_effect=KeyboardInterrupt))
+            assert cli.main(["sweep", "--eta", "1"]) == 130
+        assert capfd.readouterr().err.startswith("interrupted: ")
     monkeypatch.setattr(sys.modules["orchestrate.cli"], "main", Mock(side_effect=KeyboardInterrupt))
-    assert run() == 130
-    assert capfd.readouterr().err == "interrupted\n"
-
-
-def test_the_installed_command_is_the_same():
+    assert run() == 130 and capfd.readouterr().err == "interrupted\n"
     (point,) = entry_points(group="console_scripts", name="vibroimpact")
     assert point.load() is __main__.main
-
-
-@pytest.mark.parametrize("encoding", ["ascii", "cp1251", "cp932"])
-def test_a_console_without_some_letters_gets_the_others(encoding):
-    """It had got nothing at all, because of one accent."""
-    stream = io.TextIOWrapper(io.BytesIO(), encoding=encoding)
-    safe = SafeStream(stream)
-    safe.write("Poincaré \u2192 map\n")
-    safe.write("sweep\n")
-    safe.flush()
-    assert safe.error is None
-    lines = stream.buffer.getvalue().decode(encoding).splitlines()
-    assert lines[0].startswith("Poincar") and lines[0].endswith("map") and lines[1] == "sweep"

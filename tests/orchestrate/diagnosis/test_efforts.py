@@ -9,7 +9,7 @@ import pytest
 from orchestrate.diagnosis import multistart
 from orchestrate.diagnosis.hypotheses import Bonded
 from orchestrate.diagnosis.linear import soft_squares
-from orchestrate.diagnosis.multistart import Search, Solution
+from orchestrate.diagnosis.multistart import Search, Solution, without_neighbours
 from orchestrate.diagnosis.settings import SETTINGS
 from orchestrate.diagnosis.standard_errors import estimate_with_covariances
 
@@ -37,13 +37,15 @@ def bounds(monkeypatch):
 
 
 def test_one_goes_downhill_from_two_starts_that_differ(monkeypatch):
-    begun = []
-    search = MadeUp(lambda x, y: [x, y])
+    """Halves that change places are two solutions, however near each other."""
+    begun, search = [], MadeUp(lambda x, y: [x, y])
     monkeypatch.setattr(
         search, "refine", lambda values: begun.append(values) or Solution("", {}, 1)
     )
     search.minima([{**HERE, "f": f} for f in (40.0, 35.0, 36.0)])
     assert [values["f"] for values in begun] == [35.0, 36.0]
+    one, near, other = (Solution("x", {"split": s, "e": 0.5}, 0.2) for s in (0.015, 0.02, -0.015))
+    assert without_neighbours([one, near, other]) == [one, other]
 
 
 def motions(function):
@@ -55,16 +57,12 @@ def motions(function):
     return search.evaluations - 2 * len(places)
 
 
-def test_a_way_downhill_ends_after_eight_motions():
+def test_a_way_downhill_ends_after_eight_motions_or_a_gain_below_a_thousandth():
     narrow = lambda x, y: [1e-3 * (1.0 + 30.0 * y + 1e4 * x), 1.0 - np.tanh(4.0 * y)]  # noqa: E731
     assert motions(narrow) == 1 + 8
-
-
-@pytest.mark.parametrize(("gain", "ends"), [(0.99e-3, True), (1.01e-3, False)])
-def test_a_step_that_gains_less_than_a_thousandth_is_the_last(gain, ends):
-    away = 0.5 * np.sqrt(gain / (1.0 - gain)) / 0.25
-    few = motions(lambda x, y: [1e-2, 1e-2 * away * y])
-    assert few == 1 + (2 if ends else 3)
+    for gain, steps in ((0.99e-3, 2), (1.01e-3, 3)):
+        away = 0.5 * np.sqrt(gain / (1.0 - gain)) / 0.25
+        assert motions(lambda x, y, away=away: [1e-2, 1e-2 * away * y]) == 1 + steps
 
 
 @pytest.mark.parametrize(("gain", "rounds"), [(2.1e-3, 7), (1.9e-3, 3)])

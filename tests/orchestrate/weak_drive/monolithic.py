@@ -108,6 +108,22 @@ class Monolith:
                 state[2] += 8.0 * ROUNDING * (1.0 + abs(state[2]))
         return np.array(rows), impacts
 
+    def bonded_run(self, law, h, count):
+        """Speeds and voltages from rest by Runge and Kutta; ``law`` of time and speed gives the
+        voltage, which is held over each step of two parts.
+        """
+        y, speeds, voltages, h = np.zeros(9), [], [], 0.5 * h
+        for i in range(2 * count):
+            if i % 2 == 0:
+                voltages.append(law(i * h, y[7]))
+                self.voltage = lambda _: voltages[-1]
+            a = np.array(self.rates(y, True))
+            b = np.array(self.rates(y + 0.5 * h * a, True))
+            c = np.array(self.rates(y + 0.5 * h * b, True))
+            y = y + h / 6.0 * (a + 2.0 * (b + c) + self.rates(y + h * c, True))
+            speeds.append(y[7])
+        return np.array(speeds[1::2]), np.array(voltages)
+
     def phase(self, now, state, times, together):
         """Flight or contact up to its end."""
 

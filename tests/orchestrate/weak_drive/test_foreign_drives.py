@@ -54,54 +54,42 @@ def test_the_first_acceleration_is_that_under_the_force(tmp_path):
         errors.append(np.abs(both - truth).max())
     force = STRUCTURE.k2 * START[1]
     assert float(found.box_acceleration[0]) == pytest.approx(DRIVE.d[0] * force, rel=1e-12)
-    assert found.sizes["impact"] == impacts > 1
-    assert errors[0] / errors[1] > 3.0
+    assert found.sizes["impact"] == impacts > 1 and errors[0] / errors[1] > 3.0
 
 
 @pytest.mark.parametrize("does", ["ENDS", "ENDS_AFTER"])
-@pytest.mark.parametrize("estimate", [False, True])
-def test_a_drive_that_ends_the_simulation_leaves_what_was_reached(tmp_path, form, does, estimate):
-    """In steps of 0.01 s: it ends before the step after 0.1 s, or with the one that ends there."""
-    with pytest.warns(UserWarning, match=re.escape(ENDED)):
-        found = run(tmp_path, does, form, estimate=estimate, record=[DRIVE.names[3]])
-    whole = run(tmp_path, fmi=form, estimate=estimate, record=[DRIVE.names[3]])
-    assert found.attrs["ended"] == ENDED and whole.attrs["ended"] == "at the duration"
-    assert found.time.values.tolist() == whole.time.values[:11].tolist()
-    for name in ("x1", "box_acceleration", "coupling_error", DRIVE.names[3]):
-        if name in whole:
-            assert found[name][:-1].values.tobytes() == whole[name][:10].values.tobytes(), name
-    assert found.impact_time.max() <= AT < whole.impact_time.max()
-
-
-def test_the_end_is_kept_over_chunks(tmp_path, form, monkeypatch):
-    ends = []
+def test_a_drive_that_ends_the_simulation_leaves_what_was_reached(
+    tmp_path, form, does, monkeypatch
+):
+    """In steps of 0.01 s: it ends before the step after 0.1 s, or with the one that ends there;
+    in one chunk or several.
+    """
+    more = {"estimate": True, "record": [DRIVE.names[3]], "has_states": True}
+    whole = run(tmp_path, fmi=form, **more)
     for size in (10_000, 4):
         monkeypatch.setattr(cosimulate.CosimulateJob, "chunk_size", size)
         with pytest.warns(UserWarning, match=re.escape(ENDED)):
-            ends.append(run(tmp_path, "ENDS", form, has_states=True, estimate=True))
-    assert ends[1].attrs["resumable"] == "yes" and len(ends[1].time) == 11
-    assert ends[0].x1.values.tobytes() == ends[1].x1.values.tobytes()
-
-
-def test_a_drive_that_ends_in_its_first_step_has_no_result(tmp_path, form):
+            found = run(tmp_path, does, form, **more)
+        assert found.attrs["ended"] == ENDED and whole.attrs["ended"] == "at the duration"
+        assert found.time.values.tolist() == whole.time.values[:11].tolist()
+        for name in ("x1", "box_acceleration", "coupling_error", DRIVE.names[3]):
+            assert found[name][:-1].values.tobytes() == whole[name][:10].values.tobytes(), name
+        assert found.impact_time.max() <= AT < whole.impact_time.max()
     with pytest.raises(FmuError, match=r"ended the simulation at t = 0 s: .*, in its first step"):
         run(tmp_path, "ENDS", form, step=0.2)
 
 
 REFUSED = {
     "DISCARDS": "discarded its step from t = 0.1 s to 0.11 s: coil too hot",
-    "DISCARDS_SILENTLY": "discarded its step from t = 0.1 s to 0.11 s: it logged no cause; try a",
-    "RETURNS_EARLY": r"early from its step from t = 0.1 s to 0.11 s \(it came to 0.105 s\), wh",
+    "DISCARDS_SILENTLY": "discarded its step from t = 0.1 s to 0.11 s: it logged no cause",
+    "RETURNS_EARLY": r"its step from t = 0.1 s to 0.11 s \(it came to 0.105 s\)",
     "FAILS": "^fuse blown$",
 }
 
 
 @pytest.mark.parametrize("does", REFUSED)
 def test_what_ends_a_run_is_said_with_its_cause(tmp_path, form, does):
-    words = REFUSED[does]
-    if form == 2 and does == "RETURNS_EARLY":  # which FMI 2.0 does not know
-        words = r"discarded its step from t = 0.1 s to 0.11 s \(it came to 0.105 s\)"
-    with pytest.raises(FmuError, match=words) as raised:
+    with pytest.raises(FmuError, match=REFUSED[does]) as raised:
         run(tmp_path, does, form)
     assert "\n" not in str(raised.value)
 
@@ -116,10 +104,9 @@ def test_a_discarded_step_is_halved_where_the_drive_can_go_back(tmp_path, fmi):
     for name in ("x1", "x2", "box_acceleration"):
         errors = [abs(one[name].values - fine[name].values).max() for one in (found, coarse)]
         assert errors[0] < 1e-6 * errors[1]
-    with pytest.raises(FmuError, match="coil too hot"):
-        run(tmp_path, "DISCARDS", fmi, has_states=True)
-    with pytest.raises(FmuError, match=r"from t = 0 s to 0.01 s: coil too hot"):
-        run(tmp_path, "DISCARDS_LONG", fmi)
+    for does, has_states in (("DISCARDS", True), ("DISCARDS_LONG", False)):
+        with pytest.raises(FmuError, match="coil too hot"):
+            run(tmp_path, does, fmi, has_states=has_states)
 
 
 def test_inputs_as_cubics_go_on_in_halves_of_a_discarded_step():
@@ -140,22 +127,19 @@ def test_a_warning_is_shown_once_and_the_run_goes_on(tmp_path, form, does, words
     with warnings.catch_warnings(record=True) as shown:
         warnings.simplefilter("always")
         found = run(tmp_path, does, form, estimate=True)
-    texts = [str(one.message) for one in shown if "warns" in str(one.message)]
-    assert len(texts) == 1 and texts[0].startswith("the FMU Linear warns: ") and words in texts[0]
-    assert found.attrs["drive_warnings"] == texts[0]
+    (text,) = [str(one.message) for one in shown if "warns" in str(one.message)]
+    assert text.startswith("the FMU Linear warns: ") and words in text
+    assert found.attrs["drive_warnings"] == text
     whole = run(tmp_path, fmi=form, estimate=True)
     assert found.x1.values.tobytes() == whole.x1.values.tobytes()
 
 
-def test_in_a_process_of_its_own_a_warning_arrives(tmp_path):
-    with pytest.warns(UserWarning, match="the FMU Linear warns: coil is warm"):
-        assert len(run(tmp_path, "WARNS").time) == 21
-
-
-def test_python_modules_of_one_name_in_two_drives_do_not_meet(tmp_path):
+def test_a_process_of_its_own_keeps_python_modules_of_one_name_apart(tmp_path):
     """As of two versions of pythonfmu: the second run has its own, with a force factor of 0."""
     from pythonfmu import FmuBuilder
 
+    with pytest.warns(UserWarning, match="the FMU Linear warns: coil is warm"):
+        assert len(run(tmp_path, "WARNS").time) == 21
     first = FmuBuilder.build_FMU(table.__file__, dest=tmp_path)
     second = tmp_path / "second.fmu"
     with zipfile.ZipFile(first) as old, zipfile.ZipFile(second, "w") as new:

@@ -1,7 +1,6 @@
 """Drives that take a held force: errors against one system, their order, and what is stated."""
 
 import warnings
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,8 +9,7 @@ import orchestrate
 from orchestrate.running.runner import answer
 from orchestrate.weak_drive import cosimulate
 
-from ...sparing import ordinary
-from .drives.linear import draw, table_drive, together
+from .drives.linear import table_drive, together
 from .monolithic import Monolith
 
 STEPS = (0.1, 0.05, 0.025, 0.0125)
@@ -25,10 +23,7 @@ MOTOR = orchestrate.Drive(
 )
 MOTIONS = {"a": "box_acceleration", "v": "box_velocity", "p": "box_position"}
 ERRORS = {  # m, at most, with steps of STEPS
-    ("motor", "av"): (2.5e-6, 1.6e-7, 1.0e-8, 1.0e-9),
     ("motor", "avp"): (1.3e-6, 9.0e-8, 6.0e-9, 6.0e-10),
-    (5.5, "av"): (5.0e-6, 3.5e-7, 2.2e-8, 1.5e-9),
-    (5.5, "avp"): (1.0e-6, 6.0e-8, 4.0e-9, 4.0e-10),
     (0.2, "av"): (1.3e-4, 9.0e-6, 6.0e-7, 4.0e-8),
     (0.2, "v"): (1.8e-3, 1.5e-4, 1.2e-5, 8.0e-7),
     (0.2, "a"): (1.6e-2, 2.2e-3, 3.0e-4, 4.0e-5),
@@ -38,10 +33,11 @@ ORDER = {"p": 2.5}  # at least, by regression over STEPS
 pytestmark = pytest.mark.usefixtures("exported")
 
 
-def shaker(mass):
+def shaker(mass, stiffness=0.055, damping=0.0055):
     """An electrodynamic shaker with a table of a mass."""
-    numbers = {"mass": mass, "stiffness": 0.055, "damping": 0.0055, "bl": 1.0, "r": 1.0, "l": 0.1}
-    return table_drive(numbers)
+    return table_drive(
+        {"mass": mass, "stiffness": stiffness, "damping": damping, "bl": 1.0, "r": 1.0, "l": 0.1}
+    )
 
 
 def system_of(name, letters, folder, exported):
@@ -91,37 +87,11 @@ def test_a_held_force_costs_no_order(tmp_path, exported, name, letters):
     assert np.polyfit(np.log(STEPS), np.log(errors), 1)[0] > ORDER.get(letters, 2.7)
 
 
-ALL = ("av", "avp", "a", "v", "p", "ap", "pv")
-STIFF = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
-
-
 @pytest.mark.usefixtures("here")
-@pytest.mark.parametrize("seed", ordinary(range(40), 7))
-def test_what_is_stated_is_the_error_of_random_drives(tmp_path, seed):
-    """Tables of 0.2 to 5.5 kg, of FMI 2.0 and 3.0, every second with a filter before the force."""
-    drive = replace(draw(seed, (0.2, 5.5)), fmi=2 + seed // 2 % 2)
-    letters = ALL[seed % len(ALL)]
-    step = 4e-3 if letters in ("av", "avp") else 1e-3
-    times = np.linspace(0.0, 0.5, round(0.5 / step) + 1)
-    start = (0.0, 0.02, 0.0, 0.0)
-    truth, impacts = together(drive, STIFF, lambda _: 20.0, times, start)
-    found = orchestrate.cosimulate(
-        STIFF,
-        drive.write(tmp_path),
-        **{"connect": drive.connected(letters), "parameters": drive.parameters, "start": start},
-        **{"inputs": {drive.names[1]: 20.0}, "duration": 0.5, "step": step, "progress": False},
-    )
-    true, stated = error(found, truth, times), float(found.coupling_error.max())
-    assert found.sizes["impact"] == impacts and true < 0.01 * np.abs(truth).max()
-    assert 0.5 * true < stated < 2.0 * true
-
-
-@pytest.mark.usefixtures("here")
-@pytest.mark.parametrize("letters", ["a", "v", "p", "av", "avp"])
+@pytest.mark.parametrize("letters", ["p", "av", "avp"])
 def test_a_step_that_is_too_long_for_a_stiff_drive_is_said(tmp_path, letters):
     """A table on a suspension of 500 rad/s: its velocity swings within a step of 0.01 s."""
-    numbers = {"mass": 0.5, "stiffness": 125e3, "damping": 1.0, "bl": 1.0, "r": 1.0, "l": 0.1}
-    drive = table_drive(numbers)
+    drive = shaker(0.5, 125e3, 1.0)
     run = {"connect": drive.connected(letters), "parameters": drive.parameters, "start": START}
     run |= {"duration": 0.5, "estimate": False, "progress": False}
     path, missing = drive.write(tmp_path), "box_velocity" if letters in "ap" else "box_position"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from orchestrate import Course, InputError, capture, cosimulate, couple, passage, waterfall
+from orchestrate import Course, cosimulate, couple, passage, waterfall
 
 from .coupled import BEAM, QUICK
 
@@ -19,7 +19,7 @@ def whole():
 
 
 def test_it_is_the_run_that_couple_makes(whole):
-    """Jumps, energies, and the speed of each revolution are the same."""
+    """Jumps, energies, and the speed of each revolution are the same; then around the jump only."""
     run = couple(*QUICK, **FAST)
     for name in ("jump_low", "jump_time", "jump_speed_before"):
         assert whole[name].values == pytest.approx(run[name].values, nan_ok=True), name
@@ -30,6 +30,21 @@ def test_it_is_the_run_that_couple_makes(whole):
         at = np.interp(run.time[-5:], whole.time, whole[name])
         assert run[name].values[-5:] == pytest.approx(at, rel=1e-3), name
     assert (whole.x2 - whole.x1).min() > -1e-9
+    near = passage(*QUICK, **FAST, around=40.0)
+    expected = whole.sel(time=slice(*(float(whole.jump_time[0]) + np.array([-40.0, 40.0]))))
+    assert near.attrs["kept"] == "around jumps" and whole.attrs["kept"] == "the whole run"
+    assert near.x1.equals(expected.x1) and near.speed.equals(expected.speed)
+
+
+@pytest.mark.parametrize(
+    ("volts", "kept", "middle"), [(1.2, "the end", 180.0), (2.4, "around the passage", None)]
+)
+def test_without_a_jump_the_passage_or_the_end_is_kept(volts, kept, middle):
+    run = {"duration": 200.0, "speed_start": 0.6, "progress": False}
+    found = passage(*QUICK.as_bonded(), voltage=volts, around=20.0, **run)
+    centre = float(found.passage_time) if middle is None else middle
+    assert found.attrs["kept"].startswith(kept)
+    assert np.abs(found.time - centre).max() == pytest.approx(20.0, abs=0.11)
 
 
 def test_a_course_acts_as_in_cosimulate():
@@ -46,59 +61,23 @@ def test_a_course_acts_as_in_cosimulate():
     assert mine.x1.values == pytest.approx(other.x1.values[1:], abs=1e-14)
 
 
-def test_only_around_the_jump(whole):
-    near = passage(*QUICK, **FAST, around=40.0)
-    expected = whole.sel(time=slice(*(float(whole.jump_time[0]) + np.array([-40.0, 40.0]))))
-    assert near.attrs["kept"] == "around jumps"
-    assert near.x1.equals(expected.x1) and near.speed.equals(expected.speed)
-
-
-def test_lines_of_a_known_motion():
-    """Mass and box at three times a speed that rises: one line, A (3 w)^2, all the time."""
+def test_lines_of_known_motions(whole):
+    """Mass and box at three times a speed that rises: one line, A (3 w)^2, all the time. `quick`
+    repeats after two revolutions at its resonance: lines at halves of the speed.
+    """
     time = np.arange(0.0, 300.0, 0.05)
     angle, speed = time + 2e-4 * time**2, 1.0 + 4e-4 * time
     wave, slope = np.cos(3.0 * angle), -3.0 * speed * np.sin(3.0 * angle)
-    columns = {"angle": angle, "x1": 0.7 * wave, "v1": 0.7 * slope, "voltage": 0.0 * time}
-    columns |= {"box_position": 0.3 * wave, "box_velocity": 0.3 * slope}
+    columns = {"angle": angle, "x2": 0.7 * wave, "v2": 0.7 * slope, "voltage": 2.0 * time}
+    columns |= {"box_position": 0.3 * wave, "box_velocity": 0.3 * slope, "x1": 0.0 * time}
+    columns["v1"] = 0.0 * time
     made = xr.Dataset({name: ("time", values) for name, values in columns.items()}, {"time": time})
-    found = waterfall(made, revolutions=8)
+    found = waterfall(made, mass=2, revolutions=8)
     expected = (3.0 * found.speed.values) ** 2
     assert found.acceleration.sel(order=3.0).values == pytest.approx(expected, rel=2e-3)
     assert found.acceleration.sel(order=[1.0, 2.0, 5.0]).max() < 1e-3 * expected.max()
     assert found.speed.values == pytest.approx(1.0 + 4e-4 * found.time.values, rel=1e-3)
-
-
-def test_halves_with_impacts(whole):
-    """`quick` repeats after two revolutions at its resonance: lines at halves of the speed."""
-    found = waterfall(whole.sel(time=slice(0, 250)), revolutions=8).isel(time=-1).acceleration
-    assert found.sel(order=1.0) > 10.0 * found.sel(order=2.5) > 100.0 * found.sel(order=2.25)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "parts"),
-    [
-        ({"mass": 3}, ["mass = 3", "1 or 2"]),
-        ({"revolutions": 0}, ["revolutions = 0", "from 1"]),
-        ({"revolutions": 5000}, ["revolutions = 5000", "at most"]),
-        ({"highest": 0.0}, ["highest = 0.0", "0 < highest"]),
-    ],
-)
-def test_mistakes_of_spectra(whole, arguments, parts):
-    with pytest.raises(InputError) as caught:
-        waterfall(whole, **arguments)
-    assert all(part in str(caught.value) for part in parts), str(caught.value)
-
-
-def test_mistakes():
-    with pytest.raises(InputError, match="around = 0.0 s: expected 0 < around"):
-        passage(*QUICK, **FAST, around=0.0)
-    with pytest.raises(InputError, match="no angle in the dataset: expected one of passage"):
-        waterfall(xr.Dataset({"x1": ("time", [0.0])}))
-
-
-@pytest.mark.parametrize("duration", [1e-10, 0.0, 1e-300])
-def test_a_run_of_no_step_is_refused(duration):
-    with pytest.raises(InputError, match="duration = .* one communication step or more"):
-        passage(*QUICK, voltage=1.5, duration=duration, progress=False)
-    with pytest.raises(InputError, match="one communication step or more|0 < time"):
-        capture(*QUICK, voltage=(1.4, 1.6), count=2, time=duration, progress=False)
+    assert found.voltage.values == pytest.approx(2.0 * found.time.values, rel=1e-9)
+    assert found.order[-1] == 6.0 and found.order[1] == 1 / 8
+    halves = waterfall(whole.sel(time=slice(0, 250)), revolutions=8).isel(time=-1).acceleration
+    assert halves.sel(order=1.0) > 10.0 * halves.sel(order=2.5) > 100.0 * halves.sel(order=2.25)

@@ -7,10 +7,8 @@ from pythonfmu import FmuBuilder
 import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, Instance, find
-from orchestrate.weak_drive.ssp import write_ssp
 
 from .drives import exciter
-from .test_ssp import run
 
 HALVES = orchestrate.Structure(m1=0.5, m2=0.4, k1=30.0, k2=42.0, d1=0.4, d2=0.5, e=0.6)
 SHAKEN = {"box_acceleration": "acc", "box_velocity": "vel", "box_force": "pull"}
@@ -50,16 +48,6 @@ def test_the_motion_is_that_under_these_forces(drive, case):
     for name, force in zip(PUSHED, FORCES, strict=True):
         expected = force * np.sin(RATE * found.time.values)
         np.testing.assert_allclose(found[name].values, expected, atol=1e-3)
-
-
-def test_a_package_for_other_tools_has_the_force(drive, tmp_path):
-    """FMPy holds it over a step: an error of first order."""
-    structure, connect = HALVES.replace(clearance=5.0), {"force1": "push"}
-    path = write_ssp(tmp_path / "x.ssp", structure, drive, connect=connect)
-    asked = {"connect": connect, "duration": 1.0, "step": 0.01, "progress": False}
-    exact = float(orchestrate.cosimulate(structure, drive, **asked).x1[-1])
-    errors = [abs(run("fmpy", path, h, "push", 1.0)[0] - exact) for h in (2e-3, 1e-3)]
-    assert errors[0] < 0.05 * abs(exact) and 1.8 < errors[0] / errors[1] < 2.2
 
 
 WRONG = {

@@ -1,0 +1,463 @@
+"""Every command runs once: its function, its numbers in the units asked for, and its files."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import re
+
+import netCDF4
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from matplotlib import image
+
+import orchestrate
+from orchestrate import InputError, Structure, cli
+from orchestrate.cli.diagnosis import Plan
+from orchestrate.cli.dynamics import attractor_table
+from orchestrate.cli.options import OfBox
+from orchestrate.fmu import OSCILLATOR, find
+from orchestrate.units import with_units
+
+from ...exports import BUILD
+from ...sparing import ordinary
+
+TURN, G = 2.0 * np.pi, 9.80665
+BEAM = ("--structure", "beam")
+BOX = (*BEAM, "--hz", "12", "--g", "0.02")
+AT = {"frequency": 12.0 * TURN, "amplitude": 0.02 * G / (12.0 * TURN) ** 2}
+SHORT, LONGER = ["--transient", "10", "--samples", "4"], ["--transient", "60", "--samples", "16"]
+SWEPT = (*BEAM, "--hz", "12:13:1", "--g", "0.02", "--direction", "up")
+CONNECTED = ("box_acceleration=box_acceleration", "box_force=box_force")
+DRIVEN = ("--step", "0.2", "--jobs", "1")
+ONE_WAY = ("--rate", "4e-4", "--settle", "9", "--one-way", *DRIVEN)
+ASKED = {  # command: options, a unit and what is printed in it, what is printed anyhow, keywords
+    "simulate": ((*BOX, "--periods", "3"), "mm", r"[\d.]+ mm\n", (), {**AT, "periods": 3}),
+    "shake": (
+        (*BEAM, "--shock", "sawtooth", "--length", "0.01", "--g", "2"),
+        *("um", r"gap x2 - x1.* to [\d.e+]+ um\b", ("acceleration of the box: ", "impacts")),
+        {"excitation": orchestrate.Shock(peak=2 * G, length=0.01, shape="sawtooth")},
+    ),
+    "cosimulate": (
+        (*BEAM, "--duration", "0.2", "--step", "0.002", "--drive")
+        + (BUILD / "fmi2" / "MotorShaker.fmu", "--connect", *CONNECTED),
+        *("mm", r"displacement of mass 1.* to [\d.e+-]+ mm\b", ()),
+        {
+            "duration": 0.2,
+            "step": 0.002,
+            "connect": {one.split("=")[0]: one.split("=")[0] for one in CONNECTED},
+        },
+    ),
+    "resonance": (
+        (*BEAM, "--hz", "12:13:0.1", "--g", "0.02", *LONGER),
+        *("rpm", r"frequency rpm", ("peaks", "bonded", "delaminated  up", "no jump")),
+        {"transient": 60, "samples": 16},
+    ),
+    "sweep": ((*SWEPT, *SHORT), "rpm", r"at 7[28]0 rpm", (), {"direction": "up", "transient": 10}),
+    "spectra": (
+        (*BOX, "--transient", "5", "--periods", "8"),
+        *("rpm", r"delaminated at 720 rpm: largest line", (), {**AT, "periods": 8}),
+    ),
+    "map": (
+        (*BEAM, "--hz", "12,13", "--g", "0.02", "--over", "e", "--values", "0.3,0.7", *SHORT),
+        *("rpm", r"7[28]0 rpm", ("4 responses: ", "largest gap"), {"samples": 4}),
+    ),
+    "lyapunov": (
+        ("--eta", "0.8,1.047", "--transient", "100", "--periods", "300"),
+        *("Hz", r"frequency Hz", ("exponent", "chaotic", "-0.007", "periodic")),
+        {"eta": (0.8, 1.047), "transient": 100, "periods": 300},
+    ),
+    "poincare": (
+        (*BOX, "--transient", "5", "--periods", "9"),
+        *("mm", r"gap .*: [\d.e-]+ to [\d.]+ mm\b", (), {**AT, "periods": 9}),
+    ),
+    "attractors": (
+        ("--eta", "1.3,1.4", "--starts", "5", *LONGER, "--settle", "20"),
+        *("Hz", r"at 0\.222817 Hz", ("(5 random starts)", "multiplicity", "state at phase 0")),
+        {"starts": 5, "eta": (1.3, 1.4)},
+    ),
+    "basin": (
+        ("--eta", "1.4", "--x", "x_rel,-0.1,0.8,4", "--y", "v_rel,-1,1,3", *LONGER),
+        *("um", r"v_rel -1000 to 1000 mm/s, x_rel -1e\+05 to 8e\+05 um"),
+        *(("of 9 starts", "share", "3 starts left out"), {"x": ("x_rel", -0.1, 0.8, 4)}),
+    ),
+    "orbit": (
+        ("--eta", "3.0"),
+        *("mm", r"impact at 0\.480678\d* s, closing at [\d.]+ mm/s"),
+        ("unstable", "-3.359480", "impact at tau = 0.480678", "state at phase 0"),
+        {"eta": 3.0, "period": 1},
+    ),
+    "manifold": (
+        ("--eta", "3.0", "--length", "1"),
+        *("mm", r"[\d.e-]+ to [\d.]+ mm"),
+        ("saddle: multiplier -3.359480", "length over the orbit's size", "length  "),
+        {"eta": 3.0, "length": 1.0},
+    ),
+    "branch": (  # whose bifurcations are in Hz as well
+        ("--eta", "2.62", "--limits", "2.6:2.7"),
+        *("Hz", r"0\.4\d+ to 0\.4\d+ Hz[^$]*kind +frequency Hz\n +0 .* 0\.42143"),
+        *(("Neimark-Sacker", "limit"), {"limits": (2.6, 2.7), "over": "eta"}),
+    ),
+    "couple": (
+        ("--eta0", "1.4:1.41", "--only", "bonded", "--hold", "0", *ONE_WAY),
+        *("rpm", r"revolutions at [\d.]+ to [\d.]+ rpm", ("undecided",)),
+        {"voltage": (1.4, 1.41), "step": 0.2, "settle": 9.0, "back": False, "rate": 4e-4},
+    ),
+    "capture": (
+        ("--voltage", "1.45:1.6", "--count", "2", "--tolerance", "0.05", "--only", "bonded")
+        + ("--over", "rotor_inertia", "--values", "800,1400", *DRIVEN),
+        *("", "bonded +1400 ", ("1.53",), {"voltage": (1.45, 1.6), "values": (800.0, 1400.0)}),
+    ),
+    "passage": (
+        ("--eta0", "1.55:1.65", "--around", "60", "--revolutions", "4", "--only", "delaminated")
+        + ONE_WAY,
+        *("", "jump up at 1.569", ("around jumps",), {"around": 60.0, "voltage": (1.55, 1.65)}),
+    ),
+    "jump-voltages": (
+        ("--eta0", "1.5:1.66", *ONE_WAY[2:], "--rate", "4e-4,3e-4"),
+        *("", "jump at rate 0", (), {"rates": (4e-4, 3e-4), "voltage": (1.5, 1.66)}),
+    ),
+    "drive-branch": (
+        ("--speed", "1.29:1.32", "--longest", "0.3", "--jobs", "1"),
+        *("", r"bonded +fold +1\.583", (), {"speed": (1.29, 1.32), "longest": 0.3}),
+    ),
+}
+ELSEWHERE = {"analyse", "build", "paper", "channels", "diagnose", "border", "halves", "explore"}
+ELSEWHERE |= {"report", "plan"}  # below, or in modules of their own
+SLOW = {"manifold", "branch", "jump-voltages", "drive-branch", "passage"}
+DRAWN = {"orbit", "simulate", "capture", "passage", "drive-branch", "jump-voltages", "sweep"}
+
+
+def shows_something(path):
+    """Whether a picture has lines, dots or colours on white."""
+    grey = image.imread(path)[..., :3].mean(axis=2)
+    return min(grey.shape) > 100 and 0.001 < (grey < 0.95).mean() < 0.95
+
+
+def test_every_command_is_tested():
+    assert set(cli.COMMANDS) == set(ASKED) | ELSEWHERE
+
+
+def agree(given, expected):
+    """Whether keywords have these values, numbers but for rounding."""
+    for name, value in expected.items():
+        number = isinstance(value, float) or (isinstance(value, tuple) and value[0] != "x_rel")
+        assert given[name] == (pytest.approx(value) if number else value), name
+    return True
+
+
+@pytest.mark.parametrize("command", ordinary(ASKED, set(ASKED) - SLOW))
+def test_a_command_asks_its_function_and_shows_the_answer(ask, tmp_path, monkeypatch, command):
+    """What is stored is what the function has answered; other units change only what is shown."""
+    options, unit, words, always, keywords = ASKED[command]
+    name, folder, calls = cli.COMMANDS[command].calls, tmp_path / "results", []
+    function = getattr(orchestrate, name)
+
+    @functools.wraps(function)
+    def noted(*structure, **question):
+        calls.append((question, function(*structure, **question)))
+        return calls[-1][1]
+
+    monkeypatch.setattr(orchestrate, name, noted)
+    few = ("--format", "csv", *(() if command in DRAWN else ("--plot", "none")))
+    plain = ask(command, *options, *few).success().out
+    assert calls and all(agree(question, keywords) for question, _ in calls)
+    stored = {path: hashlib.sha256(path.read_bytes()).digest() for path in folder.glob("*.nc")}
+    for _, answer in calls:
+        assert any(xr.load_dataset(path).equals(answer.load()) for path in stored)
+    assert all(path.name.startswith(f"{name}_") for path in stored)
+    assert all(map(shows_something, folder.glob("*.png")))
+    assert bool([*folder.glob("*.png")]) == (command in DRAWN)
+    tables, shown = set(folder.glob("*.csv")), plain
+    if unit:
+        shown = ask(command, *options, *few, "--units", unit).success().out
+        assert not re.search(words, plain) and "complete already" in shown
+        new = set(folder.glob("*.csv")) - tables
+        columns = {column for path in new for column in pd.read_csv(path).columns}
+        assert any(f"[{unit}]" in column for column in columns), columns
+    assert re.search(words, shown), (plain, shown)
+    assert all(word in plain for word in always) and "complete already" not in plain, plain
+    assert stored == {
+        path: hashlib.sha256(path.read_bytes()).digest() for path in folder.glob("*.nc")
+    }
+    told = re.findall(r"^/.*?(?=: complete already$|$)", f"{plain}{shown}", re.MULTILINE)
+    assert set(told) == {str(path) for path in folder.iterdir()}
+
+
+FOREIGN = r"\bHz\b|rad/s|\d m\b|\d mm\b| m\b|m/s2|\beta\b"
+WORDS = {  # an option that asks, and the words of the answer
+    **{"--hz 11:13:1": "Hz", "--rpm 660:780:60": "rpm", "--frequency 70:80:5": "rad/s"},
+    **{"--eta 0.9:1.1:0.1": "eta = ", "--hz 11:13:1 --units rpm,um,g": "rpm"},
+}
+
+
+@pytest.mark.parametrize("asked", WORDS)
+def test_a_question_is_answered_as_it_is_asked(ask, asked):
+    """Or in the units that are wanted and in no other."""
+    pressed = (*BEAM, "--set", "clearance=-2e-5", *SHORT, "--direction", "up", "--plot", "none")
+    done = ask("sweep", *pressed, *asked.split(), "--amplitude", "1e-5").success()
+    text = "\n".join(line for line in done.out.splitlines() if not line.startswith("/"))
+    assert f"at {WORDS[asked]}" in text or re.search(rf"\d {WORDS[asked]}\b", text)
+    assert "units" not in asked or not re.search(FOREIGN, text.replace("mm/s", "")), text
+
+
+@pytest.mark.parametrize("kind", ["map", "basin"])
+def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(kind):
+    """1.5 times a Omega^2/omega^2, which is 0.2/100 m."""
+    one = {"xi_rel_max": 1.5, "multiplicity": 1.0, "impacts_per_period": 1.0}
+    over = "e" if kind == "map" else "attractor"
+    data = xr.Dataset({name: (over, [value]) for name, value in one.items()}, {over: [0.5]})
+    data = with_units(data.assign_attrs(k1=100.0, m1=1.0, level=0.2), "mm")
+    if kind == "map":
+        words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
+        data = data.assign(multiplicity_decided=("e", [1], words))
+        lines = cli.responses.Map().summary(data)
+    else:
+        words = {"flag_values": [0, 1], "flag_meanings": "absent orbit"}
+        more = {"share": ("attractor", [1.0]), "decided_by": ("attractor", [1], words)}
+        more["state"] = (("attractor", "coordinate"), [[0.0] * 4])
+        lines = attractor_table(data.assign(more))
+    assert "xi_Rel = 1.5, 3 mm" in " ".join(lines)
+
+
+def made_sweep(kinds, impacts):
+    """A made-up sweep of responses: their kinds, as ``multiplicity_decided`` has them."""
+    words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
+    count = len(kinds)
+    numbers = {"xi_rel_max": np.linspace(1.0, 2.0, count), "impacts_per_period": impacts}
+    numbers |= {name: np.full(count, 0.5) for name in ("x1_max", "x2_max", "a1_max", "a2_max")}
+    numbers |= {"multiplicity": np.ones(count, dtype=int), "permanent_contact": np.zeros(count)}
+    data = xr.Dataset({name: ("eta", values) for name, values in numbers.items()})
+    data = data.assign_coords(eta=1.0 + 0.01 * np.arange(count))
+    for name in ("x1_max", "x2_max"):
+        data[name].attrs["units"] = "m"
+    return data.assign(multiplicity_decided=("eta", kinds, words)).assign_attrs(k1=1.0, m1=1.0)
+
+
+def test_a_sweep_is_summed_up_in_a_table_of_ten_lines():
+    """Made-up: twelve windows of which the shortest are left out; impacts divide windows too."""
+    kinds = np.repeat([1, 0, 1, 2, 1, 0, 1, 0, 1, 0, 1, 0], [9, 2, 20, 6, 8, 3, 7, 1, 5, 1, 4, 1])
+    impacts = np.where(np.arange(len(kinds)) < 21, 1.0, 2.0)
+    lines = list(cli.responses.Sweep().summary(made_sweep(kinds, impacts)))
+    counts = "67 responses: 53 repeat (79 %), 8 irregular (12 %), 6 undecided (9 %)"
+    assert any(line.startswith(counts) and "--transient 5000" in line for line in lines)
+    first = next(i for i, line in enumerate(lines) if "widest windows" in line)
+    rows = [line for line in lines[first:] if line.startswith("  ")]
+    assert len(rows) == 10 and rows[1].split() == [
+        "eta",
+        "=",
+        "1",
+        "to",
+        "1.08",
+        "after",
+        "1",
+        "T",
+        "1",
+    ]
+    assert (
+        rows[3].split() == ["eta", "=", "1.21", "to", "1.3", "after", "1", "T", "2"]
+        and "undecided" in rows[4]
+    )
+
+
+TRIVIAL = {  # options, and what is said of what is trivial
+    "simulate --eta 1 --set kappa=1": "both oscillators are alike",
+    "sweep --eta 1.2 --transient 60 --samples 16": "one value, eta = 1.2: a table and no picture",
+    "sweep --eta 2:2.1:0.05 --direction both --samples 8": "gap nowhere",
+    "resonance --eta 0.3:0.4:0.05 --transient 60 --samples 16": "no peak in this range",
+    "lyapunov --eta 2.9 --periods 50 --spectrum": "kaplan_yorke_dimension",
+    "lyapunov --eta 1 --set bonded=true --periods 20": "there are no impacts",
+    "simulate --eta 0.4 --transient 50 --periods 2": "60 impacts",
+    "couple --eta0 1.41:1.4 --rate 4e-4 --hold 0 --step 0.4 --settle 9 --only bonded --one-way": (
+        "the voltage falls first"
+    ),
+    "capture --eta0 1.5:1.6 --count 2 --time 100 --step 0.2 --only bonded": (
+        "1.5, 1.6 V undecided: the speed had not settled; give a longer --time"
+    ),
+}
+
+
+@pytest.mark.parametrize("words", TRIVIAL)
+def test_what_is_trivial_or_undecided_is_said(ask, words):
+    done = ask(*words.split(), "--plot", "none")
+    assert done.code == 0 and TRIVIAL[words] in done.out, done.err
+
+
+# -- files -----------------------------------------------------------------------------------------
+
+SWEEP = ("sweep", "--eta", "1.28:1.31:0.005", "--transient", "20", "--samples", "12")
+
+
+def fingerprint(folder):
+    """Bytes and times of all that is there."""
+    return {p.name: (p.read_bytes(), p.stat().st_mtime_ns) for p in folder.iterdir()}
+
+
+def interrupt(*_):
+    raise KeyboardInterrupt
+
+
+def test_a_finished_result_describes_itself_and_stays(ask, tmp_path, monkeypatch):
+    """Another question has another file; ``--force`` computes the same bytes anew."""
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    folder, out = tmp_path / "results", ask(*SWEEP).success().out
+    (result,), (picture,) = folder.glob("*.nc"), folder.glob("*.png")
+    assert re.fullmatch("sweep_paper_[0-9a-f]{6}", result.stem) and picture.stem == result.stem
+    assert "largest gap: xi_Rel = " in out and str(picture) in out and shows_something(picture)
+    data, fmu = xr.load_dataset(result), find(OSCILLATOR)
+    assert data.xi_rel.shape == (7, 12) and data.attrs["call"].startswith("sweep(")
+    about = {"e": 0.7, "d1": 0.01, "k2": 1.2, "transient": 20, "samples": 12, "direction": "up"}
+    about |= {"fmu_guid": fmu.guid, "fmu_model": fmu.name, "fmi_version": fmu.fmi_version}
+    assert {key: data.attrs[key] for key in about} == about
+    with netCDF4.Dataset(result) as stored:
+        assert all(v.units and v.long_name for v in stored.variables.values())
+    before = fingerprint(folder)
+    assert f"{result.name}: complete already" in ask(*SWEEP).success().out
+    with monkeypatch.context() as patch:
+        patch.setattr("orchestrate.response.sweep.SweepJob.work", interrupt)
+        assert ask(*SWEEP, "--force").code == 130
+    assert fingerprint(folder) == before
+    ask(*SWEEP, "--samples", "13", "--plot", "none").success()
+    assert len(fingerprint(folder)) == 3 and before.items() <= fingerprint(folder).items()
+    ask(*SWEEP, "--force").success()
+    for name, (content, time) in before.items():
+        new, now = fingerprint(folder)[name]
+        assert new == content and time != now
+
+
+def test_a_file_of_ones_own_is_not_replaced_by_another_question(ask, tmp_path):
+    own = tmp_path / "results" / "mine.nc"
+    ask(*SWEEP, "--store", own).success()
+    before = fingerprint(own.parent)
+    assert sorted(before) == ["mine.nc", "mine.png"]
+    ask(*SWEEP, "--samples", "13", "--store", own).complaint(own, "different calculation", "force")
+    own.unlink()
+    for force in ([], ["--force"]):
+        ask(*SWEEP, "--store", own, *force).complaint("mine.png", "choose another --store")
+    assert fingerprint(own.parent) == {"mine.png": before["mine.png"]}
+
+
+# -- what acts, and pictures over pictures ---------------------------------------------------------
+
+OF_BOX = {name: kind for name, kind in cli.COMMANDS.items() if issubclass(kind, OfBox)}
+MORE = {
+    "map": "--over e --values 0.5,0.6 --over D --values 0.1,0.2",
+    "branch": "--over e --limits 0.5:0.9",
+}
+
+
+@pytest.mark.parametrize("name", OF_BOX)
+def test_gravity_and_forces_reach_the_function(ask, monkeypatch, name):
+    asked, function = {}, getattr(orchestrate, OF_BOX[name].calls)
+
+    @functools.wraps(function)
+    def stop(_, **question):
+        asked.update(question)
+        raise InputError("stop")
+
+    monkeypatch.setattr(orchestrate, OF_BOX[name].calls, stop)
+    for shaken in ("--hz 12 --g 0.1", "--hz 12 --amplitude 0", "--eta 1.2"):
+        options = f"{shaken} --box-acceleration -1g --force1 2 {MORE.get(name, '')}"
+        assert ask(name, *options.split()).complaints[-1].startswith("error: stop")
+        assert (asked["box_acceleration"], asked["force1"]) == (-G, 2.0)
+
+
+def test_the_excitation_of_a_file_acts(ask, tmp_path):
+    """As by options; with forces; in its own units."""
+    path, short = tmp_path / "own.toml", ("--periods", "1", "--plot", "none")
+    head = "[structure]\nm1 = 1.5\nomega_hz = 11.9\nD = 0.005\n\n[excitation]\n"
+    path.write_text(f"{head}frequency_rpm = 756\nacceleration_g = 0.02\nphase = 0.5\n")
+    told = ("--hz", "12.6", "--g", "0.02", "--phase", "0.5", "--units", "rpm")
+    done, same = (ask("simulate", "--structure", path, *short, *more) for more in ((), told))
+    assert done.success().out.splitlines()[:-1] == same.success().out.splitlines()[:-1]
+    path.write_text(f"{head}frequency_hz = 5.0\namplitude = 0.0\nforce1 = 2.0\n")
+    assert "impacts" in ask("simulate", "--structure", path, *short).success().out
+    levels = ("resonance", *BEAM, "--hz", "12", "--g", "0.1,0.2", "--force2", "1")
+    ask(*levels).complaint("--force2: resonance_levels does not know it yet")
+
+
+def test_curves_over_sweeps_and_maps(ask, tmp_path):
+    """All bifurcations of a branch followed, and drawn over what they fit; refused over others."""
+    path, none, folder = tmp_path / "window.nc", ("--plot", "none"), tmp_path / "results"
+    ask("branch", "--eta", "2.6", "--limits", "2.55:2.65", "--store", path, *none).success()
+    few = ("sweep", "--eta", "2.55:2.65:0.05", "--transient", "10", "--samples", "4")
+    refused = {
+        ("--set", "e=0.3"): "a branch of another structure, e = 0.7; expected e = 0.3",
+        ("--eta", "1", "--over", "e", "--values", "0.3,0.5"): "a branch along eta; expected",
+        ("--eta", "1.2"): "one value has no picture",
+        ("--overlay", "lost.nc"): "lost.nc: no such file",
+    }
+    for options, words in refused.items():
+        ask(*few, "--overlay", path, *options).complaint("--overlay", words)
+    assert not folder.exists() or not list(folder.glob("*.nc"))
+    ask(*few, "--overlay", path).success()
+    limits = ("--limits", "2.55:2.65,0.695:0.705", "--longest", "0.5")
+    done = ask("border", "--start", path, "--bifurcation", "all", *limits).success()
+    assert "Neimark-Sacker" in done.out and len(list(folder.glob("border_all*.png"))) == 1
+    (curve,) = folder.glob("border_window*.nc")
+    few = ("map", "--eta", "2.6,2.7", "--over", "e", "--values", "0.69,0.71", *SHORT)
+    ask(*few, "--overlay", f"{curve},{curve}").success()
+    assert all(shows_something(picture) for picture in folder.glob("*_over_*.png"))
+    ask(*few, "--overlay", path).complaint("--overlay", "of branch; expected one of border")
+    ask("border", "--start", path, "--bifurcation", "one", *limits).complaint("a number, or all")
+
+
+def test_levels_have_both_structures_and_where_they_open(ask, tmp_path):
+    beam = (*BEAM, "--set", "preload=20um", "--hz", "10,12.5", *LONGER)
+    done = ask("resonance", *beam, "--g", "0.002,0.02", "--size", "16:9").success()
+    title, low, high = done.out.splitlines()[:3]
+    assert "bonded x1" in title and "delaminated x1" in title and "opens at" in title
+    assert low.endswith("  12.5 Hz") and high.count(" at 12.5 Hz") == 2 and "0.02 " in high
+    picture = image.imread(next((tmp_path / "results").glob("*_16-9.png")))
+    assert picture.shape[:2] == (1080, 1920)
+
+
+def test_a_plan(ask, tmp_path, monkeypatch):
+    test = (*BEAM, "--set", "zeta=5%", "--g", "0.002,0.02,0.2", "--noise", "1e-3", "--range", "1")
+    out = ask("plan", *test).success().out
+    for words in ("preload=20um", "verdict on the guess", "on its sound twin", "overload"):
+        assert words in out
+    assert shows_something(next((tmp_path / "results").glob("plan_*.png")))
+    asked = {}
+
+    @functools.wraps(orchestrate.plan_test)
+    def plan(_, **question):
+        asked.update(question)
+        raise InputError("stop")
+
+    monkeypatch.setattr(orchestrate, "plan_test", plan)
+    ask("plan", *BEAM, "--faces", "2", "--noise", "1", "--g", "0.1,0.2")
+    assert list(asked["sensor"]) == ["acceleration2"] and tuple(asked["g"]) == (0.1, 0.2)
+    assert asked["sensor"]["acceleration2"].noise == 1
+
+
+@pytest.mark.parametrize(("decides", "said"), [([1, 0], "lower levels only"), ([0, 0], "raise")])
+def test_a_plan_of_which_the_higher_levels_do_not_decide(decides, said):
+    """It said that no verdict was right, and to raise the level."""
+    names = ("recommended_level", "second_level", "recommended_first", "recommended_last")
+    numbers = dict.fromkeys((*names, "recommended_duration", "recommended_rate"), ((), 40.0))
+    rows = dict.fromkeys(("verdict", "sound_verdict"), ("level", ["undecided"] * 2))
+    made = {**numbers, **rows, "decides": ("level", decides), "overload": ("level", [0, 0])}
+    made |= {"counts": ((), 0), "opening_level": ((), 0.0)}
+    made |= {"opening": ("level", [0.0, 0.0], {"units": "m", "long_name": "opening"})}
+    level = ("level", [20.0, 40.0], {"units": "m/s2", "long_name": "level"})
+    data = xr.Dataset(made, {"level": level}, {"clearance": 1.0})
+    assert any(said in line for line in Plan().summary(data))
+
+
+def test_exponents_along_a_sweep_and_an_orbit_from_a_stored_one(ask, tmp_path):
+    """Of two orbits at this frequency the unstable one, which a search from rest does not find."""
+    none, eta = ("--plot", "none"), [1.36, 1.3]
+    options = ("--eta", "1.36,1.3", "--periods", "100", "--transient", "50", *none)
+    ask("lyapunov", *options, "--follow", "down").success()
+    (path,) = (tmp_path / "results").glob("*.nc")
+    alone = {"transient": 50, "progress": False}
+    swept = orchestrate.sweep(Structure(), eta=eta, direction="down", samples=1, **alone)
+    expected = orchestrate.lyapunov(Structure(), eta=eta, start=swept, periods=100, **alone)
+    np.testing.assert_array_equal(xr.load_dataset(path).exponent, expected.exponent)
+    first, near = tmp_path / "first.nc", tmp_path / "near.nc"
+    ask("orbit", "--eta", "3.0", *none, "--store", first).success()
+    done = ask("orbit", "--eta", "3.01", "--guess", first, *none, "--store", near).success()
+    assert done.out.startswith("unstable") and xr.load_dataset(near).attrs["period"] == 1

@@ -1,0 +1,205 @@
+"""``analyse``, ``channels`` and ``halves``: records in, numbers, settings and structures out."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.io import wavfile
+
+import orchestrate
+
+from .test_commands import shows_something
+
+RATE = 1000.0
+SWEEP = orchestrate.SweptSine(first=11.0, last=13.0, duration=4.0, acceleration=1.0)
+NO_PLOT = ("--plot", "none")
+
+
+def sweep(order_2=0.0, second=True, noise=0.0):
+    """A swept sine from 20 to 60 Hz, and a response of known orders."""
+    time = np.arange(10_000) / RATE
+    angle = 2.0 * np.pi * (20.0 * time + 2.0 * time**2)
+    box, response = 2.0 * np.sin(angle), 6.0 * np.sin(angle) + order_2 * np.sin(2.0 * angle)
+    response += noise * np.random.default_rng(1).normal(size=len(time))
+    channels = {"box_acceleration": box, "acceleration1": response, "acceleration2": 0.5 * response}
+    kept = {name: ("time", channels[name]) for name in list(channels)[: 2 + second]}
+    return xr.Dataset(kept, {"time": time}, {"sample_rate": RATE, "title": "A sweep"})
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Three records: bonded, delaminated, and measured with one accelerometer."""
+    records = {"bonded": sweep(), "parted": sweep(0.6), "measured": sweep(0.5, False, 0.01)}
+    for name, record in records.items():
+        record.to_netcdf(tmp_path / f"{name}.nc")
+    return {name: tmp_path / f"{name}.nc" for name in records}
+
+
+def said(done):
+    """The numbers that a command prints, without the names of files."""
+    return [line for line in done.success().out.splitlines() if line.startswith("  ")]
+
+
+SHOWN = {
+    "frf": ["largest |H1|", "mass 1   3 at", "mass 2   1.5 at"],
+    "psd": ["rms m/s2", "1.41", "4.2"],
+    "orders": ["order 1", "6 m/s2 at", "0.6 m/s2 at"],
+    "harmonics": ["largest distortion", "0.1 at"],
+    "spectrogram": ["largest amplitude", "box      1.", "mass 1   "],
+    "shock": ["largest maximax", "mass 1   "],
+    "density": ["skewness_error", "1.5"],
+}
+
+
+def test_each_analysis_says_its_numbers(ask, tmp_path, files):
+    cut = ("--from", "0.5", "--to", "9.5", *NO_PLOT)
+    done = ask("analyse", files["parted"], "--show", ",".join(SHOWN), *cut).success()
+    assert all(word in done.out for words in SHOWN.values() for word in words), done.out
+    for show in SHOWN:
+        (stored,) = (tmp_path / "results").glob(f"analyse_{show}_parted_*")
+        assert str(stored) in done.out and show in xr.load_dataset(stored).attrs["analysis"]
+
+
+def test_three_records_in_one_picture_by_the_options(ask, tmp_path, files):
+    done = ask(
+        *("analyse", files["parted"], "--label", "delaminated", "--show", "frf,orders,shock"),
+        *("--beside", f"bonded={files['bonded']}", "--beside", f"measured={files['measured']}"),
+        *("--format", "nc,csv", "--resolution", "2", "--damping", "0.02", "--orders", "0.5,1,2"),
+        *("--periods", "20", "--window", "flattop", "--overlap", "0.7"),
+    ).success()
+    for label in ("delaminated", "bonded", "measured"):
+        assert f"{label}:\nfrequency response" in done.out
+    folder = tmp_path / "results"
+    assert all(map(shows_something, folder.glob("*.png"))) and [*folder.glob("*.png")]
+    frf, orders, shock = (
+        xr.load_dataset(next(folder.glob(f"analyse_{name}_parted*.nc")))
+        for name in ("frf", "orders", "shock")
+    )
+    assert orders.order.values.tolist() == [0.5, 1.0, 2.0] and orders.attrs["periods"] == 20.0
+    assert float(shock.damping) == 0.02 and float(frf.resolution) == 2.0
+    assert frf.attrs["window"] == "flattop" and frf.attrs["overlap"] == 0.7
+    assert len([*folder.glob("*.csv")]) >= 9
+
+
+MISTAKES = """
+    FILE --beside x=lost.nc : --beside lost.nc: no such file
+    FILE --show orders --orders 2.5 : orders = 2.5: expected
+    FILE --resolution 0.001 : resolution = 0.001 Hz | parted.nc
+    FILE --from 20 : nothing between --from and --to; it has 0 to 9.999 s
+    FILE --sensor fast : --sensor fast: expected HZ or HZ:RATE
+    bench.csv : bench.csv | no unit | --unit
+    bench.csv --unit stone : unit = 'stone'
+    bench.csv --unit g --columns acceleration1=9 : no column 9
+    bench.csv --unit g --columns mass=1 : no channel 'mass'
+"""
+
+
+@pytest.mark.parametrize("line", MISTAKES.strip().splitlines())
+def test_mistakes_are_one_line(ask, tmp_path, files, line):
+    in_g(sweep(second=False), tmp_path / "bench.csv")
+    options, _, words = line.strip().partition(" : ")
+    options = options.replace("FILE", str(files["parted"]))
+    options = options.replace("bench.csv", str(tmp_path / "bench.csv"))
+    if "--sensor" in options:  # of a result of shake
+        with_impulses = xr.load_dataset(files["parted"]).assign(impulse=("impact", [1.0]))
+        with_impulses.to_netcdf(files["parted"])
+    ask("analyse", *options.split()).complaint(*(word.strip() for word in words.split("|")))
+    assert not (tmp_path / "results").exists() or not any((tmp_path / "results").iterdir())
+
+
+def in_g(record, path):
+    """An export of an analyser: g, a decimal comma, channels by the names of its inputs."""
+    rows = zip(record.time.values, *(record[name].values / 9.80665 for name in record), strict=True)
+    lines = [";".join(f"{value:.9f}" for value in row).replace(".", ",") for row in rows]
+    path.write_text("\n".join(["Zeit [s];AI 1;AI 2", *lines]) + "\n")
+
+
+def test_records_of_all_kinds_of_files_say_the_same(ask, tmp_path):
+    """What is said of a file is what is said of the same record in NetCDF."""
+    record, show = sweep(0.5, second=False), ("--show", "psd,orders", "--orders", "2", *NO_PLOT)
+    paths = [tmp_path / f"bench.{kind}" for kind in ("nc", "csv", "wav")]
+    record.to_netcdf(paths[0])
+    in_g(record, paths[1])
+    values = np.stack([record[name].values for name in record], axis=1) / 10.0
+    wavfile.write(paths[2], int(RATE), values)
+    columns = ["--unit", "g", "--columns", "time=0, box_acceleration=AI 1,acceleration1=2"]
+    first, *others = (
+        said(ask("analyse", path, *options, *show, "--units", "m/s2"))
+        for path, options in zip(paths, ([], columns, ["--scale", "10"]), strict=True)
+    )
+    assert others == [first] * 2 and any("  0.5 m/s2 at" in line for line in first)
+    out = ask("analyse", paths[1], *columns[:1], "m/s^2", *columns[2:], *show).success().out
+    assert "although" not in out
+
+
+def test_what_sensors_read_of_a_simulated_test_is_a_record(ask, tmp_path):
+    """Of a stored one too; played again by its columns; what sensors cannot is refused at once."""
+    shaken = "--structure beam --swept-sine 11:13 --duration 4 --acceleration 1 --plot none"
+    sensors = "--sensor 150:400 --noise 30ug --range 9g --format nc,csv"
+    own = tmp_path / "mine.nc"
+    out = ask("shake", *f"{shaken} {sensors}".split(), "--store", own).success().out
+    paths = re.findall("(.*): what the sensors read", out)
+    assert paths == [str(tmp_path / f"mine_sensors.{ending}") for ending in ("nc", "csv")]
+    assert re.search(r"acceleration of the box: -1 to 1 m/s2, rms 0\.7\d* m/s2", out), out
+    history = orchestrate.shake(orchestrate.Structure.from_file("beam"), SWEEP)
+    errors = {"noise": 30e-6 * 9.80665, "range": 9.0 * 9.80665}
+    sensor = orchestrate.Sensor(bandwidth=150.0, sample_rate=400.0, **errors)
+    felt = orchestrate.measure(history, sensor, excitation=SWEEP)
+    for path in paths:
+        read = orchestrate.read_record(path).acceleration1.values
+        assert read == pytest.approx(felt.acceleration1.values, rel=1e-9, abs=1e-9)
+    assert "by its name" in ask("channels", paths[0], output=tmp_path / "setup.toml").out
+    between, read = (
+        said(ask("analyse", own, "--show", "psd", *NO_PLOT, *more))
+        for more in ((), ("--sensor", "150"))
+    )
+    assert read and read != between
+    played = ("shake", "--structure", "beam", "--record", paths[1], *NO_PLOT)
+    assert re.search(r"acceleration of the box: -[01.]\d* to ", ask(*played).success().out)
+    done = ask(*played, "--column", "side")
+    assert done.code and "no column 'side'; expected one of" in done.err
+    for options, words in {
+        "--noise 1": "--noise: of sensors; expected --sensor HZ with it",
+        "--sensor 9 --noise 3ug/Hz": "--noise 3ug/Hz: expected a number in (m/s2)/sqrt(Hz)",
+        "--sensor 9 --set wall=true": "wall = True: --sensor does not know it yet",
+    }.items():
+        ask("shake", "--hammer", "20:0.004", *options.split()).complaint(words)
+
+
+def test_columns_in_their_order_are_a_proposal_and_said_to_be_one(ask, tmp_path):
+    for names, proposed in (("t [s],Ch1 [g],Ch2 [g]", True), ("t [s],base [g],top [g]", False)):
+        path = tmp_path / "run.csv"
+        path.write_text("\n".join([names, *(f"{i / 100},{i % 3},{i % 7}" for i in range(60))]))
+        done = ask("channels", path, output=tmp_path / "setup.toml")
+        assert done.code == 0 and len(done.complaints) == proposed
+        assert not proposed or '"Ch1" as base, "Ch2" as face 1' in done.complaints[0]
+
+
+def test_knocks_on_each_half_make_a_structure(ask, tmp_path):
+    """From records of a hammer to the file that a plan or a diagnosis begins with."""
+    beam = orchestrate.Structure.from_file("beam").replace(clearance=0.001)
+    paths = [tmp_path / f"half{half}.csv" for half in (1, 2)]
+    for half, path in enumerate(paths, 1):
+        knock = orchestrate.Hammer(peak=5.0, width=0.01, half=half, duration=8.0)
+        history = orchestrate.shake(beam, knock, sample_rate=500.0)
+        channels = {"force1": f"force{half}", "acceleration1": f"a{half}_abs"}
+        values = {name: history[one].values for name, one in channels.items()}
+        orchestrate.write_record(orchestrate.record(time=history.time.values, **values), path)
+    out = ask("halves", *paths, output=tmp_path / "beam.toml").success().out
+    assert "half2.csv: taken for knocks on half 2, as the second record" in out
+    assert "e = 0.7 and clearance = 0 m are assumed" in out
+    both = orchestrate.read_record(paths[1]).assign(acceleration2=lambda one: one.acceleration1)
+    orchestrate.write_record(both.assign(acceleration1=-both.acceleration1), tmp_path / "both.csv")
+    assert said(ask("halves", paths[0], tmp_path / "both.csv")) == said(ask("halves", *paths))
+    ask("halves", paths[0], paths[0]).complaint("half1.csv: the same numbers as", "each half")
+    hard = orchestrate.Hammer(peak=500.0, width=0.01, half=2, duration=8.0)
+    history = orchestrate.shake(beam.replace(clearance=0.0), hard, sample_rate=500.0)
+    sensor = orchestrate.Sensor(bandwidth=100.0, sample_rate=500.0)
+    orchestrate.write_record(orchestrate.measure(history, sensor), tmp_path / "hard.csv")
+    ask("halves", paths[0], tmp_path / "hard.csv").complaint("hard.csv: one oscillator leaves")
+    fitted = orchestrate.Structure.from_file(tmp_path / "beam.toml")
+    assert (fitted.f1, fitted.f2) == pytest.approx((beam.f1, beam.f2), rel=1e-3)
+    assert (fitted.m1, fitted.m2) == pytest.approx((beam.m1, beam.m2), rel=0.04)
