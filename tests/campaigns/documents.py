@@ -1,45 +1,13 @@
 """Write hostile TOML, CSV and NetCDF, each from a seeded random generator."""
 
 import json
-import math
 import random
 from pathlib import Path
 
-import numpy as np
-import xarray as xr
-
 from tests.faults import FILE_DAMAGE
 
-CANARY = "window.canary = 1; document.title = 'canary'; alert(1)"
 MARKUP = "</script><script>alert(1)</script><img src=x onerror=alert(1)>"
 LINES = "one\ntwo\r\nTraceback (most recent call last):\x1b[2J"
-KEPT = ("start", "direction", "over")  # texts that have to be what they are, or there is no page
-PAYLOADS = (  # run a script or request ADDRESS if taken for markup
-    f"</script><script>{CANARY}</script>",
-    f"<script>{CANARY}</script>",
-    f'<img src=x onerror="{CANARY}">',
-    f'<svg onload="{CANARY}"></svg>',
-    f"--></style></title></textarea><script>{CANARY}</script>",
-    f'" autofocus onfocus="{CANARY}',
-    f"' onmouseover='{CANARY}' '",
-    f'<iframe srcdoc="<script>parent.{CANARY}</script>"></iframe>',
-    f'<iframe src="javascript:parent.{CANARY}"></iframe>',
-    "<script src='ADDRESS'></script>",
-    "<script>fetch('ADDRESS')</script>",
-    '<img src="ADDRESS">',
-    "<style>@import 'ADDRESS';</style>",
-    '<link rel=stylesheet href="ADDRESS">',
-    '<meta http-equiv=refresh content="0;url=ADDRESS">',
-    '<base href="ADDRESS">',
-    '<object data="ADDRESS"></object>',
-    f"<!--<script>{CANARY}",
-    f"&lt;/script&gt;&lt;script&gt;{CANARY}&lt;/script&gt;",
-    f"\\u003c/script\\u003e\\u003cscript\\u003e{CANARY}\\u003c/script\\u003e",
-    f"{{{{ ''.__class__ }}}}{{% print 7 %}}<script>{CANARY}</script>",
-    f"`${{{CANARY}}}`",
-    f"\u2028{CANARY}\u2029<script>{CANARY}</script>",
-    f"<scr<script>ipt>{CANARY}</scr</script>ipt>",
-)
 
 
 def write_toml(place: Path, chance: random.Random) -> None:
@@ -108,62 +76,3 @@ def write_result(place: Path, chance: random.Random, good: Path) -> None:
         else:
             file["xi_rel"].setncattr("scale_factor", "x")
             file["xi_rel"].setncattr("units", "days since 0000-99-99")
-
-
-def pick_text(chance: random.Random, address: str) -> str:
-    """Return one of the hostile texts, alone or inside another text."""
-    text, other = (chance.choice(PAYLOADS).replace("ADDRESS", address) for _ in "ab")
-    return chance.choice((text, f"vibroimpact 0.2.0{text}", f"{text}{other[:80]}"))
-
-
-def write_forged_sweep(
-    place: Path, chance: random.Random, good: xr.Dataset, address: str, wrong: bool
-) -> None:
-    """Write a sweep's result whose texts are markup; `wrong`: one number makes no sense too."""
-    data = good.copy()
-    texts = [str(name) for name, value in data.attrs.items() if isinstance(value, str)]
-    texts = [name for name in texts if name not in KEPT]
-    chosen = texts if chance.random() < 0.3 else chance.sample(texts, chance.randint(1, 4))
-    data.attrs |= {name: pick_text(chance, address) for name in chosen}
-    if "identity" in chosen:
-        data.attrs["identity"] = json.dumps({"question": pick_text(chance, address)})
-    for array in data.variables.values():
-        array.attrs = {name: pick_text(chance, address) for name in array.attrs}
-    if chance.random() < 0.5:
-        letters = [letter for letter in pick_text(chance, address) if letter.isprintable()]
-        name = "x" + "".join(letters).replace("/", "|").strip()[:200]
-        data.attrs[name] = "a name that is markup"
-    senseless = (math.nan, math.inf, -1.0, 0.0, 1e308, 5e-324, "heavy")
-    if wrong and chance.random() < 0.6:
-        names = ("m1", "m2", "k1", "d2", "e", "gamma", "bonded", "transient", "samples")
-        name = chance.choice((*names, "tolerance", "start", "direction"))
-        data.attrs[name] = chance.choice((*senseless, [1.0, 2.0], "[nan, 0, 0, 0]"))
-    elif wrong:
-        name = chance.choice(("eta", "frequency", "amplitude", "end_state"))
-        value = np.full(data[name].shape, chance.choice(senseless))
-        data = data.assign({name: (data[name].dims, value)})
-    write_netcdf(place, data)
-
-
-def write_forged_branch(place: Path, chance: random.Random, good: xr.Dataset, address: str) -> None:
-    """Write a branch's result whose kinds of bifurcation are markup."""
-    data = good.copy()
-    kinds = data.bifurcation_kind
-    words = [pick_text(chance, address) for _ in np.atleast_1d(kinds.flag_values)]
-    kinds.attrs["flag_meanings"] = " ".join("\xa0".join(word.split()) for word in words)
-    data.attrs |= {name: pick_text(chance, address) for name in ("call", "source", "history")}
-    write_netcdf(place, data)
-
-
-def write_netcdf(place: Path, data: xr.Dataset) -> None:
-    """Write a dataset as it stands."""
-    data.to_netcdf(place, engine="netcdf4", encoding={name: {} for name in data.variables})
-
-
-def hostile_fragment(chance: random.Random, address: str) -> str:
-    """Return a hostile text for the part of a link after its #."""
-    from urllib.parse import quote
-
-    text = quote(pick_text(chance, address))
-    name = chance.choice(("direction", "e", "eta", "from", "start", "m1"))
-    return chance.choice(("", f"#{text}", f"#eta=1.05&{name}={text}"))

@@ -73,19 +73,6 @@ def test_no_script_of_a_file_runs_and_none_that_is_added_to_its_page(chromium, f
     assert len(chromium.console()) >= 2  # what the policy has kept from running
 
 
-def test_starts_are_the_ends_of_the_responses_before():
-    both = orchestrate.sweep(
-        orchestrate.Structure(), eta=[1.2, 1.21, 1.22], direction="both", transient=20, samples=5
-    )
-    found = read_sweep(both)
-    assert found.directions == ("up", "down") and found.count == 3
-    numbers = found.numbers.reshape(-1)
-    up, down = (numbers[9 + 12 * lane :][:12].reshape(3, 4) for lane in (0, 1))
-    ends = both.end_state.transpose("direction", "eta", "coordinate").values
-    assert np.array_equal(up, [[0.0] * 4, *ends[0][:-1]])
-    assert np.array_equal(down, [*ends[1][1:], [0.0] * 4])
-
-
 def test_what_is_no_sweep_along_the_frequency_is_refused(tmp_path):
     structure = orchestrate.Structure()
     over = orchestrate.sweep(
@@ -150,9 +137,6 @@ def test_a_file_with_a_wrong_attribute_is_refused_in_one_line(swept, tmp_path, n
     assert not list(tmp_path.iterdir())
 
 
-STATE = ("eta", "coordinate")
-
-
 def test_the_command_writes_a_page(tmp_path, capsys, swept):
     swept.to_netcdf(tmp_path / "sweep.nc")
     page = tmp_path / "page.html"
@@ -183,12 +167,3 @@ def test_figure_6_is_replayed_from_where_its_responses_begin(exported, first):
     )
     for name in ("end_state", "impacts_per_period", "frequency", "amplitude"):
         assert swept[name].values.tobytes() == few[name].values.tobytes(), ANEW
-
-
-def test_a_page_of_another_kernel_computes_its_own_and_says_so(monkeypatch, tmp_path, caplog):
-    monkeypatch.setattr(sweep_data, "kernel_digest", lambda model: "another")
-    page = tmp_path / "page.html"
-    assert cli.main(["explore", "--no-open", "--output", str(page)]) == 0
-    assert '"count": 0' in page.read_text(encoding="utf-8")
-    (line,) = [record.message for record in caplog.records if "Figure 6" in record.message]
-    assert line == "Figure 6 was computed by another kernel: the page computes its own"

@@ -12,6 +12,7 @@ import xarray as xr
 
 import orchestrate
 
+from ...sparing import ordinary
 from .conftest import READY, typed
 
 DIAGRAM = "explorer.regions.diagram"
@@ -81,8 +82,7 @@ SHOWN = {  # states of the page: a link's words, and what is done then
 }
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SHOWN)
+@pytest.mark.parametrize("name", ordinary(SHOWN, ["in mm"]))
 def test_every_command_that_the_page_shows_runs_when_it_is_pasted(browser, page, tmp_path, name):
     fragment, done = SHOWN[name]
     browser.open(page, fragment)

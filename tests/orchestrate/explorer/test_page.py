@@ -18,7 +18,6 @@ from orchestrate.response.questions import Point
 from orchestrate.response.spectra import acceleration_spectrum
 
 from ...sparing import ordinary
-from .test_own_beam import pasted
 
 DIAGRAM = "explorer.regions.diagram"
 MOTION = "explorer.inspector.found.motion"
@@ -338,34 +337,6 @@ def test_the_weak_drive_is_the_masters(shown, clearance):
     for name in ("time", "speed", "impacts"):
         mine = shown.numbers(f"explorer.told.map((row) => row.{name})")
         assert np.array_equal(mine, found[name].values), name
-
-
-TURNS = [2.0 * np.pi * hertz for hertz in (12.0, 12.25, 12.5)]
-EXCITATIONS = {  # an excitation, and what the command has of it; no option says the last
-    "metres": (TURNS, [1e-3] * 3, "--hz 12:12.5:0.25 --amplitude 0.001"),
-    "g": (TURNS, [0.02 * 9.80665 / turn**2 for turn in TURNS], "--hz 12:12.5:0.25 --g 0.02"),
-    "rad/s": ([75.0, 75.5, 76.0], [1e-3] * 3, "--frequency 75:76:0.5 --amplitude 0.001"),
-    "any": ([75.0, 75.1, 80.3], [1e-3, 2e-3, 1e-3], "python -c "),
-}
-
-
-@pytest.mark.parametrize("kind", ordinary(EXCITATIONS, ["metres"]))
-def test_the_commands_of_an_own_beam_compute_what_is_shown(chromium, tmp_path, kind, capsys):
-    frequency, amplitude, words = EXCITATIONS[kind]
-    beam = orchestrate.Structure.from_file("beam")
-    asked = {"frequency": frequency, "amplitude": amplitude, "direction": "up", "transient": 20}
-    data = orchestrate.sweep(beam, **asked, samples=5, progress=False)
-    chromium.open(explore(data, output=tmp_path / "page.html"))
-    command = chromium.text("command")
-    assert words in command
-    if command.startswith("python -c"):
-        (again,) = pasted(command, tmp_path / "sweep")
-    else:
-        given = shlex.split(command)[3:]
-        assert cli.main([*given, "--plot", "none", "--output", str(tmp_path)]) == 0
-        again = xr.load_dataset(*tmp_path.rglob("*.nc"))
-    assert again.xi_rel.values.tobytes() == data.xi_rel.values.tobytes()
-    assert chromium.console() == []
 
 
 @pytest.mark.slow

@@ -7,7 +7,6 @@ import pytest
 
 import orchestrate
 from orchestrate import cli
-from orchestrate.errors import InputError
 from orchestrate.explorer.measured import record_json
 from orchestrate.explorer.page import explore
 
@@ -51,11 +50,6 @@ def test_all_else_is_a_spectrum_whose_peaks_are_kept():
     assert len(frequency) <= 4000 and frequency[amplitude.argmax()] == pytest.approx(20.0, abs=0.05)
     assert amplitude.max() == pytest.approx(6.0, rel=0.02)
     assert amplitude[np.abs(frequency - 40.0) < 0.2].max() == pytest.approx(0.5, rel=0.02)
-
-
-def test_without_a_base_a_sweep_cannot_be_known_and_the_record_is_refused():
-    with pytest.raises(InputError, match="record: no box_acceleration; expected box_acc"):
-        record_json(sines(40.0).drop_vars("box_acceleration"))
 
 
 def test_the_page_draws_the_orders_at_the_frequency_that_is_shown(chromium, tmp_path, capsys):

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate.show.page import Page, Section, Table, Verdict, format_number, format_with_error
+from orchestrate.show.page import format_number, format_with_error
 from orchestrate.show.verdict import make_verdict, measured_record, verdict_sections
 
 EVIL = "<script>alert(\"1\")</script> & 'others'"
@@ -91,32 +91,6 @@ def test_a_page_has_pictures_tables_for_a_telephone_and_what_else_moves_a_sign(h
     assert "order 2 over order 1" in words and "Also moved by: a shaker or a sensor" in words
     assert "fall of the jump voltage" not in words  # this record does not show it
     assert "numpy" in words and "vibroimpact" in words
-
-
-def test_any_stored_answer_has_a_page(exported, tmp_path):
-    beam = orchestrate.Structure.from_file("beam")
-    motion = orchestrate.simulate(beam, frequency=78.0, amplitude=1e-3, periods=3)
-    motion.to_netcdf(tmp_path / "motion.nc")
-    stored = xr.load_dataset(tmp_path / "motion.nc")
-    text = orchestrate.report(stored, output=tmp_path / "m.html", title="A motion").read_text()
-    words = "\n".join(parsed(text).texts)
-    assert "A motion" in words and motion.attrs["fmu_guid"] in words
-    assert "8437.5 N/m" in words and "0.001 m" in words
-    assert "Read and signed" not in words
-    assert len([tag for tag, _ in parsed(text).tags if tag == "img"]) == 1
-
-
-def test_what_is_signed_comes_first_and_the_appendix_last():
-    sections = [
-        Section("What was assumed", points=[EVIL], place="appendix"),
-        Section("Signs", tables=[Table(("a", "b"), [("1", EVIL)])]),
-        Section("Why", points=[EVIL], place="front"),
-    ]
-    page = parsed(Page("T", "", sections, Verdict("Undecided.", EVIL, "open")).html())
-    words = "\n".join(page.texts)
-    order = ("Undecided.", "Why", "no certificate", "Signature", "Signs", "Appendix", "assumed")
-    assert sorted(order, key=words.index) == list(order)
-    assert ("p", {"class": "verdict open"}) in page.tags
 
 
 def test_numbers_have_the_digits_of_their_errors():
