@@ -111,6 +111,10 @@ def test_help_takes_no_time_whatever_the_encoding(command, seconds, encoding):
     pytest.fail(f"it took {taken:.2f} s")
 
 
+def of_quantity(name):
+    return lambda option, text: grammar.read_number(option, text, name)
+
+
 READ = [
     (grammar.positive_number, "0.5", 0.5),
     (grammar.parse_ends, "1.2:1.65", (1.2, 1.65)),
@@ -126,9 +130,9 @@ READ = [
     (grammar.parse_density, "10:2g2/Hz", ((10.0, 2.0 * 9.80665**2),)),
     (grammar.parse_one_or_more, "1:2:0.5", (1.0, 1.5, 2.0)),
     (grammar.parse_sensor, "9:20", (9.0, 20.0)),
-    (grammar.read_acceleration, "-1g", -9.80665),
-    (grammar.read_noise, "30ug/sqrt(Hz)", pytest.approx(30e-6 * 9.80665)),
-    (grammar.read_length, "20um", 20e-6),
+    (of_quantity("box_acceleration"), "-1g", -9.80665),
+    (of_quantity("noise"), "30ug/sqrt(Hz)", pytest.approx(30e-6 * 9.80665)),
+    (of_quantity("amplitude"), "20um", 20e-6),
 ]
 
 
