@@ -273,7 +273,8 @@ class HysteresisLoop:
         step, point = math.copysign(self.settings.width, high.voltage - low.voltage), high
         for n in range(self.settings.landings):
             point = self.hold_from(point, high.voltage + 2**n * step)
-            if not self.is_same(self.hold_from(low, point.voltage), point):
+            away = abs(self.hold_from(low, point.voltage).speed - point.speed)
+            if not away < self.settings.clear:
                 return False
         return low.error == 0.0
 
