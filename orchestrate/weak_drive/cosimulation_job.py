@@ -40,7 +40,7 @@ from .connection import (
 from .controllers import InputControl
 from .inputs import Input, Inputs
 from .master import DriveSide, Master, Scheme
-from .polynomials import end_value
+from .polynomials import end_derivatives
 from .run import CoupledJob, Run
 from .step_record import Floats, Record, joined
 
@@ -295,7 +295,7 @@ class CosimulateJob(CoupledJob, Question):
         inside = (nodes.searchsorted(times, side="right") - 1).clip(max=len(cubics) - 1)
         for i, name in enumerate(drives):
             cubic = tuple(cubics[inside, 4 * i : 4 * i + 4].T)
-            columns[name] = end_value(cubic, times - nodes[inside])
+            columns[name] = end_derivatives(cubic, times - nodes[inside])[0]
         columns["step_time"] = times[:: self.points]
         work = np.append(0.0, np.cumsum(run["work"]))
         columns["box_work"] = work[nodes.searchsorted(columns["step_time"])]

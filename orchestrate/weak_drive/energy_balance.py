@@ -12,7 +12,7 @@ import numpy as np
 
 from ..model.structure import Structure
 from .polynomials import (
-    end_value,
+    end_derivatives,
     integrate_product,
     matched_quartic,
     normalized_coefficients,
@@ -74,7 +74,7 @@ class EnergyBalance:
         mass = m1 + m2
         ends = (m1 * before.v1 + m2 * before.v2, m1 * after.v1 + m2 * after.v2)
         first = -h * (before.box_force + mass * acceleration[0])
-        last = -h * (after.box_force + mass * end_value(acceleration, h))
+        last = -h * (after.box_force + mass * end_derivatives(acceleration, h)[0])
         mean = (m1 * (after.x1 - before.x1) + m2 * (after.x2 - before.x2)) / h
         momentum = matched_quartic(ends, (first, last), mean)
         work = h * integrate_product(momentum, normalized_coefficients(acceleration, h))

@@ -247,14 +247,14 @@ class HysteresisLoop:
         if low.lasts < self.least(low, high) or self.excess(points, i, jumps) <= 0.0:
             return None
         outcome, change = self.way_back(low, high), abs(high.speed - low.speed)
-        if outcome == NONE and abs(high.voltage - low.voltage) > self.settings.width:
-            outcome = UNDECIDED
         is_clear = math.copysign(change, slope(low, high)) >= self.settings.clear
         if outcome != NONE and not is_clear:
             if not self.lands_surely(low, high):
                 del points[i + 2 :]
             elif change < self.settings.small:
                 outcome = NONE
+        if outcome == NONE and abs(high.voltage - low.voltage) > self.settings.width:
+            outcome = UNDECIDED
         return Jump(outcome, low.voltage, high.voltage, low.speed, high.speed)
 
     def way_back(self, low: HeldPoint, high: HeldPoint) -> int:
@@ -273,7 +273,8 @@ class HysteresisLoop:
         step, point = math.copysign(self.settings.width, high.voltage - low.voltage), high
         for n in range(self.settings.landings):
             point = self.hold_from(point, high.voltage + 2**n * step)
-            if not self.is_same(self.hold_from(low, point.voltage), point):
+            away = abs(self.hold_from(low, point.voltage).speed - point.speed)
+            if not away < self.settings.clear:
                 return False
         return low.error == 0.0
 

@@ -20,26 +20,26 @@ Cubic = tuple[Any, ...]  # four: value and first to third time derivative at a s
 
 def matched_cubics(*given: Any) -> NDArray[np.float64]:
     """Return the cubics, a row each, of end values, means, first moments and lengths of steps."""
-    rows = np.ascontiguousarray(np.transpose(given))
-    found = np.empty((len(rows), 4))
-    addresses = (c_void_p(table.ctypes.data) for table in (rows, found))
-    loaded_loop("couple").matched_cubics(next(addresses), len(rows), next(addresses))
+    return cubics_by("matched_cubics", given)
+
+
+def end_derivatives(cubic: Cubic, h: Any) -> Cubic:
+    """Return the value and derivatives of cubics at the steps' ends."""
+    return tuple(np.moveaxis(cubics_by("continued_cubics", (*cubic, h)), -1, 0))
+
+
+def cubics_by(name: str, given: Sequence[Any]) -> NDArray[np.float64]:
+    """Return the cubics that a function of the compiled loop makes of five numbers each."""
+    rows = np.ascontiguousarray(np.stack(np.broadcast_arrays(*given), axis=-1), dtype=float)
+    found = np.empty((*rows.shape[:-1], 4))
+    tables = (c_void_p(rows.ctypes.data), rows.size // 5, c_void_p(found.ctypes.data))
+    getattr(loaded_loop("couple"), name)(*tables)
     return found
-
-
-def end_value(cubic: Cubic, h: Any) -> Any:
-    f0, f1, f2, f3 = cubic
-    return f0 + h * (f1 + 0.5 * h * (f2 + h * f3 / 3.0))
 
 
 def mean_value(cubic: Cubic, h: Any) -> Any:
     f0, f1, f2, f3 = cubic
     return f0 + 0.5 * h * (f1 + h / 3.0 * (f2 + 0.25 * h * f3))
-
-
-def end_derivatives(cubic: Cubic, h: Any) -> Cubic:
-    _, f1, f2, f3 = cubic
-    return end_value(cubic, h), f1 + h * (f2 + 0.5 * h * f3), f2 + h * f3, f3
 
 
 def normalized_coefficients(cubic: Cubic, h: Any) -> Cubic:

@@ -142,6 +142,15 @@ EXPORT void matched_cubics(const double (*given)[5], int count, Cubic *found) {
     for (int i = 0; i < count; i++) matched_cubic(found[i], given[i][0], given[i][1], given[i][2], given[i][3], given[i][4]);
 }
 
+static void end_derivatives(Cubic end, const double *f, double h) {
+    set_cubic(end, f[0] + h * (f[1] + 0.5 * h * (f[2] + h * f[3] / 3.0)), f[1] + h * (f[2] + 0.5 * h * f[3]), f[2] + h * f[3], f[3]);
+}
+
+/* Cubics of rows of another one and the time after which they continue it. */
+EXPORT void continued_cubics(const double (*given)[5], int count, Cubic *found) {
+    for (int i = 0; i < count; i++) end_derivatives(found[i], given[i], given[i][4]);
+}
+
 static double work(const Cubic force, double velocity, const Cubic a, double h) {
     double f[4] = {force[0], force[1] * h, force[2] * h * h / 2.0, force[3] * h * h * h / 6.0};
     double v[5] = {velocity, a[0] * h, a[1] * h * h / 2.0, a[2] * h * h * h / 6.0, a[3] * h * h * h * h / 24.0};
@@ -175,10 +184,6 @@ static void settle(Pair *p, const double *next, double h) {
     double lacks = next[IMPULSE] - p->held * h;
     p->owed[1] += h * (p->owed[0] + 0.5 * lacks) - lever(next, h);
     p->owed[0] += lacks;
-}
-
-static void end_derivatives(Cubic end, const double *f, double h) {
-    set_cubic(end, f[0] + h * (f[1] + 0.5 * h * (f[2] + h * f[3] / 3.0)), f[1] + h * (f[2] + 0.5 * h * f[3]), f[2] + h * f[3], f[3]);
 }
 
 /* Derivatives at time 0, from an order on, of the polynomial through points. */

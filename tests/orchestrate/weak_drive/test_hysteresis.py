@@ -222,7 +222,7 @@ def test_each_threshold_of_what_a_lost_motion_comes_to(error, widths):
         )
         low, high = loop.at(1.521 - sign * 1e-3)._replace(error=error), loop.at(1.521, -0.02)
         assert loop.lands_surely(low, high) == (widths > 32 and not error)
-    for away, is_one in ((1.9e-3, True), (2.1e-3, False)):
+    for away, is_one in ((4.9e-3, True), (5.1e-3, False)):
         loop = Scripted(lambda *now, away=away: -0.02 if now[0] else away - 0.02)
         assert loop.lands_surely(low, high) == (is_one and not error)
 
