@@ -172,6 +172,7 @@ STARTS = {
         {"clearance": 0.5},
         {"clearance": -0.5},
         {"d2": 0.03, "phase_start": -0.5},
+        {"d2": 0.03, "box_amplitude": 0.0},
         {"d2": 0.03, "box_amplitude": 0.0, "force1": 0.1, "force2": -0.2, "phase_start": 1.0},
         {"d2": 0.03, "stroke": 0.5, "v1_start": -1.0, "x2_start": 0.5, "x1_start": 0.0},
         {**TOUCHING, "v1_start": 1.0, "e": 0.05, "gamma": 0.9, "force1_amplitude": 0.5},

@@ -215,22 +215,28 @@ def test_a_start_at_the_outer_end(fmu):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_peaks_are_those_of_a_dense_look(fmu, kind):
-    """Displacements, accelerations in space between impacts, and the gap."""
+    """Displacements, accelerations in space between impacts, and the gap; the largest gap and the
+    impulse of many short steps are those of one.
+    """
     values = exact(kind, 7, 3)[0]
-    dense, whole = (open_fmu(fmu).start(**values, peaks_on=True) for _ in range(2))
+    dense, whole = (open_fmu(fmu).start(**values, peaks_on=on) for on in (False, True))
     motion, names = Motion(values), ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max")
     for k in range(1, 40):
-        rows = []
+        rows, steps = [], []
         whole.step(0.25 * k)
         for i in range(1, 65):
             t = 0.25 * (k - 1) + i / 256
             *state, touch, gap = dense.step(t).get(*STATE, "in_contact", "x_rel")
+            steps.append(dense.get("x_rel_max", "box_impulse"))
             pair = motion.accelerations(t, state)
             if touch:
                 share = motion.share
                 pair = [sum(m * a for m, a in zip(share, pair, strict=True)) / sum(share)] * 2
             spatial = [abs(a + motion.box(t)) for a in pair]
             rows.append([abs(state[0]), abs(state[2]), *spatial, gap])
+        largest, impulses = np.array(steps).T
+        whole_step = whole.get("x_rel_max", "box_impulse")
+        assert whole_step == pytest.approx([largest.max(), impulses.sum()], abs=1e-12)
         top, found = np.max(rows, axis=0), np.array(whole.get(*names))
         assert (found >= top - 1e-12).all(), (k, found, top)
         one_impact = whole.one("impact_count") == dense.one("impact_count")

@@ -93,11 +93,14 @@ def test_value_and_derivatives(make, values, state, age):
 @given(structures(clearance=True), STATES, AGES)
 def test_bounds_hold_for_all_later_times(make, values, state, age):
     m, signal = make(values, state)
+    sixth = m[at.REMAINDER] / m[at.HERMITE + 2]
     found = event_function.evaluate(m, age)
     later = age + np.concatenate([np.linspace(0.0, 3.0, 300), np.geomspace(3.0, 300.0, 300)])
     rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest_rate()) ** 5
     fifth = signal.derivative().derivative().derivative().derivative().derivative()
     assert np.abs(fifth.sample(later)).max() <= found[5] * (1 + 1e-9) + rounding
+    highest = np.abs(fifth.derivative().sample(later - age)).max()
+    assert highest <= sixth * (1 + 1e-9) + rounding * max(1.0, signal.fastest_rate())
 
 
 @examples(30)
@@ -181,6 +184,15 @@ def test_a_cubic_that_is_gone_is_not_read():
 def test_rounding_grows_with_what_it_is_of(drive):
     m = flight(-0.5, 0.2, 0.5, -0.1, **drive)
     assert event_function.event_rounding(m, 1e3) > 5.0 * event_function.event_rounding(m, 0.0)
+
+
+@pytest.mark.parametrize("slot", ["HARMONIC", "OFFSET", "FREE_A", "FREE_B", "CUBIC"])
+def test_rounding_is_that_of_each_part(slot):
+    m = flight(-0.5, 0.2, 0.5, -0.1, box_jerk=0.1)
+    for place in (0, 1) if slot == "HARMONIC" else (0,):
+        other = list(m)
+        other[getattr(at, f"EVENT_{slot}") + place] = -1e3
+        assert event_function.event_rounding(other, 0.0) > 3.9e-12
 
 
 def test_free_parts_of_one_size_are_not_nothing():

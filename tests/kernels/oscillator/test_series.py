@@ -43,6 +43,10 @@ def pressed_or_open(draw):
 @example({"clearance": -100.0, "phase_start": 1.0}, 0.3, -0.2, 0.05)
 @example({"clearance": -3.0, "phase_start": 0.0, "m2": 0.4, "d2": 0.3}, -0.5, 0.7, 1e-3)
 @example({"clearance": -3.0, "phase_start": 0.0, "d2": 0.3, "force1_2": 30.0}, -0.5, 0.7, 1e-3)
+# nearly as long as twelve terms allow
+@example({"clearance": 0.0, "phase_start": 0.0}, 1.0, 0.0, 0.0172)
+@example({"clearance": 0.0, "phase_start": 1.0, "box_frequency": 4.0}, 1.0, 0.0, 0.0047)
+@example({"clearance": 0.0, "phase_start": 1.0, "m2": 0.3, "box_crackle": 1.0}, 1.0, 0.0, 0.13)
 def test_a_short_flight_is_that_of_the_gap(values, x, v, slope):
     """Value, slope and curvature all along, and the end: those of Newton's law, to rounding of the
     gap's own terms; the fifth derivative stays below the bound that makes the root certain.
