@@ -1,13 +1,16 @@
 """Resonance curves, at levels too: against linear theory, sweeps, and curves that are known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
 import orchestrate
 from orchestrate.model import Structure
-from orchestrate.response.resonance import resonance
+from orchestrate.response.resonance import ResonanceJob, resonance
 from orchestrate.response.sweep import sweep
 from orchestrate.response.turns_and_jumps import inside_irregular, jump_indices, prominent_maxima
 
@@ -51,6 +54,13 @@ def test_where_two_motions_exist_both_jumps_are_told():
     one_way = resonance(Structure(), eta=np.arange(1.2, 1.45, 0.01), transient=400, direction="up")
     assert one_way.direction.values.tolist() == ["up"]
     np.testing.assert_array_equal(one_way.x1_max[:, 0], found.x1_max.sel(direction="up"))
+
+
+@pytest.mark.parametrize(("gap", "differ"), [(0.84, True), (0.86, False)])
+def test_directions_differ_by_more_than_a_jump(gap, differ):
+    data = xr.Dataset({"x_rel_max": (("direction", "eta"), [[1.0], [gap]])})
+    job = SimpleNamespace(jump=0.15, series=SimpleNamespace(name="eta"))
+    assert ResonanceJob.directions_differ(job, data).tolist() == [differ]
 
 
 def test_a_steep_step_that_both_directions_have_is_no_jump():
