@@ -51,6 +51,11 @@ def test_where_two_motions_exist_both_jumps_are_told():
     up, down = (found.jump_eta[found.jump_direction == word].values for word in ("up", "down"))
     assert up.max() == pytest.approx(1.37, abs=0.011) and 1.27 < down.min() < 1.31
     assert set(found.jump_structure.values) == {"delaminated"}
+    for one in (found.isel(jump=i) for i in range(found.sizes["jump"])):
+        curve = found.x_rel_max.sel(structure="delaminated", direction=one.jump_direction)
+        passed = one.jump_eta - (0.01 if one.jump_direction == "up" else -0.01)
+        places = curve.sel(eta=[passed, one.jump_eta], method="nearest")
+        assert places.values.tolist() == [one.jump_before, one.jump_after]
     one_way = resonance(Structure(), eta=np.arange(1.2, 1.45, 0.01), transient=400, direction="up")
     assert one_way.direction.values.tolist() == ["up"]
     np.testing.assert_array_equal(one_way.x1_max[:, 0], found.x1_max.sel(direction="up"))
