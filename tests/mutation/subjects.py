@@ -26,7 +26,9 @@ SUBJECTS = {
     "fmu_src/kernels/repetition.py": ("tests/orchestrate/response/test_multiplicity.py",),
     "orchestrate/weak_drive/hysteresis.py": (f"{DRIVE}/test_hysteresis.py",),
     "orchestrate/weak_drive/steady_speed.py": (f"{DRIVE}/test_steady_speed.py",),
-    "orchestrate/dynamics/decision.py": ("tests/orchestrate/dynamics/test_decision.py",),
+    "orchestrate/dynamics/decision.py": tuple(
+        f"tests/orchestrate/dynamics/test_{name}.py" for name in ("decision", "global_continuation")
+    ),
     "orchestrate/dynamics/clusters.py": tuple(
         f"tests/orchestrate/dynamics/test_{name}.py"
         for name in ("clusters", "decision", "global_continuation")

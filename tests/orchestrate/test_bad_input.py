@@ -115,6 +115,7 @@ ASKED = {  # by function: what is asked well, and each time one thing wrongly
         [
             ({"eta": TWO}, "eta: 2 values"),
             ({"eta": None}, "excitation"),
+            ({"period": 0}, "period = 0"),
             ({"guess": {"time": [1.0]}}, "guess"),
             ({"guess": {"impact_time": [0.1, 9.0]}}, "impact_time"),
             ({"guess": OVERLAPPING}, "guess"),

@@ -28,6 +28,18 @@ def found(exported):
     return basin(PAPER, eta=ETA, **SIDES)
 
 
+def test_what_the_coordinates_of_a_plane_mean():
+    """Gap and gap rate keep the means of both masses, or what is given with them."""
+    states, _ = starts(("x_rel", 0.0, 3.0, 4), ("v_rel", -2.0, 2.0, 3))
+    np.testing.assert_allclose(states[..., :2].mean(axis=-1), 0.5)
+    np.testing.assert_allclose(states[1, :, 1] - states[1, :, 0], [0.0, 1.0, 2.0, 3.0])
+    np.testing.assert_allclose(states[:, 0, 3] - states[:, 0, 2], [-2.0, 0.0, 2.0])
+    states, _ = starts(("x1", 0.0, 1.0, 3), ("x_rel", 0.0, 2.0, 2))
+    np.testing.assert_array_equal(states[1, :, 1], [2.0, 2.5, 3.0])
+    states, _ = starts(("v2", 0.0, 1.0, 2), ("v_rel", -1.0, 1.0, 2))
+    np.testing.assert_array_equal(states[0, :, 2], [1.0, 2.0])
+
+
 def test_starts_that_overlap_count_in_no_share(found):
     labels = found.attractor_of.values
     assert (labels[:, 0] == -1).all()

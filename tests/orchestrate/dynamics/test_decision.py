@@ -4,14 +4,17 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from orchestrate import orbit
+from orchestrate.constants import TURN
 from orchestrate.dynamics import decision
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.decision import (
     MotionDecider,
     count_impacts_from_pause,
     middle_of_longest_run,
+    phase_far_from_impacts,
 )
 from orchestrate.fmu import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.model import Excitation, Structure
@@ -20,6 +23,7 @@ from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
 
 from .settling import settling_run
+from .test_closed_form import random_orbit
 
 PAPER = Structure.nondimensional()
 USUAL = settling_run()
@@ -125,9 +129,38 @@ def test_what_rounding_leaves_of_a_deviation_does_not_count(monkeypatch, left, c
     monkeypatch.setattr(decision, "begin", lambda *asked: None)
     decider = Scripted(path=(1e-9, left), same=1e-12)
     assert MotionDecider.converges_to(decider, REST, decider.motion(multiplier=1e-9)) == comes
-    turns = Scripted(path=(0.05, 0.0), longest=7)
-    MotionDecider.converges_to(turns, REST, turns.motion(multiplier=0.999, multiplicity=2))
-    assert turns.steps == [pytest.approx(3 * 2 * turns.point.excitation.period)]
+
+
+@pytest.mark.parametrize(
+    ("multiplier", "n", "longest", "periods"),
+    [(0.999, 2, 7, 6), (0.9, 1, 99, 22), (1e-9, 1, 99, 1)],  # a tenth is left after 22 of them
+)
+def test_how_long_a_response_is_watched(monkeypatch, multiplier, n, longest, periods):
+    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    turns = Scripted(path=(0.05, 0.0), longest=longest)
+    MotionDecider.converges_to(turns, REST, turns.motion(multiplier=multiplier, multiplicity=n))
+    assert turns.steps == [pytest.approx(periods * turns.point.excitation.period)]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_orbit_begins_as_far_from_its_impacts_as_may_be(seed):
+    orbit = random_orbit(seed)
+    span, phases = TURN * orbit.sequence.periods, orbit.nodes[:, 0]
+    stretches = np.diff(np.append(phases, phases[0] + span))
+    away = np.abs((phase_far_from_impacts(orbit) - phases + 0.5 * span) % span - 0.5 * span)
+    assert away.min() == pytest.approx(0.5 * stretches.max())
+
+
+def test_an_impact_at_the_sampled_phase_does_not_matter():
+    structure = PAPER.replace(e=0.5)
+
+    def phase(eta):
+        found = float(orbit(structure, eta=eta).node_phase[0])
+        return (found + np.pi) % (2.0 * np.pi) - np.pi
+
+    eta = brentq(phase, 2.09, 2.097, xtol=1e-15)
+    for beside in (0.0, 1e-12, -1e-12, 1e-9):
+        assert told(attractors(structure, eta=eta + beside, starts=8)) == [(1.0, 1.0)]
 
 
 @pytest.mark.parametrize(("away", "stays"), [(0.99e-5, True), (1.01e-5, False)])

@@ -52,12 +52,13 @@ def test_chattering_into_permanent_contact_leaves_two_multipliers():
     assert found.multiplier_product.item() == 0.0
 
 
-@pytest.mark.parametrize("form", ["state", "times", "orbit"])
+@pytest.mark.parametrize("form", ["state", "times", "other times", "orbit"])
 def test_guesses_in_all_forms(form):
     near = known(3.02)
     guesses = {
         "state": known(3.0).state.values[0] + 1e-4,
         "times": {"impact_time": near.impact_time.values},
+        "other times": {"impact_time": (near.impact_time.values + 1.0) % (2.0 * np.pi / 3.0)},
         "orbit": near,
     }
     found = orbit(PAPER, eta=3.0, guess=guesses[form])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.orbits import orbit
-from orchestrate.dynamics.parameter_map import map
+from orchestrate.dynamics.parameter_map import MapJob, map
 from orchestrate.model import Structure
 from orchestrate.model.outcomes import REPEATED, UNDECIDED
 from orchestrate.response.simulate import simulate
@@ -20,6 +20,13 @@ pytestmark = pytest.mark.usefixtures("exported")
 @pytest.fixture(scope="module")
 def found(exported):
     return map(SLOWER, eta=ETAS, e=ES, exponent=True, periods=100)
+
+
+@pytest.mark.parametrize(("count", "chunks"), [(50, 16), (2, 12), (1000, 50)])
+def test_a_map_of_few_points_is_stored_in_many_parts(count, chunks):
+    given = (("eta", tuple(np.linspace(1.0, 2.0, count))), ("e", (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)))
+    job = MapJob(name="map", structure=PAPER, start=(0.0,) * 4, given=given)
+    assert len(job.chunks()) == chunks and job.chunks()[-1].stop == 6 * count
 
 
 def test_each_point_is_a_response_from_rest(found):

@@ -1,13 +1,16 @@
 """Resonance curves, at levels too: against linear theory, sweeps, and curves that are known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
 import orchestrate
 from orchestrate.model import Structure
-from orchestrate.response.resonance import resonance
+from orchestrate.response.resonance import ResonanceJob, resonance
 from orchestrate.response.sweep import sweep
 from orchestrate.response.turns_and_jumps import inside_irregular, jump_indices, prominent_maxima
 
@@ -48,9 +51,21 @@ def test_where_two_motions_exist_both_jumps_are_told():
     up, down = (found.jump_eta[found.jump_direction == word].values for word in ("up", "down"))
     assert up.max() == pytest.approx(1.37, abs=0.011) and 1.27 < down.min() < 1.31
     assert set(found.jump_structure.values) == {"delaminated"}
+    for one in (found.isel(jump=i) for i in range(found.sizes["jump"])):
+        curve = found.x_rel_max.sel(structure="delaminated", direction=one.jump_direction)
+        passed = one.jump_eta - (0.01 if one.jump_direction == "up" else -0.01)
+        places = curve.sel(eta=[passed, one.jump_eta], method="nearest")
+        assert places.values.tolist() == [one.jump_before, one.jump_after]
     one_way = resonance(Structure(), eta=np.arange(1.2, 1.45, 0.01), transient=400, direction="up")
     assert one_way.direction.values.tolist() == ["up"]
     np.testing.assert_array_equal(one_way.x1_max[:, 0], found.x1_max.sel(direction="up"))
+
+
+@pytest.mark.parametrize(("gap", "differ"), [(0.84, True), (0.86, False)])
+def test_directions_differ_by_more_than_a_jump(gap, differ):
+    data = xr.Dataset({"x_rel_max": (("direction", "eta"), [[1.0], [gap]])})
+    job = SimpleNamespace(jump=0.15, series=SimpleNamespace(name="eta"))
+    assert ResonanceJob.directions_differ(job, data).tolist() == [differ]
 
 
 def test_a_steep_step_that_both_directions_have_is_no_jump():
