@@ -42,6 +42,7 @@ SUBJECTS = {
         f"{DIAGNOSIS}/test_thresholds.py",
         f"{DIAGNOSIS}/test_verdicts.py",
         f"{DIAGNOSIS}/test_even_orders.py",
+        f"{DIAGNOSIS}/test_efforts.py",
     ),
     "orchestrate/diagnosis/impact_timing.py": (f"{DIAGNOSIS}/test_impact_timing.py",),
     "orchestrate/diagnosis/wiring.py": (

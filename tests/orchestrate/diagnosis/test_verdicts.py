@@ -146,3 +146,15 @@ def test_numbers_at_their_bounds_are_reported_with_slopes():
 
 def test_a_factor_outside_a_range():
     assert (factor_outside(10.0, 20.0, 30.0), factor_outside(45.0, 20.0, 30.0)) == (2.0, 1.5)
+
+
+def test_numbers_of_texts_are_short_and_beside_their_limits_as_long_as_it_takes():
+    for apart, text in ((4.04, "4"), (1.004, "1.004"), (0.9, "0.9")):
+        assert (
+            f"differ by {text} times" in Beam((replace(OPENED, sensors=2, apart=apart),)).reason()
+        )
+    few = Beam((replace(OPENED, samples=7.0),))
+    assert "with 1.18e+03 samples a second" in few.next_measurement()
+    for excess, torsion in ((0.9, True), (1.1, False)):
+        seen = Beam((replace(QUIET, sensors=2, apart=4.0, excess=excess),)).reason()
+        assert ("Two modes of a sound beam" in seen) == torsion, seen

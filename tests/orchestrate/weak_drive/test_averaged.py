@@ -20,6 +20,7 @@ def test_known_numbers():
     assert averaged.folds(QUICK.structure, strong) == []
     assert averaged.dividing_speed(*QUICK) == 0.5 * (up.Omega + down.Omega)
     assert averaged.dividing_speed(QUICK.structure, strong) == averaged.resonance(*QUICK)
+    assert averaged.stability_limits(*QUICK.as_bonded()) == (up, down)
     limits = averaged.stability_limits(*BEAM.as_bonded())  # its upper branch: not by its fold
     assert [place.kind for place in limits] == ["fold", "Neimark-Sacker"]
     assert limits[1].eta0 == pytest.approx(1.3731, abs=1e-4)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.capture_rule import (
     BOUNDED,
     CONVERGED,
@@ -110,6 +111,12 @@ def test_limits_scale_with_the_drive():
     assert usual_limit(*slower, 1e-4) > 2.0 * usual and usual_limit(*QUICK, 1e-6) > 1.5 * usual
     creeping = [time_past_the_fold(*bonded, distance) for distance in (1e-6, 1e-4)]
     assert creeping[0] == pytest.approx(10.0 * creeping[1])
+    fold = averaged.folds(*bonded)[0]  # by the integral over what the averaged speed needs there
+    near, Omega = fold.Omega - 1e-3, np.linspace(fold.Omega - 0.05, fold.Omega + 0.05, 200_001)
+    slope = np.diff(averaged.no_load_speed(*bonded, [near - 1e-5, near + 1e-5]))[0] / 2e-5
+    rate = -averaged.growth_rates(*bonded, near)[0].real / slope
+    pace = rate * (1e-6 + fold.eta0 - averaged.no_load_speed(*bonded, Omega))
+    assert creeping[0] == pytest.approx(np.trapezoid(1.0 / pace, Omega), rel=0.05)
     assert usual == pytest.approx(600.0 * longest_time_constant(*QUICK) + 10.0 * creeping[1])
     assert longest_time_constant(*QUICK.with_structure(d1=0.0)) == 1000.0
     tests = [settling_test(*BEAM, 7, distance) for distance in (1e-3, 1e-4, 1e-7, 1.0)]

@@ -11,8 +11,16 @@ from scipy.linalg import expm
 import orchestrate
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu.description import describe
+from orchestrate.fmu.unit_names import unit_by_name
 from orchestrate.weak_drive import cosimulate
-from orchestrate.weak_drive.connection import proposals
+from orchestrate.weak_drive.connection import (
+    FORCE,
+    IN_WORDS,
+    MOTION,
+    PUSHES,
+    UNITS,
+    proposals,
+)
 
 from ...sparing import ordinary
 from .drives import table
@@ -263,6 +271,9 @@ def test_what_is_proposed_has_the_causality_and_a_name_like_ours(drive):
     names = {"box_acceleration": "table_acc", "box_velocity": "table_vel"}
     names |= {"box_position": "table_pos", "box_force": "specimen_force"}
     assert proposals(describe(drive)) == names
+    for name in (*MOTION, FORCE[0], *PUSHES):
+        assert unit_by_name(IN_WORDS[name]).exponents == UNITS[name]
+    assert [UNITS[name]["s"] for name in FORCE] == [-2, -3, -4, -5]
 
 
 @pytest.mark.parametrize("letters", ["a", "v", "p"])

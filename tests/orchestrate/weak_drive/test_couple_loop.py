@@ -1,25 +1,15 @@
-"""The compiled steps' library, made anew where it is not that of the source; its revolutions."""
+"""Revolutions of the motor from the compiled steps' record."""
 
 import math
 
 import numpy as np
 
 from orchestrate.constants import TURN
-from orchestrate.fmu import c_library as libraries
 from orchestrate.weak_drive.connection import MOTOR
 from orchestrate.weak_drive.revolutions import Revolutions
 from orchestrate.weak_drive.step_record import LEADING, Record
 
 from .coupled import QUICK
-
-SOURCE = libraries.sources.LOOPS / "couple.c"
-
-
-def test_a_library_of_other_sources_is_made_anew(tmp_path):
-    found = libraries.library_path(SOURCE, tmp_path)
-    first = found.read_bytes()
-    found.write_bytes(first.replace(b"{", b"("))
-    assert libraries.library_path(SOURCE, tmp_path).read_bytes() == first
 
 
 def completed(time, angle, speed, impacts):
