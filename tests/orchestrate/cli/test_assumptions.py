@@ -8,6 +8,7 @@ import pytest
 import orchestrate
 from orchestrate import Structure
 from orchestrate.cli import notes
+from orchestrate.model import toml_files
 
 SETS = Path(orchestrate.__file__).parent / "model" / "sets"
 
@@ -42,6 +43,16 @@ def test_what_is_not_set_of_a_beam_is_said(ask):
     line = said(ask, "--set", "f1=42", "--set", "kappa=2", *MASSES, *ZETAS)[0].splitlines()[0]
     assert line.endswith("the set paper: e = 0.7 (--set)")
     assert "m1 =" not in said(ask, *HALVES, "--set", "mu=0.8")[0]
+
+
+def test_the_structure_file_is_read_once(ask, tmp_path, monkeypatch):
+    """It was parsed again for what it leaves out."""
+    read, read_text = [], toml_files.read_text
+    monkeypatch.setattr(toml_files, "read_text", lambda *of: read.append(of) or read_text(*of))
+    path = tmp_path / "beam.toml"
+    path.write_text((SETS / "beam.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    said(ask, "--structure", path)
+    assert len(read) == 1
 
 
 def test_one_mass_before_a_stop_is_said_by_half_1(ask, tmp_path):
