@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Callable, Mapping
+from functools import cached_property
 from typing import Any
 
 import orchestrate
@@ -92,7 +93,7 @@ class OfStructure(Options):
 
     def read_structure(self) -> Structure:
         """Return the ``Structure`` of ``--structure`` with the changes of ``--set``."""
-        structure = Structure.from_file(self.structure)
+        structure = Structure._read(self.structure, tables=self.tables)
         changes = grammar.parse_changes(self.set, structure.wall)
         structure = structure.replace(**changes)
         print_assumptions(structure, self.structure, changes)
@@ -101,9 +102,14 @@ class OfStructure(Options):
             print(f"assumed: e = {structure.e:g} ({self.structure} has none; --set e=VALUE)")
         return structure
 
+    @cached_property
+    def tables(self) -> dict[str, Any]:
+        """Tables of the TOML file of ``--structure``, which is read once."""
+        return parse(resolve(self.structure)) if self.structure else {}
+
     def section(self, name: str) -> dict[str, Any]:
         """Return a section of the TOML file of ``--structure``; empty where there is none."""
-        return parse(resolve(self.structure)).get(name, {}) if self.structure else {}
+        return self.tables.get(name, {})
 
 
 class OfStored(OfStructure):

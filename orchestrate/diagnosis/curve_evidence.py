@@ -27,8 +27,6 @@ from .order_windows import (
     OrderWindows,
     RecordOrders,
     assembled_windows,
-    least_squares_matrix,
-    referred_to_base,
 )
 from .settings import SETTINGS, Settings
 
@@ -198,12 +196,7 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
 def settled_windows(channels: Channels, sine: SteppedSine) -> OrderWindows:
     """Return the windows of a stepped sine in which the motion has settled, one a frequency."""
     phase = sine.phase(channels.time)
-    found = list(dwell_windows(channels, sine, phase))[1:]
-    solutions = [
-        referred_to_base(channels.box, one, least_squares_matrix(one, channels.sample_rate))
-        for one in found
-    ]
-    return assembled_windows(channels, found, solutions)
+    return assembled_windows(channels, list(dwell_windows(channels, sine, phase))[1:])
 
 
 @dataclass(frozen=True)

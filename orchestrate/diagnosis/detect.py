@@ -11,7 +11,6 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..constants import TURN
 from ..errors import InputError
 from ..fmu import finder
 from ..laboratory.analysis.channels import Channels
@@ -39,6 +38,7 @@ from .search_job import (
     faces_apart,
 )
 from .settings import Changes, Settings, checked_settings
+from .undamaged import SoundStructure
 from .wiring import WiringSettings, wiring_notes
 
 STATED = {  # numbers of the fitted record: their names there, units and long names
@@ -361,7 +361,7 @@ def stated_hypotheses(results: Results, verdict: str) -> NDArray[np.bool_]:
 def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Findings:
     """Collect the quantities that the decision rule needs from a record."""
     evidence, channels, even = cached_evidence(data), cached_channels(data), bonded_even(data)
-    shut = math.sqrt((guess.k1 + guess.k2) / (guess.m1 + guess.m2)) / TURN
+    shut = SoundStructure.from_structure(guess).f
     opening = smallest_openings(evidence, guess.m1, guess.m2)
     observed = evidence.frequency[np.isfinite(opening)]
     response = (np.abs(evidence.measured[:, 0]) / evidence.level).max(axis=0)

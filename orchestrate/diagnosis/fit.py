@@ -136,7 +136,9 @@ def fit(
     chosen = checked_free(free)
     kind = checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
     structure, changed = delaminated_guess(guess), checked_settings(settings)
-    read = CurveData.from_curve if is_curve(record) else checked_data
+    over = getattr(record, "dims", ())
+    is_curve = "frequency" in over and "time" not in over
+    read = CurveData.from_curve if is_curve else checked_data
     data = read(record, structure, participation, changed)
     job = FitJob(
         name=f"fit_{checked_structure(guess).label()}",
@@ -197,11 +199,6 @@ def check_tones(job: FitJob) -> None:
         text = f"one tone of {evidence.frequency.mean():.4g} Hz has {numbers} numbers"
         expected = "expected a sweep, or fewer in free="
         raise InputError(f"record: {text}, {len(free)} are fitted; {expected}")
-
-
-def is_curve(record: xr.Dataset) -> bool:
-    """Return whether a dataset is a resonance curve: over the frequency, not over time."""
-    return "frequency" in getattr(record, "dims", ()) and "time" not in record.dims
 
 
 def delaminated_guess(guess: Structure) -> Structure:
@@ -270,19 +267,15 @@ class Results:
         """Order 2 of the record beyond that of the fitted bonded structure."""
         return even_orders(self.job.evidence, self.fitted[0])
 
-    def is_opening_seen(self) -> bool:
-        """Return whether the record shows faces that open, or two faces that move differently."""
-        return self.even.is_opening_seen
-
     def reason(self) -> str:
         """Return a sentence that says why the halves' numbers are stated or not."""
         even = self.even
         size = f"order 2 is up to {100 * even.largest:.2g} % of order 1"
         if not np.isfinite(self.job.evidence.measured[:, 1]).any():
-            if self.is_opening_seen():
+            if even.is_opening_seen:
                 return "the two faces move differently; order 2 is not in the curve"
             return "order 2 is not in the curve: order 1 of one face does not determine f1 and f2"
-        if self.is_opening_seen():
+        if even.is_opening_seen:
             return f"{size}, {even.excess:.2g} times the size from which it counts as seen"
         return f"no opening is seen ({size}): f1 and f2 cannot be identified from this record"
 
@@ -337,7 +330,7 @@ class Results:
             for (name, number), deviation in zip(known.items(), errors, strict=True):
                 column = list(REPORTED).index(name)
                 asked[row, column] = 1.0
-                is_held = name not in unclear and (self.is_opening_seen() or name not in FREE)
+                is_held = name not in unclear and (self.even.is_opening_seen or name not in FREE)
                 if stated[row] and is_held:
                     value[row, column] = number
                     error[row, column] = deviation if self.is_described[row] else np.nan

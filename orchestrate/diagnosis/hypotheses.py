@@ -17,6 +17,7 @@ from ..model import Structure
 from .evidence import Evidence
 from .opening import opening_force
 from .single_mass import SingleMass
+from .undamaged import SoundStructure
 
 if TYPE_CHECKING:
     from lmfit import Parameters
@@ -268,9 +269,8 @@ class Delaminated(Hypothesis):
     def values_from_structure(self, structure: Structure, evidence: Evidence) -> dict[str, float]:
         """Convert a structure to the numbers that are fitted."""
         zeta = [max(getattr(structure, f"zeta{half}"), DAMPING_RANGE[0]) for half in (1, 2)]
-        common = math.sqrt((structure.k1 + structure.k2) / (structure.m1 + structure.m2)) / TURN
         return {
-            "common": common,
+            "common": SoundStructure.from_structure(structure).f,
             "split": math.log(structure.f2 / structure.f1),
             "log_zeta1": math.log(zeta[0]),
             "log_zeta2": math.log(zeta[1]),

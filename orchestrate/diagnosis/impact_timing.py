@@ -27,7 +27,6 @@ from ..laboratory.pieces import Floats
 ORDERS = np.arange(1, 13)  # of what a window is projected on
 HIGH = slice(5, 12)  # orders 6 to 12
 MIN_QUIET = 8  # windows in which nothing strikes: of fewer those that move least are taken
-
 PRIOR = 1e-6  # weight of a participation of 1, over that of the windows
 
 
@@ -60,9 +59,11 @@ class TimingSettings:
     together: float = 0.0
     order2: float = 0.02  # parts of some percent of the mass make 0.014, pressed faces 0.02
     # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.54 or less
-    # before `at_end` of the stroke; a slow half that a moving one strikes up to 2
+    # before `at_end` of the stroke, or an order 2 of 0.54 where faces make up to 0.47; a slow half
+    # that a moving one strikes up to 2
     softens: float = -0.5
-    at_end: float = 0.83
+    lifts: float = 0.5
+    at_end: float = 0.8
     stiffens: float = 0.5
     stiffens_moving: float = 2.0
     middle: float = 0.6  # share of the windows for the spread: one by itself is chance
@@ -111,7 +112,8 @@ class Strikes:
           strikes" with an order 2 below `order2`.
         - "stop" if the stiffness grows with the stroke, over order 2, by more than `stiffens`
           (`stiffens_moving` where the place moves by `spread`), other than to that of shut faces,
-          or falls by more than `softens` (but where it strikes `at_end` of the stroke: no stop).
+          or, where it strikes before `at_end` of the stroke, falls by more than `softens` or makes
+          an order 2 above `lifts`: a clamp.
         - "faces strike" with a known frequency, up to `stiffer`, unless two sensors hear blows that
           are `together`; else "stop or softer face".
         """
@@ -124,12 +126,13 @@ class Strikes:
             return FACES
         moves, is_end = self.spread >= settings.spread, abs(self.place) >= settings.at_end
         stiffens = settings.stiffens_moving if moves else settings.stiffens
+        is_clamp = self.stiffens < settings.softens or self.order2 > settings.lifts
         limits = {
             FAINT: self.heard > settings.heard,
             "not locked": is_locked and self.one_sided >= settings.one_sided,
             "kinks": is_blow,
             "something small strikes": self.order2 >= settings.order2,
-            STOP: (is_end or settings.softens <= self.stiffens) and self.stiffens <= stiffens,
+            STOP: (is_end or not is_clamp) and self.stiffens <= stiffens,
             SOFTER: self.stiffness <= settings.stiffer and not self.opposite > settings.together,
         }
         return next((word for word, holds in limits.items() if not holds), FACES)

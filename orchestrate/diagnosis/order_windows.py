@@ -221,8 +221,6 @@ def windows_with_order_2(
         text = f"record: {text} {frequency:.3g} Hz, where it moves most"
         raise InputError(f"{text}; expected {2.0 / NYQUIST:.3g} or more, to read order 2")
     kept = np.flatnonzero(resolved)
-    if len(kept) == len(windows):
-        return windows, amplitude
     return windows.select(kept, len(windows.orders)), amplitude[:, :, kept]
 
 
@@ -247,11 +245,7 @@ def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
         lacking = f"no sine of moving frequency in {channels.duration:.4g} s"
         raise InputError(f"{channel_label(BOX)}: {lacking}; {text}")
     row = channels.names.index(BOX)
-    solutions = [
-        referred_to_base(channels.box, one, least_squares_matrix(one, channels.sample_rate))
-        for one in usable
-    ]
-    windows = assembled_windows(channels, usable, solutions)
+    windows = assembled_windows(channels, usable)
     amplitude = windows.amplitudes(channels.values)
     level = np.abs(amplitude[row, 0])
     pairs = zip(usable, amplitude[row].T, strict=True)
@@ -262,8 +256,7 @@ def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
         text = f"no sine in {np.sum(~sine)} of {len(good)} windows"
         raise InputError(f"{channel_label(BOX)}: {text}; {EXPECTED}")
     kept = np.flatnonzero(good)
-    windows = assembled_windows(channels, [usable[i] for i in kept], [solutions[i] for i in kept])
-    return windows, amplitude[:, :, kept]
+    return windows.select(kept, len(windows.orders)), amplitude[:, :, kept]
 
 
 def overlapping_windows(channels: Channels, phase: Floats) -> list[Window]:
@@ -284,18 +277,17 @@ def overlapping_windows(channels: Channels, phase: Floats) -> list[Window]:
     return found
 
 
-def assembled_windows(
-    channels: Channels, windows: list[Window], solutions: list[Complexes]
-) -> OrderWindows:
-    """Collect single windows and their least-squares matrices in one object."""
+def assembled_windows(channels: Channels, windows: list[Window]) -> OrderWindows:
+    """Collect single windows in one object, with their least-squares matrices."""
+    box, rate = channels.box, channels.sample_rate
     return OrderWindows(
         np.array([one.time for one in windows]),
         np.array([one.frequency for one in windows]),
         np.array([one.rate for one in windows]),
         (*ORDERS, *OFF_ORDERS),
         tuple(one.part for one in windows),
-        tuple(solutions),
-        channels.sample_rate,
+        tuple(referred_to_base(box, one, least_squares_matrix(one, rate)) for one in windows),
+        rate,
         len(channels.time),
     )
 
@@ -365,7 +357,5 @@ def split_sweeps(record: xr.Dataset) -> list[xr.Dataset]:
 
 def is_sweep(group: NDArray[np.intp], time: Floats, frequency: Floats) -> bool:
     """Return whether a group of windows lasts long enough and covers enough frequencies."""
-    if len(group) < 2:
-        return False
     own = frequency[group]
     return bool(np.ptp(time[group]) >= 2.0 and np.ptp(own) >= 0.1 * own.mean())

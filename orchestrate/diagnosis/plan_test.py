@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..constants import GRAVITY, TURN
+from ..constants import GRAVITY
 from ..errors import InputError
 from ..fmu import finder
 from ..laboratory.analysis.channels import BOX, Channels, attributes, checked_number
@@ -35,6 +35,7 @@ from .detect import record_findings
 from .impact_timing import TIMING
 from .opening import largest_opening_force, sweep_rate
 from .search_job import RecordData
+from .undamaged import SoundStructure
 
 WORDS = (DELAMINATED, NOT_SEEN, NOT_DESCRIBED, UNDECIDED)
 COVERED = (0.65, 1.4)  # of the bonded resonance, and a tenth beyond those of the halves
@@ -102,11 +103,11 @@ def plan_test(
     Notes
     -----
     Structure and twin are shaken (once, where their motion is proportional to the level), measured
-    at each level by the sensors as stated, with 25.6 samples in a period of the highest frequency
-    at most, and judged by :meth:`orchestrate.diagnosis.decision_rule.Beam.verdict`. The sweep is as
-    slow as ISO 7626-2 asks for in up to 5400 periods, stays five windows of the impact timing in
-    the resonance, and takes two minutes at most. Where no level decides, the highest without
-    overload is recommended.
+    at each level by the sensors, with 25.6 samples in a period of the highest frequency at most,
+    and judged by :meth:`orchestrate.diagnosis.decision_rule.Beam.verdict`. The sweep stays five
+    windows of the impact timing in the resonance, is as slow as ISO 7626-2 asks for in up to 5400
+    periods, and takes two minutes at most. Where no level decides, the highest without overload is
+    recommended.
 
     Examples
     --------
@@ -119,7 +120,7 @@ def plan_test(
     refuse_family("plan_test", checked_structure(structure))
     if structure.bonded:
         raise InputError("structure: bonded; expected a guess of the delaminated one")
-    f, zeta = bonded_mode(structure)
+    sound = SoundStructure.from_structure(structure)
     frequencies = usual_ends(structure) if frequencies is None else frequencies
     first, *_, last = checked_frequencies(frequencies).tolist()
     if levels is not None and g is not None:
@@ -130,25 +131,19 @@ def plan_test(
     job = PlanJob(
         name=f"plan_{structure.label()}",
         structure=structure,
-        sensors=checked_sensors(usual_sensor(last) if sensor is None else sensor),
+        sensors=checked_sensors(usual_sensor(last) if sensor is None else sensor, last),
         levels=tuple(wanted.tolist()),
         first=first,
         last=last,
-        duration=slow_enough(f, zeta, first, last),
+        duration=slow_enough(sound.f, sound.zeta, first, last),
         reserve=checked_number("reserve", reserve, 1.0, 1e3),
     )
     return answer(job, running, finder(running))
 
 
-def bonded_mode(structure: Structure) -> tuple[float, float]:
-    """Return natural frequency in Hz and damping ratio of the bonded structure."""
-    m, k = structure.m1 + structure.m2, structure.k1 + structure.k2
-    return math.sqrt(k / m) / TURN, (structure.d1 + structure.d2) / (2.0 * math.sqrt(k * m))
-
-
 def usual_ends(structure: Structure) -> tuple[float, float]:
     """Return the frequencies in Hz between which a sweep passes the resonance."""
-    f, halves = bonded_mode(structure)[0], (structure.f1, structure.f2)
+    f, halves = SoundStructure.from_structure(structure).f, (structure.f1, structure.f2)
     return min(COVERED[0] * f, 0.9 * min(halves)), max(COVERED[1] * f, 1.1 * max(halves))
 
 
@@ -179,17 +174,6 @@ class PlanJob(Job):
     duration: float  # s
     reserve: float
 
-    @property
-    def rehearsed(self) -> tuple[tuple[str, Sensor], ...]:
-        """Return the sensors, none faster than the rule needs: time grows with their rate."""
-        rate = SAMPLES * self.last
-        return tuple(
-            (name, replace(own, bandwidth=min(own.bandwidth, 0.39 * rate), sample_rate=rate))
-            if own.rate > rate
-            else (name, own)
-            for name, own in self.sensors
-        )
-
     def items(self) -> Sequence[float]:
         return self.levels
 
@@ -212,10 +196,10 @@ class PlanJob(Job):
         times = level / at
         rows = {
             name: own.digitised(times * felt[name].values, list(CHANNELS).index(name))
-            for name, own in self.rehearsed
+            for name, own in self.sensors
         }
         peak = max(float(np.abs(row).max()) for name, row in rows.items() if name != BOX)
-        rate, values = dict(self.rehearsed)[BOX].rate, np.array(list(rows.values()))
+        rate, values = dict(self.sensors)[BOX].rate, np.array(list(rows.values()))
         data = Channels(felt.time.values, rate, tuple(rows), values, "record")
         try:
             findings = record_findings(RecordData.from_channels(data), self.structure, True)
@@ -279,7 +263,7 @@ def readings(
     here: Running = {**HERE, "fmu": {name: str(path) for name, path in fmus}}
     history = shake(structure, sine, sample_rate=20.0 * job.last, **here)
     ideal = {
-        name: replace(own, noise=0.0, range=math.inf, resolution=0.0) for name, own in job.rehearsed
+        name: replace(own, noise=0.0, range=math.inf, resolution=0.0) for name, own in job.sensors
     }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit
@@ -327,8 +311,13 @@ def checked_positive(name: str, given: ArrayLike, unit: str) -> Floats:
     return np.atleast_1d(np.asarray(checked_numbers(name, given, above=f" > 0, in {unit}")))
 
 
-def checked_sensors(sensor: Sensor | dict[str, Sensor]) -> tuple[tuple[str, Sensor], ...]:
-    """Check that the responses' sensors have a noise, and return all with one for the box."""
+def checked_sensors(
+    sensor: Sensor | dict[str, Sensor], last: float
+) -> tuple[tuple[str, Sensor], ...]:
+    """Check that the responses' sensors have a noise; return all, and one of the box.
+
+    None is faster than the rule needs it up to ``last`` Hz: a rehearsal takes as many times longer.
+    """
     sensors = sensor_by_channel(sensor)
     responses = {name: one for name, one in sensors.items() if name != BOX}
     if not responses:
@@ -337,4 +326,10 @@ def checked_sensors(sensor: Sensor | dict[str, Sensor]) -> tuple[tuple[str, Sens
         if not one.noise:
             text = "expected its density in (m/s2)/sqrt(Hz), > 0: without it every level counts"
             raise InputError(f"sensor on {name}: noise = 0.0; {text}")
-    return tuple({BOX: next(iter(responses.values())), **sensors}.items())
+    every, rate = {BOX: next(iter(responses.values())), **sensors}, SAMPLES * last
+    if every[BOX].rate > rate:
+        every = {
+            name: replace(one, bandwidth=min(one.bandwidth, 0.39 * rate), sample_rate=rate)
+            for name, one in every.items()
+        }
+    return tuple(every.items())

@@ -28,8 +28,10 @@ class Described:
         return dataclasses.replace(self, **changes)  # type: ignore[type-var]
 
     @classmethod
-    def _read(cls: type[Kind], path: str | PathLike[str], structure: Any = None) -> Kind:
+    def _read(
+        cls: type[Kind], path: str | PathLike[str], structure: Any = None, tables: Any = None
+    ) -> Kind:
         """Read an object of this class from a TOML file or from a set shipped with the package."""
-        described = Described._reader(path, cls.__name__.lower(), structure)
+        described = Described._reader(path, cls.__name__.lower(), structure, tables)
         assert isinstance(described, cls)
         return described

@@ -87,10 +87,14 @@ def resolve(source: str | PathLike[str]) -> Path:
     return path
 
 
-def read(source: str | PathLike[str], structure: Structure | None = None) -> dict[str, Described]:
+def read(
+    source: str | PathLike[str],
+    structure: Structure | None = None,
+    tables: Mapping[str, Any] | None = None,
+) -> dict[str, Described]:
     """Read a TOML file; return its structure, excitation, drive and shaker, if any, by name."""
     path = resolve(source)
-    tables = parse(path)
+    tables = parse(path) if tables is None else tables
     for name, values in tables.items():
         if name in SECTIONS and not isinstance(values, dict):
             raise InputError(f"{path}: {name} = {values!r}: expected a section [{name}]")
@@ -118,10 +122,13 @@ def read(source: str | PathLike[str], structure: Structure | None = None) -> dic
 
 
 def read_section(
-    source: str | PathLike[str], name: str, structure: Structure | None = None
+    source: str | PathLike[str],
+    name: str,
+    structure: Structure | None = None,
+    tables: Mapping[str, Any] | None = None,
 ) -> Described:
     """Return a TOML file's structure, excitation, drive or shaker; raise if missing."""
-    contents = read(source, structure)
+    contents = read(source, structure, tables)
     if name not in contents:
         expected = "[motor] and [box]" if name == "drive" else f"[{name}]"
         raise InputError(f"{source}: describes no {name}; expected {expected}")

@@ -12,10 +12,11 @@ import orchestrate.diagnosis.plan_test as rehearsed
 from orchestrate.diagnosis.opening import opening_force, sweep_rate
 from orchestrate.diagnosis.plan_test import (
     PlanJob,
-    bonded_mode,
+    checked_sensors,
     recommended_levels,
     slow_enough,
 )
+from orchestrate.diagnosis.undamaged import SoundStructure
 from orchestrate.errors import InputError
 
 HALVES = orchestrate.Structure.from_halves(
@@ -58,7 +59,8 @@ def test_a_level_is_recommended_at_which_both_verdicts_are_right_with_a_reserve(
     assert plan.decides.values[:3].tolist() == [0, 1, 1] and int(plan.counts) == 1
     assert (float(plan.recommended_level), float(plan.second_level)) == (3.0, 3.0)
     assert (plan.heard[1:3] > 3.0).all() and (plan.sound_heard[1:3] < 3.0).all()
-    f, zeta = bonded_mode(HALVES)
+    sound = SoundStructure.from_structure(HALVES)
+    f, zeta = sound.f, sound.zeta
     assert float(plan.recommended_first) < 0.7 * f < 1.3 * f < float(plan.recommended_last)
     span = float(plan.recommended_last - plan.recommended_first)
     assert float(plan.recommended_duration) >= 0.999 * span / sweep_rate(f, zeta)
@@ -96,12 +98,8 @@ def test_a_rehearsal_takes_as_many_periods_at_any_frequency(zeta, periods):
 def test_a_rehearsal_samples_no_faster_than_the_rule_needs():
     """A sensor of 10 kHz on a beam of 45 Hz took three million samples."""
     fast = orchestrate.Sensor(bandwidth=10e3, noise=0.01, sample_rate=30e3)
-    names, ends = ("box_acceleration", "acceleration1"), {"first": 20.0, "last": 80.0}
     for own, rate, bandwidth in ((fast, 2048.0, 799.0), (SENSOR, 1536.0, 600.0)):
-        sensors = tuple(dict.fromkeys(names, own).items())
-        more = {"sensors": sensors, "levels": (2.0,), "duration": 2.0, "reserve": 2.0}
-        job = PlanJob(name="x", structure=HALVES, **ends, **more)
-        for one in dict(job.rehearsed).values():
+        for _, one in checked_sensors({"acceleration1": own}, 80.0):
             assert (one.rate, one.bandwidth) == pytest.approx((rate, bandwidth), rel=1e-3)
             assert replace(one, bandwidth=own.bandwidth, sample_rate=own.rate) == own
 
