@@ -28,7 +28,7 @@ from ..fmu import STATE, EventInstance, Instance, begin, stroboscopic_samples
 from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, respond
-from .clusters import ReachedMotion, SettledResponse, SettlingRun, run_until_settled
+from .clusters import ReachedMotion, SettlingRun, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting, acting
 from .orbit_search import (
@@ -77,17 +77,11 @@ class MotionDecider:
             some = starts[len(decided) : 2 * len(decided) + 1]
             orbits = [motion for motion in self.known if motion.decided == ORBIT]
             settled = run_until_settled(self.plain, self.point, some, self.settings, orbits)
-            decided += [(*self.motion_reached(each), each.periods) for each in settled]
+            decided += [
+                each if isinstance(each, ReachedMotion) else (*self.motion_of(*each), each.periods)
+                for each in settled
+            ]
         return decided
-
-    def motion_reached(
-        self, settled: SettledResponse | ReachedMotion
-    ) -> tuple[SettledMotion, Floats]:
-        """Return the motion that a response has come to, and a state on it."""
-        if isinstance(settled, SettledResponse):
-            return self.motion_of(*settled)
-        motion = settled.motion
-        return motion, motion.states[motion.nearest(settled.end)[0]]
 
     def motion_of(self, response: Response, done: int) -> tuple[SettledMotion, Floats]:
         """Run a settled response on until its motion is known; return it and a state on it."""

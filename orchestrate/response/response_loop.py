@@ -56,7 +56,8 @@ class LoopSettings:
     chain_gap: float | None = None
     peak_periods: int = 0  # periods looked at for peaks, at most
     # periodic motions of the one point that all responses have: a response is not run on that
-    # comes within `loose` of one, nearer than `compared` periods before; `reached` counts it from 1
+    # comes within `loose` of one, nearer than `compared` periods before; `reached` is the number,
+    # from 1, of the nearest of all their states
     known: Sequence[PeriodicMotion] = ()
     compared: int = 16
 
