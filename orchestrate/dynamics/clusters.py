@@ -133,6 +133,7 @@ def run_until_settled(
             tolerance=converged,
             loose=loose,
             known=known,
+            same=settings.same,
         )
         results = loop.respond([point] * len(left), ends, rule)
         done += dropped + settings.samples
