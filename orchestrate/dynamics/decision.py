@@ -188,7 +188,7 @@ class MotionDecider:
         if motion.free_phase > 0.0:
             self.plain.step(0.0, motion.free_phase / excitation.frequency)
         there = self.plain.get(*STATE)
-        before = motion.nearest_free(there)[1]
+        place, before = motion.nearest_free(there)
         if before < self.settings.same or not before < self.settings.near:
             return before < self.settings.same
         rate = max(motion.multiplier, 1e-3)
@@ -197,8 +197,8 @@ class MotionDecider:
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)
-        after = motion.nearest_free(self.plain.get(*STATE))[1]
-        return after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
+        last, after = motion.nearest_free(self.plain.get(*STATE))
+        return last == place and after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
 
     # -- orbits -----------------------------------------------------------------------------------
 
