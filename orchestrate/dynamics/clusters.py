@@ -105,7 +105,7 @@ class ReachedMotion(NamedTuple):
     """A known motion that a response has come to, where, and the periods that took at most."""
 
     motion: SettledMotion
-    end: Floats  # state at phase 0
+    state: Floats  # at phase 0, on it
     periods: int
 
 
@@ -123,6 +123,7 @@ def run_until_settled(
         settings.transient, settings.settle, point.excitation.eta(point.structure)
     )
     settled: dict[int, SettledResponse | ReachedMotion] = {}
+    places = [(motion, state) for motion in known for state in motion.states]
     done, left = 0, np.arange(len(ends))
     before, deviation = np.zeros(len(ends), dtype=int), np.full(len(ends), np.inf)
     while len(left):
@@ -132,6 +133,7 @@ def run_until_settled(
             tolerance=converged,
             loose=loose,
             known=known,
+            same=settings.same,
         )
         results = loop.respond([point] * len(left), ends, rule)
         done += dropped + settings.samples
@@ -139,8 +141,7 @@ def run_until_settled(
             results.counts[name] for name in ("multiplicity", "nearly", "reached")
         )
         for row in np.flatnonzero(reached).tolist():
-            motion = known[reached[row] - 1]
-            settled[int(left[row])] = ReachedMotion(motion, results.ends[row], done)
+            settled[int(left[row])] = ReachedMotion(*places[reached[row] - 1], done)
         # a deviation that dies while it turns round is smaller after some periods than after one
         repeats = (n > 0) & (nearly == n)
         dying = (nearly > 0) & (nearly == before) & (2.0 * results.deviations < deviation)

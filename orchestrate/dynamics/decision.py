@@ -5,8 +5,8 @@
   with a deviation that dies: that halves from one stretch to the next.
 - It is on an *orbit* that Newton's method finds from its impacts over these periods: a possible
   motion, stable, to which the FMU `returns` with the same impacts, and to which the response, if
-  nearer than `near`, comes at least half as fast as the multipliers say, or lies within `same`. It
-  is not run on when it comes, ever nearer, within `apart * converged` of an earlier start's orbit.
+  nearer than `near`, comes at least half as fast as the multipliers say, or lies within `same`.
+  Where that is the orbit of an earlier start, and it comes ever nearer, it need not repeat first.
 - Without such an orbit, states that repeat within `converged` are *repeated*.
 - They are *undecided* near an unstable orbit, or without the impacts that such a motion must have.
 - All else is *irregular*, a torus or chaos; undecided if another start repeats only after half of
@@ -28,7 +28,7 @@ from ..fmu import STATE, EventInstance, Instance, begin, stroboscopic_samples
 from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, respond
-from .clusters import ReachedMotion, SettledResponse, SettlingRun, run_until_settled
+from .clusters import ReachedMotion, SettlingRun, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting, acting
 from .orbit_search import (
@@ -77,17 +77,11 @@ class MotionDecider:
             some = starts[len(decided) : 2 * len(decided) + 1]
             orbits = [motion for motion in self.known if motion.decided == ORBIT]
             settled = run_until_settled(self.plain, self.point, some, self.settings, orbits)
-            decided += [(*self.motion_reached(each), each.periods) for each in settled]
+            decided += [
+                each if isinstance(each, ReachedMotion) else (*self.motion_of(*each), each.periods)
+                for each in settled
+            ]
         return decided
-
-    def motion_reached(
-        self, settled: SettledResponse | ReachedMotion
-    ) -> tuple[SettledMotion, Floats]:
-        """Return the motion that a response has come to, and a state on it."""
-        if isinstance(settled, SettledResponse):
-            return self.motion_of(*settled)
-        motion = settled.motion
-        return motion, motion.states[motion.nearest(settled.end)[0]]
 
     def motion_of(self, response: Response, done: int) -> tuple[SettledMotion, Floats]:
         """Run a settled response on until its motion is known; return it and a state on it."""
@@ -194,7 +188,7 @@ class MotionDecider:
         if motion.free_phase > 0.0:
             self.plain.step(0.0, motion.free_phase / excitation.frequency)
         there = self.plain.get(*STATE)
-        before = motion.nearest_free(there)[1]
+        place, before = motion.nearest_free(there)
         if before < self.settings.same or not before < self.settings.near:
             return before < self.settings.same
         rate = max(motion.multiplier, 1e-3)
@@ -203,8 +197,8 @@ class MotionDecider:
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)
-        after = motion.nearest_free(self.plain.get(*STATE))[1]
-        return after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
+        last, after = motion.nearest_free(self.plain.get(*STATE))
+        return last == place and after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
 
     # -- orbits -----------------------------------------------------------------------------------
 

@@ -75,6 +75,7 @@ class KnownMotions(ctypes.Structure):
         ("count", c_size_t),
         ("state", POINTER(c_uint)),
         *((name, c_void_p) for name in ("states", "gaps", "periods")),
+        ("within", c_double),
     ]
 
 

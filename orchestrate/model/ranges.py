@@ -69,6 +69,8 @@ class Quantity:
 
     def check(self, value: Any) -> float:
         """Return ``value`` as a float; raise ``InputError`` if it is no number or out of range."""
+        if type(value) is float and self.minimum <= value <= self.maximum:  # usually
+            return value + 0.0
         number = as_scalar(value)
         if isinstance(number, str):
             with suppress(ValueError):

@@ -56,8 +56,10 @@ class LoopSettings:
     chain_gap: float | None = None
     peak_periods: int = 0  # periods looked at for peaks, at most
     # periodic motions of the one point that all responses have: a response is not run on that
-    # comes within `loose` of one, nearer than `compared` periods before; `reached` counts it from 1
+    # comes within `same` of one, over its size, and is nearer than `compared` periods before;
+    # `reached` is the number, from 1, of the nearest of all their states
     known: Sequence[PeriodicMotion] = ()
+    same: float = 0.0
     compared: int = 16
 
 
@@ -144,7 +146,7 @@ class ResponseLoop:
             gaps = np.array([motion.gap for motion in chosen.known])
             tables = (table.ctypes.data for table in (states, gaps, lengths))
             state = references(self.oscillator.instance, STATE)
-            task.known = pointer(KnownMotions(len(gaps), state, *tables))
+            task.known = pointer(KnownMotions(len(gaps), state, *tables, chosen.same))
         self.run(task)
         return results
 

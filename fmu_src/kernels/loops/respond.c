@@ -27,6 +27,7 @@ typedef struct {  /* motions that are known at the point of all responses: one t
     const unsigned *state;  /* x1, x2, v1, v2 */
     const double *states, *gaps;  /* at phase 0 of successive periods of all of them, and the largest gap of each */
     const size_t *periods;  /* of each, after which it repeats */
+    double within;  /* over the motion's size: so near is reached */
 } Known;
 
 typedef struct {  /* what there is to do: a row a response */
@@ -284,19 +285,19 @@ EXPORT double nearest_state(const double *states, size_t count, double frequency
     return memory[DISTANCE];
 }
 
-/* Note the known motion that a response has reached, from one: within the wider tolerance, and nearer than when it was compared before; its state is the end. */
+/* Note the state of known motions that a response has reached, from one: so near, and nearer than when it was compared before; the end is its own. */
 static bool compare(Oscillator *o, const Task *task, Progress *progress) {
     size_t i = progress->response;
     const Known *known = task->known;
     const double *states = known->states;
     double *state = task->ends + STATES * i, nearest = 0.0;
-    int32_t motion = 0;
+    int32_t reached = 0, first = 1;
     if (!get_reals(&o->fmi, known->state, STATES, state, STATES)) return false;
-    for (size_t k = 0; k < known->count; states += STATES * known->periods[k++]) {
+    for (size_t k = 0; k < known->count; first += (int32_t)known->periods[k], states += STATES * known->periods[k++]) {
         double away = nearest_state(states, known->periods[k], task->traits[TRAITS * i + BOX_FREQUENCY], known->gaps[k], state, task->memory);
-        if (!k || away < nearest) nearest = away, motion = (int32_t)k + 1;
+        if (!k || away < nearest) nearest = away, reached = first + (int32_t)task->memory[NEAREST];
     }
-    task->counts[COUNTS * i + REACHED] = nearest < task->loose && nearest < progress->away ? motion : 0;
+    task->counts[COUNTS * i + REACHED] = nearest < known->within && nearest < progress->away ? reached : 0;
     progress->away = nearest;
     return true;
 }

@@ -70,9 +70,10 @@ def test_starts_that_come_to_a_known_orbit_are_not_run_on():
 class Scripted(MotionDecider):
     """Known motions at some distance, that a response comes to or does not, and runs of no FMU."""
 
-    def __init__(self, comes=False, path=(), **settings):
+    def __init__(self, comes=False, path=(), places=(0, 0), **settings):
         self.settings, self.known, self.comes = settling_run(**settings), [], comes
         self.path = iter(path)  # distances from a motion, now and later
+        self.places = iter(places)  # and which of its states is nearest
         self.steps = []
         self.plain = SimpleNamespace(
             step=lambda begin, end: self.steps.append(end - begin), get=lambda *names: None
@@ -82,7 +83,8 @@ class Scripted(MotionDecider):
 
     def motion(self, distance=0.0, decided=ORBIT, multiplicity=1, multiplier=0.5):
         return SimpleNamespace(
-            nearest=lambda state: (0, distance), nearest_free=lambda state: (0, next(self.path)),
+            nearest=lambda state: (0, distance),
+            nearest_free=lambda state: (next(self.places), next(self.path)),
             decided=decided, multiplicity=multiplicity, multiplier=multiplier, free_phase=0.0,
             free_states=[None],
         )  # fmt: skip
@@ -122,6 +124,14 @@ def test_each_threshold_of_a_response_that_comes_to_an_orbit(monkeypatch, before
     assert MotionDecider.converges_to(decider, REST, decider.motion()) == comes
     periods = sum(decider.steps) / decider.point.excitation.period
     assert not decider.steps or periods == pytest.approx(4.0)  # a tenth is left by then
+
+
+def test_a_response_that_comes_to_another_state_is_on_another_orbit(monkeypatch):
+    """One of 6 periods is nearer to one of 32 at some phases than at others."""
+    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    for places in ((1, 1), (1, 2)):
+        decider = Scripted(path=(0.05, 0.01), places=places)
+        assert MotionDecider.converges_to(decider, REST, decider.motion()) == (places == (1, 1))
 
 
 @pytest.mark.parametrize(("left", "comes"), [(0.99e-9, True), (1.01e-9, False)])
