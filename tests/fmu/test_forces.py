@@ -123,7 +123,7 @@ def test_random_motions_are_those_of_an_independent_solver(kind):
 def test_many_motions_are_those_of_an_independent_solver(kind):
     regular, *events = check(FMUS["fmi3"], kind, range(200), 3)
     print(f"{regular} of 200 motions are regular, {events} impacts and releases")
-    assert regular > 140
+    assert regular > 100
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -147,6 +147,10 @@ def test_no_more_than_the_first_interval_is_clear_at_a_start_from_the_boundary(s
 def test_a_state_is_written_anew_after_its_nodes_and_a_step_ends_with_its_work():
     m = walk_to(flight(-0.5, 0.2, 0.5, -0.1, **FREE[0]), 1e6, 5.0)
     assert m[at.NODE] == 5.0 and m[at.END_KIND] == at.END_OPEN
+    other = flight(-0.5, 0.2, 0.5, -0.1, **FREE[0])
+    other[at.WORK], other[at.WORK_LIMIT] = 3.0, 5.0
+    walk(other, 1e6)
+    assert other[at.NODE] == 2.0
     walk_to(m, 1e6)
     assert m[at.END_KIND] == at.END_RENEWAL
     assert m[at.END] == nodes.LONGEST * m[at.SPACING]
