@@ -124,6 +124,7 @@ def test_a_doubled_branch_ends_where_it_has_half_its_period_again():
 
 def test_an_orbit_with_one_impact_more_leaves_at_a_grazing():
     first = windows(2)
+    assert first.attrs["first_end"] == "grazing of a flight" != first.attrs["last_end"]
     number = int(np.flatnonzero(first.bifurcation_kind.values == TOUCHING)[0])
     found = branch(PAPER, start=first, switch=number, limits=(1.37, 9.5))
     assert ((found.node_kind.values == 0).sum(axis=1) == 2).all()
