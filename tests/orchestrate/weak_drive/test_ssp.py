@@ -141,6 +141,7 @@ def test_package(tmp_path):
     ends = [(one.get("startElement"), one.get("endElement")) for one in links]
     assert set(ends) == {("oscillator", "shaker"), ("shaker", "oscillator")} and len(ends) > 2
     assert not any(len(one) for one in links)  # neither signs nor units differ
+    assert {one.get("suppressUnitConversion") for one in links} == {None}
     assert all(one.get("startConnector") == one.get("endConnector") for one in links)
     (solver,) = tree.iterfind(f".//{{{NAMESPACES['oms']}}}SimulationInformation")
     assert dict(solver.attrib)["fixedStepSize"] == "0.00004"
