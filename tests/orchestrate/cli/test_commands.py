@@ -113,7 +113,7 @@ ASKED = {  # command: options, a unit and what is printed in it, what is printed
     "passage": (
         ("--eta0", "1.55:1.65", "--around", "60", "--revolutions", "4", "--only", "delaminated")
         + ONE_WAY,
-        *("", "jump up at 1.569", ("around jumps",), {"around": 60.0, "voltage": (1.55, 1.65)}),
+        *("", "jump up at 1.569", ("around jumps",), {"around": 60.0}),
     ),
     "jump-voltages": (
         ("--eta0", "1.5:1.66", *ONE_WAY[2:], "--rate", "4e-4,3e-4"),

@@ -7,11 +7,18 @@ import numpy as np
 import pytest
 
 from orchestrate.diagnosis import multistart
+from orchestrate.diagnosis.detect import halves_around
 from orchestrate.diagnosis.hypotheses import Bonded
 from orchestrate.diagnosis.linear import soft_squares
-from orchestrate.diagnosis.multistart import Search, Solution, without_neighbours
-from orchestrate.diagnosis.settings import SETTINGS
+from orchestrate.diagnosis.multistart import (
+    Search,
+    Solution,
+    with_distinct_misfits,
+    without_neighbours,
+)
+from orchestrate.diagnosis.settings import SETTINGS, checked_settings
 from orchestrate.diagnosis.standard_errors import estimate_with_covariances
+from orchestrate.errors import InputError
 
 HERE = {"f": 34.0, "log_zeta": -4.0}
 
@@ -99,3 +106,17 @@ def test_squares_are_beyond_noise_from_1_3_times_its_own(monkeypatch, times, mor
     beyond = max(soft_squares(noise * np.sqrt(times)).sum() - 1.3 * squares, 0.0)
     assert (beyond > 0.0) == more
     assert found.discrepancy[0] == pytest.approx(np.sqrt(0.1 * 4.0 * beyond), rel=1e-6)
+
+
+def test_settings_that_are_assumed_differ_or_are_refused():
+    """Two minima are two from misfits of 1.03 on; without a guess halves lie around a resonance."""
+    for ratio, count in ((1.029, 1), (1.031, 2)):
+        pair = [Solution("x", HERE, ratio * 0.5), Solution("x", HERE, 0.5)]
+        assert len(with_distinct_misfits(pair, SETTINGS.distinct)) == count
+    guess = halves_around(40.0, SETTINGS)
+    assert (guess.f1, guess.f2, guess.zeta1) == pytest.approx((38.0, 42.0, 0.01))
+    made = checked_settings({"steps": 1, "ratio": 0.5})
+    assert (made.steps, made.ratio, made.rounds) == (1, 0.5, SETTINGS.rounds)
+    for wrong in ({"steps": 0}, {"ratio": -0.1}, {"rate": 2.0}):
+        with pytest.raises(InputError, match=next(iter(wrong))):
+            checked_settings(wrong)
