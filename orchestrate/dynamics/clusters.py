@@ -135,7 +135,8 @@ def run_until_settled(
         counts = results.counts
         n, nearly, reached = counts["multiplicity"], counts["nearly"], counts["reached"]
         for row in np.flatnonzero(reached).tolist():
-            settled[int(left[row])] = ReachedMotion(*places[reached[row] - 1], done)
+            motion, state = places[reached[row] - 1]
+            settled[int(left[row])] = ReachedMotion(motion, state, done)
         # a deviation that dies while it turns round is smaller after some periods than after one
         repeats = (n > 0) & (nearly == n)
         dying = (nearly > 0) & (nearly == before) & (2.0 * results.deviations < deviation)
