@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -122,26 +123,20 @@ def run_until_settled(
     dropped = transient_periods(
         settings.transient, settings.settle, point.excitation.eta(point.structure)
     )
+    rule = partial(LoopSettings, samples=settings.samples, known=known, same=settings.same)
     settled: dict[int, SettledResponse | ReachedMotion] = {}
     places = [(motion, state) for motion in known for state in motion.states]
     done, left = 0, np.arange(len(ends))
     before, deviation = np.zeros(len(ends), dtype=int), np.full(len(ends), np.inf)
     while len(left):
-        rule = LoopSettings(
-            transient=dropped,
-            samples=settings.samples,
-            tolerance=converged,
-            loose=loose,
-            known=known,
-            same=settings.same,
-        )
-        results = loop.respond([point] * len(left), ends, rule)
+        asked = rule(transient=dropped, tolerance=converged, loose=loose)
+        results = loop.respond([point] * len(left), ends, asked)
         done += dropped + settings.samples
-        n, nearly, reached = (
-            results.counts[name] for name in ("multiplicity", "nearly", "reached")
-        )
+        counts = results.counts
+        n, nearly, reached = counts["multiplicity"], counts["nearly"], counts["reached"]
         for row in np.flatnonzero(reached).tolist():
-            settled[int(left[row])] = ReachedMotion(*places[reached[row] - 1], done)
+            motion, state = places[reached[row] - 1]
+            settled[int(left[row])] = ReachedMotion(motion, state, done)
         # a deviation that dies while it turns round is smaller after some periods than after one
         repeats = (n > 0) & (nearly == n)
         dying = (nearly > 0) & (nearly == before) & (2.0 * results.deviations < deviation)
@@ -159,8 +154,8 @@ def run_until_settled(
         dropped = min(done, settings.longest - done)
     if len(left):
         points, done = [point] * len(left), done + settings.irregular_samples
-        rule = LoopSettings(transient=0, samples=settings.irregular_samples)
-        irregular = responses_from(loop.respond(points, ends, rule), points, converged)
+        asked = LoopSettings(transient=0, samples=settings.irregular_samples)
+        irregular = responses_from(loop.respond(points, ends, asked), points, converged)
         settled |= settled_by_number(left, irregular, done)
     return [settled[i] for i in range(len(settled))]
 
