@@ -77,8 +77,3 @@ def test_intervals_hold_the_truth(exported, seed, budget):
 def is_unlikely(held: int, of: int, share: float, side: str) -> bool:
     """Return whether a share of so many would be on that side by chance once in a thousand."""
     return not of or bool(binomtest(held, of, share, side).pvalue < 1e-3)
-
-
-def test_a_share_that_is_too_small_is_unlikely():
-    assert is_unlikely(250, 300, 0.92, "less") and not is_unlikely(272, 300, 0.92, "less")
-    assert is_unlikely(0, 0, 0.92, "less") and is_unlikely(0, 3, 0.92, "less")

@@ -119,17 +119,6 @@ def test_a_sweep_before_a_wall_under_forces_is_read_with_them(exported):
             read_sweep(orchestrate.sweep(structure, **asked, **wrong))
 
 
-def test_a_page_is_replaced_and_no_other_file(tmp_path):
-    path = tmp_path / "notes.html"
-    path.write_text("<title>Notes</title>")
-    with pytest.raises(InputError, match="no page of the explorer; expected a name that is free"):
-        explore(output=path)
-    assert path.read_text() == "<title>Notes</title>"
-    path.unlink()
-    inodes = {explore(output=path).stat().st_ino for _ in range(2)}
-    assert len(inodes) == 2 and [one.name for one in tmp_path.iterdir()] == ["notes.html"]
-
-
 WRONG = {
     "m1": ["heavy", np.array([1.0, 2.0])],
     "tolerance": [0.0],
@@ -148,9 +137,6 @@ def test_a_file_with_a_wrong_attribute_is_refused_in_one_line(swept, tmp_path, n
     with pytest.raises(InputError, match="expected"):
         explore(swept.assign_attrs({name: value}), output=tmp_path / "page.html")
     assert not list(tmp_path.iterdir())
-
-
-STATE = ("eta", "coordinate")
 
 
 def test_the_command_writes_a_page(tmp_path, capsys, swept):
@@ -183,12 +169,3 @@ def test_figure_6_is_replayed_from_where_its_responses_begin(exported, first):
     )
     for name in ("end_state", "impacts_per_period", "frequency", "amplitude"):
         assert swept[name].values.tobytes() == few[name].values.tobytes(), ANEW
-
-
-def test_a_page_of_another_kernel_computes_its_own_and_says_so(monkeypatch, tmp_path, caplog):
-    monkeypatch.setattr(sweep_data, "kernel_digest", lambda model: "another")
-    page = tmp_path / "page.html"
-    assert cli.main(["explore", "--no-open", "--output", str(page)]) == 0
-    assert '"count": 0' in page.read_text(encoding="utf-8")
-    (line,) = [record.message for record in caplog.records if "Figure 6" in record.message]
-    assert line == "Figure 6 was computed by another kernel: the page computes its own"

@@ -43,17 +43,3 @@ def opened_from(page, hertz):
     )
     level = float(found.threshold_acceleration[0]) / 9.80665
     assert f"At this frequency they open from {level:.4g} g on." in page.text("sentence")
-
-
-@pytest.mark.slow
-def test_a_motion_that_cannot_be_computed_is_not_shown_as_the_one_before(browser):
-    browser.until(MOVED)
-    before = browser.text("sentence")
-    browser.run("explorer.inspect(explorer.eta, [1, -1, 0, 0])")  # the masses overlap
-    browser.until("return document.querySelector('main').dataset.motion === 'failed'")
-    assert browser.text("sentence").startswith("This motion cannot be computed")
-    assert "impacts a period" not in browser.text("numbers")
-    browser.run("explorer.inspect(explorer.eta, [0, 0, 0, 0])")
-    browser.until(MOVED)
-    assert browser.text("sentence") == before
-    assert browser.run("return document.querySelector('main').dataset.motion") == "there"

@@ -80,11 +80,3 @@ def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
     told = numbers.partition(f"largest gap, {lengths}")[2].partition("impacts")[0]
     assert float(told.replace("−", "-")) == pytest.approx(gap, rel=1e-3)
     assert browser.console() == []
-
-
-@pytest.mark.slow
-def test_a_sweep_by_ratios_is_shown_in_ratios_alone(swept, tmp_path):
-    for units in ("Hz", "mm", "m/s2"):
-        with pytest.raises(orchestrate.InputError, match="expected eta, or a structure instead"):
-            explore(swept, units=units, output=tmp_path / "page.html")
-    assert not list(tmp_path.iterdir())

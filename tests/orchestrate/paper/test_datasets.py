@@ -66,13 +66,6 @@ def test_a_response_is_run_on_until_it_repeats(data):
     assert (exponents.verdict < 0).all() and exponents.eta.equals(found.eta)
 
 
-def test_what_does_not_repeat_is_run_on_and_irregular_in_the_end(data):
-    data.sweep = lambda *_: swept(np.linspace(0.8, 1.3, 6), CASES["elastic"])
-    found = data.settled("elastic")
-    assert found.multiplicity.values[0] == 0 and found.multiplicity.values[1] > 0
-    assert found.periods.values[0] == 4596 and np.isfinite(found.end_state).all()
-
-
 def test_chattering_shrinks_by_the_restitution_and_has_no_end(data, monkeypatch):
     """Each factor of gamma gives as many impacts more as its logarithm over that of e says."""
     monkeypatch.setattr("orchestrate.paper.cases.RESTITUTIONS", (0.05, 0.8, 1.0))
@@ -83,17 +76,3 @@ def test_chattering_shrinks_by_the_restitution_and_has_no_end(data, monkeypatch)
     for e in (0.05, 0.8):
         more = np.diff(found.impacts.sel(e=e).values)[0]
         assert more == pytest.approx(np.log(1e-2) / np.log(e), abs=1.0)
-
-
-def test_masses_that_are_alike_do_not_knock(data):
-    counts = [
-        data.count_impacts(DAMPED.replace(mu=mu, kappa=k), 1.3) for mu, k in ((2, 2), (2, 2.2))
-    ]
-    assert [row[:2] for row in counts] == [[2.0, 2.0], [2.0, 2.2]]
-    assert counts[0][2:] == [0, 0, 0, 0] and counts[1][2] > 1000
-
-
-def test_the_limit_of_permanent_contact_does_not_depend_on_gamma(data, monkeypatch):
-    monkeypatch.setattr("orchestrate.paper.cases.CONTACT_RANGES", {"elastic": (0.415, 0.421)})
-    monkeypatch.setattr("orchestrate.paper.cases.GAMMAS", (1e-4, 1e-2))
-    assert data.last_contact("elastic").tolist() == [0.417, 0.417]

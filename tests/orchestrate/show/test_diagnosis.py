@@ -59,14 +59,3 @@ def test_a_plan_shows_what_was_heard_and_the_recommended_levels():
     np.testing.assert_array_equal(marks.get_xydata(), [[0.2, 20.0], [0.4, 60.0]])
     assert sum(list(line.get_xdata()) == [0.4, 0.4] for line in axes.lines) == 1
     assert [text.get_text() for text in axes.texts] == [" recommended"]  # once of one level
-
-
-def test_curves_below_an_axis_are_named():
-    over = ("hypothesis", "order", "channel", "frequency")
-    fitted = np.ones((2, 1, 1, 5)) * np.array([1.0, 1e-6]).reshape(2, 1, 1, 1)
-    made = {"measured": (over[1:], np.ones((1, 1, 5)), {"units": "m/s2"})}
-    made |= {"fitted": (over, fitted), "misfit": ("hypothesis", [0.1, 2.0])}
-    names = {"hypothesis": ["delaminated", "bonded"], "order": [2.0]}
-    names |= {"channel": ["acceleration1"], "frequency": np.arange(1.0, 6.0)}
-    (plane,) = diagnosis.draw_detect(xr.Dataset(made, names)).axes
-    assert plane.get_title("right") == "below this axis: bonded"

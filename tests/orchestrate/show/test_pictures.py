@@ -2,11 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -20,17 +15,6 @@ from . import made
 from .made import legend_texts
 
 # -- files ----------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-def test_our_pictures_leave_theirs_alone(tmp_path):
-    root = Path(__file__).resolve().parents[3]
-    command = [sys.executable, "-m", "tests.orchestrate.show.drawing", str(tmp_path)]
-    environment = {**os.environ, "MPLBACKEND": "agg"}
-    done = subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    names = [f"{name}.{kind}" for name in ("orbit", "scheme", "shaker") for kind in ("png", "pdf")]
-    assert all((tmp_path / name).stat().st_size > 1000 for name in names)
 
 
 def small_picture():
