@@ -57,6 +57,11 @@ def test_swept_sine_is_the_standard_one():
     assert np.allclose(log(t), expected, rtol=0.0, atol=1e-9)
 
 
+def test_rates_of_a_sweep():
+    assert SweptSine(first=20, last=80, rate=1.0, spacing="log", acceleration=1).duration == 120.0
+    assert SweptSine(first=80, last=20, rate=0.5, acceleration=1).duration == 120.0
+
+
 def test_profile_of_a_sweep_is_straight_in_logarithms():
     sweep = SweptSine(first=10, last=40, duration=3.0, acceleration=[(5.0, 1.0), (50.0, 10.0)])
     for f in (10.0, 25.0, 40.0):
@@ -83,6 +88,19 @@ def test_stepped_sine_within_its_bound(frequencies, profile, settle, accuracy):
 STEPPED = SteppedSine(
     frequencies=(20.0, 31.0, 25.0), acceleration=4.0, settle_cycles=7, measured_cycles=5
 )
+
+
+def test_stepped_sine_is_a_sine_of_each_frequency_for_its_cycles():
+    ends = np.cumsum([12.25 / 20.0, 12.0 / 31.0, 12.0 / 25.0])
+    np.testing.assert_allclose(STEPPED.measured_times()[:, 1], ends, rtol=1e-14)
+    np.testing.assert_allclose(
+        STEPPED.measured_times()[:, 0], ends - 5.0 / np.array([20.0, 31.0, 25.0]), rtol=1e-14
+    )
+    for begin, f, end in zip([0.0, *ends[:-1]], STEPPED.frequencies, ends, strict=True):
+        t = np.linspace(begin, end, 50)[1:-1]
+        turns = f * (t - begin) + (0.25 if begin else 0.0)
+        np.testing.assert_allclose(STEPPED(t), 4.0 * np.sin(2.0 * math.pi * turns), atol=1e-11)
+        assert (STEPPED.frequency(t) == f).all()
 
 
 def test_a_stepped_sine_neither_jumps_nor_drifts():
@@ -113,6 +131,16 @@ def sines(shaking):
     density = np.exp(np.interp(np.log(np.maximum(f, 1e-9)), corners, values)) * inside
     phases = np.random.default_rng(shaking.seed).uniform(0.0, 2.0 * math.pi, len(f))
     return np.sqrt(2.0 * density / shaking.duration), 2.0 * math.pi * f, phases
+
+
+@given(st.floats(1e-6, 1e6))
+def test_random_vibration_has_the_rms_asked_for(rms):
+    shaking = Random(psd=PROFILE, duration=2.0, rms=rms)
+    amplitudes, *_ = sines(shaking)
+    assert shaking.rms == rms
+    assert np.sqrt(0.5 * (amplitudes**2).sum()) == pytest.approx(rms, rel=1e-9)
+    ratios = np.array(shaking.psd)[:, 1] / np.array(PROFILE)[:, 1]
+    np.testing.assert_allclose(ratios, ratios[0])
 
 
 @settings(deadline=None)
@@ -231,3 +259,9 @@ def test_mistakes_are_one_line(kind, changes, words):
     with pytest.raises(InputError) as error:
         kind(**{**usual[kind], **changes})
     assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_endless_sweeps_are_refused():
+    endless = SweptSine(first=1e6, last=1e7, duration=1e6, acceleration=1.0)
+    with pytest.raises(InputError, match="oscillations: expected less than"):
+        endless.pieces()
