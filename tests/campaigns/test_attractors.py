@@ -159,29 +159,3 @@ def test_attractors_are_true(fmu, seed, budget):
 
 
 PAPER = Structure.nondimensional()
-
-
-@pytest.mark.slow
-def test_what_is_wrong_is_seen(fmu, monkeypatch):
-    """T with one impact, and 2T with three: their period, impacts or multiplier changed."""
-    found = orchestrate.attractors
-    answer = found(PAPER, eta=1.315, starts=24, jobs=1, progress=False).isel(eta=0)
-    motions = {int(answer.multiplicity[k]): answer.isel(attractor=k) for k in range(2)}
-
-    def texts(n: int, **changes: float) -> str:
-        changed = {name: motions[n][name] * 0 + value for name, value in changes.items()}
-        return " / ".join(ReportedMotion(fmu, PAPER, 1.315, motions[n].assign(changed)).problems())
-
-    assert not texts(1) and not texts(2)
-    assert "the FMU does not return after 1 T" in texts(2, multiplicity=1.0)
-    twice = texts(1, multiplicity=2.0)
-    assert "the FMU returns after 1 T already, not 2 T" in twice
-    assert "orbit: period = 2: no orbit found" in twice
-    assert "9 impacts in 3 times 2 T, not 3 x 2" in texts(2, impacts_per_period=1.0)
-    assert "2.6 impacts in 2 T are no whole number" in texts(2, impacts_per_period=1.3)
-    assert "orbit: a multiplier of 0.94" in texts(2, multiplier=0.5)
-    monkeypatch.setattr(
-        orchestrate, "attractors", lambda *a, **k: found(*a, **k).isel(attractor=[0, 0])
-    )
-    lines = list(problems(fmu, PAPER, (1.28, 1.285), 1, Counter()))
-    assert lines and all("is there twice" in line for line in lines)

@@ -138,18 +138,6 @@ def test_another_bit_would_be_seen(exported, monkeypatch):
     assert [line.split(":")[0] for line in problems(drawn)] == ["wasm"]
 
 
-def test_a_point_that_no_step_size_hits_is_left_out():
-    """From its middle the nearest step size ends one number beside the target."""
-    drawn = draw_parameter_set(19, 69)
-    _, (middle, end), *_ = drawn.grids()
-    assert middle + (end - middle) != end
-    grids = reachable_grids(drawn)
-    assert [grid[-1] for grid in grids] == [end] * len(grids) and len(grids[-1]) > 12
-    for grid in grids:
-        steps = itertools.pairwise([drawn.start_time, *grid])
-        assert all(time + (target - time) == target for time, target in steps)
-
-
 # each did not finish on all or some of its grids, or was refused on some
 @pytest.mark.parametrize(
     ("seed", "numbers"),

@@ -3,22 +3,17 @@
 Slow: it takes half a minute, most of it the tutorial's own questions.
 """
 
-import json
-import re
-import runpy
 import subprocess
 import sys
 import zlib
 
 import pytest
-from sphinx.search.en import SearchEnglish
 
 import orchestrate
 from orchestrate import cli
 from tools.site import Site
 
 from ..exports import once
-from .test_manual import GENERATED
 from .written import DOCS
 
 
@@ -62,39 +57,3 @@ def test_nothing_comes_from_elsewhere_and_no_link_is_broken(site):
     assert len(checked.pages) > 35
     assert checked.external_resources() == []
     assert checked.broken_links() == []
-
-
-@pytest.mark.slow
-def test_every_page_says_how_long_it_takes_to_read(site):
-    said = re.compile(r'class="reading-time">Reading time: (\d+) minutes?<')
-    for page in sorted(DOCS.glob("*.md")):
-        (minutes,) = said.findall((site / f"{page.stem}.html").read_text(encoding="utf-8"))
-        assert 1 <= int(minutes) <= 8 or page.stem in GENERATED, page.stem
-
-
-FOUND = {  # by the search: a page that is to be among the results
-    "measured": "delaminated",
-    "CSV": "laboratory",
-    "Simulink": "fmi",
-    "dSPACE": "fmi",
-    "delaminated": "delaminated",
-    "unbalance": "coupling",
-    "Hz": "engineer",
-}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("word", FOUND)
-def test_the_search_finds_what_users_ask_for(site, word):
-    text = (site / "searchindex.js").read_text(encoding="utf-8")
-    index = json.loads(text.removeprefix("Search.setIndex(").rstrip().removesuffix(")"))
-    stem = SearchEnglish({}).stem(word.lower())
-    places = [index[part].get(stem, []) for part in ("terms", "titleterms")]
-    numbers = {n for found in places for n in (found if isinstance(found, list) else [found])}
-    assert FOUND[word] in {index["docnames"][number] for number in numbers}
-
-
-def test_notebooks_ask_for_no_scripts_of_others():
-    """Of widgets, where their package is installed: they come from two other hosts by default."""
-    settings = runpy.run_path(str(DOCS / "conf.py"))
-    assert settings.get("nb_ipywidgets_js") == {}

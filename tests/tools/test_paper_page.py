@@ -17,12 +17,6 @@ def test_the_page_is_made_from_the_claims(page):
     assert paper_page.fill_page(text, other) != text
 
 
-def test_all_that_was_computed_is_on_a_page():
-    text = "".join(page.read_text("utf-8") for page in paper_page.PAGES)
-    for name in ("counts", "sections", "verdicts", "regions"):
-        assert text.count(paper_page.MARK.format(name, "begin")) == 1
-
-
 def test_the_claims_beside_it_are_those_of_the_code():
     rows = json.loads(paper_page.CLAIMS.read_text("utf-8"))["claims"]
     own = [(claim.section, claim.text, claim.printed) for claim in read_table()]

@@ -106,17 +106,6 @@ def test_a_sweep_before_a_wall_under_forces_is_read_with_them(exported):
             read_sweep(orchestrate.sweep(structure, **asked, **wrong))
 
 
-def test_a_page_is_replaced_and_no_other_file(tmp_path):
-    path = tmp_path / "notes.html"
-    path.write_text("<title>Notes</title>")
-    with pytest.raises(InputError, match="no page of the explorer; expected a name that is free"):
-        explore(output=path)
-    assert path.read_text() == "<title>Notes</title>"
-    path.unlink()
-    inodes = {explore(output=path).stat().st_ino for _ in range(2)}
-    assert len(inodes) == 2 and [one.name for one in tmp_path.iterdir()] == ["notes.html"]
-
-
 WRONG = {
     "m1": ["heavy", np.array([1.0, 2.0])],
     "tolerance": [0.0],

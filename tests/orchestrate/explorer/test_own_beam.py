@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 import xarray as xr
 
@@ -39,30 +38,6 @@ def own(browser):
         "units.dispatchEvent(new Event('change'))"
     )
     browser.until(READY)
-
-
-@pytest.mark.slow
-def test_the_papers_motions_are_those_of_a_beam_in_hertz(browser):
-    """Its ratios stay, and so do motion, impacts and diagram; back in the paper's units it is
-    Figure 6's structure again, bit for bit.
-    """
-    browser.chosen()
-    eta = browser.run("return explorer.eta")
-    impacts = browser.run("return explorer.inspector.found.response.impacts")
-    own(browser)
-    assert float(browser.get("hertz", "value")) == pytest.approx(40.0 * eta)
-    assert float(browser.get("f2", "value")) == pytest.approx(40.0 * np.sqrt(1.2), rel=1e-6)
-    assert browser.run("return explorer.inspector.found.response.impacts") == impacts
-    gap = 9.80665 / (2.0 * np.pi * 40.0) ** 2  # 1 g is so much for a eta^2
-    peak = browser.run("return explorer.inspector.found.response.peak")
-    assert f"largest gap, mm{1e3 * gap * peak:.4g}" in browser.text("numbers")
-    for words in ("frequency, Hz", "amplitude of the box, mm", "acceleration of the box, g1"):
-        assert words in browser.text("numbers")
-    browser.run(
-        "const units = document.getElementById('units'); units.value = 'paper';"
-        "units.dispatchEvent(new Event('change'))"
-    )
-    assert browser.run("return explorer.structure") == browser.run("return explorer.table.usual")
 
 
 SHOWN = {  # states of the page: a link's words, and what is done then

@@ -1,7 +1,6 @@
 """The page in headless browsers: each way to use it, and the bits of what it shows."""
 
 import shlex
-import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
@@ -13,7 +12,6 @@ from orchestrate.explorer.page import explore
 from orchestrate.fmu import OSCILLATOR, Instance, begin, find, sampled
 from orchestrate.model import Excitation
 from orchestrate.model.ranges import PUSHES
-from orchestrate.response.equations import absolute_accelerations
 from orchestrate.response.questions import Point
 from orchestrate.response.spectra import acceleration_spectrum
 
@@ -165,23 +163,6 @@ def test_spectra_and_exponents_are_those_of_python(shown, name):
     assert found["error"] == pytest.approx(float(expected.standard_error[0]), rel=1e-3)
 
 
-def test_a_response_that_settles_slowly_repeats_after_no_invented_period(chromium, page):
-    chromium.open(page, "#e=0.5&eta=2.5929473397488296&start=0,0,0,0", whole=False)
-    chromium.chosen()
-    structure = orchestrate.Structure(e=0.5)
-    data = orchestrate.sweep(structure, eta=[2.5929473397488296], progress=False)
-    response = "explorer.inspector.found.response"
-    found = chromium.run(f"return [{response}.multiplicity, {response}.decided]")
-    (row,) = zip(data.multiplicity.values, data.multiplicity_decided.values, strict=True)
-    assert found == list(row) == [1, 2]
-    chromium.until("return explorer.inspector.exponent")
-    assert chromium.text("sentence").startswith("Undecided whether it repeats, perhaps after 1 p")
-    assert "repeats afterundecided" in chromium.text("numbers")
-    chromium.until("return explorer.basin.tried")
-    assert not chromium.run("return explorer.basin.others")
-    assert chromium.console() == []
-
-
 def test_a_click_shows_the_motion_that_the_command_computes(browser, swept, tmp_path, capsys):
     browser.mouse("diagram", (0.37, 0.4))
     eta = browser.chosen()
@@ -201,26 +182,6 @@ def test_a_click_shows_the_motion_that_the_command_computes(browser, swept, tmp_
     assert "impacts in 10 periods" in browser.get("history", "aria-label")
 
 
-@pytest.mark.slow
-def test_a_dragged_region_is_computed_anew_and_there_is_a_way_back(browser, swept):
-    whole = etas(browser)
-    browser.mouse("diagram", (0.35, 0.3), (0.4, 0.3), (0.45, 0.3))
-    browser.until("return explorer.regions.complete")
-    region = etas(browser)
-    assert len(region) >= 300 and whole[0] < region[0] < region[-1] < whole[-1]
-    lane = f"{DIAGRAM}.lanes[0]"
-    start = browser.numbers(f"{lane}.from")
-    assert any(np.array_equal(start, state) for state in swept.end_state.values)
-    found = orchestrate.sweep(
-        orchestrate.Structure(), eta=region[:120], start=start, direction="up", progress=False
-    )
-    assert gaps(browser)[:120].tobytes() == found.xi_rel.values.tobytes()
-    browser.click("back")
-    assert np.array_equal(etas(browser), whole)
-    browser.click("forth")
-    assert np.array_equal(etas(browser), region)
-
-
 def test_a_link_restores_the_view(chromium, page):
     browser = chromium
     browser.open(page, "#from=2.8&to=3.1&direction=up&e=0.6&eta=2.95", whole=False)
@@ -233,52 +194,6 @@ def test_a_link_restores_the_view(chromium, page):
     assert browser.numbers(f"{MOTION}.states").tobytes() == before.tobytes()
     assert browser.run("return location.hash") == link
     assert browser.console() == []
-
-
-@pytest.mark.slow
-def test_the_basin_fills_and_a_click_or_a_key_on_it_starts_there(browser):
-    from selenium.webdriver.common.keys import Keys
-
-    browser.run("explorer.choose(1.3, true)")
-    browser.chosen()
-    browser.click("others")
-    browser.until("return document.getElementById('basins').dataset.complete === 'true'")
-    rows = browser.text("basins")
-    assert "impacts a period" in rows
-    assert browser.run("return explorer.basin.view.labels.every((label) => label >= 0)")
-    before = browser.run("return explorer.inspector.choice.start")
-    browser.mouse("basin", (0.5, 0.3))
-    after = browser.run("return explorer.inspector.choice.start")
-    assert before != after and after[1] > after[0]
-    browser.run("document.getElementById('basin').focus()")
-    browser.keys(Keys.ARROW_UP, Keys.ARROW_UP, Keys.ENTER)
-    moved = browser.run("return explorer.inspector.choice.start")
-    assert moved[1] - moved[0] == pytest.approx(after[1] - after[0])
-    assert moved[3] - moved[2] > after[3] - after[2]
-
-
-@pytest.mark.slow
-def test_what_is_shown_can_be_taken_home(browser):
-    browser.run("explorer.choose(0.4)")
-    browser.chosen()
-    browser.until("return explorer.inspector.spectra")
-    for name in ("diagram.csv", "diagram.svg", "diagram.png", "history.csv", "spectrum.svg"):
-        browser.run("document.querySelector(`[data-save='${arguments[0]}']`).click()", name)
-    for name in ("diagram", "spectrum"):
-        root = ET.fromstring(browser.download(f"{name}*.svg").read_text())
-        assert root.tag.endswith("svg") and len(list(root)) > 10
-        words = "".join(root.itertext())
-        assert "e = 0.7" in words and "vibroimpact" in words  # its caption
-    picture = browser.download("diagram*.png").read_bytes()
-    assert picture.startswith(b"\x89PNG")
-    height = int.from_bytes(picture[20:24], "big")
-    assert height > browser.run("return document.getElementById('diagram').height") + 40
-    table = np.genfromtxt(browser.download("history*.csv"), delimiter=",", names=True)
-    states = browser.numbers(f"{MOTION}.states").reshape(-1, 4)
-    assert np.array_equal(table["x1"], states[:, 0])
-    felt = absolute_accelerations(states, orchestrate.Structure(), table["in_contact"] != 0.0)
-    assert np.array_equal(np.stack([table["a1_abs"], table["a2_abs"]], axis=1), felt)
-    assert browser.download("diagram*.csv").read_text().count("\n") == 1 + len(etas(browser))
 
 
 def test_keys_alone_do_it(browser):

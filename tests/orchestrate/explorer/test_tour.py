@@ -29,24 +29,15 @@ def settled(name):
     return swept, motion, decided
 
 
-def test_quiet_is_one_weak_impact_a_period_always_the_same():
-    swept, motion, decided = settled("quiet")
-    assert (float(swept.impacts_per_period), float(swept.multiplicity)) == (1.0, 1.0)
-    assert decided == "repeated"
-    _, loud, _ = settled("rattling")
-    assert motion.impact_velocity.max() < loud.impact_velocity.max()
-
-
-def test_rattling_is_three_impacts_a_period_of_three_speeds():
-    swept, motion, decided = settled("rattling")
-    assert (float(swept.impacts_per_period), float(swept.multiplicity)) == (3.0, 1.0)
-    assert decided == "repeated" and not swept.permanent_contact
-    speeds = np.sort(motion.impact_velocity.values[:3])
-    assert np.diff(speeds).min() > 0.1 * speeds.max()
-    assert float(swept.xi_rel_max) > 2.0 * float(settled("quiet")[0].xi_rel_max)
-
-
-def test_chattering_is_more_than_twenty_impacts_and_then_contact():
+def test_quiet_rattling_and_chattering_are_what_their_names_say():
+    (quiet, soft, _), (loud, hard, _) = (settled(name) for name in ("quiet", "rattling"))
+    for swept, name, impacts in ((quiet, "quiet", 1.0), (loud, "rattling", 3.0)):
+        assert (float(swept.impacts_per_period), float(swept.multiplicity)) == (impacts, 1.0)
+        assert settled(name)[2] == "repeated"
+    assert soft.impact_velocity.max() < hard.impact_velocity.max()
+    speeds = np.sort(hard.impact_velocity.values[:3])
+    assert np.diff(speeds).min() > 0.1 * speeds.max() and not loud.permanent_contact
+    assert float(loud.xi_rel_max) > 2.0 * float(quiet.xi_rel_max)
     swept, motion, _ = settled("chattering")
     assert float(swept.impacts_per_period) > 20.0 and bool(swept.permanent_contact)
     assert 0 < int(motion.in_contact.sum()) < motion.sizes["time"]

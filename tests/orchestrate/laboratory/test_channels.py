@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate import InputError, channels, read_record, record
+from orchestrate import InputError, channels, read_record
 from orchestrate.laboratory.columns import split_heading
 
 TIME = np.arange(400) / 1000.0
@@ -53,14 +53,6 @@ def test_what_is_left_beside_known_columns_is_proposed_and_said(
 
 def no_warning():
     return pytest.MonkeyPatch.context()
-
-
-def test_a_half_next_to_the_one_that_is_struck_may_hardly_move(recwarn):
-    quiet = 1e-3 * WAVES[1]
-    record(sample_rate=1000.0, force1=WAVES[0], acceleration1=WAVES[2], acceleration2=quiet)
-    assert not recwarn.list
-    with pytest.warns(UserWarning, match="are these numbers in g"):
-        record(sample_rate=1000.0, box_acceleration=WAVES[0], acceleration1=quiet)
 
 
 @pytest.mark.parametrize("rate", [0, -1.0, float("nan"), "x"])

@@ -17,10 +17,8 @@ from orchestrate import (
     halves,
     measure,
     plot,
-    read_record,
     record,
     shake,
-    write_record,
 )
 from orchestrate.laboratory.analysis.channels import Channels
 from orchestrate.laboratory.analysis.knocks import KNOCKS, Knocks
@@ -227,15 +225,3 @@ def test_a_sound_beam_is_split_by_its_layers_and_touching_halves_are_refused():
     ):
         with pytest.raises(InputError, match=words):
             wrong()
-
-
-@pytest.mark.parametrize("ending", ["csv", "mat", "nc", "uff"])
-def test_files_keep_the_force_with_its_unit(tmp_path, ending):
-    history = shake(BEAM, KNOCK, sample_rate=500.0)
-    made = record(
-        time=history.time.values, force1=history.force1.values, acceleration1=history.a1_abs.values
-    )
-    again = read_record(write_record(made, tmp_path / f"knock.{ending}"))
-    for name in ("force1", "acceleration1"):
-        assert np.array_equal(again[name], made[name]), name
-        assert again[name].attrs["units"] == made[name].attrs["units"]

@@ -8,7 +8,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from orchestrate import InputError, Random, Sampled, Shock, SteppedSine, SweptSine
-from orchestrate.laboratory.pieces import Pieces
 
 ACCURACY = st.floats(-8.0, -2.0).map(lambda power: 10.0**power)
 HERTZ = st.floats(0.1, 500.0)
@@ -212,14 +211,6 @@ def test_sum_of_signals():
     assert (sweep + shock).duration == shock.duration == both.duration
     three = sweep + shock + sweep
     assert len(three.parts) == 3 and three.usual_rate == shock.usual_rate
-
-
-def test_a_cubic_is_its_own_piece():
-    nodes = np.array([0.0, 0.3, 1.0])
-    pieces = Pieces.interpolate(nodes, lambda t: 1.0 + t * (2.0 + t * (3.0 + 4.0 * t)), 0.0)
-    assert np.allclose(pieces.derivatives[0], [1.0, 2.0, 6.0, 24.0])
-    assert np.allclose(pieces.taylor(np.array([0.2]))[0], [1.552, 3.68, 10.8, 24.0])
-    assert np.allclose(pieces(np.array([1.0, 1.0 + 1e-9, 2.0])), [10.0, 0.0, 0.0])
 
 
 SWEEP = {"first": 20.0, "last": 90.0, "duration": 2.0, "acceleration": 4.9}

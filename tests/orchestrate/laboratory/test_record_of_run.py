@@ -15,11 +15,8 @@ from orchestrate import (
     couple,
     measure,
     passage,
-    psd,
     record_of_run,
     shake,
-    track_orders,
-    write_record,
 )
 
 QUICK = Structure.from_file("quick"), Drive.from_file("quick")
@@ -49,14 +46,6 @@ def test_mass_times_acceleration_of_the_box_is_the_force_on_it():
     peak = np.abs(total).max()
     away = np.abs(total - spring.values - unbalance)[inner] / peak
     assert np.median(away) < 1e-3 and len(made.time) == 2000
-
-
-def test_a_run_is_analysed_like_any_record(tmp_path):
-    made = record_of_run(run())
-    orders = track_orders(made, phase=run().angle)
-    assert float(orders.amplitude.sel(channel="box_acceleration", order=1.0).min()) > 0.0
-    assert psd(made).sizes["channel"] == 3
-    assert write_record(made, tmp_path / "run.csv").is_file()
 
 
 @pytest.mark.parametrize(

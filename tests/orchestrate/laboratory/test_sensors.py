@@ -236,21 +236,6 @@ def test_mistaken_measurements_are_one_line(given, words):
     assert words in str(error.value) and "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("excitation", [BOX, None])
-def test_a_part_of_a_history_is_read_as_the_whole(excitation):
-    whole = shaken(False)
-    part = whole.isel(time=slice(100, 201))
-    all_of_it, felt = (measure(h, SENSOR, excitation=excitation) for h in (whole, part))
-    assert felt.time.values[[0, -1]] == pytest.approx([0.1, 0.2])
-    both = all_of_it.sel(
-        time=felt.time.values[60:], method="nearest"
-    )  # the filter's own start over
-    for channel in CHANNELS:
-        peak = float(np.abs(both[channel]).max())
-        difference = np.abs(felt[channel].values[60:] - both[channel].values).max()
-        assert difference <= (1e-6 if excitation is not None else 1e-3) * peak, channel
-
-
 @pytest.mark.usefixtures("exported")
 @pytest.mark.parametrize("given", [True, False])
 @pytest.mark.parametrize("knocked", [False, True])

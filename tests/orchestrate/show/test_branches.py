@@ -33,15 +33,6 @@ def test_stable_is_solid_and_unstable_dashed():
     assert dashed.get_xdata()[np.isfinite(dashed.get_ydata())].max() == pytest.approx(2.8)
 
 
-def test_bifurcations_are_marked_each_kind_once_in_the_legend():
-    figure = draw_branch(window(), window())
-    (plane,) = figure.axes
-    words = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert sorted(words) == ["Neimark-Sacker", "period doubling", "stable", "unstable"]
-    marks = [line for line in plane.get_lines() if line.get_markerfacecolor() == "white"]
-    assert {float(mark.get_xdata()[0]) for mark in marks} == set(window().bifurcation_value.values)
-
-
 def test_a_border_is_a_line_over_both_parameters_with_its_points():
     sides = {"eta": ("point", [2.7, 2.8, 2.9]), "e": ("point", [0.69, 0.7, 0.71])}
     kinds = {"flag_values": [0, 1], "flag_meanings": "cusp fold_flip"}

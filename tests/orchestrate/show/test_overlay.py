@@ -8,9 +8,7 @@ import pytest
 from orchestrate.constants import GRAVITY
 from orchestrate.dynamics.branches import branch
 from orchestrate.model import Structure
-from orchestrate.response import resonance as curves
 from orchestrate.response.sweep import sweep
-from orchestrate.show import resonance
 from orchestrate.show.plot import plot
 
 PAPER = Structure.nondimensional()
@@ -62,19 +60,3 @@ def test_a_branch_is_in_hertz_and_metres_where_the_responses_are():
     line, unit = blue(top), {"nm": 1e-9, "µm": 1e-6}[top.get_ylabel().split()[5].strip(",")]
     there = np.interp(turns / (2.0 * np.pi), line.get_xdata(), line.get_ydata()) * unit
     assert there == pytest.approx(metres, rel=2e-3)
-
-
-def test_displacements_and_gaps_lie_over_resonance_curves():
-    response = curves.resonance(PAPER, eta=[2.45, 2.5, 2.55], transient=2000, progress=False)
-    axes = plot(response, window()).axes
-    for plane, own, of_orbit in (
-        (axes[0], "x1_max", "xi1_max"),
-        (axes[4], "x_rel_max", "xi_rel_max"),
-    ):
-        line = blue(plane)
-        there = np.interp(2.5, line.get_xdata(), line.get_ydata())
-        settled = response[own].sel(eta=2.5, structure="delaminated", direction="up")
-        factor = resonance.display_unit(response, response[own])[0]
-        assert there * factor == pytest.approx(float(settled), rel=2e-3)
-        assert of_orbit in window()
-    assert {line.get_label() for line in axes[2].get_lines()} & {"stable", "unstable"} == set()

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 import orchestrate
 from orchestrate import Drive, InputError, Structure, plot
-from orchestrate.show.kinds import DRAW, kind_of
+from orchestrate.show.kinds import DRAW
 
 PAPER = Structure.nondimensional()
 QUIET = {"progress": False}
@@ -75,13 +75,6 @@ def test_branches_over_a_sweep(continued, drawn):
     assert parts == (sweep,) and list(map(id, more["overlay"])) == [id(branch), id(branch)]
 
 
-def test_runs_of_both_structures(driven, drawn):
-    bonded, delaminated = driven
-    plot(delaminated, bonded)
-    (runs,), _ = drawn["couple"]
-    assert runs == {"delaminated": delaminated, "bonded": bonded}
-
-
 @pytest.mark.parametrize(("which", "part"), [(slice(None), "ramps"), (slice(0), "jumps")])
 def test_a_part_that_there_is_not_is_refused(driven, simulated, which, part):
     answers = driven[which] or simulated
@@ -105,9 +98,3 @@ def test_all_public_questions_are_drawn_or_known_to_have_no_picture():
 def test_what_is_no_answer(given):
     with pytest.raises(InputError, match="cannot plot"):
         plot(given)
-
-
-def test_a_result_says_its_kind_and_older_files_by_their_call(simulated, driven):
-    assert [kind_of(answer) for answer in (simulated[1], driven[0])] == ["simulate", "couple"]
-    assert driven[0].attrs["call"].startswith("couple(")
-    assert kind_of(xr.Dataset(attrs={"call": "sweep(eta=1)"})) == "sweep"

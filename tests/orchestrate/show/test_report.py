@@ -11,7 +11,7 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.show.page import format_number, format_with_error
-from orchestrate.show.verdict import make_verdict, measured_record, verdict_sections
+from orchestrate.show.verdict import make_verdict, verdict_sections
 
 EVIL = "<script>alert(\"1\")</script> & 'others'"
 RATE = 1000.0
@@ -80,19 +80,6 @@ def test_it_needs_no_network_and_its_style_is_the_one_allowed(html):
     assert not any("style" in attributes for _, attributes in parsed(html).tags)
 
 
-def test_a_page_has_pictures_tables_for_a_telephone_and_what_else_moves_a_sign(html):
-    page = parsed(html)
-    (image,) = (attributes for tag, attributes in page.tags if tag == "img")
-    assert image["src"].startswith("data:image/png;base64,") and image["alt"]
-    assert int(image["width"]) > 600 and int(image["height"]) > 300
-    cells = [attributes for tag, attributes in page.tags if tag == "td"]
-    assert cells and all(attributes.get("data-label") for attributes in cells)
-    words = "\n".join(page.texts)
-    assert "order 2 over order 1" in words and "Also moved by: a shaker or a sensor" in words
-    assert "fall of the jump voltage" not in words  # this record does not show it
-    assert "numpy" in words and "vibroimpact" in words
-
-
 def test_numbers_have_the_digits_of_their_errors():
     assert format_with_error(0.57123, 0.0312) == "0.571 ± 0.031"
     assert format_with_error(42.0, np.nan, "Hz") == "42 Hz"
@@ -132,28 +119,3 @@ def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is(verdict):
     without = verdict.assign_attrs(m1=float("nan"))
     sections = {section.heading: section for section in verdict_sections(without)}
     assert not any("kg" in words for words in sections["What was assumed"].points)
-
-
-def test_the_record_is_described_in_the_units_that_are_asked_for():
-    answer = xr.Dataset(
-        {
-            "level_low": ((), 3.9),
-            "level_high": ((), 4.0),
-            "sample_rate": ((), 1250.0),
-            "record_duration": ((), 40.0),
-            "sweep_low": ((), 20.0),
-            "sweep_high": ((), 90.0),
-        },
-        {"frequency": ("window", [30.0, 70.0])},
-        {"record_file": "a.csv", "record_unit": "m/s2", "direction": "down", "command": "diagnose"},
-    )
-    rows = dict(measured_record(orchestrate.units.with_units(answer, "g")).tables[0].rows)
-    assert rows["level of the base, peak"] == "0.398 to 0.408 g"
-    assert rows["sweep"] == "20 to 90 Hz downwards; compared with models: 30 to 70 Hz"
-    assert (rows["sampling rate"], rows["duration"]) == ("1250 Hz", "40 s")
-    assert rows["unit of its numbers"] == "m/s²"  # one spelling on the page
-    assert rows["command that made it"] == "diagnose" and "sensors" not in rows
-    noted = answer.assign_attrs(record_unit_note="--unit g was used, although the file says m/s2")
-    rows = dict(measured_record(noted).tables[0].rows)
-    assert "although" in rows["unit of its numbers"]
-    assert measured_record(xr.Dataset()) is None

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from orchestrate import InputError, SteppedSine, SweptSine, harmonics, read_record, track_orders
+from orchestrate import InputError, SteppedSine, SweptSine, harmonics, track_orders
 
-from .records import DAMPED, LIGHT, SWEEP, make, random_record, swept_record, transfer
+from .records import DAMPED, make, random_record, swept_record, transfer
 
 RATE = 2000.0
 SWEEPS = {
@@ -75,28 +75,6 @@ def test_a_settled_stepped_sine_has_the_steady_state():
     assert distortion.sizes["time"] == 3 and float(distortion.max()) < 1e-3
 
 
-def test_only_frequencies_that_the_record_has_whole():
-    record = swept_record(DAMPED.as_bonded(), STEPPED)
-    end = float(STEPPED.measured_times()[1, 1])
-    part = record.sel(time=slice(None, end + 0.01))
-    assert track_orders(part, phase=STEPPED).frequency.values.round(6).tolist() == [30.0, 52.0]
-    begin = record.sel(time=slice(0.0, 1.0))
-    with pytest.raises(InputError, match="expected all of what is measured at a frequency"):
-        track_orders(begin, phase=STEPPED)
-
-
-def test_opening_shows_in_order_2_and_in_the_distortion():
-    sound, parted = swept_record(LIGHT.as_bonded()), swept_record(LIGHT)
-    bonded, delaminated = (track_orders(one, phase=SWEEP) for one in (sound, parted))
-    second = [x.amplitude.sel(channel="acceleration1", order=2.0) for x in (bonded, delaminated)]
-    first = bonded.amplitude.sel(channel="acceleration1", order=1.0)
-    assert float(second[0].max()) < 1e-4 * float(first.max())
-    assert float(second[1].max()) > 100.0 * float(second[0].max())
-    noise = [harmonics(one, phase=SWEEP).sel(channel="acceleration1") for one in (sound, parted)]
-    assert float(noise[0].distortion.max()) < 0.002
-    assert float(noise[1].distortion.max()) > max(0.05, 50.0 * float(noise[0].distortion.max()))
-
-
 def test_distortion_of_a_known_signal():
     sweep = SWEEPS["up"]
     time = np.arange(int(6.0 * RATE)) / RATE
@@ -161,14 +139,3 @@ def test_silence_between_two_sweeps_has_no_orders(noise):
     assert moving.all() and len(answer.time) > 40
     expected = sweep.frequency(np.where(answer.time < 8.0, answer.time, answer.time - 10.0))
     assert np.abs(answer.frequency - expected).max() < 2.0  # of a window that is partly silent
-
-
-def test_messages_name_the_column_that_the_user_gave(tmp_path):
-    time = np.arange(0.0, 2.0, 0.01)
-    path, names = tmp_path / "beam.csv", "t [s],shaker, top [g],face [g]"
-    head = names.replace("shaker, top", '"shaker, top').replace("[g],face", '[g]",face')
-    columns = np.column_stack([time, 0.0 * time, np.sin(60.0 * time)])
-    np.savetxt(path, columns, delimiter=",", header=head, comments="")
-    data = read_record(path, channels=("t", "shaker, top", "face"))
-    with pytest.raises(InputError, match='^base "shaker, top": does not move'):
-        track_orders(data)

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from orchestrate import Structure, frf, psd, spectrogram
-from orchestrate.laboratory.analysis.channels import Channels, averaging
 
 from ....sparing import ordinary
-from .records import DAMPED, LIGHT, make, random_record, transfer
+from .records import DAMPED, make, random_record, transfer
 
 HEAVILY = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.1, zeta2=0.1, e=0.6)
 BAND = slice(14.0, 140.0)
@@ -36,37 +35,6 @@ def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator
         assert np.abs(found / expected - 1.0).max() < 0.01
 
 
-@pytest.mark.slow
-def test_estimators_where_the_noise_is():
-    """H1 is right with noise on the response, H2 with noise on the box, Hv with both alike."""
-    draw = np.random.default_rng(3).normal
-    box = draw(size=100_001)
-    response, noise, other = 2.0 * box[:-1], 0.8 * draw(size=100_000), 0.8 * draw(size=100_000)
-    records = {
-        "H1": make(1000.0, box[1:], response + noise),
-        "H2": make(1000.0, box[1:] + noise, response),
-        "Hv": make(1000.0, box[1:] + noise, response + other),
-    }
-    for right, record in records.items():
-        answer = frf(record, resolution=20.0)
-        expected = 2.0 * np.exp(-2j * np.pi * answer.frequency.values / 1000.0)
-        for estimator in ("H1", "H2", "Hv"):
-            found = answer.sel(estimator=estimator, channel="acceleration1")
-            found = (found.magnitude * np.exp(1j * found.phase)).values
-            inner = slice(2, -2)
-            away = np.abs(np.mean(found[inner] / expected[inner]) - 1.0)
-            assert (away < 0.01) == (right == estimator), (right, estimator, away)
-
-
-def test_opening_lowers_the_coherence():
-    whole = frf(random_record(LIGHT.as_bonded(), 1, 40.0), resolution=0.5)
-    parted = frf(random_record(LIGHT, 1, 40.0), resolution=0.5)
-    away = abs(whole.frequency - 48.0) > 10.0
-    band = (whole.frequency > 60.0) & (whole.frequency < 140.0) & away
-    one, other = (float(x.coherence[0].where(band).median()) for x in (whole, parted))
-    assert one > 0.999 and other < 0.9
-
-
 # -- averages -------------------------------------------------------------------------------------
 
 
@@ -83,14 +51,6 @@ def test_independent_averages_are_those_of_the_scatter(window, overlap):
     lines = np.stack([one.psd.sel(channel="acceleration1").values[3:-3] for one in densities])
     scatter = (lines.var(axis=0) / lines.mean(axis=0) ** 2).mean()
     assert np.isclose(1.0 / scatter, float(densities[0].averages), rtol=0.1)
-
-
-def test_segments_fit_into_the_record():
-    channels = Channels.from_record(make(100.0, np.arange(1000.0), np.arange(1000.0)))
-    chosen = averaging(channels, 1.0, "hann", 0.5)
-    assert (chosen.length, chosen.overlap, chosen.segments) == (100, 50, 19)
-    assert averaging(channels, 0.1, "hann", 0.5).segments == 1
-    assert averaging(channels, 0.1, "hann", 0.5).independent == 1.0
 
 
 # -- power density --------------------------------------------------------------------------------
@@ -139,11 +99,3 @@ def test_a_sine_has_its_amplitude_where_and_when_it_is(begin):
     half = 0.5 / 4.0  # whole parts alone
     assert begin + half - 1e-3 <= float(answer.time[0]) <= begin + half + 0.05
     assert begin + 8.0 - half - 0.05 <= float(answer.time[-1]) <= begin + 8.0 - half + 1e-3
-
-
-def test_one_spectrum_of_the_whole_record():
-    time = np.arange(100) / 100.0
-    record = make(100.0, np.sin(2 * np.pi * 10 * time), 2 * np.sin(2 * np.pi * 10 * time))
-    answer = spectrogram(record, resolution=1.0, window="boxcar")
-    assert answer.sizes["time"] == 1
-    assert np.isclose(float(answer.amplitude.sel(frequency=10.0, channel="acceleration1")[0]), 2.0)

@@ -88,12 +88,6 @@ def test_density_of_a_sine_has_its_closed_form():
     assert np.allclose(shown.density, expected, rtol=0.02)
 
 
-def test_a_channel_at_rest_has_no_shape():
-    answer = probability_density(make(100.0, np.zeros(500), np.sin(np.arange(500.0))))
-    assert np.isnan(float(answer.skewness[0])) and np.isnan(float(answer.kurtosis[0]))
-    assert float(answer.standard_deviation[0]) == 0.0
-
-
 # -- all analyses ---------------------------------------------------------------------------------
 
 
