@@ -127,6 +127,8 @@ READ = [
     (grammar.parse_one_or_more, "1:2:0.5", (1.0, 1.5, 2.0)),
     (grammar.parse_sensor, "9:20", (9.0, 20.0)),
     (grammar.read_acceleration, "-1g", -9.80665),
+    (grammar.read_acceleration, "2.5", 2.5),
+    (grammar.parse_values, "5000000:5000001:0.5", (5e6, 5000000.5, 5000001.0)),
     (grammar.read_noise, "30ug/sqrt(Hz)", pytest.approx(30e-6 * 9.80665)),
     (grammar.read_length, "20um", 20e-6),
 ]
