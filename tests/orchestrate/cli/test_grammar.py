@@ -133,6 +133,8 @@ READ = [
     (of_quantity("box_acceleration"), "-1g", -9.80665),
     (of_quantity("noise"), "30ug/sqrt(Hz)", pytest.approx(30e-6 * 9.80665)),
     (of_quantity("amplitude"), "20um", 20e-6),
+    (of_quantity("box_acceleration"), "2.5", 2.5),
+    (grammar.parse_values, "5000000:5000001:0.5", (5e6, 5000000.5, 5000001.0)),
 ]
 
 

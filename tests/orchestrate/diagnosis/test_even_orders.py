@@ -31,7 +31,7 @@ def test_faces_move_apart_where_their_order_2_differs(opposite):
     base = 0.1 * np.sin(2.0 * np.pi * (26.0 + 0.8 * time) * time)
     evidence = record_evidence(orchestrate.record(time=time, box_acceleration=base, **rows))
     even = even_orders(evidence, np.zeros_like(evidence.measured))
-    assert even.is_order_2_seen
+    assert even.is_order_2_seen and even.is_opening_seen
     assert (even.moved_apart > 1.5) if opposite else (even.moved_apart < 0.5)
 
 

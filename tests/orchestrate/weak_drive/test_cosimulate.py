@@ -19,6 +19,8 @@ from orchestrate.weak_drive.connection import (
     MOTION,
     PUSHES,
     UNITS,
+    Connection,
+    Link,
     proposals,
 )
 
@@ -274,6 +276,9 @@ def test_what_is_proposed_has_the_causality_and_a_name_like_ours(drive):
     for name in (*MOTION, FORCE[0], *PUSHES):
         assert unit_by_name(IN_WORDS[name]).exponents == UNITS[name]
     assert [UNITS[name]["s"] for name in FORCE] == [-2, -3, -4, -5]
+    assert Connection({"force2": Link("push", 1.0), "box_force": Link("f", 1.0)}).pushes == (
+        "force2",
+    )
 
 
 @pytest.mark.parametrize("letters", ["a", "v", "p"])

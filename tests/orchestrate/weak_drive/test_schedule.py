@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from orchestrate import InputError
+from orchestrate.weak_drive.couple import schedule_from_arguments
 from orchestrate.weak_drive.schedule import Constant, Course, Ramp
+
+from .coupled import BEAM
 
 SCHEDULES = {  # voltages at times, duration, times and directions
     "ramp": (
@@ -40,6 +43,17 @@ def test_voltages_and_their_direction(name):
     assert schedule.duration == pytest.approx(duration)
     times = np.array(list(trends), dtype=float)
     assert schedule.trend(times).tolist() == list(trends.values())
+
+
+def test_what_is_usual_of_a_ramp():
+    """A run up that would begin beyond the resonance, near 1.4, spins up from below it."""
+    omega, volts = BEAM.structure.omega, BEAM.drive.volts(BEAM.structure)
+    for ends, spins in (((1.2, 1.6), False), ((1.5, 1.6), True), ((1.6, 1.5), False)):
+        ramp = schedule_from_arguments(*BEAM, tuple(np.multiply(ends, volts)))
+        assert ramp.rate == pytest.approx(1e-4 * volts * omega) and ramp.back
+        assert ramp.settle == pytest.approx(300.0 / omega)
+        assert ramp.spin_up == pytest.approx(600.0 / omega if spins else 0.0)
+        assert not spins or 1.1 * volts < ramp.low < 1.4 * volts
 
 
 @pytest.mark.parametrize("seed", range(3))
