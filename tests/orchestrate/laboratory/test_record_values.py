@@ -136,6 +136,8 @@ def test_velocities_displacements_and_voltages_become_accelerations(tmp_path):
     assert (turned.acceleration2.values == 2.0 * data.acceleration2.values).all()
     path.write_text(path.read_text().replace("\n", "\n,100 mV/g,,\n", 1))
     assert np.allclose(read_record(path).box_acceleration, -turned.box_acceleration)
+    path = table_file(path, "t [s],base [m/s]", time, 1000.0 * time)
+    assert read_record(path).box_acceleration.values == pytest.approx(1000.0, rel=1e-6)
 
 
 UNITS = {"g": G, "m/s\u00b2": 1.0, "m/s^2": 1.0, "mm/s2": 1e-3, "mg": 1e-3 * G}
@@ -214,6 +216,7 @@ def test_uneven_times_are_resampled_on_request_but_not_over_gaps():
 TIMES = [  # a heading, a step, how many; the unit that is right, and the rate then
     ("t", 2500, 9, "us", 400.0),
     ("t", 0.5, 8000, "ms", 2000.0),
+    ("t", 25, 9, "ms", 40.0),
     ("t [s]", 4.0, 2000, "", 0.25),
     ("t [h]", 1, 2000, "", 1 / 3600),
 ]
