@@ -262,7 +262,8 @@ def timed_power(
         count = np.bincount(bins, minlength=settings.bins // 2)
     number, usual = len(count), float(np.mean(count))
     power = np.bincount(bins, errors[0] ** 2, number) / np.maximum(count, 1)
-    floor = max(float(np.sort(power)[: number // 3].mean()), 1e-300)
+    filled = np.sort(power[count > 0])  # of records too slow to judge some bins are empty
+    floor = max(float(filled[: max(len(filled) // 3, 1)].mean()), 1e-300)
     limit = float(chdtri(usual, settings.tail / number)) / usual
     above, middle = np.maximum(power - floor, 0.0), (np.arange(number) + 0.5) / number * TURN
     moment = float(abs(above @ np.exp(1j * middle)) / max(above.sum(), 1e-300))

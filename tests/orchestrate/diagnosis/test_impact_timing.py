@@ -105,6 +105,9 @@ def test_noise_alone_is_far_below_a_strike(tail, expected):
     rises = [timed_power([rng.standard_normal(1024)], phase, settings)[0] for _ in range(500)]
     assert np.median(rises) == pytest.approx(expected, abs=0.02)
     assert max(rises) < 0.7 * TIMING.faint
+    turns = TURN / 6.0 * np.arange(60)  # too slow to judge: most bins are empty
+    slow = [timed_power([rng.standard_normal(60)], turns, settings)[0] for _ in range(500)]
+    assert max(slow) < TIMING.heard
 
 
 def swept_channels(face, samples):
