@@ -123,7 +123,7 @@ def run_until_settled(
     dropped = transient_periods(
         settings.transient, settings.settle, point.excitation.eta(point.structure)
     )
-    rule = partial(LoopSettings, samples=settings.samples, known=known, same=settings.same)
+    rule = partial(LoopSettings, samples=settings.samples, known=known, same=loose)
     settled: dict[int, SettledResponse | ReachedMotion] = {}
     places = [(motion, state) for motion in known for state in motion.states]
     done, left = 0, np.arange(len(ends))

@@ -6,7 +6,7 @@
 - It is on an *orbit* that Newton's method finds from its impacts over these periods: a possible
   motion, stable, to which the FMU `returns` with the same impacts, and to which the response, if
   nearer than `near`, comes at least half as fast as the multipliers say, or lies within `same`.
-  Where that is the orbit of an earlier start, and it comes ever nearer, it need not repeat first.
+  Within `apart * converged` of an earlier start's orbit, and ever nearer, it is not run on.
 - Without such an orbit, states that repeat within `converged` are *repeated*.
 - They are *undecided* near an unstable orbit, or without the impacts that such a motion must have.
 - All else is *irregular*, a torus or chaos; undecided if another start repeats only after half of

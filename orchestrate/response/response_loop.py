@@ -56,7 +56,7 @@ class LoopSettings:
     chain_gap: float | None = None
     peak_periods: int = 0  # periods looked at for peaks, at most
     # periodic motions of the one point that all responses have: a response is not run on that
-    # comes within `same` of one, over its size, and is nearer than `compared` periods before;
+    # comes within `same` of one, over its size, and is nearer still `compared` periods later;
     # `reached` is the number, from 1, of the nearest of all their states
     known: Sequence[PeriodicMotion] = ()
     same: float = 0.0

@@ -285,7 +285,7 @@ EXPORT double nearest_state(const double *states, size_t count, double frequency
     return memory[DISTANCE];
 }
 
-/* Note the state of known motions that a response has reached, from one: so near, and nearer than when it was compared before; the end is its own. */
+/* Note the state of known motions that a response has reached, from one: so near when it was compared before, and nearer now; the end is its own. */
 static bool compare(Oscillator *o, const Task *task, Progress *progress) {
     size_t i = progress->response;
     const Known *known = task->known;
@@ -297,7 +297,7 @@ static bool compare(Oscillator *o, const Task *task, Progress *progress) {
         double away = nearest_state(states, known->periods[k], task->traits[TRAITS * i + BOX_FREQUENCY], known->gaps[k], state, task->memory);
         if (!k || away < nearest) nearest = away, reached = first + (int32_t)task->memory[NEAREST];
     }
-    task->counts[COUNTS * i + REACHED] = nearest < known->within && nearest < progress->away ? reached : 0;
+    task->counts[COUNTS * i + REACHED] = progress->away < known->within && nearest < progress->away ? reached : 0;
     progress->away = nearest;
     return true;
 }

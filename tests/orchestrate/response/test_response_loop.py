@@ -103,7 +103,7 @@ def test_every_form_runs_through_the_same_loop(instance, form):
 
 @pytest.mark.parametrize("same", [0.3, 1e-2, 1e-3, 1e-9])
 def test_a_response_ends_where_it_comes_near_a_known_motion(instance, same):
-    """At the first look from which on it is within the tolerance, and nearer than before."""
+    """Where it is nearer than at the look before, when it was within the tolerance."""
     structure = Structure.nondimensional()
     point = Point(structure, Excitation.nondimensional(1.0, structure))
     frequency, period = point.excitation.frequency, point.excitation.period
@@ -112,8 +112,8 @@ def test_a_response_ends_where_it_comes_near_a_known_motion(instance, same):
     orbit = SimpleNamespace(states=states[-1:], gap=gap)
     far = SimpleNamespace(states=states[-2:] + 20.0, gap=gap)
     away = [nearest_state(orbit.states, frequency, gap, states[k - 1])[1] for k in range(8, 401, 8)]
-    pairs = enumerate(zip([0.0, *away], away, strict=False))
-    looks = [look for look, (before, now) in pairs if now < same and now < before]
+    pairs = enumerate(zip([np.inf, *away], away, strict=False))
+    looks = [look for look, (before, now) in pairs if before < same and now < before]
     settings = LoopSettings(transient=400, samples=8, same=same, known=(far, orbit), compared=8)
     results = response_loop(instance).respond([point] * 2, [(0.0, 1.0, 0.0, 0.0)] * 2, settings)
     assert results.counts["reached"].tolist() == [3 if looks else 0] * 2  # of all states
