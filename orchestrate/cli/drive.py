@@ -192,7 +192,9 @@ class OfSchedule(OfRamp):
         ends = self.parse_voltages(structure, drive)
         if (len(ends) == 1) != (self.duration is not None):
             given = " to ".join(f"{end:g}" for end in ends)
-            raise InputError(f"{given} V: expected --duration, in s, with one voltage and only so")
+            raise InputError(
+                f"voltage {given} V: expected --duration, in s, with one voltage and only so"
+            )
         return schedule_from_arguments(
             structure,
             drive,

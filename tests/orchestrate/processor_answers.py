@@ -14,7 +14,8 @@ from orchestrate import Drive, Structure, branch
 from orchestrate.weak_drive import averaged
 
 from .weak_drive.coupled import System
-from .weak_drive.validation import branch_of, random_sets
+from .weak_drive.test_drive_branch import branch_of
+from .weak_drive.test_validation import random_sets
 
 RIG = System(Structure.from_file("rig"), Drive.from_file("rig"))
 

@@ -375,7 +375,7 @@ def test_the_excitation_of_a_file_acts(ask, tmp_path):
     path.write_text(f"{head}frequency_hz = 5.0\namplitude = 0.0\nforce1 = 2.0\n")
     assert "impacts" in ask("simulate", "--structure", path, *short).success().out
     levels = ("resonance", *BEAM, "--hz", "12", "--g", "0.1,0.2", "--force2", "1")
-    ask(*levels).complaint("--force2: resonance_levels does not know it yet")
+    ask(*levels).complaint("--force2: expected one level, --g")
 
 
 def test_curves_over_sweeps_and_maps(ask, tmp_path):

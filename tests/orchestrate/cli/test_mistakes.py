@@ -24,17 +24,17 @@ MISTAKES = {  # options of each command, then what its line says
         --eta 1e7 : --eta 10000000.0 | <= eta <= 1e+06
         --eta abc : --eta abc: | not numbers | FIRST:LAST:STEP
         --eta 2:1:0.1 : --eta 2:1:0.1: | FIRST <= LAST
-        --eta 1:2:1e-9999999 : --eta 1:2:1e-9999999: | 10000000 values
+        --eta 1:2:1e-9999999 : --eta 1:2:1e-9999999: | STEP > 0
         --over e --eta 1 : --over and --values | both
         --over e --values 0.1,0.2 : frequency: nothing given | --eta
         --over eta --values 1,2 : --over eta | --eta VALUES
         --over amplitude --values 1,2 --hz 1 : --over amplitude | --g VALUES
         --over k1 --values 1,2 --eta 1 --g 1 : --over k1 | --hz
-        --over e --values 0.1,true --eta 1 : --over e --values true | not a number
+        --over e --values 0.1,true --eta 1 : --over e --values true | a number
         --set e : --set e | NAME=VALUE
-        --set e=abc : --set e=abc | abc is not a number
+        --set e=abc : --set e=abc | a number
         --set gap=1mm : --set gap: no parameter | did you mean clearance?
-        --set m=1 : m: no parameter of a structure | did you mean m1?
+        --set m=1 : --set m: no parameter | did you mean m1?
         --set zeta=1% --set zeta2=0.1 : zeta2 is set already
         --set preload=-20um : preload=-20um: expected a length above 0
         --set e=0.1 --set e=0.2 : --set e=0.2 | each name once
@@ -48,7 +48,7 @@ MISTAKES = {  # options of each command, then what its line says
         : frequency: nothing given | --eta | --hz | --rpm | --frequency
         --eta 1,2 : --eta 1,2 | 2 values | with a decimal point, 1.2
         --hz 1 --g 0,5 : --g 0,5: expected a number > 0 | with a decimal point, 0.5
-        --set f1=46,5 --eta 1 : --set f1=46,5 | is not a number | with a decimal point, 46.5
+        --set f1=46,5 --eta 1 : --set f1=46,5 | a number | with a decimal point, 46.5
         --eta 1 --frequency 2 : --eta and --frequency | one of them
         --frequency 2 : --frequency 2 | --amplitude | --g
         --structure beam --eta 1 : --eta 1 | 75 rad/s | --amplitude | --g
@@ -133,13 +133,13 @@ MISTAKES = {  # options of each command, then what its line says
         --rated-voltage 9 --no-load-rpm 9 --stall-torque 1 --set motor_constant=2 : given with --r
         --eta0 1:2 --voltage 1:2 : --eta0 and --voltage | one of them
         --step -0.1 : --step -0.1 s | 0.0001 <= step <= 1
-        --eta0 1.2 : one voltage, 1.2 V | --duration
+        --eta0 1.2 : voltage 1.2 V | --duration
         --eta0 1:2 --duration 3 : --duration | one voltage
         --rate 1e-4,5e-5 : --rate 1e-4,5e-5 | expected one | jump-voltages
         --rate 1e-4 --volt-rate 1 : --rate and --volt-rate
         --course a.csv --eta0 1:2 : --course and --eta0
         --speed-control 1.5 --speed-gradient : --speed-control and --speed-gradient
-        --gain 2 : --gain 2 | --speed-control with it
+        --gain 2 : --gain | --speed-control
     """,
     "jump-voltages": """
         --rate 1:2:3 : --rate 1:2:3 | several such as 1e-4,5e-5

@@ -163,7 +163,7 @@ def test_what_sensors_read_of_a_simulated_test_is_a_record(ask, tmp_path):
     assert done.code and "no column 'side'; expected one of" in done.err
     for options, words in {
         "--noise 1": "--noise: of sensors; expected --sensor HZ with it",
-        "--sensor 9 --noise 3ug/Hz": "--noise 3ug/Hz: expected a number in (m/s2)/sqrt(Hz)",
+        "--sensor 9 --noise 3ug/Hz": "--noise 3ug/Hz: expected a number",
         "--sensor 9 --set wall=true": "wall = True: --sensor does not know it yet",
     }.items():
         ask("shake", "--hammer", "20:0.004", *options.split()).complaint(words)
