@@ -54,18 +54,18 @@ class TimingSettings:
     one_sided: float = 0.59
     # see `Strikes`: rattling clamps, which are soft, make 0.21, faces 0.36
     blow: float = 0.28
-    # correlation of both sensors' blows: clamps with torsion make -0.9, and above 0 it is one blow
-    opposite: float = -0.95
+    # correlation of both sensors' blows: clamps with torsion make -0.953, above 0 it is one blow
+    opposite: float = -0.97
     together: float = 0.0
-    order2: float = 0.02  # parts of some percent of the mass make 0.014, pressed faces 0.02
+    order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
     # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.54 or less
     # before `at_end` of the stroke, or an order 2 of 0.54 where faces make up to 0.47; a slow half
-    # that a moving one strikes up to 2
+    # that a moving one strikes up to 1.5, a stop then from 1.8
     softens: float = -0.5
     lifts: float = 0.5
     at_end: float = 0.8
     stiffens: float = 0.5
-    stiffens_moving: float = 2.0
+    stiffens_moving: float = 1.5
     middle: float = 0.6  # share of the windows for the spread: one by itself is chance
     spread: float = 0.15  # of the place, over the stroke: stops and play make 0.07, gaps 0.28
     known: float = 0.03  # error of a frequency that is known
