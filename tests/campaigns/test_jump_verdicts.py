@@ -114,15 +114,18 @@ def bracket_problem(system: System, way: str, jump: Jump, rate: float) -> str:
     far, past = stays - sign * EARLY, lost + sign * TOLERANCE
     course = (far - sign * EARLY, far, stays, past, stays)
     is_slow = jump.high - jump.low > TOLERANCE  # it is as wide as growth takes to be seen
-    part = PATIENT if is_slow else 1.0
-    first, before, there, beyond, back = held_speeds(system, way, course, rate, part)
-    steep = abs(before - first) < CHANGE  # else a motion was lost between the two
-    expected = before + (before - first) * steep
-    if abs(beyond - there) < SAME and abs(beyond - expected) < SAME:
-        return f"lost at {stays:.5f}, but past it, held, the speed goes on as from {far:.5f}"
-    if abs(back - there) < SAME and abs(back - expected) < SAME:
-        return f"lost at {stays:.5f}, but the speed comes back there"
-    return ""
+    problem = ""
+    for part in (PATIENT,) if is_slow else (1.0, PATIENT):  # a motion may be lost only after long
+        first, before, there, beyond, back = held_speeds(system, way, course, rate, part)
+        steep = abs(before - first) < CHANGE  # else a motion was lost between the two
+        expected = before + (before - first) * steep
+        if abs(beyond - there) < SAME and abs(beyond - expected) < SAME:
+            problem = f"past it, held, the speed goes on as from {far:.5f}"
+        elif abs(back - there) < SAME and abs(back - expected) < SAME:
+            problem = "the speed comes back there"
+        else:
+            return ""
+    return f"lost at {stays:.5f}, but {problem}"
 
 
 def grid_problem(system: System, way: str, jumps: Sequence[Jump], rate: float) -> str:
