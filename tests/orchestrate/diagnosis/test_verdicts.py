@@ -45,6 +45,9 @@ dry friction: locked=0.3 -> not described
 a channel is saturated: clipped=0.01 -> undecided
 the sweep does not pass the resonance: end_response=0.98 -> undecided
 the times are in ms: resonance=0.046 -> undecided
+a resonance within 1.3 times the guess's: resonance=67 -> delaminated
+one beyond: resonance=68.2 -> undecided
+one below: resonance=32.2 -> undecided
 seven samples in a period: samples=7 -> undecided
 noise: heard=1.5 excess=0.3 hidden=0.19 -> undecided
 opens from the higher level on: heard=1.5 excess=0.3 | high=8 -> delaminated
