@@ -46,12 +46,10 @@ WINDOWS_FLAGS = ("-U__CRT__NO_INLINE",)  # its headers' isnan and isfinite, inli
 
 @functools.cache
 def warn_once(line: str) -> None:
-    """Log a warning, once however many FMUs the line is about."""
     log.warning("%s", line)
 
 
 def ziglang(*arguments: str) -> list[str]:
-    """Return the command of a program of ziglang's; raise ``CannotExport`` without ziglang."""
     require("ziglang", "compiles the kernel")
     return [sys.executable, "-m", "ziglang", *arguments]
 
@@ -70,7 +68,6 @@ def own_compiler(name: str) -> list[str]:
 
 
 def run(command: Iterable[str], folder: str | Path, what: str) -> None:
-    """Run a compiler in a folder, for ``what``; raise ``CannotExport`` with its first error."""
     done = subprocess.run([*command], cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
         told = done.stderr.splitlines()
@@ -79,20 +76,17 @@ def run(command: Iterable[str], folder: str | Path, what: str) -> None:
 
 
 def zig_target(name: str) -> list[str]:
-    """Return zig's options for a platform."""
     of = PLATFORMS[name]
     return ["-target", of.zig_target, f"-mcpu={of.cpu}"]
 
 
 def compile_command(name: str) -> list[str]:
-    """Return the command that compiles a C file for a platform to an object file."""
     is_windows = name.endswith("-windows")
     compiler = own_compiler(name) or [*ziglang("cc"), *zig_target(name), *CLANG_FLAGS]
     return [*compiler, *FLAGS, *(WINDOWS_FLAGS if is_windows else ["-fPIC"]), "-c"]
 
 
 def link_command(name: str, title: str, objects: Iterable[str]) -> list[str]:
-    """Return the command that links object files to a library, named as its platform has it."""
     target = f"{title}{PLATFORMS[name].suffix}"
     own = own_compiler(name)
     if own:
@@ -115,7 +109,6 @@ def kernel_object(name: str, source: bytes) -> bytes:
 
 @functools.cache
 def compile_object(command: tuple[str, ...], source: bytes, what: str) -> bytes:
-    """Run a command on the source as ``kernel.c`` and return the ``kernel.o`` that it writes."""
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as folder:
         (Path(folder) / "kernel.c").write_bytes(source)
         run(command, folder, what)

@@ -67,7 +67,6 @@ def add_array(parent: ET.Element, model: Model, array: Array, reference: int) ->
 
 
 def add_clock(parent: ET.Element, model: Model) -> None:
-    """Add the output clock, where the model has one."""
     if model.clock:
         attributes = {
             "name": model.clock.name,

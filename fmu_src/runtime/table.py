@@ -75,12 +75,10 @@ class Variable:
 
     @property
     def calculated(self) -> bool:
-        """Whether the FMU computes the variable, so that nobody can set it."""
         return self.causality in ("output", "local")
 
     @property
     def fixed(self) -> bool:
-        """Whether the variable can be set before the end of initialisation only."""
         return self.variability == "fixed"
 
     def text(self, value: float) -> str:
@@ -113,25 +111,21 @@ class Variable:
 
 
 def parameter(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
-    """Return a parameter, fixed unless said otherwise."""
     given = {"variability": "fixed", "initial": "exact", **more}
     return Variable(name, description, "parameter", unit, start=start, **given)
 
 
 def positive(name: str, unit: str, start: float, description: str) -> Variable:
-    """Return a parameter that is not zero."""
     return parameter(name, unit, start, description, minimum=TINY, maximum=LARGE)
 
 
 def not_negative(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
-    """Return a parameter that may be zero."""
     return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE, **more)
 
 
 def start_value(
     name: str, unit: str, description: str, limit: float = DRIVE_LIMIT, **more: Any
 ) -> Variable:
-    """Return the start value of a co-ordinate, of either sign."""
     return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit, **more)
 
 
@@ -153,7 +147,6 @@ def evaluation_limit(function: str) -> Variable:
 
 
 def drive(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
-    """Return an input, of either sign unless said otherwise."""
     given = {"minimum": -HUGE, "maximum": HUGE, **more}
     return Variable(name, description, "input", unit, start=start, **given)
 
@@ -161,7 +154,6 @@ def drive(name: str, unit: str, start: float, description: str, **more: Any) -> 
 def output(
     name: str, unit: str, description: str, known: Iterable[str] = (), **more: Any
 ) -> Variable:
-    """Return an output, calculated from the start values ``known``."""
     given = {"initial": "calculated", "initial_dependencies": tuple(known), **more}
     return Variable(name, description, "output", unit, **given)
 

@@ -77,7 +77,6 @@ class PlaneAxis(NamedTuple):
     number: int
 
     def values(self) -> Floats:
-        """Return the axis's equidistant coordinate values, from low to high."""
         return np.linspace(self.low, self.high, self.number)
 
 
@@ -180,7 +179,6 @@ class BasinJob(Question):
     def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], point: Point, table: Table
     ) -> Table:
-        """Group all starts' settled motions into attractors; return arrays with starts' labels."""
         there = table["decided"] != ABSENT
         starts = {name: rows[there] for name, rows in table.items()}
         matched = continue_attractors(instances, [point], [starts], self.settings, self.known)
@@ -210,7 +208,6 @@ class BasinJob(Question):
 
 
 def run_to_phase_zero(instance: Instance, point: Point, state: State, phase: float) -> State:
-    """Simulate from a start at a phase until the box is at phase 0; return the state there."""
     left = -phase % TURN
     if left == 0.0:
         return state
@@ -221,7 +218,6 @@ def run_to_phase_zero(instance: Instance, point: Point, state: State, phase: flo
 
 
 def checked_axis(name: str, argument: Any) -> PlaneAxis:
-    """Return a ``PlaneAxis`` from the user's (name, low, high, count); raise if invalid."""
     expected = f"expected (name, low, high, count) with a name of {', '.join(AXES)}"
     try:
         axis, low, high, count = argument
@@ -336,7 +332,6 @@ def basin(
 
 
 def mean_over_attractors(found: xr.Dataset, frequency: float) -> Floats:
-    """Return the mean state over attractors of :func:`attractors`, found at this frequency."""
     over = [name for name in found.get("state", xr.DataArray()).dims if name != "coordinate"]
     if "attractor" not in over or any(
         found.sizes[name] > 1 for name in over if name != "attractor"
@@ -370,7 +365,6 @@ class KnownAttractors(NamedTuple):
 def find_known_attractors(
     point: Point, settings: SettlingRun, running: Mapping[str, Any]
 ) -> KnownAttractors:
-    """Find attractors from a few random starts, to lay the default plane around them."""
     structure, excitation = point
     search: Any = {name: getattr(settings, name) for name in RUN_LENGTHS} | {"settings": settings}
     search |= {name: running[name] for name in running.keys() & {"fmu", "build_folder"}}

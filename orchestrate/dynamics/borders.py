@@ -73,7 +73,6 @@ class BorderJob(Question):
         return call_from_start(self, values, bifurcation=kind, **keywords, **more)
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        """Trace the bifurcation curve over both parameters; return its points as a table."""
         curve, root = start_root(self)
         settings = ContinuationSettings(self.longest, self.most)
         back, forth = (
@@ -107,7 +106,6 @@ class BorderJob(Question):
 
 
 def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
-    """Solve for the bifurcation at which a border curve begins; return equations and root."""
     # both at once: at a fold the orbit at a fixed parameter is no simple root
     (sequence, nodes), values = job.start.as_guess(job.period), np.array(job.values)
     family = Family.from_nodes(job.setting, sequence, nodes)
@@ -245,7 +243,6 @@ def lies_on_curve(curve: xr.Dataset, question: Mapping[str, Any], near: float = 
 
 
 def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
-    """Return both parameters' limits as (low, high) of floats; raise if invalid."""
     try:
         return tuple(checked_limits(*each) for each in zip(names, limits, strict=True))
     except (TypeError, ValueError):
@@ -256,7 +253,6 @@ def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[floa
 def second_start_value(
     structure: Structure, name: str, arguments: tuple[tuple[str, float], ...]
 ) -> float:
-    """Return the second parameter's start value: of excitation or structure."""
     if name in EXCITATION_PARAMETERS and name not in dict(arguments):
         box = (pair for pair in arguments if pair[0] in EXCITATION_PARAMETERS)
         forms = "; ".join(f"{given} = {value!r}" for given, value in box)

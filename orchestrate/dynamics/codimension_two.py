@@ -106,11 +106,9 @@ class CharacteristicPolynomial:
         self.coefficients: Floats = coefficients * np.exp(largest - self.log_size)
 
     def __call__(self, multiplier: complex) -> complex:
-        """Return the characteristic polynomial's value at a (complex) multiplier."""
         return complex(np.polynomial.polynomial.polyval(multiplier, self.coefficients))
 
     def slope(self, multiplier: float) -> float:
-        """Return the characteristic polynomial's derivative at a real multiplier."""
         polynomial = np.polynomial.Polynomial(self.coefficients)
         return float(polynomial.deriv()(multiplier))
 
@@ -129,7 +127,6 @@ class CharacteristicPolynomial:
 def locate_points(
     curve: BifurcationCurve, roots: list[Root], ends: tuple[str, str]
 ) -> list[CodimensionTwoPoint]:
-    """Locate the points of codimension two along a traced curve, in order."""
     points = list(end_points(curve, roots[0], ends[0], 0.0))
     for number, (before, after) in enumerate(zip(roots[:-1], roots[1:], strict=True)):
         points += sorted(
@@ -197,7 +194,6 @@ def test_function_value(
     known: CharacteristicPolynomial | None = None,
     log_size: float = -np.inf,
 ) -> float:
-    """Return a kind's test function at a root of the curve: it changes sign at such a point."""
     if kind in ANGLES:
         return float(root.unknowns[-1] - ANGLES[kind])
     if kind == PointKind.CUSP:
@@ -265,7 +261,6 @@ def end_points(
 def solve_end(
     curve: BifurcationCurve, root: Root, kind: PointKind, reason: str, position: float
 ) -> CodimensionTwoPoint:
-    """Solve for the codimension-two point at which a curve ends, by Newton's method."""
     size = curve.family.size + 2
     resonance = kind in (PointKind.RESONANCE_1, PointKind.RESONANCE_2)
     curve.update_border(root.unknowns)

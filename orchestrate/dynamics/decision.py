@@ -98,7 +98,6 @@ class MotionDecider:
             done += dropped + self.settings.samples
 
     def run_on(self, response: Response, dropped: int) -> Response:
-        """Simulate a response on for some more periods; return the new response."""
         samples, converged = self.settings.samples, self.settings.converged
         return respond(self.plain, *self.point, response.end, dropped, samples, converged)
 
@@ -151,7 +150,6 @@ class MotionDecider:
     # -- known motions ----------------------------------------------------------------------------
 
     def known_motion_at(self, state: ArrayLike, n: int) -> SettledMotion | None:
-        """Return the known motion of ``n`` periods that passes at a state; None if on none."""
         for motion in self.known:
             distance = motion.nearest(state)[1]
             within = self.settings.same if motion.decided == ORBIT else self.settings.alike
@@ -171,18 +169,15 @@ class MotionDecider:
         return motion
 
     def stable_motion(self, orbit: PeriodicOrbit | None, free_phase: float) -> SettledMotion | None:
-        """Return a stable orbit as a motion; None without one."""
         if orbit is None or not orbit.stable:
             return None
         return SettledMotion.from_orbit(self.point, orbit, free_phase)
 
     def stable_orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
-        """Solve for a stable orbit of some periods near a state; None without one."""
         motion = self.stable_motion(*self.orbit_near(state, periods))
         return self.remember(motion) if motion and self.repeats_in_fmu(motion) else None
 
     def converges_to(self, state: ArrayLike, motion: SettledMotion) -> bool:
-        """Return whether the FMU's response from a state comes closer to a stable orbit."""
         excitation, periods = self.point.excitation, motion.multiplicity
         begin(self.plain, *self.point, state)
         if motion.free_phase > 0.0:
@@ -305,7 +300,6 @@ def phase_far_from_impacts(orbit: PeriodicOrbit) -> float:
 def count_impacts_from_pause(
     instance: Instance, point: Point, state: ArrayLike, periods: int
 ) -> int:
-    """Count the impacts of some periods, begun in a pause between impacts."""
     begin(instance, *point, state)
     width = point.excitation.period / PIECES
     counts: list[int] = []

@@ -71,7 +71,6 @@ class AttractorsAtValue:
             self.labels[members] = len(self.motions) - 1
 
     def motion_from_features(self, row: Floats, state: Floats, decided: int) -> SettledMotion:
-        """Rebuild a settled motion from its stored row of numbers and its state at phase 0."""
         decider, n = self.decider, int(row[0])
         known = decider.known_motion_at(state, n)
         if known is None and decided == ORBIT:
@@ -136,7 +135,6 @@ class MatchedAttractors:
 
     @property
     def count(self) -> int:
-        """Number of different attractors over all values of the parameter."""
         return 1 + max(max(row) for row in self.numbers)
 
 
@@ -147,7 +145,6 @@ def continue_attractors(
     settings: SettlingRun,
     seeds: Sequence[Sequence[float]] = (),
 ) -> MatchedAttractors:
-    """Return the attractors along a parameter from random starts, continued and matched."""
     values = [AttractorsAtValue(MotionDecider(*instances, point, settings)) for point in points]
     for value, starts_there in zip(values, starts, strict=True):
         value.group_starts(starts_there, settings)
@@ -200,7 +197,6 @@ def match_neighbours(
     links: Links,
     distance: float = AttractorSettings.neighbour,
 ) -> list[tuple[int, int]]:
-    """Return index pairs of attractors at two neighbouring values that are the same attractor."""
     j = i + 1
     forth = [links[i, a, j] for a in range(len(before.motions))]
     back = [links[j, b, i] for b in range(len(value.motions))]

@@ -54,7 +54,6 @@ class ImpactsQuestion(StartedSeriesQuestion, ABC):
 
 
 def state_after_transient(instance: Instance, item: FollowedResponse, transient: int) -> State:
-    """Simulate ``transient`` periods in the FMU; return the state at phase 0."""
     if not transient:
         return item.start
     begin(instance, *item.point, item.start)

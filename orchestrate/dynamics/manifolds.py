@@ -140,7 +140,6 @@ class ManifoldJob(SingleOrbitQuestion):
         return call_from_start(self, self.values, **keywords)
 
     def saddle(self) -> Saddle:
-        """Solve for the saddle from the start's nodes by Newton's method; raise without one."""
         guess = self.start.as_guess(self.period)
         try:
             family, root = solve_orbit(self.setting, guess, self.values)
@@ -160,7 +159,6 @@ class ManifoldJob(SingleOrbitQuestion):
         return saddle
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        """Grow both sides of the manifold from the saddle; return their points as a table."""
         saddle = self.saddle()
         with Instance(fmus[OSCILLATOR]) as instance:
             growth, largest = math.log(saddle.growth_factor), float(np.abs(saddle.state).max())
@@ -236,7 +234,6 @@ def curves_table(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
 
 
 def curve_variables(table: Table, point: Any) -> dict[str, Any]:
-    """Return dataset variables of the manifold's points: states, gap, arclength, iterate."""
     faces, along = table["rows"][..., :4], ("side", "point")
     xi, gap = faces.copy(), faces[..., 1] - faces[..., 0]
     xi[..., 1] -= point.structure.gap_offset / point.length
@@ -261,7 +258,6 @@ def curve_variables(table: Table, point: Any) -> dict[str, Any]:
 
 
 def break_variables(table: Table) -> dict[str, Any]:
-    """Return dataset variables of the manifold's breaks: place, distance, impacts gained."""
     texts = {
         "iterate": "number of the last point before the break",
         "arclength": "from the saddle to the break",

@@ -115,7 +115,6 @@ def solve_orbit(
     max_iterations: int = 25,
     max_distance: float = 100.0,
 ) -> tuple[Family, Root]:
-    """Solve for a periodic orbit from a guess by Newton's method; return equations and root."""
     sequence, nodes = guess
     family = Family.from_nodes(setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), values)
@@ -189,7 +188,6 @@ def check_orbit_in_fmu(
 def first_possible_orbit(
     setting: Setting, guesses: Iterable[Guess], values: Floats, *, stable: bool = False
 ) -> tuple[Family, Root]:
-    """Solve guesses in turn; return equations and root of the first possible orbit."""
     reason, unstable = "", None
     for guess in guesses:
         try:

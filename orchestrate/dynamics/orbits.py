@@ -86,7 +86,6 @@ class SingleOrbitQuestion(Question, ABC):
 
     @property
     def setting(self) -> Setting:
-        """Return structure and excitation as setting of the orbit's equations."""
         return Setting.fixed(self.structure, (*self.excitation, *acting(vars(self))))
 
     @property
@@ -112,7 +111,6 @@ class OrbitJob(SingleOrbitQuestion):
         return f"orbit({', '.join(parts)})"
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        """Solve for the orbit by Newton's method; return its record as a table of one row."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return orbit_table([find_orbit(instance, self)])
 
@@ -126,7 +124,6 @@ class OrbitJob(SingleOrbitQuestion):
 
 
 def find_orbit(instance: EventInstance, job: OrbitJob) -> Table:
-    """Solve for a job's orbit from its guesses, checked in the FMU; return its row, or raise."""
     setting, values = job.setting, job.values
     try:
         tried = orbit_guesses(instance, job, setting, values)
@@ -165,7 +162,6 @@ def orbit_guesses(
 def checked_guess(
     guess: Any, structure: Structure, frequency: float, period: int
 ) -> FirstGuess | None:
-    """Return the user's guess as plain numbers, None if not given; raise if its form is unknown."""
     expected = "expected a state, impact times, or a result of orbit or branch"
     if guess is None:
         return None
@@ -186,7 +182,6 @@ def checked_guess(
 
 
 def guess_from_result(result: Mapping[Any, Any]) -> FirstGuess:
-    """Return the guess that repeats an orbit from a dataset of ``orbit`` or ``branch``."""
     kinds = np.asarray(result["node_kind"])
     if kinds.ndim != 1:
         raise InputError("guess: several orbits; expected one (in Python branch.isel(point=0))")
@@ -199,7 +194,6 @@ def guess_from_result(result: Mapping[Any, Any]) -> FirstGuess:
 def excitation_arguments(
     eta: ArrayLike | None, frequency: ArrayLike | None, amplitude: ArrayLike | None
 ) -> tuple[tuple[str, float], ...]:
-    """Return the excitation arguments that are given, as (name, float) pairs."""
     arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
     return tuple((name, float(np.asarray(v))) for name, v in arguments.items() if v is not None)
 

@@ -81,7 +81,6 @@ class MapJob(Question):
         return {name: value for name, value in self.given if isinstance(value, tuple)}
 
     def parameters(self) -> dict[str, Any]:
-        """Return the job's parameters for its identity, map parameters under their own names."""
         others = super().parameters()
         del others["given"]
         return {**{name: json_data(value) for name, value in self.given}, **others}
@@ -97,7 +96,6 @@ class MapJob(Question):
         return [Chunk(i, first, min(first + size, count), None) for i, first in starts]
 
     def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
-        """Compute a chunk of the map's points by the FMU; return them as a table."""
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             decided = zip(items, self.decided_responses(plain, items), strict=True)
             rows = [self.row(eventful, item, *each) for item, each in decided]
@@ -111,7 +109,6 @@ class MapJob(Question):
         decision: Decision,
         rate: float,
     ) -> list[float]:
-        """Return one point's results in the order of ``FIELDS``, and ``EXPONENT`` if asked for."""
         n, decided = decision
         impacts = follow_impacts(eventful, item, response.end, self.samples // 2)
         impulse = impacts.impulse(item.structure, item.speed).max(initial=0.0) / item.structure.m1
@@ -168,7 +165,6 @@ class MapJob(Question):
 def map_points(
     structure: Structure, arguments: tuple[tuple[str, Numbers], ...]
 ) -> tuple[Point, ...]:
-    """Return structure and excitation of each grid point, row by row; raise if not two lists."""
     values = dict(arguments)
     check_excitation_form(values.keys())
     lists = {name: value for name, value in arguments if isinstance(value, tuple)}

@@ -38,7 +38,6 @@ class PoincareJob(OneMotionQuestion):
     family: ClassVar[tuple[str, ...]] = FAMILY
 
     def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
-        """Simulate the motion after its transient; return states and times of the section."""
         point, period = items[0], self.excitation.period
         with Instance(fmus[OSCILLATOR]) as plain:
             start = state_after_transient(

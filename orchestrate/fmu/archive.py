@@ -35,6 +35,5 @@ def checked_names(data: bytes) -> list[str]:
 
 
 def check_identifier(name: str) -> None:
-    """Raise ValueError unless an FMU's modelIdentifier has only letters, digits and ``_``."""
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ValueError(f"modelIdentifier {name[:100]!r}, expected letters, digits and _")

@@ -52,12 +52,10 @@ def library_path(source: Path, folder: str | PathLike[str] | None = None) -> Pat
 
 @functools.cache
 def loaded_loop(name: str) -> Any:
-    """Load the library of a loop, once per process."""
     return loaded_library(sources.LOOPS / f"{name}.c")
 
 
 def loaded_library(source: Path) -> Any:
-    """Load a C source's shared library."""
     path = library_path(source)
     try:
         return ctypes.CDLL(str(path))
@@ -95,7 +93,6 @@ def build_libraries(
 
 
 def compile_library(source: Path, platform: str, folder: Path) -> Path:
-    """Compile one C source for one platform into a folder, atomically; return the path."""
     path = folder / FORM / sources.file_name(source, platform)
     log.info("compiling %s", path)
     library = sources.export(source, platform)

@@ -43,11 +43,9 @@ class Description:
 
     @property
     def is_fmi3(self) -> bool:
-        """True for FMI 3.0, False for 2.0."""
         return self.fmi_version.startswith("3")
 
     def variable(self, name: str) -> Any:
-        """Return FMPy's description of a variable; raise ``InputError`` if it is unknown."""
         try:
             return self.variables[name]
         except KeyError:
@@ -56,7 +54,6 @@ class Description:
 
 
 def describe(path: str | PathLike[str], model: str | None = None) -> Description:
-    """Return an FMU file's :class:`Description`; raise if it is no FMU, or of another model."""
     path = Path(path)
     if not path.is_file():
         own = "`python -m orchestrate build` writes the project's own"

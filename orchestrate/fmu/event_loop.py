@@ -81,7 +81,6 @@ class EventLoop:
         )
 
     def run(self, nodes: Floats, derivatives: Floats, samples: Floats) -> Played:
-        """Simulate under inputs given at nodes; return outputs at the samples, and impacts."""
         arrays = [np.ascontiguousarray(part, float) for part in (nodes, derivatives, samples)]
         if arrays[1].shape != (len(nodes) - 1, len(self.inputs)):
             raise ValueError(f"derivatives of shape {derivatives.shape} for {len(nodes)} nodes")
@@ -102,7 +101,6 @@ class EventLoop:
         return Played(rows, touching, Impacts.from_table(np.concatenate(tables)))
 
     def _failure(self, rows: Floats, progress: PlayProgress) -> FmuError:
-        """Return the ``FmuError`` for the call at which the loop stopped."""
         fmi: Fmi = self._calls.fmi
         if fmi.status != NOT_FINITE:
             return fmi.error(self.instance)

@@ -38,7 +38,6 @@ class EventInstance(Instance):
         return self.event_loop().run(np.array([time, target]), NO_INPUT, NO_TIMES).impacts
 
     def event_loop(self, inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> EventLoop:
-        """Return the event loop with these input and output names; made once and cached."""
         key = tuple(inputs), tuple(outputs)
         if key not in self._loops:
             self._loops[key] = EventLoop(self, *key)

@@ -110,7 +110,6 @@ def export_once(name: str, form: str, folder: Path, level: int) -> Description:
 
 @functools.cache
 def announce(folder: Path, level: int) -> None:
-    """Log that FMUs are now exported to a folder, which takes some seconds a model."""
     text = "exporting FMUs to %s, this once: compiling takes some seconds a model"
     log.log(level, text, folder)
 
@@ -123,7 +122,6 @@ def guid(form: str, name: str) -> str:
 
 
 def check(name: str, form: str) -> None:
-    """Raise ``InputError`` unless the model's name and the form (FMI version) are known ones."""
     if name not in MODELS:
         raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
     if form not in sources.ALL_FORMS:
@@ -155,7 +153,6 @@ def default_folder() -> Path:
 
 
 def is_clone(root: Path) -> bool:
-    """Return whether a folder is a clone of this repository, by its pyproject.toml."""
     project = root / "pyproject.toml"
     return project.is_file() and 'name = "vibroimpact"' in project.read_text(encoding="utf-8")
 
@@ -191,7 +188,6 @@ def find(
 
 @functools.cache
 def warn_once(line: str) -> None:
-    """Log a warning; the same line is logged only once per process."""
     log.warning("%s", line)
 
 

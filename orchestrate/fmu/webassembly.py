@@ -79,7 +79,6 @@ def read_module(path: Path, guid: str) -> bytes:
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
-    """Compile models and loops to a WebAssembly file; return its path, or none if it cannot be."""
     try:
         return [compile_module(default_folder() if folder is None else Path(folder))]
     except CannotExport as reason:
@@ -151,13 +150,11 @@ def numbers_in(structure: ctypes.Structure) -> dict[str, float]:
 
 
 def kernel_digest(model: str) -> str:
-    """Return a digest (32 hexadecimal digits) of a model's kernel sources."""
     files = model_sources(MODELS[model])
     return fingerprint({name: files[name] for name in files if name.startswith("kernels/")})
 
 
 def compile_module(folder: Path) -> Path:
-    """Compile the models and loops to a file in a folder atomically; return the path."""
     path = folder / FILE
     log.info("compiling %s", path)
     module = sources.export()

@@ -54,7 +54,6 @@ class ResonanceJob(SweepJob):
         return {name: value for name, value in super().parameters().items() if name != "start"}
 
     def independent_series(self) -> int:
-        """Return how many sweeps are independent: each direction, for both structures."""
         return len(KINDS) * super().independent_series()
 
     def items(self) -> Sequence[Point]:
@@ -77,19 +76,16 @@ class ResonanceJob(SweepJob):
         return np.array(ordered)
 
     def variables(self, table: Table) -> dict[str, Variable]:
-        """Return dataset variables of the curves: amplitudes, accelerations, multiplicity."""
         along, length = (*DIMENSIONS, self.series.name), self.series.units[:, 0]
         return {**self.threshold(), **response_variables(along, table, length, REPORTED)}
 
     def threshold(self) -> dict[str, Variable]:
-        """Return dataset variables of the contact threshold; empty without a clearance."""
         structure = self.structure.as_delaminated()
         if structure.gap_offset == 0.0 or structure.stroke or self.pushes:  # unknown there
             return {}
         return threshold_variables(structure, self.series.name, self.series.frequencies)
 
     def coordinates(self) -> dict[str, Variable]:
-        """Return dataset coordinates: structure, direction, excitation, frequency in Hz."""
         name = self.series.name
         turns = self.series.frequencies / (2.0 * np.pi)
         directions = ["up", "down"] if self.direction == "both" else [self.direction]
@@ -128,7 +124,6 @@ class ResonanceJob(SweepJob):
         }
 
     def jumps(self, data: xr.Dataset) -> dict[str, Variable]:
-        """Return dataset variables of the jumps of the largest gap, by direction."""
         rows, sizes, name = [], [], self.series.name
         for curve in self.curves(data):
             down = str(curve.direction.values) == "down"
@@ -156,7 +151,6 @@ class ResonanceJob(SweepJob):
         return (high - low > self.jump * high) | (len(values) == 1)
 
     def locations(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
-        """Return variables of structure, direction and frequency for peaks or jumps."""
         labels = {name: [str(row[name].values) for row in rows] for name in DIMENSIONS}
         words = {
             f"{what}_{name}": variable(what, np.array(texts, dtype="U11"), "1", name)
@@ -175,7 +169,6 @@ class ResonanceJob(SweepJob):
 
 
 def distinct_numbers(name: str, value: Any) -> tuple[float, ...]:
-    """Return one or more numbers as a tuple; raise ``InputError`` if one is repeated."""
     values = excitation_numbers(name, value)
     listed = values if isinstance(values, tuple) else (values,)
     if values is None or len(set(listed)) < len(listed):
@@ -191,23 +184,19 @@ class ResonanceLevelsJob(ResonanceJob):
 
     @property
     def series(self) -> Series:
-        """Return the operating points of the first level along the frequency."""
         return make_series(self.structure, None, self.frequency, self.amplitudes(self.level[0]))
 
     def amplitudes(self, level: float) -> tuple[float, ...]:
-        """Return the box's amplitudes, m, that give a level at all frequencies."""
         return tuple(level / f**2 for f in self.frequency)
 
     @cached_property
     def level_jobs(self) -> tuple[ResonanceJob, ...]:
-        """Return one resonance job per level, in the order of the levels."""
         own = {field.name: getattr(self, field.name) for field in fields(ResonanceJob)}
         return tuple(
             ResonanceJob(**own | {"amplitude": self.amplitudes(level)}) for level in self.level
         )
 
     def independent_series(self) -> int:
-        """Return how many sweeps are independent, over all levels."""
         return len(self.level) * super().independent_series()
 
     def items(self) -> Sequence[Point]:
@@ -234,7 +223,6 @@ class ResonanceLevelsJob(ResonanceJob):
         return result
 
     def rows_of_level(self, index: int, curve: xr.Dataset, name: str) -> xr.Dataset:
-        """Return the peaks or jumps of one level's curves, with a variable of the level."""
         of_kind = [str(key) for key, values in curve.data_vars.items() if values.dims == (name,)]
         part = curve[of_kind].reset_coords(drop=True)
         level = np.full(curve.sizes[name], self.level[index])

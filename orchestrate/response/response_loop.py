@@ -99,7 +99,6 @@ class Rows(NamedTuple):
 
 
 def response_loop(instance: Instance) -> ResponseLoop:
-    """Return the loop of an FMU instance, made once."""
     loop: ResponseLoop | None = instance.cache.get(ResponseLoop)
     if loop is None:
         loop = instance.cache[ResponseLoop] = ResponseLoop(instance)
@@ -117,7 +116,6 @@ class ResponseLoop:
     def respond(
         self, points: Sequence[Point], starts: ArrayLike, settings: LoopSettings
     ) -> Responses:
-        """Compute responses from their starts, or from the first of a chain."""
         chosen, count, rows = settings, len(points), self.rows(points)
         counts = np.zeros((count, len(COUNTS)), np.int32)
         results = Responses(

@@ -36,7 +36,6 @@ Floats = NDArray[np.float64]
 
 @functools.cache
 def spectrum_library() -> Any:
-    """Return the library of spectra, as ctypes has it, types set."""
     loaded = loaded_loop("spectrum")
     loaded.spectrum_size.restype, loaded.spectrum_size.argtypes = c_size_t, [c_size_t]
     loaded.amplitude_spectrum.argtypes = [c_void_p, c_size_t, c_void_p, c_void_p]
@@ -106,7 +105,6 @@ class SpectraJob(SeriesQuestion):
         return {"acceleration": np.array(amplitudes)}
 
     def spectrum(self, instance: Instance, point: Point) -> tuple[Floats, Floats]:
-        """Simulate a response; return both masses' spectra with impulses, and without."""
         span, count = point.excitation.period, self.periods * self.points
         first, last = self.transient * span, (self.transient + self.periods) * span
         begin(instance, *point, REST)

@@ -87,7 +87,6 @@ class SweepJob(StartedSeriesQuestion):
         return known.get(self.direction) or [np.arange(len(up))]
 
     def independent_series(self) -> int:
-        """Return the number of directions: up and down are independent."""
         return len(self.orders())
 
     def count(self) -> int:
@@ -121,7 +120,6 @@ class SweepJob(StartedSeriesQuestion):
         return {**table, **dict(zip(PEAKS, results.peaks.T, strict=True))}
 
     def row(self, decided: DecidedResponse) -> dict[str, Any]:
-        """Return one response's numbers by column name."""
         response, found, impacts = decided
         return {
             "gap": response.gap,
@@ -134,7 +132,6 @@ class SweepJob(StartedSeriesQuestion):
         }
 
     def boundary_state(self, table: Table) -> bytes:
-        """Return, as bytes, the state that the next chunk's first response starts from."""
         return bytes(table["end"][-1].tobytes())
 
     def dataset(self, table: Table) -> xr.Dataset:
@@ -168,7 +165,6 @@ class SweepJob(StartedSeriesQuestion):
         return lazy_rows(numbers.shape, gaps.shape[1], read)
 
     def variables(self, table: Table) -> dict[str, Variable]:
-        """Return the result's variables, which become the CSV columns, from response rows."""
         along: Dims = (self.series.name,)
         if self.direction == "both":
             along = ("direction", self.series.name)
@@ -183,7 +179,6 @@ class SweepJob(StartedSeriesQuestion):
         }
 
     def coordinates(self) -> dict[str, Variable]:
-        """Return dataset coordinates: parameter, excitation, sample numbers, direction."""
         numbers = np.arange(self.transient + 1, self.transient + self.samples + 1)
         coordinates = {
             **self.series.coordinates(),
@@ -216,7 +211,6 @@ class RunOnJob(SweepJob):
 def response_variables(
     along: Dims, table: Table, length: NDArray[np.float64], quantities: Mapping[str, Any]
 ) -> dict[str, Variable]:
-    """Return dataset variables of responses: quantities, contact, multiplicity, how decided."""
     names = {"xi_rel_max": "x_rel_max", "xi1_max": "x1_max", "xi2_max": "x2_max"}
     numbers = {**table, **{xi: table[x] / length for xi, x in names.items()}}
     contact = "whether permanent contact occurs in the sampled periods"

@@ -38,7 +38,6 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
 
 
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:
-    """Return dataset variables of the threshold over frequencies, and of its minimum, if any."""
     frequency = np.asarray(frequency, dtype=float)
     amplitudes = threshold_amplitudes(structure, frequency)
     event = threshold_event(structure)

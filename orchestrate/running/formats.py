@@ -110,7 +110,6 @@ def without_repetition(data: xr.Dataset) -> xr.Dataset:
 
 
 def make_table(data: xr.Dataset) -> pd.DataFrame:
-    """Return a dataset whose variables share dimensions as a pandas table, a row per point."""
     import pandas as pd
 
     decoded = {name: decode_flags(array) for name, array in data.variables.items()}
@@ -141,7 +140,6 @@ def column_heading(name: str, data: xr.Dataset) -> str:
 
 
 def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write a dataset as CSV files, one for each set of dimensions; return their paths."""
     frames = tables(data)
     written = []
     for name, frame in frames.items():
@@ -182,7 +180,6 @@ def write_texts_as_texts(sheet: Any) -> None:
 
 
 def metadata_table(data: xr.Dataset) -> pd.DataFrame:
-    """Return a pandas table of a dataset's variables (unit, meaning) and its attributes."""
     import pandas as pd
 
     data = as_shown(data)
@@ -195,7 +192,6 @@ def metadata_table(data: xr.Dataset) -> pd.DataFrame:
 
 
 def write_mat(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write a dataset as a MATLAB file: arrays, units, long names, dimensions; return its path."""
     from scipy.io import savemat
 
     variables = data.variables.items()

@@ -33,14 +33,12 @@ def read_dataset(path: Path) -> xr.Dataset:
 
 
 def check_size(path: Path, size: int) -> None:
-    """Raise if a file unpacks to more bytes than one of its size may."""
     most = allowed_memory(path.stat().st_size)
     if size > most:
         raise InputError(f"{path}: unpacks to {size} bytes; expected at most {most}")
 
 
 def stored_size(file: Any) -> int:
-    """Return how many bytes the numbers of an open file take."""
     return sum(
         prod(one.shape) * (one.dtype.itemsize if isinstance(one.dtype, np.dtype) else TEXT)
         for one in file.variables.values()

@@ -71,7 +71,6 @@ class Runner:
         self.computed_items = 0  # items computed by this call
 
     def run(self) -> dict[str, xr.Dataset]:
-        """Compute all results that are not stored yet; return all datasets by job name."""
         try:
             self.open()
             if not self.finished():
@@ -89,7 +88,6 @@ class Runner:
                 schedule.store.close()
 
     def open(self) -> None:
-        """Open the store of each job and read which results and chunks it already has."""
         for job in self.jobs:
             fmus = {model: self.fmus[model] for model in job.models}
             identity = identity_of(job, fmus)
@@ -101,7 +99,6 @@ class Runner:
                 raise
 
     def finished(self) -> bool:
-        """Return whether every job has its final dataset."""
         return all(schedule.complete for schedule in self.schedules.values())
 
     def compute_all(self) -> None:
@@ -118,7 +115,6 @@ class Runner:
                     self.work(workers, fmus, bar, lambda: True)
 
     def workers(self) -> AbstractContextManager[Workers]:
-        """Return new workers: of a cluster if one is given, else threads or processes."""
         count = self.options.workers
         if self.options.cluster:
             from .cluster import cluster  # brings asyncio, which worker processes do without
@@ -129,11 +125,9 @@ class Runner:
         return threads(count) if self.in_threads else processes(count)
 
     def done(self) -> int:
-        """Return how far the progress bar is, over all jobs together."""
         return sum(schedule.done() for schedule in self.schedules.values())
 
     def little_left(self) -> bool:
-        """Return whether the rest is too short, by time or tasks, to be worth parallel workers."""
         if self.options.workers == 1 or not self.computed_items:
             return True
         left = sum(schedule.job.total() for schedule in self.schedules.values()) - self.done()
@@ -141,20 +135,17 @@ class Runner:
         return seconds < MIN_PARALLEL_SECONDS or self.busy_workers() < 2
 
     def busy_workers(self) -> int:
-        """Return how many workers could compute chunks now, an estimate over all jobs."""
         return sum(
             schedule.open_tasks() for schedule in self.schedules.values() if self.ready(schedule)
         )
 
     def bar(self) -> Any:
-        """Return a progress bar over the items of all jobs."""
         total = sum(schedule.job.total() for schedule in self.schedules.values())
         unit = self.jobs[0].item if len(self.jobs) == 1 else "item"
         shown = self.options.progress
         return progress_bar(self.title(), shown, total=total, initial=self.done(), unit=unit)
 
     def title(self) -> str:
-        """Return the progress bar's title: the job's name, or the number of jobs."""
         return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"
 
     def work(
@@ -192,7 +183,6 @@ class Runner:
         }
 
     def hand_out(self, workers: Workers, fmus: Mapping[str, Path | bytes], bar: Any) -> None:
-        """Submit the next tasks of all ready jobs until the workers' queue is full."""
         for schedule in self.schedules.values():
             while len(self.futures) < workers.max_in_flight() and self.ready(schedule):
                 # nothing that is sure waits behind a guess
@@ -231,7 +221,6 @@ def import_xarray() -> None:
 def compute_datasets(
     jobs: Iterable[Job], running: Mapping[str, object], find: FmuFinder
 ) -> list[xr.Dataset]:
-    """Compute several jobs in parallel with common workers; return their datasets in order."""
     listed = list(jobs)
     results = Runner(listed, RunOptions.from_keywords(running), find).run()
     return [results[job.name] for job in listed]

@@ -99,7 +99,6 @@ class StoredRows:
         self.shape = int(self.ends[-1]), width
 
     def rows(self, chosen: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Return rows by their numbers, (n, width)."""
         result = np.empty((len(chosen), self.shape[1]))
         chunk = np.searchsorted(self.ends, chosen, side="right")
         for index in np.unique(chunk).tolist():
@@ -152,7 +151,6 @@ class Disk(Store):
             STARTED.add(path)
 
     def open_journal(self, path: Path) -> Journal:
-        """Return this job's open journal, made if it is missing."""
         journal = Journal(path, self.identity, now())
         try:
             self.check(journal.identity, path)
@@ -172,7 +170,6 @@ class Disk(Store):
             return False
 
     def check(self, stored: Identity, path: Path) -> None:
-        """Raise if a stored identity is another calculation's, or stale and not to be kept."""
         reason = difference(stored, self.identity)
         if not reason:
             return
@@ -190,20 +187,16 @@ class Disk(Store):
 
     @property
     def journal(self) -> Journal:
-        """The open journal of a job that is not finished."""
         assert self._journal is not None, "finished"
         return self._journal
 
     def indices(self) -> set[int]:
-        """Return the numbers of the intact chunks in the journal."""
         return self.journal.indices()
 
     def get(self, index: int) -> Table:
-        """Return a chunk from the journal, by its number, as a dict of arrays."""
         return self.journal.get(index)
 
     def put(self, index: int, table: Table) -> None:
-        """Store a computed chunk, a dict of arrays, under its number in the journal."""
         self.journal.put(index, table)
         STARTED.add(self.journal.path)
 
@@ -227,7 +220,6 @@ class Disk(Store):
         return table
 
     def drop(self, index: int, reason: str = "") -> None:
-        """Delete a chunk from the journal by its number, with a warning that names the reason."""
         self.journal.drop(index, reason)
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
@@ -254,7 +246,6 @@ class Disk(Store):
 
 
 def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
-    """Return a job's storage: on disk if the options name a ``store`` path, else in memory."""
     path = options.path(name)
     return Store() if path is None else Disk(path, identity, options)
 
@@ -330,13 +321,11 @@ def create_variable(file: Any, name: str, array: xr.DataArray) -> Any:
 
 
 def is_netcdf(path: Path) -> bool:
-    """Return whether a file begins with the signature of NetCDF 3 or 4."""
     with path.open("rb") as file:
         return file.read(4).startswith((b"\x89HDF", b"CDF"))
 
 
 def read_identity(path: Path) -> Identity:
-    """Return the identity dict stored in a finished NetCDF result's attributes."""
     import netCDF4
 
     try:

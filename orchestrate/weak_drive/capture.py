@@ -93,7 +93,6 @@ class CaptureJob(Job):
     def run_from_rest(
         self, begin: Callable[[MotorJob], MotorRun], system: System, voltage: float
     ) -> CaptureOutcome:
-        """Simulate one start from rest at a voltage until the speed has settled."""
         test = settling_test(*system, self.stay, self.distance(system))
         if voltage <= system.drive.motor_constant * test.threshold:
             return CaptureOutcome(NO_LOAD)
@@ -165,7 +164,6 @@ def run_until_settled(
     steps: range,
     outcome: Callable[[np.ndarray, np.ndarray], CaptureOutcome],
 ) -> CaptureOutcome:
-    """Simulate a run until its recorded speed decides the outcome, or to its end."""
     times, speeds = np.zeros(0), np.zeros(0)
     first = 0
     while first < len(steps):
@@ -220,7 +218,6 @@ def threshold_voltage(
 
 
 def replace_parameter(system: System, over: str, value: float) -> System:
-    """Replace one parameter of the drive or of the structure, and return both."""
     if over in DRIVE_NAMES:
         return system._replace(drive=system.drive.replace(**{over: value}))
     return system._replace(structure=system.structure.replace(**{over: value}))
@@ -229,7 +226,6 @@ def replace_parameter(system: System, over: str, value: float) -> System:
 def check_parameter_values(
     over: str | None, values: ArrayLike | None, system: System
 ) -> tuple[float, ...]:
-    """Check the values of the varied parameter and return them as a tuple of numbers."""
     if (over is None) != (values is None):
         raise InputError(f"over = {over!r} and values = {values!r}: expected both, or none of them")
     if over is None:

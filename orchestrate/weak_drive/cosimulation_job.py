@@ -109,7 +109,6 @@ class Coupling(Run):
         return table
 
     def check_forces(self, times: ArrayLike, forces: ArrayLike) -> None:
-        """Raise ``FmuError`` with what to look at where the coupling diverges."""
         limit = DIVERGED * (self.job.structure.k1 + self.job.structure.k2)
         rows = np.column_stack([times, forces])[: 0 if self.job.alone else None]
         for time, force in rows[np.abs(rows[:, 1]) > limit][:1]:
@@ -158,7 +157,6 @@ class CosimulateJob(CoupledJob, Question):
 
     @property
     def alone(self) -> bool:
-        """Return whether the drive runs without a structure."""
         return not {"box_force", *PUSHES} & set(dict(self.connect))
 
     def call_text(self) -> str:
@@ -170,11 +168,9 @@ class CosimulateJob(CoupledJob, Question):
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
     def steps(self) -> int:
-        """Return the number of communication steps of the duration."""
         return round(self.duration / self.step)
 
     def times(self, parts: int = 1) -> Floats:
-        """Return the communication points, s, of steps divided into equal parts."""
         return np.linspace(0.0, self.duration, parts * self.steps() + 1)
 
     def chunks(self) -> list[Chunk]:
@@ -185,7 +181,6 @@ class CosimulateJob(CoupledJob, Question):
         return [Chunk(0, 0, last, None), Chunk(1, last, last + 1, 0)]
 
     def progress_note(self, first: int) -> str:
-        """Return the progress bar's note where a run cannot be resumed."""
         if first or describe(self.drive).saves_states:
             return ""
         return "run (not resumable)"
@@ -218,7 +213,6 @@ class CosimulateJob(CoupledJob, Question):
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
 
     def links(self, drive: Description) -> dict[str, Link]:
-        """Return the connections by our names."""
         return checked_links(dict(self.connect), drive, dict(self.units), self.alone)
 
     def response_to_force(self) -> Floats:
@@ -307,7 +301,6 @@ class CosimulateJob(CoupledJob, Question):
         return {**columns, **impact_columns(impacts, self.structure)}
 
     def reached(self, runs: Mapping[int, Table]) -> tuple[Floats, str]:
-        """Return the communication points that all runs reached, and by what they ended earlier."""
         ends = [np.max(run["nodes"], initial=0.0) for run in runs.values()]
         last, times = min(ends), self.times()
         both = zip(runs.values(), ends, strict=True)
@@ -339,7 +332,6 @@ class CosimulateJob(CoupledJob, Question):
         )
 
     def motion_variables(self, table: Table, at_steps: str) -> dict[str, Variable]:
-        """Return the variables of the box, and of the structure if there is one."""
         shown = {**IN_TIME, **IN_TIME_TOO}
         work = shown.pop("box_work")
         acceleration = variable("time", table["box_acceleration"], *shown["box_acceleration"])
@@ -353,7 +345,6 @@ class CosimulateJob(CoupledJob, Question):
         return found | impact_variables(table)
 
     def drive_variables(self, table: Table, at_steps: str) -> dict[str, Variable]:
-        """Return what is recorded of the drive, with its estimated error, and of a control."""
         count, found = len(table["step_time"]), {}
         recorded, finer = (table.get(f"recorded {i}", NOTHING)[:count].T for i in (1, 2))
         for i, name in enumerate(self.record):

@@ -56,11 +56,9 @@ class CoupleJob(MotorJob):
         return {**table, **self.conclude(fmus, table)}
 
     def progress_note(self, first: int) -> str:
-        """Return the progress bar's note for the chunk of the hysteresis loop."""
         return "voltages held at jumps" if first == self.steps() else ""
 
     def conclude(self, fmus: Fmus, table: Table) -> Table:
-        """Hold voltages over each ramp; return the jumps of both directions."""
         if self.control is not None:
             return {"verdicts": np.array([], VERDICT)}
         with motor_runs(fmus) as start:
@@ -106,7 +104,6 @@ class CoupleJob(MotorJob):
         return xr.Dataset({**variables, **jump_columns}, coordinates, self.attributes(table))
 
     def jump_variables(self, table: Table) -> tuple[list[str], dict[str, Variable]]:
-        """Build the variables of all jumps and their labels: "up", "down", then further ones."""
         records = [RampRecord(self, table, up) for up in (True, False)]
         each = list(zip(DIRECTIONS, self.jumps(table), records, strict=True))
         first = [(way, jumps[0] if jumps else None, record) for way, jumps, record in each]
@@ -129,7 +126,6 @@ class CoupleJob(MotorJob):
         return jump_labels(directions), columns
 
     def decision(self, jump: Jump | None, record: RampRecord) -> tuple[str, str]:
-        """Return how a jump or its absence was decided, and why there is no jump."""
         if jump is not None and jump.outcome == UNDECIDED:
             volts = record.sense * self.drive.volts(self.structure)
             low, high = volts * jump.low, volts * jump.high
@@ -161,7 +157,6 @@ class CoupleJob(MotorJob):
         }
 
     def attributes(self, table: Table) -> dict[str, str | float]:
-        """Return the dataset's title and the relative energy errors of the coupling."""
         motor = float(table["motor"][-1])
         return {
             "title": f"Weak drive, {self.structure.kind} structure: each revolution of the motor",
@@ -189,7 +184,6 @@ def bracket_variables(
 
 
 def require_motor(structure: Structure, drive: Drive) -> None:
-    """Raise an error unless these are a structure of two masses and a drive with a motor."""
     refuse_family("a motor", checked_structure(structure))
     if not isinstance(drive, Drive):
         raise InputError(f"drive = {drive!r}: expected a Drive, such as Drive.from_file('quick')")
@@ -208,7 +202,6 @@ def schedule_from_arguments(
     back: bool = True,
     spin_up: float | None = None,
 ) -> Schedule:
-    """Build the voltage schedule from the arguments of :func:`couple`."""
     require_motor(structure, drive)
     if isinstance(voltage, Schedule):
         return voltage
@@ -241,7 +234,6 @@ def schedule_from_arguments(
 def scheme_from_arguments(
     structure: Structure, step: float | None, tolerance: float | None = None, sampled: bool = False
 ) -> Scheme:
-    """Choose communication step and tolerance from :func:`couple` arguments."""
     omega = structure.omega
     if tolerance is None:
         # of the displacements errors are about half as large
@@ -264,7 +256,6 @@ def couple_job(
     hold: float | None = None,
     hysteresis: HysteresisSettings | None = None,
 ) -> CoupleJob:
-    """Check the arguments of a coupled run and build its job."""
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
     steps = schedule.duration / scheme.h

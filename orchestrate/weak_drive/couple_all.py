@@ -46,7 +46,6 @@ def couple_job_from_numbers(
     back: bool,
     step: float | None,
 ) -> couple.CoupleJob:
-    """Build the job of one coupled run from non-dimensional voltages and rate."""
     structure, drive = system
     couple.require_motor(structure, drive)
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()

@@ -80,7 +80,6 @@ class DriveBranchJob(Job):
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def work(self, fmus: Fmus, items: Sequence[Structure], previous: Table | None) -> Table:
-        """Trace all legs of each structure and return them as arrays padded with NaN."""
         rows = []
         for structure in items:
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[MOTOR_SHAKER]) as shaker:
@@ -99,7 +98,6 @@ class DriveBranchJob(Job):
 
     @property
     def settings(self) -> ContinuationSettings:
-        """Return the continuation settings: longest step and number of points."""
         return ContinuationSettings(self.longest, self.most - 1)
 
     def max_turns(self, structure: Structure) -> int:
@@ -107,7 +105,6 @@ class DriveBranchJob(Job):
         return 1 if structure.bonded else self.period
 
     def make_shooter(self, fmus: tuple[Instance, Instance], structure: Structure) -> Shooter:
-        """Return what shoots motions of a structure, whose unit is the largest amplitude."""
         low, high = (speed / structure.omega for speed in self.speeds)
         sizes = averaged.amplitude(structure, self.drive, np.linspace(low, high, 2001))
         length = float(sizes.max()) * self.drive.length
@@ -115,7 +112,6 @@ class DriveBranchJob(Job):
         return Shooter(fmus, structure, self.drive, turns, self.steps, length)
 
     def trace_legs(self, shooter: Shooter) -> list[Leg]:
-        """Trace the branch from the lowest speed, and from the highest if needed."""
         low, high = (speed / shooter.structure.omega for speed in self.speeds)
         turns = self.max_turns(shooter.structure)
         below = self.trace_leg(shooter, (low, high), up=True)
@@ -164,7 +160,6 @@ class DriveBranchJob(Job):
         return DriveTracer(shooter, start, speeds, self.settings).trace(start)
 
     def motion_table(self, motions: Sequence[Motion]) -> np.ndarray:
-        """Convert motions to a table of speed, voltage, amplitude and multipliers."""
         table = np.full((self.most, len(COLUMNS) + MULTIPLIERS), np.nan, dtype=complex)
         volts, omega = self.drive.volts(self.structure), self.structure.omega
         for row, motion in zip(table, motions, strict=False):
@@ -209,7 +204,6 @@ class DriveBranchJob(Job):
 
 
 def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Variable]:
-    """Convert a table of motions to the variables of a dataset."""
     variables: dict[str, Variable] = {
         name: variable(dims, numbers[..., i].real, unit, text)
         for i, (name, (unit, text)) in enumerate(COLUMNS.items())

@@ -50,7 +50,6 @@ class Margins(NamedTuple):
 
 
 def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
-    """Simulate one period and return its smallest gap and smallest closing speed."""
     shooter.angle = angle
     master, voltage = shooter.begin_period(unknowns)
     gaps, closing = [math.inf], [math.inf]
@@ -131,16 +130,13 @@ class ShooterStepper(ArclengthStepper[Shooter]):
     jacobian: Floats
 
     def move_to(self, motion: Motion) -> None:
-        """Make a motion the current one, with its Jacobian."""
         self.root, self.jacobian = motion.root, motion.matrix
 
     def root_after(self, length: float) -> Root:
-        """Solve for the motion at a distance along the branch from the current one."""
         self.curve.restart(self.root.unknowns, self.jacobian)
         return super().root_after(length)
 
     def solve_at(self, unknown: int, value: float) -> Root:
-        """Solve for the nearby motion with a given value of one unknown."""
         self.curve.restart(self.root.unknowns, self.jacobian)
         return super().solve_at(unknown, value)
 
@@ -189,7 +185,6 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return self.shooter.shoot(root.unknowns).is_connected_to(self.shot)
 
     def test_function(self, point: Motion, kind: Kind) -> float:
-        """Evaluate the test function of a bifurcation, which is zero there."""
         values = point.multipliers
         if kind == Kind.FOLD:
             return float(point.root.tangent[-2])
@@ -238,7 +233,6 @@ def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
 
 
 def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
-    """Solve for the motion of a given speed, starting from a guess."""
     shooter.renew_jacobian(guess)
     speed = unit_vector(len(guess), -1)
     root = newton_correct(shooter, guess, speed, max_iterations=ITERATIONS)
@@ -246,7 +240,6 @@ def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
 
 
 def double_period(shooter: Shooter, flip: Motion) -> Motion:
-    """Solve for a motion of twice the period near a period doubling."""
     for distance in (3e-3, 1e-3, 3e-4):
         shooter.begin_together(flip.together)
         shooter.repeat_after(flip.period.revolutions)

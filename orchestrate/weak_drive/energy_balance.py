@@ -89,11 +89,9 @@ class EnergyBalance:
         return own + s.preload * motion.x_rel
 
     def get_state(self) -> list[float]:
-        """Return the sums as a list of floats, to be restored later."""
         return [*self.sums.tolist(), *self.start.tolist()]
 
     def set_state(self, numbers: list[float]) -> None:
-        """Restore the sums that :meth:`get_state` returned."""
         self.sums, self.start = np.array(numbers[:3]), np.array(numbers[3:])
 
 

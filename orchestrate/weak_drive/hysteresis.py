@@ -121,7 +121,6 @@ class HysteresisLoop:
         return self.checkpoints.get(step)
 
     def hold_step(self, step: int) -> HeldPoint:
-        """Hold the voltage that the ramp has at a step, from its state there."""
         voltage = self.schedule.voltage((step + 0.5) * self.step) / self.volts
         return self.hold(self.state_before(step), voltage, voltage)
 
@@ -352,7 +351,6 @@ class HysteresisLoop:
 
 
 def slope(low: HeldPoint, high: HeldPoint) -> float:
-    """Return the change of the speed with the voltage over a step."""
     return (high.speed - low.speed) / (high.voltage - low.voltage)
 
 

@@ -33,7 +33,6 @@ class Supply(NamedTuple):
     speed: float  # at the start, rad/s
 
     def begin(self) -> ControllerState:
-        """Return the controller's initial state."""
         return self.controller.begin(self.speed)
 
 
@@ -62,7 +61,6 @@ class Inputs:
         self.state: ControllerState = self.control.begin() if self.control else ()
 
     def start_values(self) -> dict[str, float]:
-        """Return the inputs at time 0 by name."""
         values = {name: one.voltage(0.0) for name, one in [*self.held, *self.cubics]}
         return {name: values.get(name, 0.0) for name in self.names}
 

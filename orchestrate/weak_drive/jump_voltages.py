@@ -65,7 +65,6 @@ class JumpVoltagesJob(Job):
         return [self.structure.as_bonded(), *varied]
 
     def work(self, fmus: Fmus, items: Sequence[Structure], previous: Any) -> Table:
-        """Run the ramps of some structures; return jumps, and where each ramp shows them."""
         rows, shown, decided = [], [], []
         for structure in items:
             slowest = couple_job(structure, self.drive, self.schedules[0], self.scheme)

@@ -242,7 +242,6 @@ def waterfall(
 
 
 def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:
-    """Raise an error unless spectra over revolutions can be computed."""
     if mass not in (1, 2):
         raise InputError(f"mass = {mass!r}: expected 1 or 2")
     checked_integer("revolutions", revolutions, 1)

@@ -57,11 +57,9 @@ class Run:
             self._saved = {}
 
     def record(self, steps: range) -> Record:
-        """Run some communication steps; return their record."""
         return self.inputs.run(self.master, steps, self.master.scheme.h)
 
     def close(self) -> None:
-        """Free what was saved of both FMUs to go back."""
         self.master.close()
 
     def get_state(self) -> Table:
@@ -131,11 +129,9 @@ class MotorJob(CoupledJob):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
 
     def steps(self) -> int:
-        """Return the number of communication steps of the schedule."""
         return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
     def advance(self, fmus: Fmus, steps: range, previous: Table | None) -> Table:
-        """Do some steps of a run of its own; return their rows, and its state."""
         with begin_run(self, fmus) as run:
             if previous is not None:
                 run.set_state(previous)
@@ -162,7 +158,6 @@ class MotorRun(Run):
         super().__init__(master, inputs, balance=balance, revolution=self.revolutions)
 
     def record(self, steps: range) -> Record:
-        """Run some communication steps; return their record."""
         record = super().record(steps)
         if self.master.ended:  # our own drives do not
             raise FmuError(self.master.ended)

@@ -111,12 +111,10 @@ class Shooter:
         self._last: tuple[Floats, Floats] | None = None
 
     def repeat_after(self, revolutions: int) -> None:
-        """Set after how many revolutions the motion is to repeat."""
         self.turns, self.count = revolutions, self.count // self.turns * revolutions
         self.matrix, self._last = np.empty((0, 0)), None
 
     def change_in(self, unknowns: Floats, revolutions: int) -> Floats:
-        """Return how the state changes over a given number of revolutions."""
         turns, matrix, last = self.turns, self.matrix, self._last
         self.repeat_after(revolutions)
         try:
@@ -128,7 +126,6 @@ class Shooter:
     # -- both FMUs over a period --
 
     def start_master(self, state: Floats, voltage: float, h: float) -> Master:
-        """Initialise both FMUs in a state and return their master."""
         oscillator, shaker = self.fmus
         oscillator.reset()
         shaker.reset()
@@ -147,7 +144,6 @@ class Shooter:
         return self.master
 
     def close(self) -> None:
-        """Free what was saved of both FMUs."""
         if self.master is not None:
             self.master.close()
 
@@ -158,7 +154,6 @@ class Shooter:
         return self.start_master(unknowns[:-2], voltage, period / self.count), voltage
 
     def scaled_state(self, master: Master) -> Floats:
-        """Return the present state of both FMUs, scaled by its units."""
         values = [master.row[place] - rest for place, rest in self.places]
         if "motor_current" in self.names:
             values += self.fmus[1].get("motor_current")
@@ -192,7 +187,6 @@ class Shooter:
         return self.scaled_state(master)
 
     def _touching(self, master: Master) -> bool:
-        """Return whether the masses of a delaminated structure are in contact."""
         return not self.structure.bonded and master.motion.x_rel == 0.0
 
     def shoot(self, unknowns: Floats) -> Shot:
@@ -287,7 +281,6 @@ class Shooter:
         return self.matrix
 
     def derivative(self, unknowns: Floats, which: int, base: Shot) -> Floats:
-        """Compute the derivative of the final state by one unknown."""
         known: dict[float, Shot] = {0.0: base}
 
         def end_state_shifted_by(change: float) -> Floats | None:

@@ -84,12 +84,10 @@ def xml_bytes(root: ET.Element) -> bytes:
 
 
 def parameter_file_path(component: str) -> str:
-    """Return the path of a component's parameter file inside the package."""
     return f"resources/{component}.ssv"
 
 
 def add_units(root: ET.Element, components: Components) -> None:
-    """Add the definitions of all used units to the XML document."""
     parent = ET.SubElement(root, qualified_tag("ssd", "Units"))
     each = [(c, c.unit(p)) for c in components.values() for p in (*c.inputs, *c.outputs)]
     used = {unit: one.fmu.units[unit] for one, unit in each if unit}
@@ -102,7 +100,6 @@ def add_units(root: ET.Element, components: Components) -> None:
 
 
 def add_component(elements: ET.Element, name: str, one: Component, version: str) -> None:
-    """Add one FMU with its connectors and parameter file to the XML document."""
     source, kind = f"resources/{one.path.name}", "application/x-fmu-sharedlibrary"
     component = ET.SubElement(
         elements, qualified_tag("ssd", "Component"), name=name, type=kind, source=source
@@ -163,7 +160,6 @@ def system_description(
     links: Links,
     version: str,
 ) -> bytes:
-    """Build the XML file that describes both FMUs and their connections."""
     stop_time, step = times
     root = ET.Element(
         qualified_tag("ssd", "SystemStructureDescription"), name="WeakDrive", version=version
@@ -306,7 +302,6 @@ def write_ssp(
 
 
 def fmu_path(model: str) -> Path:
-    """Return the path of an own FMU of FMI 2.0."""
     from ..fmu.exported import find
 
     return find(model, "fmi2").path
@@ -315,7 +310,6 @@ def fmu_path(model: str) -> Path:
 def motor_component(
     drive: Drive, fmu: Path | None, voltage: float | None, speed: float | None
 ) -> tuple[Component, Links, str]:
-    """Return the motor's component, its connections, and words for the title."""
     if voltage is None:
         raise InputError("voltage: expected with a motor, in V")
     check("voltage", voltage, "V")
