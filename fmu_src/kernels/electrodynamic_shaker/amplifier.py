@@ -32,9 +32,7 @@ def decide_limits(m):
 
 
 def leading_term(m, series, terms, lowest):
-    """Return the number of the first term from ``lowest`` on that is not zero; ``terms`` if there
-    is none.
-    """
+    """Return the number of the first term from ``lowest`` on that is not zero, else ``terms``."""
     order = lowest
     while order < terms and m[series + order] == 0.0:
         order += 1

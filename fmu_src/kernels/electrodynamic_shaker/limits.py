@@ -15,7 +15,6 @@ LEAST = 1e-40  # of the bound, relative to the terms: its inverse stays far from
 
 
 def find_event(m):
-    """Find the first event of the present interval."""
     m[at.EVENT] = NONE
     m[at.EVENT_KIND] = at.NO_EVENT
     if m[at.COMMAND_LIMIT] > 0.0:
@@ -93,9 +92,7 @@ def first_root(m, order):
 
 
 def walk(m, first, size):
-    """Return the first root of GUARD, divided by the power of its ``first`` term, or NONE; no
-    number where that cannot be decided.
-    """
+    """Return the first root of GUARD over its ``first`` power, NONE, or NaN: undecided."""
     bound = LEAST * size
     for k in range(first + 5, at.TERMS):
         j = k - first
@@ -113,7 +110,7 @@ def walk(m, first, size):
 
 
 def derivatives(m, first, part):
-    """Return value and four derivatives of GUARD, divided by the power of its ``first`` term."""
+    """Return value and four derivatives of GUARD over the power of its ``first`` term."""
     h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(at.DEGREE, first - 1, -1):
         h4 = h4 * part + h3

@@ -28,7 +28,6 @@ def begin_interval(m):
 
 
 def set_spacing(m):
-    """Set the length of the present state's intervals."""
     m[at.SPACING] = m[at.VOLTAGE_SPACING] if is_voltage_driven(m) else m[at.CURRENT_SPACING]
 
 
@@ -103,13 +102,7 @@ def move_origin(m, age):
 
 
 def run_to(m, time):
-    """Run through all intervals and events up to ``time``.
-
-    Returns
-    -------
-    int
-        OK, TRAVEL with the time in REPORT, UNFINISHED, or NOT_FINITE.
-    """
+    """Run through all intervals and events up to ``time``; in REPORT is how far it came."""
     while True:
         local = local_time(m, time)
         begun = m[at.INTERVAL] * m[at.SPACING]

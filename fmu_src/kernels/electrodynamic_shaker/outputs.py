@@ -39,9 +39,6 @@ def write_outputs(m):
 
 
 def check_finite(m):
-    """Return OK, or NOT_FINITE where an output, or the next event, has left the range of
-    floating-point numbers.
-    """
     total = m[at.EVENT]
     for i in range(at.BOX_POSITION, at.TIME):
         total += m[i]

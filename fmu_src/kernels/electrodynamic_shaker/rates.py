@@ -6,13 +6,7 @@ from .series import slopes, value
 
 
 def differentiate(m, time):
-    """Write the rates of change of the outputs into OUTPUT_RATES; ``time`` is not used.
-
-    Returns
-    -------
-    int
-        OK.
-    """
+    """Write the rates of change of the outputs into OUTPUT_RATES; ``time`` is not used."""
     part, h = part_at(m, m[at.TIME]), m[at.SPACING]
     velocity, acceleration = m[at.BOX_VELOCITY], m[at.BOX_ACCELERATION]
     current_1, current_2 = slopes(m, at.AMPERE_SERIES, at.DEGREE, part)

@@ -13,9 +13,7 @@ from . import memory as at
 
 
 def is_voltage_driven(m):
-    """Return whether a voltage drives the coil: a commanded one while no current is held, or one
-    held at its limit.
-    """
+    """Return whether a voltage drives the coil: commanded, or held at its limit."""
     if m[at.CURRENT_CONTROL] != 0.0:
         return m[at.HELD] != 0.0
     return m[at.HELD] == 0.0
@@ -83,7 +81,6 @@ def write_driven_motion(m, h):
 
 
 def current_term_without_inductance(m, k):
-    """Return term k of the current without inductance."""
     rest = m[at.VOLT_SERIES + k] - m[at.FORCE_FACTOR] * m[at.SPEED_SERIES + k]
     return rest / m[at.COIL_RESISTANCE]
 
@@ -100,9 +97,7 @@ def write_prescribed_motion(m, h):
 
 
 def write_energies(m, h, driven):
-    """Write the series of the amplifier's work, the heat, the loss and the work of the force on
-    the box.
-    """
+    """Write the series of the amplifier's work, heat, loss, and work of the force on the box."""
     cubic, other = at.AMPERE_SERIES, at.VOLT_SERIES
     if driven:
         cubic, other = at.VOLT_SERIES, at.AMPERE_SERIES
@@ -120,9 +115,7 @@ def write_energies(m, h, driven):
 
 
 def write_work(m, to, begun, cubic, other, factor):
-    """Write the series of ``begun`` and ``factor`` times the integral of a cubic times another
-    series.
-    """
+    """Write the series of ``begun`` plus ``factor`` times an integral of cubic times series."""
     m[to] = begun
     for n in range(at.WORK_DEGREE):
         first = n - at.DEGREE if n > at.DEGREE else 0
@@ -134,7 +127,7 @@ def write_work(m, to, begun, cubic, other, factor):
 
 
 def write_square(m, to, begun, series, factor):
-    """Write the series of ``begun`` and ``factor`` times the integral of a series' square."""
+    """Write the series of ``begun`` plus ``factor`` times the integral of a series' square."""
     m[to] = begun
     for n in range(at.WORK_DEGREE):
         j = n - at.DEGREE if n > at.DEGREE else 0
@@ -149,7 +142,6 @@ def write_square(m, to, begun, series, factor):
 
 
 def value(m, series, degree, part):
-    """Return a series' value at a ``part`` of its interval."""
     total = m[series + degree]
     for k in range(degree - 1, -1, -1):
         total = total * part + m[series + k]

@@ -54,15 +54,7 @@ def accelerations(m, sine, cosine, p, q):
 
 
 def compute_rates(m, stage, t):
-    """Write the right-hand side at the states in STAGE into row ``stage`` of RATES.
-
-    Parameters
-    ----------
-    m : flat memory
-    stage : int
-    t : float
-        Time since the force was set, s.
-    """
+    """Write the rates at STAGE, ``t`` s after the force was set, to row ``stage`` of RATES."""
     turn = m[at.TURN] + m[at.STAGE + at.ROTATION] / TWO_PI
     position, velocity = m[at.STAGE + at.POSITION], m[at.STAGE + at.VELOCITY]
     speed = m[at.STAGE + at.ROTATION_SPEED]

@@ -51,10 +51,7 @@ def current_rate(m, rotor):
 
 
 def jerks(m, sine, cosine, box, rotor):
-    """Return the time derivatives of the accelerations of box and rotor.
-
-    The equations differentiated once, with the voltage constant.
-    """
+    """Return the third derivatives of box and rotor: the equations once more, voltage constant."""
     unbalance, speed = m[at.UNBALANCE], m[at.STATE + at.ROTATION_SPEED]
     p = force_now(m)[1] - m[at.BOX_DAMPING] * box - m[at.BOX_STIFFNESS] * m[at.STATE + at.VELOCITY]
     p += unbalance * speed * (3.0 * rotor * sine + speed * speed * cosine)

@@ -24,7 +24,6 @@ AHEAD = 5.0  # spacings from an evaluation on for which its bound holds
 
 
 def set_flight_event_function(m):
-    """Set the event function of a flight: the gap, ``xi_2 - xi_1`` and the clearance."""
     m[at.EVENT_OFFSET] = m[at.GAP_OFFSET]
     for i in range(2):
         m[at.EVENT_HARMONIC + i] = m[at.HARMONIC_2 + i] - m[at.HARMONIC_1 + i]
@@ -38,9 +37,7 @@ def set_flight_event_function(m):
 
 
 def set_contact_event_function(m):
-    """Set the event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 -
-    omega_2^2) xi_3`` (18).
-    """
+    """Set the event function of contact, -f (18)."""
     m[at.EVENT_OFFSET] = -m[at.PRELOAD]
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     h_cos, h_sin, eta = m[at.HARMONIC_3], m[at.HARMONIC_3 + 1], m[at.ETA]
@@ -66,9 +63,7 @@ def set_contact_event_function(m):
 
 
 def is_constant(m):
-    """Return whether the event function is a constant above zero: at rest with a clearance, or
-    pressed together by two oscillators that are alike.
-    """
+    """Return whether the event function is a constant > 0: at rest, or two oscillators alike."""
     if m[at.EVENT_OFFSET] <= 0.0 or m[at.SECULAR] != 0.0:
         return False
     size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
@@ -94,9 +89,7 @@ def free_acceleration(m, b, x, v):
 
 
 def derivative_bounds(m, order):
-    """Return bounds of the event function's derivative of an order >= 4 at all later times: of the
-    steady part and of the free parts A and B at tau = 0.
-    """
+    """Return bounds of a derivative (order >= 4) from now on: steady part, free A and B."""
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     for _ in range(order):
         steady *= m[at.ETA]
@@ -138,9 +131,7 @@ def set_node_values(m, slot, node, tau):
 
 
 def set_remainder(m):
-    """Set how far the quintic between two nodes may be wrong, from the node to the left on, until
-    the state is rewritten.
-    """
+    """Set how far the quintic between two nodes may be wrong until the state is rewritten."""
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     square = m[at.NODE_ETA] * m[at.NODE_ETA]
     bound = steady * (square * square * square)
@@ -202,9 +193,7 @@ def difference_bound(m, order, x, v, x_b, v_b, time):
 
 
 def event_values(m, plain, x, v, x_b, v_b, cosine, sine, tau):  # inline
-    """Return the event function and two derivatives from all phasors; ``plain`` as in
-    :func:`.nodes.next_phasors`.
-    """
+    """Return the event function and two derivatives from all phasors."""
     if plain or m[at.MODE] == at.FLIGHT:
         h0, h1 = x_b - x, v_b - v
         h2 = free_acceleration(m, at.OSCILLATOR_2, x_b, v_b) - free_acceleration(
@@ -243,13 +232,7 @@ def free_part_derivatives(m, b, x, v):
 
 
 def evaluate(m, tau):  # inline
-    """Evaluate the event function at ``tau``: value, four derivatives, and a bound of the fifth
-    that holds for AHEAD spacings from there on.
-
-    Returns
-    -------
-    h0, h1, h2, h3, h4, bound : float
-    """
+    """Evaluate at ``tau``: value, four derivatives, a bound of the fifth for AHEAD spacings."""
     m[at.WORK] += 1.0
     if m[at.SERIES] != 0.0:  # rarely
         h0, h1, h2, h3, h4 = gap_derivatives(m, tau)
