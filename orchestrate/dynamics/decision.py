@@ -5,10 +5,11 @@
   with a deviation that dies: that halves from one stretch to the next.
 - It is on an *orbit* that Newton's method finds from its impacts over these periods: a possible
   motion, stable, to which the FMU `returns` with the same impacts, and to which the response, if
-  nearer than `near`, comes at least half as fast as the multipliers say, or lies within `same`.
+  nearer than `near`, comes at least half as fast as the multipliers say, watched over a multiple of
+  its own periods, or lies within `same`.
   Within `apart * converged` of an earlier start's orbit, and ever nearer, it is not run on.
-- Without such an orbit, states that repeat within `converged` are *repeated*.
-- They are *undecided* near an unstable orbit, or without the impacts that such a motion must have.
+- Without such an orbit, states that repeat within `converged` are *repeated*; *undecided* near an
+  unstable orbit, or without the impacts that such a motion must have.
 - All else is *irregular*, a torus or chaos; undecided if another start repeats only after half of
   `longest`: then it may be a long transient. Irregular motions of starts are joined within
   `alike_irregular`; one that comes later joins the nearest largest gap.
@@ -112,7 +113,8 @@ class MotionDecider:
             orbit, free_phase = self.orbit_near(response.end, periods)
             motion = self.stable_motion(orbit, free_phase)
             unstable |= orbit is not None and motion is None
-            if motion and self.converges_to(response.end, motion) and self.repeats_in_fmu(motion):
+            comes = motion is not None and self.converges_to(response.end, motion, periods)
+            if motion and comes and self.repeats_in_fmu(motion):
                 return self.remember(motion), False
         return None, unstable
 
@@ -156,7 +158,7 @@ class MotionDecider:
             if distance < within and motion.multiplicity == n:
                 return motion
             near = motion.decided == ORBIT and distance < self.settings.near
-            if near and self.converges_to(state, motion):
+            if near and self.converges_to(state, motion, n):
                 return motion
         return None
 
@@ -177,7 +179,8 @@ class MotionDecider:
         motion = self.stable_motion(*self.orbit_near(state, periods))
         return self.remember(motion) if motion and self.repeats_in_fmu(motion) else None
 
-    def converges_to(self, state: ArrayLike, motion: SettledMotion) -> bool:
+    def converges_to(self, state: ArrayLike, motion: SettledMotion, n: int) -> bool:
+        """Return whether the response from a state, of ``n`` periods so far, comes to an orbit."""
         excitation, periods = self.point.excitation, motion.multiplicity
         begin(self.plain, *self.point, state)
         if motion.free_phase > 0.0:
@@ -189,6 +192,8 @@ class MotionDecider:
         rate = max(motion.multiplier, 1e-3)
         turns = math.ceil(math.log(DYING) / math.log(rate))
         turns = max(1, min(turns, self.settings.longest // periods))
+        whole = n // math.gcd(n, periods)  # what repeats after n periods is as near again after it
+        turns = math.ceil(turns / whole) * whole
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)

@@ -86,7 +86,7 @@ class Coupling(Run):
         self.divides_first = "box_acceleration" not in connection.links and not fixed
         super().__init__(master, inputs)
 
-    def rows(self, items: range) -> Table:
+    def step_table(self, items: range) -> Table:
         """Do the steps of some items; return nodes, cubics, work, and what is recorded."""
         steps = range(items.start * self.parts, items.stop * self.parts)
         recorded = []
@@ -126,7 +126,7 @@ class Coupling(Run):
         if steps.start or not divides:
             return self.inputs.run(self.master, steps, h, int(divides))
         parts = np.array(BEGINNING) / sum(BEGINNING) * h
-        rows = self.inputs.rows(np.append(0.0, np.cumsum(parts)), self.master.width)
+        rows = self.inputs.over_steps(np.append(0.0, np.cumsum(parts)), self.master.width)
         runs = (self.master.run(rows[i : i + 1], h) for i, h in enumerate(parts.tolist()))
         pieces = joined([*runs])
         if self.master.ended:
@@ -199,7 +199,7 @@ class CosimulateJob(CoupledJob, Question):
                     coupling = Coupling(self, one, drive, parts, float(response[0]))
                     if before:
                         coupling.set_state(before)
-                    found = {**coupling.rows(steps), **coupling.get_state()}
+                    found = {**coupling.step_table(steps), **coupling.get_state()}
                     coupling.close()
                     warned |= drive.warnings
             table |= {f"{name} {parts}": values for name, values in found.items()}

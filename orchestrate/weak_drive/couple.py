@@ -63,10 +63,15 @@ class CoupleJob(MotorJob):
             return {"verdicts": np.array([], VERDICT)}
         with motor_runs(fmus) as start:
             volts = RampRecord(self, table, True).sense * self.drive.volts(self.structure)
-            units = self.scheme.h, self.structure.omega, volts, self.hold
             loop = HysteresisLoop(
                 lambda schedule: start(replace(self, schedule=schedule)),
-                *(self.schedule, *units, self.hysteresis, growth_rate),
+                self.schedule,
+                step=self.scheme.h,
+                omega=self.structure.omega,
+                volts=volts,
+                max_hold=self.hold,
+                settings=self.hysteresis,
+                growth=growth_rate,
             )
             loop.add_checkpoints(table, self.chunk_size, self.steps())
             found = [(up, loop.decide(RampRecord(self, table, up))) for up in (True, False)]
@@ -273,11 +278,11 @@ def couple_job(
         at_rest = control is not None
         speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
     check("speed_start", speed_start, "rad/s")
-    if hold is None:
-        hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
+    hysteresis = hysteresis or HysteresisSettings()
+    hold = hysteresis.usual_hold(structure, drive) if hold is None else hold
     check("hold", hold, "s", low=0.0)
     run = (structure, drive, schedule, scheme, float(speed_start), float(hold), control)
-    return CoupleJob(f"couple_{structure.kind}", *run, hysteresis or HysteresisSettings())
+    return CoupleJob(f"couple_{structure.kind}", *run, hysteresis)
 
 
 def couple(

@@ -64,7 +64,7 @@ class Inputs:
         values = {name: one.voltage(0.0) for name, one in [*self.held, *self.cubics]}
         return {name: values.get(name, 0.0) for name in self.names}
 
-    def rows(self, edges: Floats, width: int = 0, earlier: int = 0) -> Floats:
+    def over_steps(self, edges: Floats, width: int = 0, earlier: int = 0) -> Floats:
         """Return the inputs of the steps between edges, but some earlier ones.
 
         Of a control it is what its supply has on average, or 0. Where a row has the width for it,
@@ -93,7 +93,7 @@ class Inputs:
         """Run both FMUs over some steps of one length, which all have from the first one on."""
         earlier = min(2, steps.start - first)  # steps whose first moments are made up for in these
         edges = np.arange(steps.start - earlier, steps.stop + 1, dtype=np.float64) * h
-        rows = self.rows(edges, master.width, earlier)
+        rows = self.over_steps(edges, master.width, earlier)
         if self.control is None:
             return master.run(rows, h)
         return master.run_controlled(self._controlled(rows.tolist(), h, master), len(rows), h)

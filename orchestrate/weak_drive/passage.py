@@ -57,7 +57,7 @@ class PassageJob(couple.CoupleJob):
 
     item_columns: ClassVar[tuple[str, ...]] = tuple(KEPT + name for name in SAMPLES)
 
-    def rows(self, run: MotorRun, steps: range) -> Table:
+    def kept_table(self, run: MotorRun, steps: range) -> Table:
         """Run some communication steps; return their revolutions and all samples."""
         record = run.record(steps)
         revolutions, energies = run.revolutions.add(record)

@@ -135,10 +135,10 @@ class MotorJob(CoupledJob):
         with begin_run(self, fmus) as run:
             if previous is not None:
                 run.set_state(previous)
-            return {**self.rows(run, steps), **run.get_state()}
+            return {**self.kept_table(run, steps), **run.get_state()}
 
-    def rows(self, run: MotorRun, steps: range) -> Table:
-        """Run some communication steps; return what is kept of them."""
+    def kept_table(self, run: MotorRun, steps: range) -> Table:
+        """Run some communication steps; return what is kept of them: the revolutions."""
         return run.revolve(steps)
 
 

@@ -22,8 +22,8 @@ def find_event(m):
     if m[at.OTHER_LIMIT] > 0.0:
         watch_other(m)
     if m[at.TRAVEL_LIMIT] > 0.0:
-        watch_limit(m, at.PLACE_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], 1.0, 0, at.TRAVEL_EVENT)
-        watch_limit(m, at.PLACE_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], -1.0, 0, at.TRAVEL_EVENT)
+        watch_limit(m, at.POSITION_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], 1.0, 0, at.TRAVEL_EVENT)
+        watch_limit(m, at.POSITION_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], -1.0, 0, at.TRAVEL_EVENT)
 
 
 def watch_command(m):
@@ -42,9 +42,9 @@ def watch_other(m):
     """Look for the event that the other quantity reaches its limit, or leaves it."""
     limit, side = m[at.OTHER_LIMIT], m[at.OTHER_SIDE]
     order = int(m[at.OTHER_ORDER]) if m[at.INTERVAL] == 0.0 else 0
-    own, other = at.VOLT_SERIES, at.AMPERE_SERIES
+    own, other = at.VOLTAGE_SERIES, at.CURRENT_SERIES
     if m[at.CURRENT_CONTROL] != 0.0:
-        own, other = at.AMPERE_SERIES, at.VOLT_SERIES
+        own, other = at.CURRENT_SERIES, at.VOLTAGE_SERIES
     if m[at.HELD] != 0.0:
         write_guard(m, own, at.TERMS, -m[at.HELD], 0.0)
         for k in range(at.CUBIC):

@@ -82,7 +82,7 @@ def end_state(m):
     commanded = m[at.CURRENT_CONTROL] != 0.0
     if other and lags and not held and not commanded:
         limit = m[at.OTHER_LIMIT]
-        m[at.BEGIN + at.AMPERES] = limit if m[at.BEGIN + at.AMPERES] > 0.0 else -limit
+        m[at.BEGIN + at.COIL_CURRENT] = limit if m[at.BEGIN + at.COIL_CURRENT] > 0.0 else -limit
     m[at.FOLLOWED] = 1.0 if other or not held else 0.0
     m[at.COMMAND_LOWEST] = 0.0 if other else 1.0
     # an inductive current comes to its limit, or to the command, at any balance
@@ -112,7 +112,7 @@ def run_to(m, time):
         if m[at.EVENT_KIND] != at.NO_EVENT and event <= local:
             if m[at.EVENT_KIND] == at.TRAVEL_EVENT:
                 write_states(m, at.BEGIN, m[at.EVENT])
-                m[at.BOX_POSITION] = m[at.BEGIN + at.PLACE]
+                m[at.BOX_POSITION] = m[at.BEGIN + at.POSITION]
                 m[at.REPORT] = m[at.ORIGIN] + event
                 return at.TRAVEL
             end_state(m)

@@ -31,11 +31,11 @@ def initialize(m, time):
     limited = m[at.CURRENT_CONTROL] == 0.0 and m[at.CURRENT_LIMIT] > 0.0
     if limited and m[at.COIL_INDUCTANCE] > 0.0 and abs(m[at.CURRENT_START]) > m[at.CURRENT_LIMIT]:
         return at.START_CURRENT
-    m[at.BEGIN + at.PLACE] = m[at.POSITION_START]
-    m[at.BEGIN + at.SPEED] = m[at.VELOCITY_START]
+    m[at.BEGIN + at.POSITION] = m[at.POSITION_START]
+    m[at.BEGIN + at.VELOCITY] = m[at.VELOCITY_START]
     # without a voltage limit a commanded current jumps from zero to the first command
     jumps = m[at.CURRENT_CONTROL] != 0.0 and m[at.VOLTAGE_LIMIT] == 0.0
-    m[at.BEGIN + at.AMPERES] = 0.0 if jumps else m[at.CURRENT_START]
+    m[at.BEGIN + at.COIL_CURRENT] = 0.0 if jumps else m[at.CURRENT_START]
     keep_inputs(m)
     begin_state(m)
     write_outputs(m)

@@ -1,6 +1,4 @@
-"""Box and rotor as one right-hand side.
-
-A mass matrix of two rows, the motor's circuit, and the energies they exchange.
+"""The equations of motion of box and rotor, the motor's circuit, and the energies they exchange.
 
 With S = unbalance_mass unbalance_radius, position y, angle phi, speed w, current i:
 
@@ -12,8 +10,9 @@ With S = unbalance_mass unbalance_radius, position y, angle phi, speed w, curren
 from ..numerics.elementary import TWO_PI, sincos_turns
 from . import memory as at
 
-MOST_TURNS = 1e9  # of a stage: beyond, it is a failed try,
-NO_NUMBER = 1e400 - 1e400  # and the sub-step is tried again
+# turns of the rotor in a stage: beyond, its rates are no numbers, so that the sub-step is halved
+MOST_TURNS = 1e9
+NO_NUMBER = 1e400 - 1e400
 
 
 def begin_force(m):
