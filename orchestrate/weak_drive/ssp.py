@@ -253,9 +253,6 @@ def write_ssp(
     -------
     Path
 
-    Raises
-    ------
-    InputError
     StoreError
         Where the file cannot be written.
 
