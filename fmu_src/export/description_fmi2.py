@@ -25,10 +25,7 @@ NATIVE = {
 
 
 def fmi2_xml(
-    model: Model,
-    guid: str,
-    capabilities: dict[str, str] = NATIVE,
-    sources: Sequence[str] = (),
+    model: Model, guid: str, capabilities: dict[str, str] = NATIVE, sources: Sequence[str] = ()
 ) -> bytes:
     """Return the model description, as bytes that depend on nothing but the arguments.
 

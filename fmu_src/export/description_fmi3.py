@@ -92,10 +92,7 @@ def add_structure(root: ET.Element, model: Model) -> None:
     if model.clock:
         calculated.append((CLOCK_REFERENCE, ()))
     slots = {variable.name: variable.slot for variable in model.variables}
-    for kind, attribute in (
-        ("Output", "dependencies"),
-        ("InitialUnknown", "initial_dependencies"),
-    ):
+    for kind, attribute in (("Output", "dependencies"), ("InitialUnknown", "initial_dependencies")):
         for reference, members in calculated:
             names = {name for variable in members for name in getattr(variable, attribute)}
             known = " ".join(map(str, sorted(slots[name] for name in names)))

@@ -23,22 +23,13 @@ class Platform:
 
 PLATFORMS = {
     "x86_64-linux": Platform(
-        "x86_64-linux-gnu.2.17",
-        "x86_64_v2",
-        ".so",
-        {"fmi2": "linux64", "fmi3": "x86_64-linux"},
+        "x86_64-linux-gnu.2.17", "x86_64_v2", ".so", {"fmi2": "linux64", "fmi3": "x86_64-linux"}
     ),
     "x86_64-windows": Platform(
-        "x86_64-windows-gnu",
-        "x86_64_v2",
-        ".dll",
-        {"fmi2": "win64", "fmi3": "x86_64-windows"},
+        "x86_64-windows-gnu", "x86_64_v2", ".dll", {"fmi2": "win64", "fmi3": "x86_64-windows"}
     ),
     "x86_64-darwin": Platform(
-        "x86_64-macos.11.0",
-        "x86_64_v2",
-        ".dylib",
-        {"fmi2": "darwin64", "fmi3": "x86_64-darwin"},
+        "x86_64-macos.11.0", "x86_64_v2", ".dylib", {"fmi2": "darwin64", "fmi3": "x86_64-darwin"}
     ),
     "aarch64-linux": Platform(
         "aarch64-linux-gnu.2.17",

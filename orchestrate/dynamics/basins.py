@@ -11,15 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..errors import InputError
-from ..fmu import (
-    OSCILLATOR,
-    STATE,
-    EventInstance,
-    Instance,
-    begin,
-    finder,
-    stroboscopic_samples,
-)
+from ..fmu import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, stroboscopic_samples
 from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
 from ..model.arguments import checked_integer

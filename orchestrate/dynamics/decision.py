@@ -32,13 +32,7 @@ from ..response.respond import Response, respond
 from .clusters import ReachedMotion, SettlingRun, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting, acting
-from .orbit_search import (
-    Guess,
-    guess_from_impacts,
-    least_periods,
-    solve_orbit,
-    why_no_motion,
-)
+from .orbit_search import Guess, guess_from_impacts, least_periods, solve_orbit, why_no_motion
 from .periodic_orbit import ImpactSequence, PeriodicOrbit
 from .settled_motion import Floats, SettledMotion
 from .turning_points import rotate_to_phase_zero
@@ -52,11 +46,7 @@ class MotionDecider:
     """Decides to which motions responses at one point settle; remembers the orbits found."""
 
     def __init__(
-        self,
-        plain: Instance,
-        eventful: EventInstance | None,
-        point: Point,
-        settings: SettlingRun,
+        self, plain: Instance, eventful: EventInstance | None, point: Point, settings: SettlingRun
     ) -> None:
         self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
         excitation = point.excitation

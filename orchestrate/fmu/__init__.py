@@ -24,12 +24,7 @@ module               idea
 ===================  =================================================================
 """
 
-from .begin import (
-    REST,
-    begin,
-    four_numbers,
-    gap_between,
-)
+from .begin import REST, begin, four_numbers, gap_between
 from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe

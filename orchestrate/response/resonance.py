@@ -18,14 +18,7 @@ from ..model.outcomes import IRREGULAR
 from ..running.job import Table
 from ..running.options import Running
 from .labels import Variable, make_dataset, parameter_variable, variable, yes_or_no
-from .questions import (
-    Point,
-    Series,
-    Values,
-    excitation_numbers,
-    make_series,
-    require_bonded_twin,
-)
+from .questions import Point, Series, Values, excitation_numbers, make_series, require_bonded_twin
 from .signatures import as_given, question
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, response_variables
 from .threshold import threshold_variables

@@ -16,14 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..fmu import START_VALUES, Instance, Oscillator, traits
 from ..fmu.fmi import BROKEN, PAUSED, references
 from ..fmu.impacts import STATE
-from ..fmu.oscillator import (
-    COUNTED,
-    COUNTS,
-    PEAKS,
-    KnownMotions,
-    ResponseProgress,
-    ResponseTask,
-)
+from ..fmu.oscillator import COUNTED, COUNTS, PEAKS, KnownMotions, ResponseProgress, ResponseTask
 from .multiplicity import memory_size
 from .questions import Point
 

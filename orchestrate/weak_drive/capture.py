@@ -31,14 +31,7 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import averaged
-from .capture_rule import (
-    DECISIONS,
-    NO_LOAD,
-    UNDECIDED,
-    CaptureOutcome,
-    settling_test,
-    usual_limit,
-)
+from .capture_rule import DECISIONS, NO_LOAD, UNDECIDED, CaptureOutcome, settling_test, usual_limit
 from .controllers import Controller
 from .couple import couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
@@ -125,11 +118,7 @@ class CaptureJob(Job):
         above = low - folds > 2e-4 * volts[kept]
         variables = {
             "passes": yes_or_no(over, passes > 0, "whether the motor passes the resonance"),
-            "decision": (
-                over,
-                np.vectorize(DECISIONS.get)(decisions),
-                {"long_name": how},
-            ),
+            "decision": (over, np.vectorize(DECISIONS.get)(decisions), {"long_name": how}),
             "passage_time": variable(over, times, "s", text),
             "speed": variable(over, speeds, "rad/s", "mean speed at which the motor has settled"),
             "border": variable(along, 0.5 * (low + high), "V", edge, tolerance=self.tolerance),
@@ -160,9 +149,7 @@ class CaptureJob(Job):
 
 
 def run_until_settled(
-    run: MotorRun,
-    steps: range,
-    outcome: Callable[[np.ndarray, np.ndarray], CaptureOutcome],
+    run: MotorRun, steps: range, outcome: Callable[[np.ndarray, np.ndarray], CaptureOutcome]
 ) -> CaptureOutcome:
     times, speeds = np.zeros(0), np.zeros(0)
     first = 0

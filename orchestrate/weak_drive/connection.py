@@ -66,10 +66,7 @@ MOTOR = Connection(  # the first two outputs are what the step control needs
 
 
 def checked_links(
-    connect: Mapping[str, str],
-    drive: Description,
-    units: Mapping[str, str],
-    alone: bool = False,
+    connect: Mapping[str, str], drive: Description, units: Mapping[str, str], alone: bool = False
 ) -> dict[str, Link]:
     """Return the connections by our names; raise ``InputError`` where one cannot be made.
 

@@ -30,13 +30,7 @@ from ..response.labels import Variable, variable, yes_or_no
 from ..response.questions import Question
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Chunk, Fmus, Table, brief, json_data
-from .connection import (
-    MOTION,
-    PUSHES,
-    Connection,
-    Link,
-    checked_links,
-)
+from .connection import MOTION, PUSHES, Connection, Link, checked_links
 from .controllers import InputControl
 from .inputs import Input, Inputs
 from .master import DriveSide, Master, Scheme

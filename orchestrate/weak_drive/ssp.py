@@ -154,11 +154,7 @@ def add_connection(connections: ET.Element, ours: str, link: Link, given: bool) 
 
 
 def system_description(
-    description: str,
-    times: tuple[float, float],
-    components: Components,
-    links: Links,
-    version: str,
+    description: str, times: tuple[float, float], components: Components, links: Links, version: str
 ) -> bytes:
     stop_time, step = times
     root = ET.Element(

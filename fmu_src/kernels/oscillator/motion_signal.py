@@ -104,8 +104,5 @@ def later_bounds(m, b, harmonic, cubic, tau, x, v, cosine, sine):
     fifth, sixth = envelope(m, b, x5, x6) + steady, envelope(m, b, x6, x7) + steady * eta
     if m[at.SECULAR] != 0.0:  # rarely
         time = AHEAD * m[at.SPACING]
-        fifth, sixth = (
-            fifth + driven_bound(m, b, 5, time),
-            sixth + driven_bound(m, b, 6, time),
-        )
+        fifth, sixth = (fifth + driven_bound(m, b, 5, time), sixth + driven_bound(m, b, 6, time))
     return fifth, sixth

@@ -221,10 +221,7 @@ def next_driven_part(m, b, x, v, phases):
     v -= initial_push(m, b, old_cosine, old_sine)
     g = b + at.STEP_GROWTH
     x_driven, v_driven = growing_motion(m, m[g], m[g + 1], m[g + 2], m[g + 3], cosine, sine)
-    return (
-        x * m[step] + v * m[step + 2] + x_driven,
-        x * m[step + 1] + v * m[step + 3] + v_driven,
-    )
+    return (x * m[step] + v * m[step + 2] + x_driven, x * m[step + 1] + v * m[step + 3] + v_driven)
 
 
 def seek_interval(m, tau):

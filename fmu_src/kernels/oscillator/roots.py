@@ -9,13 +9,7 @@ import math
 from ..numerics.first_root import EPS, INFINITE, NO_NUMBER, next_step
 from . import memory as at
 from .event_function import evaluate, event_rounding, event_values, set_remainder
-from .hermite import (
-    clear_part,
-    has_no_root,
-    lowest_after,
-    lowest_before,
-    present_coefficients,
-)
+from .hermite import clear_part, has_no_root, lowest_after, lowest_before, present_coefficients
 from .nodes import (
     BLOCK,
     is_plain_flight,

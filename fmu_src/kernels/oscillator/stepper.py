@@ -197,11 +197,7 @@ def advance(m, time):
     if not is_countable(m, local_time(m, time)):  # rarely
         m[at.REPORT] = before
         return at.BEYOND
-    left, mode, impacts = (
-        last_written_point(m, now),
-        m[at.MODE],
-        m[at.IMPACT_COUNT],
-    )
+    left, mode, impacts = (last_written_point(m, now), m[at.MODE], m[at.IMPACT_COUNT])
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     if m[at.PEAKS_ON] != 0.0:
         clear_peaks(m)

@@ -309,12 +309,7 @@ SCALARS = (
         minimum=0.0,
     ),
     output(  # from rest, what drives the masses first decides; their motion is the same either way
-        "in_contact",
-        "",
-        "Permanent contact",
-        IN_CONTACT,
-        type=BOOLEAN,
-        **DISCRETE,
+        "in_contact", "", "Permanent contact", IN_CONTACT, type=BOOLEAN, **DISCRETE
     ),
     output(
         "phase",
