@@ -42,7 +42,6 @@ def icon_path(version: str) -> str:
 
 
 def terminals_xml(model: Model) -> bytes:
-    """Return ``terminalsAndIcons.xml``: variables to be connected, by names within terminals."""
     root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     if model.terminals:
         parent = ET.SubElement(root, "Terminals")

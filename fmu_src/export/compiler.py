@@ -103,7 +103,6 @@ def link_command(name: str, title: str, objects: Iterable[str]) -> list[str]:
 
 
 def kernel_object(name: str, source: bytes) -> bytes:
-    """Compile a C file that includes nothing of ours to an object file, once in a process."""
     return compile_object((*compile_command(name), "kernel.c", "-o", "kernel.o"), source, name)
 
 
@@ -134,7 +133,6 @@ def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
 
 
 def windows_sources() -> dict[str, bytes]:
-    """Return the files of mingw-w64, which comes with ziglang, that Windows libraries contain."""
     require("ziglang", "brings the C library of Windows")
     spec = importlib.util.find_spec("ziglang")
     assert spec is not None and spec.origin is not None

@@ -79,7 +79,6 @@ def add_clock(parent: ET.Element, model: Model) -> None:
 
 
 def add_structure(root: ET.Element, model: Model) -> None:
-    """Add dependencies: outputs belong to the last communication point, few depend on inputs."""
     structure = ET.SubElement(root, "ModelStructure")
     calculated: list[tuple[int, tuple[Variable, ...]]]
     calculated = [(v.slot, (v,)) for v in model.variables if v.causality == "output"]

@@ -64,7 +64,6 @@ def this_machine() -> str:
 
 
 def usual() -> tuple[str, ...]:
-    """Return the platforms built by default: PCs with Linux and Windows, and this machine."""
     return tuple(name for name in ALL if name in ("x86_64-linux", "x86_64-windows", this_machine()))
 
 

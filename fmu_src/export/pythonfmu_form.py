@@ -65,7 +65,6 @@ def check_pythonfmu() -> None:
 
 
 def export(folder: str, target: Path) -> Path:
-    """Write ``target/NAME.fmu`` of the model in a folder; return its path."""
     check_pythonfmu()
     model, digest = load_model(folder), source_digest(folder)
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
@@ -96,7 +95,6 @@ def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
 
 
 def libraries(folder: str, model: Model) -> Files:
-    """Return compiled kernels by file name; without a compiler warn and return none."""
     optional = {"REFRESH": model.refresh, "COAST": model.coast}
     known = "".join(f"#define {name}\n" for name, entry in optional.items() if entry).encode()
     entry = known + (ROOT / "runtime" / "native" / "library.c").read_bytes()

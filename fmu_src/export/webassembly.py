@@ -60,7 +60,6 @@ def sources(folder: str) -> Files:
 
 
 def export() -> bytes:
-    """Compile models and loops to a WebAssembly module, its GUID in a custom section."""
     compiler = [*ziglang("cc"), *TARGET]
     names = [*OF_LOOPS, *(f"{model}_{name}" for model in MODELS for name in OF_MODELS)]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:
@@ -91,7 +90,6 @@ def compile_units(
 
 
 def custom_section(name: str, text: str) -> bytes:
-    """Return a custom section of a WebAssembly module; both texts must be short."""
     content = bytes([len(name)]) + name.encode() + text.encode()
     assert len(content) < 128, "a length of one byte"
     return bytes([0, len(content)]) + content

@@ -127,7 +127,6 @@ def turn_free_parts(m, time, mode, to):
 
 
 def put_steady(m, mode, cosine, sine, to):
-    """Write the state of the steady response."""
     for mass in range(2):
         b = oscillator_at(mode, mass)
         m[to + mass] = m[b + BY_COSINE] * cosine + m[b + BY_SINE] * sine + m[b + OFFSET_BY]
@@ -137,7 +136,6 @@ def put_steady(m, mode, cosine, sine, to):
 
 
 def put_rates(m, mode, sine, state, to):
-    """Write the rates of a state."""
     for mass in range(2):
         b = oscillator_at(mode, mass)
         x, v = m[state + mass], m[state + 2 + mass]
@@ -154,7 +152,6 @@ def inwards_at(m, node):
 
 
 def apart_at(m, node):
-    """Return the gap at a node."""
     return m[ROOM] if m[node + 6] != 0.0 else 0.0
 
 

@@ -152,7 +152,6 @@ def lacks_impacts(impacts, n, must):
 
 
 def conclude(m, n, decided):
-    """Write multiplicity and decision into the memory; return 0."""
     m[MULTIPLICITY] = n
     m[DECIDED] = decided
     return 0

@@ -239,11 +239,9 @@ class Slave:
             self.enter("refresh", self._memory[self.model.time_slot])
 
     def terminate(self) -> None:
-        """End the simulation run; values can still be read."""
         self._phase = TERMINATED
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Do one communication step; where it cannot be done, log why and return False."""
         try:
             problem = self.step_problem(current_time, step_size)
             problem = problem or self.step(current_time + step_size)
@@ -256,7 +254,6 @@ class Slave:
         return not problem
 
     def warn_short_step(self, time: float, step_size: float) -> None:
-        """Log once that a step is so short that the time stays the same."""
         from pythonfmu.enums import Fmi2Status
 
         if not self._warned:
@@ -285,7 +282,6 @@ class Slave:
         return ""
 
     def step(self, time: float) -> str:
-        """Advance to ``time``; on failure put the memory back and return the reason."""
         coast = self._entries.get("coast")
         if coast and not coast(self._memory, time):
             return ""

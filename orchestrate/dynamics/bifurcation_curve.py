@@ -80,7 +80,6 @@ class BifurcationCurve:
 
     @property
     def first_parameter(self) -> int:
-        """Index of the first of the two parameters among the unknowns."""
         return self.family.size
 
     def multiplier(self, unknowns: Floats) -> complex:
@@ -105,7 +104,6 @@ class BifurcationCurve:
         return np.asarray(matrix * self.scale[: self.family.size], dtype=complex)
 
     def condition(self, unknowns: Floats) -> Floats:
-        """Return the residual of the bifurcation condition, without the orbit's equations."""
         if self.kind == Kind.GRAZING:
             return self.orbit(unknowns).nodes[self.place, CLOSING : CLOSING + 1]
         if self.kind == Kind.TOUCHING:

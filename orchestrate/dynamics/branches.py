@@ -248,7 +248,6 @@ def require_orbit_dataset(start: Any, several: bool) -> None:
 
 
 def require_same_parameter(start: xr.Dataset, over: str, switch: int | None) -> None:
-    """Raise unless a branch, at whose bifurcation another begins, is along the same parameter."""
     along = start.attrs.get("over", over)
     if switch is not None and along != over:
         raise InputError(

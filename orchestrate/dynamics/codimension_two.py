@@ -140,7 +140,6 @@ def locate_points(
 def points_between(
     curve: BifurcationCurve, before: Root, after: Root, number: float
 ) -> Iterator[CodimensionTwoPoint]:
-    """Yield the codimension-two points between two neighbouring roots, by sign changes."""
     curve.update_border(before.unknowns)
     chord = (after.unknowns - before.unknowns) / curve.scale
     before, after = (
@@ -156,7 +155,6 @@ def points_between(
     for kind in ON_CURVE.get(curve.kind, ()):
 
         def value(position: float, kind: PointKind = kind) -> float:
-            """Return the kind's test function at an arclength after ``before``."""
             root = stepper.root_after(position) if position else before
             return test_function_value(curve, root, kind, log_size=log_size)
 

@@ -75,7 +75,6 @@ class MotionDecider:
         return decided
 
     def motion_of(self, response: Response, done: int) -> tuple[SettledMotion, Floats]:
-        """Run a settled response on until its motion is known; return it and a state on it."""
         unstable = False
         while True:
             motion, doubtful = self.periodic_motion(response)
@@ -153,7 +152,6 @@ class MotionDecider:
         return None
 
     def remember(self, motion: SettledMotion) -> SettledMotion:
-        """Store a stable orbit; return it, or the equal one already stored."""
         for known in self.known:
             if known.is_same_orbit_as(motion, self.settings.same):
                 return known
@@ -243,7 +241,6 @@ class MotionDecider:
         return own if own is not None and own.nearest(state)[1] < self.settings.same else None
 
     def stays_on(self, motion: SettledMotion) -> bool:
-        """Return whether the FMU, started on an orbit, is still on it after its period."""
         excitation = self.point.excitation
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         try:

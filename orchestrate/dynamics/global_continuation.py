@@ -49,7 +49,6 @@ class AttractorsAtValue:
     labels: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
     def group_starts(self, starts: Table, settings: AttractorSettings) -> None:
-        """Group random starts by the motions that they settled to: attractors; label each start."""
         features, ends, decided = (starts[name] for name in ("features", "end", "decided"))
         self.labels = np.full(len(ends), -1, dtype=np.intp)
         seen: dict[bytes, int] = {}
@@ -117,7 +116,6 @@ class AttractorsAtValue:
 
 
 def may_be_different_branches(motion: SettledMotion, other: SettledMotion, distance: float) -> bool:
-    """Return whether motions at neighbouring values differ enough to be of different branches."""
     counts = motion.multiplicity, motion.impacts_per_period
     if counts != (other.multiplicity, other.impacts_per_period):
         return True

@@ -49,7 +49,6 @@ class Exponent(NamedTuple):
 
 
 def min_impacts(batches: int = BATCHES) -> int:
-    """Return the number of impacts needed to estimate an exponent and its error."""
     return 2 * batches
 
 

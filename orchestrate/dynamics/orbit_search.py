@@ -37,7 +37,6 @@ Guess = tuple[ImpactSequence, Floats]
 def guess_from_state(
     instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
 ) -> Guess:
-    """Run the FMU some periods from a state at phase 0; return its impacts as an orbit guess."""
     begin(instance, *point, state)
     impacts = instance.impacts(0.0, periods * point.excitation.period)
     return guess_from_impacts(impacts, point, form, periods)
@@ -161,7 +160,6 @@ def least_periods(orbit: PeriodicOrbit, within: float = 1e-6) -> int:
 def check_orbit_in_fmu(
     instance: EventInstance, setting: Setting, values: Floats, orbit: PeriodicOrbit
 ) -> tuple[bool, float]:
-    """Run the FMU through an orbit; return whether impacts agree, and the error of its return."""
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
     begin(instance, *point, point.from_faces(state))

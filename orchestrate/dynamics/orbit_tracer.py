@@ -151,7 +151,6 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         return family.size, family.setting.limits
 
     def accepts(self, root: Root) -> bool:
-        """Return whether all flights between the root's impacts have positive duration."""
         orbit = self.stepper.curve.orbit(root.unknowns)
         return bool((orbit.durations[~orbit.contact] > 0.0).all())
 
@@ -162,7 +161,6 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         return part > 1e-7 and point.zero_is_bifurcation(kind)
 
     def locate(self, step: BranchStep[OrbitPoint]) -> list[LocatedBifurcation[OrbitPoint]]:
-        """Locate the bifurcations in a step, up to where its orbit has half the period."""
         located = super().locate(step)
         for i, each in enumerate(located):
             if is_halved(each, step.before):

@@ -140,7 +140,6 @@ def find_orbit(instance: EventInstance, job: OrbitJob) -> Table:
 def orbit_guesses(
     instance: EventInstance, job: OrbitJob, setting: Setting, values: Floats
 ) -> Iterator[Guess]:
-    """Yield the user's guess; without one, close returns of the response, then single impacts."""
     point, form, guess = setting.point(values), setting.form(values), job.guess
     if guess is not None and guess.state:
         yield guess_from_state(instance, point, form, np.array(guess.state), job.period)

@@ -145,7 +145,6 @@ class PeriodicOrbit:
         return numbers[:, :4], numbers[:, 4:]
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
-        """Return the states at phases inside given segments, by the closed form, shape (n, 4)."""
         return self.motion(segment, phase)[0]
 
     @property

@@ -78,7 +78,6 @@ def trusted_parts(path: Path) -> tuple[Path, ...]:
 def build_libraries(
     folder: str | PathLike[str] | None = None, platforms: Iterable[str] = ()
 ) -> list[Path]:
-    """Compile all C sources of the package for the platforms; return the paths of those made."""
     target, made = default_folder() if folder is None else Path(folder), []
     left: dict[str, list[str]] = {}  # names by the reason
     for source in SOURCES:

@@ -71,7 +71,6 @@ def describe(path: str | PathLike[str], model: str | None = None) -> Description
 
 
 def describe_runnable(path: str | PathLike[str], model: str | None = None) -> Description:
-    """Return :func:`describe`; raise where the FMU has no binary for this machine."""
     description = describe(path, model)
     if not description.runs_here:
         raise InputError(f"FMU {path}: it has no binary for this machine; export it with one")

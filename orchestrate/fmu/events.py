@@ -34,7 +34,6 @@ class EventInstance(Instance):
             raise InputError(f"FMU {path}: is FMI {version}; expected FMI 3.0, which has events")
 
     def impacts(self, time: float, target: float) -> Impacts:
-        """Simulate from ``time`` to ``target``, s, inputs unchanged; return all impacts."""
         return self.event_loop().run(np.array([time, target]), NO_INPUT, NO_TIMES).impacts
 
     def event_loop(self, inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> EventLoop:

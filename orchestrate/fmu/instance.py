@@ -106,7 +106,6 @@ class Instance:
         self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
 
     def _calls2(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        """Prepare FMI 2.0's C calls; return those of reset, of initialisation, and of one step."""
         no, zero = c_int(0), c_double()  # no tolerance, no end
         initialize = [
             self.prepared("fmi2SetupExperiment", no, zero, self._start, no, zero),
@@ -117,7 +116,6 @@ class Instance:
         return self.prepared("fmi2Reset"), initialize, step
 
     def _calls3(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        """Prepare FMI 3.0's C calls; return those of reset, of initialisation, and of one step."""
         no, zero = c_bool(False), c_double()
         initialize = [
             self.prepared("fmi3EnterInitializationMode", no, zero, self._start, no, zero),
@@ -268,14 +266,12 @@ class Instance:
         return FmuError(f"the FMU {self.description.name} answers {text}; expected a finite number")
 
     def initialize(self, start_time: float = 0.0, **values: float) -> None:
-        """Set start values given as keywords, and take the FMU through initialisation mode."""
         self.set(**values)
         self._start.value = start_time
         for call in self._initialize:
             call()
 
     def reset(self) -> None:
-        """Reset the FMU (fmi2Reset, fmi3Reset) to its state after instantiation."""
         self._reset()
 
     def step(self, time: float, target: float) -> None:
@@ -289,7 +285,6 @@ class Instance:
         return values
 
     def size(self, *names: str) -> int:
-        """Return how many values :meth:`read` gives for these names (arrays have several)."""
         return len(self._reader(names)[1])
 
     def _reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
@@ -314,7 +309,6 @@ class Instance:
         return [(variables[f"{name}[{i + 1}]"], 1) for i in range(count)]
 
     def save_state(self) -> bytes:
-        """Return the FMU's whole state, serialised to bytes by FMI's functions."""
         get, serialize, _, _, free = self.state_calls()
         state = self.call(get)
         try:
@@ -323,7 +317,6 @@ class Instance:
             self.call(free, state)
 
     def restore_state(self, data: bytes) -> None:
-        """Set the FMU to a state from the bytes that :meth:`save_state` gave."""
         _, _, deserialize, put, free = self.state_calls()
         state = self.call(deserialize, data)
         try:

@@ -29,7 +29,6 @@ def loaded(description: Description, name: str) -> Any:
 
 
 def load(description: Description, folder: str) -> Any:
-    """Load an FMU's binary from its unpacked folder; return FMPy's FMU object for it."""
     from fmpy import fmi2, fmi3
 
     make = fmi3.FMU3Slave if description.is_fmi3 else fmi2.FMU2Slave

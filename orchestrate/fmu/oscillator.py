@@ -175,7 +175,6 @@ class Oscillator:
 
 
 def sampled(instance: Instance, time: float, target: float, count: int) -> Floats:
-    """Step an FMU from ``time`` to ``target``; return ``count`` equidistant states (count, 4)."""
     oscillator, states = Oscillator.from_instance(instance), np.empty((count, len(STATE)))
     if not oscillator.run("sample_evenly", time, target, count, states.ctypes.data):
         raise oscillator.error()
@@ -185,7 +184,6 @@ def sampled(instance: Instance, time: float, target: float, count: int) -> Float
 def stroboscopic_samples(
     instance: Instance, period: float, transient: int, samples: int
 ) -> tuple[Floats, float]:
-    """Run the FMU over some periods; return states at phase 0, and the largest gap."""
     oscillator, states, peak = Oscillator.from_instance(instance), empty(samples), c_double()
     places = states.ctypes.data, byref(peak)
     if not oscillator.run("sample_periods", period, transient, samples, *places):

@@ -23,7 +23,6 @@ def make_dataset(
 
 
 def variable(dims: Dims, values: Any, units: str, long_name: str, **more: Any) -> Variable:
-    """Return a dataset variable as a tuple (dims, values, attributes with units and long name)."""
     return dims, values, {"units": units, "long_name": long_name, **more}
 
 
@@ -43,7 +42,6 @@ def flags(dims: Dims, values: Any, long_name: str, meanings: Mapping[int, str]) 
 
 
 def yes_or_no(dims: Dims, values: Any, long_name: str) -> Variable:
-    """Return a variable of truth values as CF flags: 0 for no, 1 for yes."""
     return flags(dims, values, long_name, {0: "no", 1: "yes"})
 
 

@@ -43,7 +43,6 @@ class ResonanceJob(SweepJob):
             raise InputError("direction = 'given': expected one of up, down, both")
 
     def parameters(self) -> dict[str, Any]:
-        """Return the job's parameters for its identity, without the start."""
         return {name: value for name, value in super().parameters().items() if name != "start"}
 
     def independent_series(self) -> int:
@@ -99,7 +98,6 @@ class ResonanceJob(SweepJob):
         return glued + [ordered.isel(structure=1, direction=i) for i in range(data.direction.size)]
 
     def peaks(self, data: xr.Dataset) -> dict[str, Variable]:
-        """Return dataset variables of the peaks: maxima of the larger displacement."""
         rows, noise = [], []
         for curve in self.curves(data):
             parts = str(curve.structure.values) != KINDS[0]  # glued, no response is irregular

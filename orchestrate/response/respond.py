@@ -74,7 +74,6 @@ def responses_from(
     tolerance: float,
     multiplicity: Sequence[int] | None = None,
 ) -> Iterator[Response]:
-    """Yield the responses of a loop's rows, with their multiplicity where it has been found."""
     count = results.states.shape[1]
     columns = zip(*(results.counts[name].tolist() for name in COUNTS), strict=True)
     for i, (point, numbers) in enumerate(zip(points, columns, strict=True)):

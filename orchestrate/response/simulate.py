@@ -46,7 +46,6 @@ class SimulateJob(OneMotionQuestion):
     family: ClassVar[tuple[str, ...]] = FAMILY
 
     def grid(self) -> NDArray[np.float64]:
-        """Return the equally spaced times, s, at which the motion is sampled."""
         numbers = np.arange(self.periods * self.points + 1)
         return (self.transient + numbers / self.points) * self.excitation.period
 

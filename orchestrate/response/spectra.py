@@ -88,14 +88,12 @@ class SpectraJob(SeriesQuestion):
             )
 
     def orders(self) -> Floats:
-        """Return the spectral lines as multiples of the excitation frequency."""
         orders = np.arange(self.periods * self.points // 2 + 1) / self.periods
         return orders[orders <= self.highest]
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Compute a chunk of spectra: bonded, delaminated, and delaminated without impulses."""
         amplitudes = []
         with Instance(fmus[OSCILLATOR]) as instance:
             for structure, excitation in items:

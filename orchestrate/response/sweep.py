@@ -81,7 +81,6 @@ class SweepJob(StartedSeriesQuestion):
         return RunOnJob(**vars(self) | {"direction": "given", "start": starts})
 
     def orders(self) -> list[NDArray[np.intp]]:
-        """Return the indices of the values in computing order, an array per direction."""
         up = np.argsort(self.series.values, kind="stable")
         known = {"up": [up], "down": [up[::-1]], "both": [up, up[::-1]]}
         return known.get(self.direction) or [np.arange(len(up))]
@@ -98,7 +97,6 @@ class SweepJob(StartedSeriesQuestion):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Compute a chunk of responses; each starts from the end of the one before."""
         start, offset = self.start, self.structure.gap_offset
         if previous is not None:
             start, offset = previous["end"][-1], float(previous["gap_offset"][-1])
@@ -107,7 +105,6 @@ class SweepJob(StartedSeriesQuestion):
     def table(
         self, fmus: Mapping[str, Path], points: Sequence[Point], starts: ArrayLike, **chain: Any
     ) -> Table:
-        """Return a chunk's table: responses one from the other, or each from its own start."""
         names = ("transient", "samples", "tolerance", "peak_periods")
         own: Any = {name: getattr(self, name) for name in names}
         settings = LoopSettings(**own, decides=True, **chain)
@@ -204,7 +201,6 @@ class RunOnJob(SweepJob):
         return list(zip(points, map(tuple, states.tolist()), strict=True))
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
-        """Compute a chunk of responses, each from its own start."""
         return self.table(fmus, [point for point, _ in items], [start for _, start in items])
 
 

@@ -83,7 +83,6 @@ class ChunkSchedule:
         return table.pop(START).tobytes(), table
 
     def problem(self, index: int) -> str:
-        """Return why a stored chunk does not fit this job (number, rows); empty if it does."""
         number = max(index, ~index)
         if number >= len(self.chunks):
             return f"none of the {len(self.chunks)} of this job"
@@ -114,7 +113,6 @@ class ChunkSchedule:
     # -- what may be computed next ----------------------------------------------------------------
 
     def next_task(self, may_guess: bool = True) -> Task | None:
-        """Return the next chunk to compute, sure ones before guesses; None if none can."""
         guesses = may_guess and self.wasted <= VAIN * self._stored_items
         finders = (self.certain_tasks, self.continuing_tasks, self.gap_task)[: 3 if guesses else 1]
         return next((task for find in finders for task in find()), None)
@@ -136,7 +134,6 @@ class ChunkSchedule:
         return self.end_of(chunk.after)
 
     def end_of(self, index: int) -> Table:
-        """Return the last row of a stored chunk as the start of the next one; cached."""
         if index not in self._ends:
             self._ends[index] = last_entries(self.store.get(index))
         return self._ends[index]
@@ -175,7 +172,6 @@ class ChunkSchedule:
             yield Task(chunk, self.items_of(chunk), None, warmup_items, True)
 
     def gaps(self) -> Iterator[tuple[int, int]]:
-        """Yield runs of consecutive untouched chunks as pairs (first, one past the last)."""
         first = last = 0
         for index in filter(self.is_untouched, self.left):
             if index != last or self.chunks[index].after is None:
@@ -223,7 +219,6 @@ class ChunkSchedule:
             self._ends[index] = last_entries(table)
 
     def resolve_guesses(self) -> None:
-        """Store guessed chunks whose start equals the end of the chunk before; discard others."""
         for index in sorted(self.guesses):
             after = self.chunks[index].after
             if after is None or after not in self.left:

@@ -46,7 +46,6 @@ def compute(
     warmup_items: Sequence[Any],
     code: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Table]:
-    """Compute a chunk of a job; return the start state used, as bytes, and the chunk's table."""
     own_code = code_digests(type(job).__module__) if code is not None else {}
     if code is not None and own_code != code:
         names = changed_modules(own_code, code)

@@ -43,7 +43,6 @@ def write(data: xr.Dataset, path: Path) -> list[Path]:
 
 
 def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
-    """Return a dataset as pandas tables, one per set of dimensions; units in the headers."""
     data = without_repetition(data)
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, array in data.data_vars.items():
@@ -93,7 +92,6 @@ def to_dataframe(data: xr.Dataset, units: str = "") -> pd.DataFrame:
 
 
 def without_repetition(data: xr.Dataset) -> xr.Dataset:
-    """Return a dataset as it is shown: each frequency once, converted numbers to 13 digits."""
     shown = as_shown(data)
     twice = [
         name
@@ -149,7 +147,6 @@ def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
 
 
 def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write a dataset as an Excel file, a sheet per table and one ``about``; return its path."""
     import pandas as pd
 
     frames = tables(data)

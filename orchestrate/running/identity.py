@@ -49,7 +49,6 @@ Identity = dict[str, Any]
 
 
 def identity_of(job: Job, fmus: Mapping[str, Fmu]) -> Identity:
-    """Return a job's identity as a dict: its parameters, digests of code and FMUs."""
     identity: Identity = {
         "question": {"kind": type(job).__name__, **job.parameters()},
         "fmu": {model: fmus[model].guid for model in job.models},
@@ -72,7 +71,6 @@ def difference(stored: Identity, current: Identity) -> str:
 
 
 def same_question(stored: Identity, current: Identity) -> bool:
-    """Return whether two identities have equal job parameters, whatever their code and FMU."""
     return stored.get("question") == current.get("question")
 
 

@@ -46,7 +46,6 @@ def stored_size(file: Any) -> int:
 
 
 def netcdf_content(path: Path, most: int) -> dict[str, Any]:
-    """Return variables and attributes as they are stored; of a large file no numbers."""
     import netCDF4
 
     with netCDF4.Dataset(path) as file:
@@ -65,7 +64,6 @@ def netcdf_content(path: Path, most: int) -> dict[str, Any]:
 
 
 def variable_content(variable: Any, is_large: bool) -> dict[str, Any]:
-    """Return dimensions, attributes and numbers of a variable; large ones are read and dropped."""
     values = None
     if is_large:
         for block in block_indices(variable.shape):

@@ -46,7 +46,6 @@ def answer(
 def answer_all(
     jobs: Sequence[Job], folder: Path, options: RunOptions, find: FmuFinder
 ) -> dict[str, Path]:
-    """Compute many jobs into NetCDF files in a folder; return their paths by job name."""
     open_folder(folder)
     Runner(jobs, replace(options, store=folder), find).run()
     return {job.name: folder / f"{job.name}.nc" for job in jobs}
@@ -102,7 +101,6 @@ class Runner:
         return all(schedule.complete for schedule in self.schedules.values())
 
     def compute_all(self) -> None:
-        """Compute all jobs: in this process while little is left, then with parallel workers."""
         with self.bar() as bar:
             if not (self.options.cluster or self.foreign):
                 with threads(1) if self.in_threads else in_this_process() as workers:
@@ -155,7 +153,6 @@ class Runner:
         bar: Any,
         go_on: Callable[[], bool],
     ) -> None:
-        """Submit chunks and collect results until all jobs are done or ``go_on()`` is false."""
         while not self.finished() and (go_on() or self.futures):
             if go_on():
                 self.hand_out(workers, fmus, bar)

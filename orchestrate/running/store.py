@@ -274,12 +274,10 @@ def load(path: Path, read: Callable[[Path], xr.Dataset] | None = None) -> xr.Dat
 
 
 def load_foreign(path: Path) -> xr.Dataset:
-    """Return the dataset of a NetCDF file that may come from anybody, as :func:`load` does."""
     return load(path, read_dataset)
 
 
 def open_result(path: Path) -> xr.Dataset:
-    """Return the dataset of a NetCDF file, read in this process."""
     with small_chunk_cache():
         # what is read of a large one, for the checksum or by a user, does not stay in memory
         data = xr.open_dataset(path, engine="netcdf4", cache=False)
@@ -304,7 +302,6 @@ def small_chunk_cache() -> Iterator[None]:
 
 
 def create_variable(file: Any, name: str, array: xr.DataArray) -> Any:
-    """Create a variable for a large array in an open file, to be written block by block."""
     for dimension, size in array.sizes.items():
         if dimension not in file.dimensions:
             file.createDimension(str(dimension), size)
@@ -341,7 +338,6 @@ def read_identity(path: Path) -> Identity:
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
-    """Write a dataset as NetCDF with a checksum attribute, atomically; return the path."""
     from xarray.backends import NetCDF4DataStore
 
     dataset = dataset.assign_attrs({ATTRIBUTE: checksum(dataset)})

@@ -72,7 +72,6 @@ class CaptureJob(Job):
         return [replace_parameter(system, self.over, value) for value in self.values] or [system]
 
     def work(self, fmus: Fmus, items: Sequence[System], previous: Any) -> Table:
-        """Simulate starts at all voltages and bisect for the threshold voltage."""
         rows, borders = [], []
         with motor_runs(fmus) as begin:
             for system in items:

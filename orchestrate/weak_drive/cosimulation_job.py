@@ -201,7 +201,6 @@ class CosimulateJob(CoupledJob, Question):
         return table
 
     def begin_drive(self, drive: Instance, inputs: Inputs) -> Connection:
-        """Initialise the drive with its inputs at the start; return how it is connected."""
         drive.initialize(**dict(self.start_values), **inputs.start_values())
         links = self.links(drive.description)
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
@@ -260,7 +259,6 @@ class CosimulateJob(CoupledJob, Question):
         return (1, 2) if self.estimate else (1,)
 
     def conclude(self, fmus: Fmus, table: Table) -> Table:
-        """Return the motion under the accelerations of all steps, over time, and its impacts."""
         runs = {parts: rows_of(table, parts) for parts in self.finenesses()}
         times, ended = self.reached(runs)
         times = self.times(self.points)[: self.points * (len(times) - 1) + 1]
@@ -355,7 +353,6 @@ class CosimulateJob(CoupledJob, Question):
 
 
 def rows_of(table: Table, parts: int) -> Table:
-    """Return the columns of the run whose steps are divided into so many parts, by their names."""
     end = f" {parts}"
     return {name.removesuffix(end): table[name] for name in table if name.endswith(end)}
 

@@ -46,7 +46,6 @@ class CoupleJob(MotorJob):
     hysteresis: HysteresisSettings = field(default_factory=HysteresisSettings)
 
     def run_here(self, fmus: Fmus) -> Table:
-        """Run all chunks one after the other in this process and join their tables."""
         *chunks, _ = self.chunks()
         tables: list[Table] = []
         for chunk in chunks:

@@ -125,7 +125,6 @@ class DriveBranchJob(Job):
         return [*legs, *(Leg(end=NOT_BEGUN) for _ in LEGS[len(legs) :])]
 
     def needs_doubled_leg(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
-        """Return whether a period doubling starts a leg that is not traced yet."""
         if flip.kind != Kind.FLIP or 2 * flip.point.period.revolutions > turns:
             return False
         ends = [leg.points[-1].coordinates for leg in legs if leg.end == HALVED]

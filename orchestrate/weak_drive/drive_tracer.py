@@ -181,7 +181,6 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return motion
 
     def accepts(self, root: Root) -> bool:
-        """Return whether a new motion has as many impacts as the one before."""
         return self.shooter.shoot(root.unknowns).is_connected_to(self.shot)
 
     def test_function(self, point: Motion, kind: Kind) -> float:
@@ -201,7 +200,6 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return {"xtol": 1e-6 * length}
 
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
-        """Return why the leg ends if it has reached half the period; else empty text."""
         # beyond, the same motions come again, half a period later
         change = half_period_change(self.shooter, step.after.root)
         return (HALVED if self.half_period_change @ change < 0.0 else ""), ()
@@ -225,7 +223,6 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
 
 
 def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
-    """Compute multipliers and period of a root just solved for; return them as a motion."""
     along = root if root.tangent @ direction > 0.0 else root.reversed()
     values = shooter.multipliers()
     period = shooter.observe_period(root.unknowns)

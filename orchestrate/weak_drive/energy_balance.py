@@ -66,7 +66,6 @@ class EnergyBalance:
         return Energies._make([*since, missing, sums[1], sums[2]])
 
     def lost(self, record: Record) -> Floats:
-        """Return the energy that the structure loses in each step, in dampers and impacts."""
         before, after = record.before.motion(), record.after.motion()
         h, acceleration = record.after["h"], record.after.acceleration()
         # the relative momentum over a step is a quartic in t/h

@@ -112,7 +112,6 @@ class HysteresisLoop:
         self.spent = 0.0  # s, for which motions of a ramp were held on
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
-        """Store the ramp's saved states by their communication step."""
         for i in range(len(table["master_memory"])):
             state = state_rows(table, slice(i, i + 1))
             self.checkpoints[min((i + 1) * every, steps)] = state
@@ -166,7 +165,6 @@ class HysteresisLoop:
     # -- the rule --
 
     def decide(self, record: RampRecord) -> list[Jump]:
-        """Return all jumps of a run in one direction, by their voltages."""
         jumps = []
         for leg in record.legs():
             first, last = record.eta0(leg[[0, -1]]).tolist()
@@ -177,7 +175,6 @@ class HysteresisLoop:
         return merge_overlapping(jumps, record.sign)
 
     def jumps(self, first: HeldPoint, last: float) -> list[Jump]:
-        """Return the jumps between a held point and a voltage: an empty list for none."""
         sign = math.copysign(1.0, last - first.voltage)
         points = self.hold_grid(first, last)
         if not points:

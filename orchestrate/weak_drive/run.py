@@ -69,7 +69,6 @@ class Run:
         return {name: np.array([value]) for name, value in {**states, **numbers}.items()}
 
     def set_state(self, table: Table) -> None:
-        """Restore the state in the last row of a table."""
         for name, instance in self._saved.items():
             instance.restore_state(bytes(table[name + STATE][-1]).removesuffix(END))
         for name, one in self._memories.items():
@@ -105,7 +104,6 @@ class CoupledJob(Job, ABC):
         return range(self.count())
 
     def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
-        """Compute one chunk of communication steps, or what follows from all at the end."""
         if items[0] < self.steps():
             return self.advance(fmus, range(items[0], items[-1] + 1), previous)
         assert previous is not None
@@ -164,7 +162,6 @@ class MotorRun(Run):
         return record
 
     def revolve(self, steps: range) -> Table:
-        """Run some communication steps; return the table of completed revolutions."""
         return self.revolutions.add(self.record(steps))[0]
 
     def speeds(self, steps: range) -> np.ndarray:
@@ -190,6 +187,5 @@ def motor_runs(fmus: Fmus) -> Iterator[Callable[[MotorJob], MotorRun]]:
 
 @contextmanager
 def begin_run(job: MotorJob, fmus: Fmus) -> Iterator[MotorRun]:
-    """Create both FMU instances, start a run on them and free them at the end."""
     with motor_runs(fmus) as start, closing(start(job)) as run:
         yield run

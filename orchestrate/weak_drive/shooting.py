@@ -87,7 +87,6 @@ class Shooter:
         self.begin_together(structure.bonded)
 
     def take_drive(self, drive: Drive) -> None:
-        """Set the drive; its parameters are wanted at each start."""
         self.drive, self.parameters = drive, drive.parameters()
 
     def begin_together(self, together: bool) -> None:
@@ -190,7 +189,6 @@ class Shooter:
         return not self.structure.bonded and master.motion.x_rel == 0.0
 
     def shoot(self, unknowns: Floats) -> Shot:
-        """Simulate one period from given unknowns; return the final state and impacts."""
         try:
             master, voltage = self.begin_period(unknowns)
             kept = master.run(np.full(self.count, voltage)).after
@@ -265,11 +263,9 @@ class Shooter:
         return self.matrix
 
     def restart(self, root: Floats, matrix: Floats) -> None:
-        """Reset the Jacobian to that of a known root."""
         self.matrix, self._last = matrix, (root, np.zeros(self.size + 1))
 
     def renew_jacobian(self, unknowns: Floats) -> Floats:
-        """Compute the Jacobian by finite differences."""
         base = self.shoot(unknowns)
         matrix = np.stack(
             [self.derivative(unknowns, i, base) for i in range(len(unknowns))], axis=1
@@ -302,7 +298,6 @@ class Shooter:
         raise NoConvergenceError("a grazing is too near for a derivative")
 
     def multipliers(self) -> np.ndarray:
-        """Return the Floquet multipliers of the last motion, the largest first."""
         # without the angle's own, which is 1 for every motion
         values = np.linalg.eigvals(self.map_derivative())
         return np.asarray(values[np.argsort(-np.abs(values))])

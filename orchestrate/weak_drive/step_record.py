@@ -60,16 +60,13 @@ class Record:
 
     @property
     def before(self) -> Record:
-        """Return the states at which the steps begin."""
         return replace(self, columns=self.columns[:, :-1])
 
     @property
     def after(self) -> Record:
-        """Return the states at which the steps end."""
         return replace(self, columns=self.columns[:, 1:])
 
     def at_ends(self) -> Record:
-        """Return the states at the ends of communication intervals only."""
         return replace(self, columns=self.columns[:, self.ends])
 
     def __getitem__(self, name: str) -> Floats:

@@ -138,7 +138,6 @@ class Expressions(ABC):
         return Value(self.kernel.constant(module, name), WHOLE if isinstance(thing, int) else REAL)
 
     def resolved(self, node: ast.expr) -> tuple[object, ModuleType, str]:
-        """Return what a name stands for, and the module and name that it was defined under."""
         name = ast.unparse(node)
         thing = resolve_name(self.module, name)
         if thing is None:
@@ -321,5 +320,4 @@ def in_c(name: str) -> str:
 
 
 def is_simple(value: Value) -> bool:
-    """Return whether an expression is a variable, or a part of one."""
     return value.rank == ATOM and all(part.isidentifier() for part in value.text.split("."))

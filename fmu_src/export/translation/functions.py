@@ -85,7 +85,6 @@ class Body(Expressions):
         self.declared, self.count_of_kept, self.depth = set(self.parameters), 0, 1
 
     def translate(self) -> None:
-        """Set the unit's result and text."""
         body = self.tree.body[1:] if ast.get_docstring(self.tree) else self.tree.body
         known: dict[str, Type] = {}
         while known != self.types:  # a variable may turn out to be real after its first use
@@ -261,7 +260,6 @@ class Body(Expressions):
         self.line(f"return {value.converted(kind).text};")
 
     def if_statement(self, node: ast.If) -> None:
-        """Translate ``if``, ``elif`` and ``else``, with what a comment says of the test."""
         hint, test, before = (
             self.hints.get(node.lineno, ""),
             self.truth(node.test).text,

@@ -17,7 +17,6 @@ Block = list[ast.stmt]
 
 @functools.cache
 def parse_function(function: FunctionType) -> tuple[ast.FunctionDef, int, str]:
-    """Return a function's syntax tree, its first line in its file, and its source."""
     lines, first = inspect.getsourcelines(function)
     source = textwrap.dedent("".join(lines))
     tree = ast.parse(source).body[0]
@@ -45,7 +44,6 @@ def writes_memory(function: FunctionType) -> bool:
 
 
 def resolve_name(module: ModuleType, name: str) -> object:
-    """Return what a dotted name stands for in a module; None where it stands for nothing."""
     thing: object = module
     for part in name.split("."):
         thing = getattr(thing, part, None)

@@ -20,7 +20,6 @@ def begin_state(m):
 
 
 def begin_interval(m):
-    """Write all that the present interval is described by."""
     set_spacing(m)
     write_inputs(m, m[at.SPACING])
     write_interval(m)

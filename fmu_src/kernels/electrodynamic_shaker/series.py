@@ -20,7 +20,6 @@ def is_voltage_driven(m):
 
 
 def write_interval(m):
-    """Write all series of the present interval from the states at its beginning."""
     driven = is_voltage_driven(m)
     driver = at.VOLTAGE_SERIES if driven else at.CURRENT_SERIES
     if m[at.HELD] != 0.0:
@@ -158,7 +157,6 @@ def slopes(m, series, degree, part):
 
 
 def write_states(m, to, part):
-    """Write the states at a ``part`` of the present interval."""
     position, velocity, current = 0.0, 0.0, 0.0
     for k in range(at.DEGREE, -1, -1):
         position = position * part + m[at.POSITION_SERIES + k]

@@ -9,7 +9,6 @@ from .equations import accelerations, force_now, static_current
 
 
 def write_outputs(m):
-    """Write all outputs but the angle, which is summed where it grows."""
     sine, cosine = sincos_turns(m[at.TURN])
     position, velocity = m[at.STATE + at.POSITION], m[at.STATE + at.VELOCITY]
     speed = m[at.STATE + at.ROTATION_SPEED]

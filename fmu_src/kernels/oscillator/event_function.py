@@ -84,7 +84,6 @@ def force_phasor(m, x, v):
 
 
 def free_acceleration(m, b, x, v):
-    """Return the acceleration of a free part: ``x'' = -2 D x' - omega^2 x``."""
     return -(2.0 * m[b + at.DAMPING] * v + m[b + at.OMEGA_SQUARED] * x)
 
 
@@ -114,7 +113,6 @@ def envelope(m, b, x, v):
 
 
 def begin_nodes(m):
-    """Set the state's first interval: the event function at its end, and the remainder."""
     start_nodes(m)
     set_node_values(m, at.RIGHT_VALUES, at.RIGHT, m[at.RIGHT_AGE])
     set_remainder(m)

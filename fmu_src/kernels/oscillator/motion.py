@@ -144,7 +144,6 @@ def beside_wall(m, x):
 
 
 def side_number(m):
-    """Return 1 in the system itself, 2 in the mirrored one."""
     return 1.5 - 0.5 * m[at.SIDE]
 
 

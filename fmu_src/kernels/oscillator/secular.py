@@ -56,7 +56,6 @@ def clear_secular(m):
 
 
 def set_growth(m, b):
-    """Set the constants by which the amplitude of one oscillator grows."""
     m[at.SECULAR] = 1.0
     m[b + at.DRIVEN] = 1.0
     eta, damping, nu = m[at.ETA], m[b + at.DAMPING], m[b + at.NU]
