@@ -115,10 +115,7 @@ def compile_object(command: tuple[str, ...], source: bytes, what: str) -> bytes:
 
 
 def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
-    """Compile and link sources, headers and object files, by name; return the library's bytes.
-
-    ``title`` is the library's own name, which dylibs and DLLs bear inside.
-    """
+    """Compile and link named files to a library called ``title``; return its bytes."""
     files = {**files, **(windows_sources() if name.endswith("-windows") else {})}
     objects = [file for file in files if file.endswith(".o")]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:

@@ -87,11 +87,7 @@ def shim_macros(model: Model, slots: dict[str, int], real_outputs: bool) -> dict
 
 
 def model_header(model: Model, token: str, digest: str, real_outputs: bool = False) -> bytes:
-    """Return the file ``model.h``.
-
-    The digest is the model's fingerprint, which saved states bear; with ``real_outputs`` outputs of
-    other types can be read as Real too.
-    """
+    """Return ``model.h``; with ``real_outputs`` all outputs can be read as Real too."""
     slots = {variable.name: variable.slot for variable in model.variables}
     known = {
         "MODEL_TOKEN": c_string(token),

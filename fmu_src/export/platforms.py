@@ -68,10 +68,7 @@ def usual() -> tuple[str, ...]:
 
 
 def chosen(wanted: Iterable[str]) -> tuple[str, ...]:
-    """Return platforms by name, in the table's order; raise ``CannotExport`` for unknown ones.
-
-    ``all`` and ``this`` stand for what they say.
-    """
+    """Return platforms by name, ``all`` and ``this`` included; raise for unknown ones."""
     names: set[str] = set()
     for name in wanted:
         names.update({"all": ALL, "this": (this_machine(),)}.get(name, (name,)))

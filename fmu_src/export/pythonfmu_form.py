@@ -109,10 +109,7 @@ def libraries(folder: str, model: Model) -> Files:
 
 
 def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
-    """Check that a kernel by the machine's own compiler has the model's bits.
-
-    The native forms' libraries see to it themselves, when they are instantiated.
-    """
+    """Check the bits of a kernel by the machine's own compiler: native forms check themselves."""
     name = this_machine()
     if name not in made or not own_compiler(name):
         return

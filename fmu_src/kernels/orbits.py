@@ -56,9 +56,7 @@ def field(m, time):
 
 
 def motion(m, time):
-    """Write, for rows (phase and mode a motion begins with, a later phase, the state it begins
-    with), the state at the later phase and its rates.
-    """
+    """Write, for rows (start's phase, mode, later phase, state), the later state and its rates."""
     count = int(m[ROWS])
     for i in range(count):
         row, to = TABLE + 7 * i, TABLE + 7 * count + 8 * i
@@ -69,9 +67,7 @@ def motion(m, time):
 
 
 def segments(m, time):
-    """Write, for each segment from node to node, the residual of its equations, their derivatives
-    by the nodes before and after it, and the states at its beginning and end.
-    """
+    """Write each segment's residual, derivatives by both nodes, and states at begin and end."""
     count = int(m[ROWS])
     residual = TABLE + NODE * count
     before, after = residual + 4 * count, residual + 20 * count

@@ -227,10 +227,7 @@ def border(
 
 
 def lies_on_curve(curve: xr.Dataset, question: Mapping[str, Any], near: float = 1e-3) -> bool:
-    """Return whether a border passes another bifurcation of its kind, within a part of the range.
-
-    The bifurcation is that of keywords ``start``, ``bifurcation``, ``over`` and ``limits``.
-    """
+    """Return whether a border passes another start's bifurcation of its kind."""
     start, (across, along) = question["start"], question["over"]
     found = start.isel(bifurcation=question["bifurcation"])
     level = Structure.from_attributes(start.attrs).parameters().get(along, np.nan)

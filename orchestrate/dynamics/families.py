@@ -123,9 +123,7 @@ class HeldFamily(Family):
     """The same equations for Newton's method that holds the parameters."""
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return the Jacobian; before the root the parameters' columns, which nothing asks for,
-        are zero.
-        """
+        """Return the Jacobian; only at the root with the parameters' columns."""
         if at_root:
             return super().jacobian(unknowns)
         columns = np.zeros((self.size, len(self.setting.limits)))

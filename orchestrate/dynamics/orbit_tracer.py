@@ -117,9 +117,7 @@ class OrbitPoint:
 
 
 def scaled_product(multipliers: NDArray[np.complex128], *, pairs: bool) -> float:
-    """Return the product of 1 + multiplier, or of 1 - two, over their sizes: no number if grazing
-    makes all infinite.
-    """
+    """Return the product of 1 + multiplier, or 1 - two, over their sizes; NaN if grazing."""
     with np.errstate(invalid="ignore"):
         values = -multipliers
         if pairs:

@@ -29,10 +29,7 @@ class Player(EventInstance):
     def start(
         self, structure: Structure, start: ArrayLike = REST, beside: Excitation | None = None
     ) -> None:
-        """Initialise a structure's motion at time 0 from a start state.
-
-        ``beside``: what acts beside the cubics; by default the box is at rest.
-        """
+        """Start a motion at time 0; ``beside`` acts beside the cubics, by default nothing."""
         at_rest = Excitation(frequency=structure.omega, amplitude=0.0)
         begin(self, structure, beside or at_rest, start)
 

@@ -282,10 +282,7 @@ def require_bonded_twin(structure: Structure) -> None:
 
 
 def require_delaminated(structure: object, asked: str = "") -> Structure:
-    """Return the argument unchanged; raise ``InputError`` unless it is a delaminated structure.
-
-    ``asked``: the function that asks, where it knows neither a wall nor a stroke.
-    """
+    """Raise unless ``asked`` knows the structure: delaminated, without a wall or a stroke."""
     if checked_structure(structure).bonded:
         raise InputError("bonded = True: expected a delaminated structure (bonded = false)")
     if asked:

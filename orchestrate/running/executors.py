@@ -132,10 +132,7 @@ def threads(count: int) -> Iterator[Workers]:
 
 @contextmanager
 def processes(count: int, foreign: str = "") -> Iterator[Workers]:
-    """Provide loky's processes, which stay for the next question; on an error they are killed.
-
-    New ones for other ``foreign`` FMUs: what these load, as Python modules, may differ by version.
-    """
+    """Provide loky's processes, new ones for other FMUs; an error kills them."""
     import loky
 
     with sigint_blocked():

@@ -88,24 +88,7 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
 
 
 def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
-    """Return one step of the walk, and whether it ends on the root.
-
-    Parameters
-    ----------
-    h0, h1, h2, h3, h4, bound : float
-        As in :func:`clear_step`; any sign of h0.
-    tau : float
-        Where the walk stands.
-    reach : float
-        Longest step wanted, > 0.
-    accuracy : float
-        Wanted of the root's place.
-
-    Returns
-    -------
-    step : float
-    found : bool
-    """
+    """Return a step of the walk from ``tau``, h0 of any sign; and whether it ends on the root."""
     if h0 <= 0.0:
         return 0.0, True
     if h1 < 0.0:

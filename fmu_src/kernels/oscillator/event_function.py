@@ -76,9 +76,7 @@ def is_constant(m):
 
 
 def force_phasor(m, x, v):
-    """Return the free part of -f (18) from the free part of the displacement, as value and
-    derivative.
-    """
+    """Return the free part of -f (18), value and derivative, from that of the displacement."""
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     return p * v + q * x, p * free_acceleration(m, at.OSCILLATOR_3, x, v) + q * v
 

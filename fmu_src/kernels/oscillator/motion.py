@@ -193,21 +193,7 @@ def set_phase(m, turns):
 
 
 def begin_state(m, x1, v1, x2, v2, gap, lowest):
-    """Begin the state that follows from displacements and velocities.
-
-    Parameters
-    ----------
-    m : flat memory
-        Origin and phase already moved to the new state's start.
-    x1, v1, x2, v2 : float
-        m, and m per unit of tau; with a gap from the unloaded positions, without one from where
-        the masses rest together.
-    gap : float
-        Between the masses, m.
-    lowest : int
-        First derivative of f that may decide on the boundary: 1 where f is known to vanish, at a
-        release, else 0.
-    """
+    """Begin the state that follows; ``lowest`` is 1 at a release, where f is known to vanish."""
     if m[at.MODE] == at.GLUED:  # rarely
         begin_common(m, at.GLUED, x1, v1)
         m[at.CLEAR] = INFINITE
@@ -361,18 +347,7 @@ def certified_first_step(m, h1, h2, h3, h4):
 
 
 def leave_boundary(m, order, value):
-    """Leave a start on the boundary where the event function vanishes.
-
-    Parameters
-    ----------
-    m : flat memory
-        With the new state's event function.
-    order : int
-        Of the event function's first derivative that does not vanish, 0 where the event function
-        itself does not, -1 if all vanish.
-    value : float
-        That derivative, > 0.
-    """
+    """Leave the boundary; ``order``, ``value``: first derivative that is not 0, (-1: none)."""
     if order == 0:
         return
     if order < 0:
@@ -395,9 +370,7 @@ def leave_boundary(m, order, value):
 
 
 def grown_to(step, order, value):
-    """Return a bound of what a function whose first derivative that does not vanish has a value is
-    after a step: as a bound of the next derivative adds half at most.
-    """
+    """Return a bound of a function after a step, its derivative adding half at most."""
     size = 1.5 * value
     for k in range(order):
         size *= step / (k + 1.0)

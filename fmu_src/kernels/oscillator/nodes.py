@@ -75,9 +75,7 @@ def set_rotation_constants(m, b, h):
 
 
 def rotation_over(m, b, t):
-    """Return the four factors that turn a free part (x, v) over a time ``t``: those that give the
-    later x from x and v, then those that give the later v.
-    """
+    """Return four factors that turn a free part over ``t``: later x, then later v, by x and v."""
     C, S, _ = fundamental_solutions(m, b, t)
     damped = m[b + at.DAMPING] * S
     return C + damped, S, -m[b + at.OMEGA_SQUARED] * S, C - damped

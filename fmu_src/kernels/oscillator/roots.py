@@ -133,10 +133,7 @@ def end_coefficients(m, other):  # inline
 
 
 def step_inside_interval(m):
-    """Take one certified step inside the present interval, or find the root.
-
-    Without a bound nothing is certain: CLEAR then is no number, and the step fails.
-    """
+    """Take one certified step, or find the root; without a bound CLEAR is no number: it fails."""
     tau = m[at.CLEAR]
     h0, h1, h2, h3, h4, bound = evaluate(m, tau)
     if not bound < INFINITE:  # rarely
@@ -150,10 +147,7 @@ def step_inside_interval(m):
 
 
 def take_step(m, tau, reach, step, found, values):  # inline
-    """Take a step that the event function allows, or a shorter one, if the gap's limit is near.
-
-    ``values`` are the event function's value, four derivatives and bound at ``tau``.
-    """
+    """Take a step that event function (six ``values`` at ``tau``) and gap's limit allow."""
     kind = at.END_EVENT
     if m[at.LIMIT] < INFINITE and m[at.MODE] == at.FLIGHT:  # rarely
         h0, h1, h2, h3, h4, bound = values

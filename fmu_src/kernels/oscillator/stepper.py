@@ -152,12 +152,7 @@ def sum_of_peaks(m):
 
 
 def starting_point(m):
-    """Return the displacements at the start as :func:`.motion.begin_state` takes them, and the gap;
-    below zero where the masses overlap.
-
-    Start positions count from the position at rest: with a preload that is where the masses rest
-    together. With a clearance, a gap that is only rounding counts as zero.
-    """
+    """Return the displacements from the position at rest, and the gap; below 0: overlap."""
     x1, x2, clearance = m[at.X1_START], m[at.X2_START], m[at.GAP_OFFSET]
     gap = x2 - x1
     if clearance > 0.0:  # rarely
