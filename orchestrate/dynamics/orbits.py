@@ -17,14 +17,8 @@ from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Number, Transient, checked_integer, checked_numbers, whole
+from ..response import questions
 from ..response.labels import make_dataset
-from ..response.questions import (
-    OF_EXCITATION,
-    Question,
-    checked_point,
-    checked_state,
-    require_delaminated,
-)
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
@@ -78,11 +72,11 @@ def call_from_start(job: Any, values: Floats, **keywords: Any) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SingleOrbitQuestion(Question, ABC):
+class SingleOrbitQuestion(questions.Question, ABC):
     """Base of questions about one orbit at a fixed excitation."""
 
     excitation: tuple[tuple[str, float], ...]  # as the user gave it
-    replaced: ClassVar[tuple[str, ...]] = OF_EXCITATION
+    replaced: ClassVar[tuple[str, ...]] = questions.OF_EXCITATION
 
     @property
     def setting(self) -> Setting:
@@ -165,7 +159,7 @@ def checked_guess(
     if guess is None:
         return None
     if not isinstance(guess, Mapping):
-        return FirstGuess(state=checked_state("guess", guess, structure))
+        return FirstGuess(state=questions.checked_state("guess", guess, structure))
     if "node_kind" in guess:
         return guess_from_result(guess)
     if "impact_time" not in guess:
@@ -275,8 +269,8 @@ def orbit(
     array([-3.3595, -0.5903, -0.5903, -0.1421])
     """
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
-    point = checked_point(structure, eta, frequency, amplitude, **pushes)
-    require_delaminated(structure)
+    point = questions.checked_point(structure, eta, frequency, amplitude, **pushes)
+    questions.require_delaminated(structure)
     point.excitation.check(structure)
     count = checked_integer("period", period, 1, MAX_PERIODS)
     excitation = excitation_arguments(eta, frequency, amplitude)

@@ -18,16 +18,7 @@ from ..running.array_blocks import lazy_rows
 from ..running.job import FAMILY, Table
 from ..running.options import Running
 from ..running.store import StoredRows
-from .labels import (
-    COORDINATES,
-    Dims,
-    Variable,
-    flags,
-    make_dataset,
-    nondimensional_state_coordinate,
-    variable,
-    yes_or_no,
-)
+from . import labels
 from .multiplicity import DECIDED
 from .questions import Point, StartedSeriesQuestion, Values
 from .respond import DecidedResponse, decisions_from, responses_from
@@ -75,9 +66,9 @@ class SweepJob(StartedSeriesQuestion):
 
     def to_answer(self) -> SweepJob:
         """Return the job; that of values that do not depend on another if each has its start."""
-        if len(self.start) == len(COORDINATES):
+        if len(self.start) == len(labels.COORDINATES):
             return self
-        starts = np.reshape(self.start, (-1, len(COORDINATES)))
+        starts = np.reshape(self.start, (-1, len(labels.COORDINATES)))
         return RunOnJob(**vars(self) | {"direction": "given", "start": starts})
 
     def orders(self) -> list[NDArray[np.intp]]:
@@ -137,7 +128,7 @@ class SweepJob(StartedSeriesQuestion):
         # each column leaves the table: of a long sweep there is no room for two
         ordered = {name: in_order.get(name, self.in_order)(table.pop(name)) for name in [*table]}
         title = f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
-        return make_dataset(self.variables(ordered), self.coordinates(), title)
+        return labels.make_dataset(self.variables(ordered), self.coordinates(), title)
 
     def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
         """Reorder rows from computing order to the values' order, (direction, value) if both."""
@@ -161,8 +152,8 @@ class SweepJob(StartedSeriesQuestion):
 
         return lazy_rows(numbers.shape, gaps.shape[1], read)
 
-    def variables(self, table: Table) -> dict[str, Variable]:
-        along: Dims = (self.series.name,)
+    def variables(self, table: Table) -> dict[str, labels.Variable]:
+        along: labels.Dims = (self.series.name,)
         if self.direction == "both":
             along = ("direction", self.series.name)
         text = "stroboscopic samples of the gap xi_2 - xi_1 (21)"
@@ -170,21 +161,23 @@ class SweepJob(StartedSeriesQuestion):
         end[..., :2] /= units[:, :1]  # in place, of a long sweep
         end[..., 2:] /= units[:, 1:]
         return {
-            "xi_rel": variable((*along, "sample"), table["gap"], "1", text),
+            "xi_rel": labels.variable((*along, "sample"), table["gap"], "1", text),
             **response_variables(along, table, units[:, 0], RESPONSE_QUANTITIES),
-            "end_state": variable((*along, "coordinate"), end, "1", END),
+            "end_state": labels.variable((*along, "coordinate"), end, "1", END),
         }
 
-    def coordinates(self) -> dict[str, Variable]:
+    def coordinates(self) -> dict[str, labels.Variable]:
         numbers = np.arange(self.transient + 1, self.transient + self.samples + 1)
         coordinates = {
             **self.series.coordinates(),
-            **nondimensional_state_coordinate(),
-            "sample": variable("sample", numbers, "1", "excitation period n of the sample"),
+            **labels.nondimensional_state_coordinate(),
+            "sample": labels.variable("sample", numbers, "1", "excitation period n of the sample"),
         }
         if self.direction == "both":
             text = "order in which the values were computed"
-            coordinates["direction"] = variable("direction", np.array(["up", "down"]), "1", text)
+            coordinates["direction"] = labels.variable(
+                "direction", np.array(["up", "down"]), "1", text
+            )
         return coordinates
 
 
@@ -205,16 +198,18 @@ class RunOnJob(SweepJob):
 
 
 def response_variables(
-    along: Dims, table: Table, length: NDArray[np.float64], quantities: Mapping[str, Any]
-) -> dict[str, Variable]:
+    along: labels.Dims, table: Table, length: NDArray[np.float64], quantities: Mapping[str, Any]
+) -> dict[str, labels.Variable]:
     names = {"xi_rel_max": "x_rel_max", "xi1_max": "x1_max", "xi2_max": "x2_max"}
     numbers = {**table, **{xi: table[x] / length for xi, x in names.items()}}
     contact = "whether permanent contact occurs in the sampled periods"
     return {
-        **{name: variable(along, numbers[name], *quantities[name]) for name in quantities},
-        "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
-        "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
-        "multiplicity_decided": flags(along, table["decided"], HOW_DECIDED, DECIDED),
+        **{name: labels.variable(along, numbers[name], *quantities[name]) for name in quantities},
+        "permanent_contact": labels.yes_or_no(along, table["permanent_contact"], contact),
+        "multiplicity": labels.variable(
+            along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY
+        ),
+        "multiplicity_decided": labels.flags(along, table["decided"], HOW_DECIDED, DECIDED),
     }
 
 

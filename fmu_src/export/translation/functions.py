@@ -14,17 +14,8 @@ from types import FunctionType
 from typing import Any, Protocol
 
 from ..errors import CannotExport
+from . import subset
 from .expressions import OPERATORS, Expressions, Names, in_c, is_simple
-from .subset import (
-    Block,
-    assigned_in,
-    comments_of,
-    may_declare,
-    names_in,
-    needs_temporaries,
-    owner_blocks,
-    parse_function,
-)
 from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Value, common_type
 
 WIDTH = 100
@@ -66,8 +57,8 @@ class Body(Expressions):
     def __init__(self, kernel: Kernel, unit: Unit) -> None:
         self.kernel, self.unit = kernel, unit
         self.module = sys.modules[unit.function.__module__]
-        self.tree, self.first, source = parse_function(unit.function)
-        self.comments = comments_of(source)
+        self.tree, self.first, source = subset.parse_function(unit.function)
+        self.comments = subset.comments_of(source)
         self.parameters = [argument.arg for argument in self.tree.args.args]
         if len(self.parameters) != len(unit.kinds):
             raise self.refuse(self.tree, "a call with other arguments", "all of them")
@@ -140,27 +131,27 @@ class Body(Expressions):
         indent = INDENT * self.depth
         self.lines += wrapped(text, indent, indent + INDENT)
 
-    def block(self, statements: Block) -> None:
+    def block(self, statements: subset.Block) -> None:
         for statement in statements:
             if self.is_final:
                 for line in [line for line in sorted(self.comments) if line <= statement.lineno]:
                     self.line(f"/* {self.comments.pop(line)} */")
             self.statement(statement)
 
-    def inner_block(self, statements: Block) -> None:
+    def inner_block(self, statements: subset.Block) -> None:
         self.depth += 1
         self.block(statements)
         self.depth -= 1
 
-    def declare_first(self, body: Block) -> None:
+    def declare_first(self, body: subset.Block) -> None:
         """Declare the variables that no assignment can declare, and name unused arguments."""
-        used = set().union(*map(names_in, body))
+        used = set().union(*map(subset.names_in, body))
         for name in [name for name in self.parameters if name not in used]:
             self.line(f"(void){in_c(name)};")
         several: dict[Type, list[str]] = {}
-        for name, owner in owner_blocks(body).items():
-            first = next(statement for statement in owner if name in names_in(statement))
-            if name not in self.declared and not may_declare(first, name):
+        for name, owner in subset.owner_blocks(body).items():
+            first = next(statement for statement in owner if name in subset.names_in(statement))
+            if name not in self.declared and not subset.may_declare(first, name):
                 self.declared.add(name)
                 several.setdefault(self.types[name], []).append(name)
         for kind, names in several.items():
@@ -203,7 +194,7 @@ class Body(Expressions):
     def assign_parts(self, targets: Sequence[ast.expr], source: ast.expr) -> None:
         if isinstance(source, ast.Tuple):
             parts = self.operands(source.elts)
-            if needs_temporaries(targets, source.elts):
+            if subset.needs_temporaries(targets, source.elts):
                 parts = [self.keep(part) for part in parts]
         else:
             whole = self.expression(source)
@@ -284,7 +275,7 @@ class Body(Expressions):
         values = [self.expression(end) for end in ends]
         first, last = (Value("0", WHOLE), *values) if len(values) == 1 else values[:2]
         step = ast.literal_eval(ends[2]) if len(values) == 3 else 1
-        changed = {one.id for one in assigned_in(node.body) if isinstance(one, ast.Name)}
+        changed = {one.id for one in subset.assigned_in(node.body) if isinstance(one, ast.Name)}
         if last.text in changed or not (is_simple(last) or last.text.isdigit()):
             last = self.keep(last)  # Python asks for it once
         name = "round" if target.id == "_" else in_c(target.id)
