@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import FmuError, InputError, VibroimpactError
 from .description import describe
-from .library import loaded
+from .unpacked import loaded
 
 REAL_TYPES = ("Real", "Float64")
 INTEGER_TYPES = ("Integer", "Int32")

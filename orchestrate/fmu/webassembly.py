@@ -19,7 +19,7 @@ from fmu_src.export.sources import model_sources
 from ..errors import InputError
 from ..files import made_once, open_folder, write_whole
 from ..model.ranges import PUSHES
-from . import event_loop, oscillator
+from . import events, oscillator
 from .exported import SHIPPED, default_folder
 from .models import OSCILLATOR
 
@@ -29,7 +29,7 @@ KINDS = {c_double: "f64", c_bool: "u8", c_int: "i32"}  # else of 32 bits
 WIDTHS = {"f64": 8, "u8": 1, "i32": 4, "u32": 4}
 STRUCTURES = (
     *(oscillator.OscillatorCalls, oscillator.ResponseTask, oscillator.ResponseProgress),
-    *(event_loop.PlayerCalls, event_loop.PlayTask, event_loop.PlayProgress),
+    *(events.PlayerCalls, events.PlayTask, events.PlayProgress),
 )
 
 

@@ -19,10 +19,10 @@ from numpy.typing import ArrayLike
 from ..errors import FmuError, InputError
 from ..fmu.begin import REST, begin
 from ..fmu.description import Description, describe
+from ..fmu.events import BOX as BOX_ACCELERATION
+from ..fmu.events import PLAYED, Player
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR
-from ..fmu.play import BOX as BOX_ACCELERATION
-from ..fmu.play import PLAYED, Player
 from ..lazy import xr
 from ..model import Excitation
 from ..model.arguments import Count, Positive

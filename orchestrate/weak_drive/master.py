@@ -21,9 +21,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 from ..fmu.c_library import loaded_loop
 from ..fmu.channel import Channel, SimulationEnded, StepAnswer
+from ..fmu.events import CUBICS
 from ..fmu.fmi import NOT_FINITE, Fmi, references
 from ..fmu.instance import REAL_TYPES, WARNING, Instance, function_addresses
-from ..fmu.play import CUBICS
 from .connection import FORCE, MOTOR, PUSHES, Connection, Link
 from .step_record import BOX, LEADING, PLACE, OscillatorOutputs, Record
 
