@@ -22,7 +22,6 @@ def fingerprint(files: Mapping[str, bytes]) -> str:
 
 
 def guid_of(files: Mapping[str, bytes]) -> str:
-    """Return a hash of named contents in the form of a GUID."""
     digest = fingerprint(files)
     return f"{{{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:]}}}"
 

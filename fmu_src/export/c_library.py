@@ -43,12 +43,10 @@ KERNELS = {  # headers that a source may include, translated from Python
 
 
 def guid(source: Path) -> str:
-    """Return the token, in braces, that a library of the present C file bears."""
     return guid_of({**import_closure("export/c_library.py"), **loop_files(source)})
 
 
 def loop_files(source: Path) -> Files:
-    """Return a C source, and the header of loops if it includes that."""
     files = {source.name: source.read_bytes()}
     if HEADER.encode() in files[source.name]:
         files[HEADER] = (LOOPS / HEADER).read_bytes()
@@ -56,7 +54,6 @@ def loop_files(source: Path) -> Files:
 
 
 def compiled_files(source: Path) -> Files:
-    """Return a C source and all that it includes, kernels translated."""
     files = loop_files(source)
     text = files[source.name]
     needed = {name: entries for name, entries in KERNELS.items() if name.encode() in text}
@@ -64,14 +61,12 @@ def compiled_files(source: Path) -> Files:
 
 
 def export(source: Path, platform: str) -> bytes:
-    """Compile a C source for a platform; raise ``CannotExport`` without a compiler for it."""
     kept = "__declspec(dllexport)" if platform.endswith("-windows") else VISIBLE
     token = f'{kept} const char token[] = "{guid(source)}";\n'.encode()
     return link(platform, source.stem, {**compiled_files(source), "token.c": token})
 
 
 def file_name(source: Path, platform: str) -> str:
-    """Return the library's file name, with its platform as the folder; raise for unknown ones."""
     if platform not in PLATFORMS:
         raise CannotExport(f"platform {platform}: expected one of {', '.join(PLATFORMS)}")
     return f"{platform}/{source.stem}{PLATFORMS[platform].suffix}"

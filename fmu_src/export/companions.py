@@ -29,7 +29,6 @@ RELATED = (  # file, type, role, description
 
 
 def companions(model: Model) -> Files:
-    """Return these files of a model by name, except the icon."""
     licence = (ROOT / "models" / "license.txt").read_bytes()
     return {
         "terminalsAndIcons/terminalsAndIcons.xml": terminals_xml(model),
@@ -39,12 +38,10 @@ def companions(model: Model) -> Files:
 
 
 def icon_path(version: str) -> str:
-    """Return the path in the FMU where tools look for the icon."""
     return "terminalsAndIcons/icon.png" if version == "fmi3" else "model.png"
 
 
 def terminals_xml(model: Model) -> bytes:
-    """Return ``terminalsAndIcons.xml``: variables to be connected, by names within terminals."""
     root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     if model.terminals:
         parent = ET.SubElement(root, "Terminals")
@@ -59,7 +56,6 @@ def terminals_xml(model: Model) -> bytes:
 
 
 def references_manifest(model: Model) -> bytes:
-    """Return the manifest of FMI-LS-REF."""
     ET.register_namespace("fmi-ls", MANIFEST)
     root = ET.Element("fmiReferences", {f"{{{MANIFEST}}}{k}": v for k, v in LS_REF.items()})
     for place, kind, role, description in RELATED:

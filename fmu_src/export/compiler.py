@@ -46,12 +46,10 @@ WINDOWS_FLAGS = ("-U__CRT__NO_INLINE",)  # its headers' isnan and isfinite, inli
 
 @functools.cache
 def warn_once(line: str) -> None:
-    """Log a warning, once however many FMUs the line is about."""
     log.warning("%s", line)
 
 
 def ziglang(*arguments: str) -> list[str]:
-    """Return the command of a program of ziglang's; raise ``CannotExport`` without ziglang."""
     require("ziglang", "compiles the kernel")
     return [sys.executable, "-m", "ziglang", *arguments]
 
@@ -70,7 +68,6 @@ def own_compiler(name: str) -> list[str]:
 
 
 def run(command: Iterable[str], folder: str | Path, what: str) -> None:
-    """Run a compiler in a folder, for ``what``; raise ``CannotExport`` with its first error."""
     done = subprocess.run([*command], cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
         told = done.stderr.splitlines()
@@ -79,20 +76,17 @@ def run(command: Iterable[str], folder: str | Path, what: str) -> None:
 
 
 def zig_target(name: str) -> list[str]:
-    """Return zig's options for a platform."""
     of = PLATFORMS[name]
     return ["-target", of.zig_target, f"-mcpu={of.cpu}"]
 
 
 def compile_command(name: str) -> list[str]:
-    """Return the command that compiles a C file for a platform to an object file."""
     is_windows = name.endswith("-windows")
     compiler = own_compiler(name) or [*ziglang("cc"), *zig_target(name), *CLANG_FLAGS]
     return [*compiler, *FLAGS, *(WINDOWS_FLAGS if is_windows else ["-fPIC"]), "-c"]
 
 
 def link_command(name: str, title: str, objects: Iterable[str]) -> list[str]:
-    """Return the command that links object files to a library, named as its platform has it."""
     target = f"{title}{PLATFORMS[name].suffix}"
     own = own_compiler(name)
     if own:
@@ -109,13 +103,11 @@ def link_command(name: str, title: str, objects: Iterable[str]) -> list[str]:
 
 
 def kernel_object(name: str, source: bytes) -> bytes:
-    """Compile a C file that includes nothing of ours to an object file, once in a process."""
     return compile_object((*compile_command(name), "kernel.c", "-o", "kernel.o"), source, name)
 
 
 @functools.cache
 def compile_object(command: tuple[str, ...], source: bytes, what: str) -> bytes:
-    """Run a command on the source as ``kernel.c`` and return the ``kernel.o`` that it writes."""
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as folder:
         (Path(folder) / "kernel.c").write_bytes(source)
         run(command, folder, what)
@@ -123,10 +115,7 @@ def compile_object(command: tuple[str, ...], source: bytes, what: str) -> bytes:
 
 
 def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
-    """Compile and link sources, headers and object files, by name; return the library's bytes.
-
-    ``title`` is the library's own name, which dylibs and DLLs bear inside.
-    """
+    """Compile and link named files to a library called ``title``; return its bytes."""
     files = {**files, **(windows_sources() if name.endswith("-windows") else {})}
     objects = [file for file in files if file.endswith(".o")]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:
@@ -141,7 +130,6 @@ def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
 
 
 def windows_sources() -> dict[str, bytes]:
-    """Return the files of mingw-w64, which comes with ziglang, that Windows libraries contain."""
     require("ziglang", "brings the C library of Windows")
     spec = importlib.util.find_spec("ziglang")
     assert spec is not None and spec.origin is not None

@@ -102,7 +102,6 @@ def root_element(model: Model, **attributes: str) -> ET.Element:
 
 
 def add_shared_elements(parent: ET.Element, model: Model) -> ET.Element:
-    """Add units, log categories and the default experiment; return the variables' element."""
     add_units(parent, model)
     categories = ET.SubElement(parent, "LogCategories")
     for name, explanation in LOG_CATEGORIES.items():
@@ -136,7 +135,6 @@ def variable_attributes(variable: Variable, reference: int) -> dict[str, str]:
 
 
 def add_values(typed: ET.Element, variable: Variable) -> None:
-    """Set unit, range, nominal and start value of a variable."""
     limits = {"min": variable.minimum, "max": variable.maximum}
     given = {key: value for key, value in limits.items() if value is not None}
     if variable.type == REAL:
@@ -156,14 +154,12 @@ def add_values(typed: ET.Element, variable: Variable) -> None:
 
 
 def start_text(variable: Variable) -> str:
-    """Return a start value as XML writes it."""
     if variable.type == BOOLEAN:
         return str(bool(variable.start)).lower()
     return float_text(variable.start) if variable.type == REAL else str(int(variable.start))
 
 
 def xml_bytes(element: ET.Element) -> bytes:
-    """Return the XML file of an element, indented."""
     ET.indent(element)
     whole = ET.tostring(element, encoding="UTF-8", xml_declaration=True)
     assert isinstance(whole, bytes)

@@ -25,16 +25,9 @@ NATIVE = {
 
 
 def fmi2_xml(
-    model: Model,
-    guid: str,
-    capabilities: dict[str, str] = NATIVE,
-    sources: Sequence[str] = (),
+    model: Model, guid: str, capabilities: dict[str, str] = NATIVE, sources: Sequence[str] = ()
 ) -> bytes:
-    """Return the model description, as bytes that depend on nothing but the arguments.
-
-    ``capabilities`` are those of the co-simulation, ``sources`` the names of the C files in
-    ``sources/`` that make its library.
-    """
+    """Return the model description; ``sources`` are the C files that make its library."""
     root = common.root_element(model, fmiVersion="2.0", guid=guid, numberOfEventIndicators="0")
     attributes = {"modelIdentifier": model.name, **capabilities}
     simulation = ET.SubElement(root, "CoSimulation", attributes)

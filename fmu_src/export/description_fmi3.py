@@ -67,7 +67,6 @@ def add_array(parent: ET.Element, model: Model, array: Array, reference: int) ->
 
 
 def add_clock(parent: ET.Element, model: Model) -> None:
-    """Add the output clock, where the model has one."""
     if model.clock:
         attributes = {
             "name": model.clock.name,
@@ -80,7 +79,6 @@ def add_clock(parent: ET.Element, model: Model) -> None:
 
 
 def add_structure(root: ET.Element, model: Model) -> None:
-    """Add dependencies: outputs belong to the last communication point, few depend on inputs."""
     structure = ET.SubElement(root, "ModelStructure")
     calculated: list[tuple[int, tuple[Variable, ...]]]
     calculated = [(v.slot, (v,)) for v in model.variables if v.causality == "output"]
@@ -93,10 +91,7 @@ def add_structure(root: ET.Element, model: Model) -> None:
     if model.clock:
         calculated.append((CLOCK_REFERENCE, ()))
     slots = {variable.name: variable.slot for variable in model.variables}
-    for kind, attribute in (
-        ("Output", "dependencies"),
-        ("InitialUnknown", "initial_dependencies"),
-    ):
+    for kind, attribute in (("Output", "dependencies"), ("InitialUnknown", "initial_dependencies")):
         for reference, members in calculated:
             names = {name for variable in members for name in getattr(variable, attribute)}
             known = " ".join(map(str, sorted(slots[name] for name in names)))

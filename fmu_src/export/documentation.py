@@ -29,7 +29,6 @@ def documentation_files(
 def model_page(
     template: str, folder: str, digest: str, form: str, variables: tuple[Variable, ...]
 ) -> bytes:
-    """Return the model's page, its variable table filled in."""
     import jinja2
 
     environment = jinja2.Environment(

@@ -40,10 +40,7 @@ def export(name: str, form: str, build: Path, platforms: tuple[str, ...] | None 
 
 
 def guid(name: str, form: str) -> str:
-    """Return the GUID (FMI 3.0: instantiation token) that an FMU of the present sources bears.
-
-    In braces; it needs neither a compiler nor pythonfmu.
-    """
+    """Return the GUID of an FMU of the present sources, in braces, without compiling anything."""
     from . import native_form, pythonfmu_form
 
     if form == PYTHON_FORM:

@@ -27,7 +27,6 @@ def c_string(text: str) -> str:
 
 
 def c_number(value: float) -> str:
-    """Return a C floating-point literal, to the last bit."""
     if math.isinf(value):
         return "INFINITY" if value > 0 else "-INFINITY"
     return float(value).hex()
@@ -55,7 +54,6 @@ def c_variable(variable: Variable, model: Model) -> str:
 
 
 def shim_macros(model: Model, slots: dict[str, int], real_outputs: bool) -> dict[str, str]:
-    """Return the macros of the model that the C shim uses, value by name."""
     inputs = [
         f"orders 1 to {v.input_derivatives} of {v.name}"
         for v in model.variables
@@ -89,11 +87,7 @@ def shim_macros(model: Model, slots: dict[str, int], real_outputs: bool) -> dict
 
 
 def model_header(model: Model, token: str, digest: str, real_outputs: bool = False) -> bytes:
-    """Return the file ``model.h``.
-
-    The digest is the model's fingerprint, which saved states bear; with ``real_outputs`` outputs of
-    other types can be read as Real too.
-    """
+    """Return ``model.h``; with ``real_outputs`` all outputs can be read as Real too."""
     slots = {variable.name: variable.slot for variable in model.variables}
     known = {
         "MODEL_TOKEN": c_string(token),

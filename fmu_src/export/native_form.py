@@ -107,12 +107,7 @@ def plain_variable(variable: Variable, excites: bool) -> Variable:
     return replace(variable, type=REAL, unit="1", minimum=limits[0], maximum=limits[1])
 
 
-def export(
-    folder: str,
-    form: str,
-    target: Path,
-    platforms: tuple[str, ...] | None = None,
-) -> Path:
+def export(folder: str, form: str, target: Path, platforms: tuple[str, ...] | None = None) -> Path:
     """Write ``target/NAME.fmu`` of the model in a folder; return its path.
 
     Of forms with ``-plain`` see :func:`plain_model`; with ``-sources`` at its end one has no

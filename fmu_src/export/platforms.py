@@ -23,22 +23,13 @@ class Platform:
 
 PLATFORMS = {
     "x86_64-linux": Platform(
-        "x86_64-linux-gnu.2.17",
-        "x86_64_v2",
-        ".so",
-        {"fmi2": "linux64", "fmi3": "x86_64-linux"},
+        "x86_64-linux-gnu.2.17", "x86_64_v2", ".so", {"fmi2": "linux64", "fmi3": "x86_64-linux"}
     ),
     "x86_64-windows": Platform(
-        "x86_64-windows-gnu",
-        "x86_64_v2",
-        ".dll",
-        {"fmi2": "win64", "fmi3": "x86_64-windows"},
+        "x86_64-windows-gnu", "x86_64_v2", ".dll", {"fmi2": "win64", "fmi3": "x86_64-windows"}
     ),
     "x86_64-darwin": Platform(
-        "x86_64-macos.11.0",
-        "x86_64_v2",
-        ".dylib",
-        {"fmi2": "darwin64", "fmi3": "x86_64-darwin"},
+        "x86_64-macos.11.0", "x86_64_v2", ".dylib", {"fmi2": "darwin64", "fmi3": "x86_64-darwin"}
     ),
     "aarch64-linux": Platform(
         "aarch64-linux-gnu.2.17",
@@ -73,15 +64,11 @@ def this_machine() -> str:
 
 
 def usual() -> tuple[str, ...]:
-    """Return the platforms built by default: PCs with Linux and Windows, and this machine."""
     return tuple(name for name in ALL if name in ("x86_64-linux", "x86_64-windows", this_machine()))
 
 
 def chosen(wanted: Iterable[str]) -> tuple[str, ...]:
-    """Return platforms by name, in the table's order; raise ``CannotExport`` for unknown ones.
-
-    ``all`` and ``this`` stand for what they say.
-    """
+    """Return platforms by name, ``all`` and ``this`` included; raise for unknown ones."""
     names: set[str] = set()
     for name in wanted:
         names.update({"all": ALL, "this": (this_machine(),)}.get(name, (name,)))

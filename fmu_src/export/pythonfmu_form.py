@@ -43,7 +43,6 @@ SCRIPT = "runtime/script.py.in"
 
 
 def embedded_sources(folder: str) -> Files:
-    """Return the files of the embedded package, by their path in it."""
     return import_closure(f"models/{folder}/model.py", "runtime/slave.py")
 
 
@@ -54,13 +53,11 @@ def source_digest(folder: str) -> str:
 
 
 def guid(folder: str) -> str:
-    """Return the GUID that an FMU of the present sources bears; this does not need pythonfmu."""
     sources = {"sources": source_digest(folder).encode()}
     return guid_of({**exporter_files("export/pythonfmu_form.py"), **text_files(folder), **sources})
 
 
 def check_pythonfmu() -> None:
-    """Raise an error unless the one version is installed that the slave is made for."""
     require("pythonfmu", "puts the FMU together")
     if metadata.version("pythonfmu") != PYTHONFMU:
         found = metadata.version("pythonfmu")
@@ -68,7 +65,6 @@ def check_pythonfmu() -> None:
 
 
 def export(folder: str, target: Path) -> Path:
-    """Write ``target/NAME.fmu`` of the model in a folder; return its path."""
     check_pythonfmu()
     model, digest = load_model(folder), source_digest(folder)
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
@@ -85,7 +81,6 @@ def export(folder: str, target: Path) -> Path:
 
 
 def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
-    """Write the files that pythonfmu packs; return script and package."""
     model = load_model(folder)
     package = scratch / "source" / f"fmu_{digest[:12]}"
     for name, content in embedded_sources(folder).items():
@@ -100,7 +95,6 @@ def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
 
 
 def libraries(folder: str, model: Model) -> Files:
-    """Return compiled kernels by file name; without a compiler warn and return none."""
     optional = {"REFRESH": model.refresh, "COAST": model.coast}
     known = "".join(f"#define {name}\n" for name, entry in optional.items() if entry).encode()
     entry = known + (ROOT / "runtime" / "native" / "library.c").read_bytes()
@@ -115,10 +109,7 @@ def libraries(folder: str, model: Model) -> Files:
 
 
 def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
-    """Check that a kernel by the machine's own compiler has the model's bits.
-
-    The native forms' libraries see to it themselves, when they are instantiated.
-    """
+    """Check the bits of a kernel by the machine's own compiler: native forms check themselves."""
     name = this_machine()
     if name not in made or not own_compiler(name):
         return
@@ -130,7 +121,6 @@ def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
 
 
 def run_pythonfmu(script: Path, package: Path, built: Path) -> Files:
-    """Let pythonfmu pack script, package and its own binaries, and return the FMU's files."""
     command = [sys.executable, "-m", __name__, str(script), str(package), str(built)]
     done = subprocess.run(command, cwd=ROOT.parent, capture_output=True, text=True)
     if done.returncode != 0:

@@ -37,7 +37,6 @@ def expected_sum(model: Model) -> int:
 
 
 def has_right_bits(model: Model, path: Path) -> bool:
-    """Return whether a kernel, as a library for this machine, has the bits of its Python."""
     library = ctypes.CDLL(str(path))
     for entry in (library.initialize, library.advance):
         entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
@@ -69,7 +68,6 @@ def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> 
 
 
 def self_test_definitions(model: Model) -> dict[str, str]:
-    """Return the macros that the C of the self-test uses, value by name."""
     return {
         "SELF_TEST_STEPS": str(STEPS),
         "SELF_TEST_STEP": STEP.hex(),

@@ -33,17 +33,14 @@ endif()
 
 @functools.cache
 def kernel_source(folder: str) -> bytes:
-    """Return the kernel of a model in C, of which all compiled forms are made."""
     return translate(load_model(folder).entries).encode()
 
 
 def compiled_files(files: Files) -> list[str]:
-    """Return the names of the files that are compiled, in a fixed order."""
     return sorted(name for name in files if name.endswith(".c"))
 
 
 def source_files(name: str, version: str, files: Files) -> Files:
-    """Return the files of an FMU's ``sources/``, by path, from C files and headers."""
     cmake = CMAKE.format(name=name, units=" ".join(compiled_files(files)), options=OPTIONS)
     inside = {**files, "CMakeLists.txt": cmake.encode()}
     if version == "fmi3":
@@ -52,7 +49,6 @@ def source_files(name: str, version: str, files: Files) -> Files:
 
 
 def build_description(name: str, sources: list[str]) -> bytes:
-    """Return FMI 3.0's ``buildDescription.xml``: what to compile, and how."""
     root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=name)
     attributes = {"language": "C99", "compilerOptions": OPTIONS}

@@ -21,14 +21,12 @@ IMPORT = re.compile(r"^[ \t]*((?:from [.\w]+ )?import (?:\([^)]*\)|[\w.,* \t]+))
 
 
 def load_model(folder: str) -> Model:
-    """Import the model in a folder below ``fmu_src/models``."""
     model = import_module(f"{ROOT.name}.models.{folder}.model").MODEL
     assert isinstance(model, Model)
     return model
 
 
 def read_sources(*names: str) -> Files:
-    """Read files below ``fmu_src``; return them by name."""
     return {name: (ROOT / name).read_bytes() for name in names}
 
 
@@ -69,7 +67,6 @@ def import_statements(source: bytes) -> list[ast.stmt]:
 
 @functools.cache
 def module_file(*parts: str) -> str:
-    """Return the file of a module or package below ``fmu_src``; empty if there is none."""
     for name in ("/".join(parts) + ".py", "/".join([*parts, "__init__.py"])):
         if (ROOT / name).is_file():
             return name
@@ -109,5 +106,4 @@ def check_unedited() -> None:
 
 
 def exporter_files(name: str) -> Files:
-    """Return the files of an exporter: if they change, the FMU changes too."""
     return {**import_closure(name), **read_folder(ROOT / "runtime" / "native", "runtime/native/")}

@@ -44,13 +44,11 @@ OF_LOOPS = (
 
 
 def guid() -> str:
-    """Return the GUID that a module of the present sources bears, in braces."""
     files = {**exporter_files("export/webassembly.py"), **read_folder(LOOPS), **read_folder(WEB)}
     return guid_of({**files, **{name: model_digest(name).encode() for name in MODELS}})
 
 
 def sources(folder: str) -> Files:
-    """Return a model's C files by name."""
     header = model_header(load_model(folder), guid(), model_digest(folder))
     shim = {**shim_sources("fmi3"), **fmi_headers("fmi3"), "model.h": header}
     return {
@@ -62,7 +60,6 @@ def sources(folder: str) -> Files:
 
 
 def export() -> bytes:
-    """Compile models and loops to a WebAssembly module, its GUID in a custom section."""
     compiler = [*ziglang("cc"), *TARGET]
     names = [*OF_LOOPS, *(f"{model}_{name}" for model in MODELS for name in OF_MODELS)]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:
@@ -82,7 +79,6 @@ def export() -> bytes:
 def compile_units(
     compiler: Sequence[str], flags: Sequence[str], folder: Path, files: Files
 ) -> list[str]:
-    """Write files to a new folder and compile the C units among them; return their objects."""
     folder.mkdir()
     for name, content in files.items():
         (folder / name).write_bytes(content)
@@ -94,25 +90,21 @@ def compile_units(
 
 
 def custom_section(name: str, text: str) -> bytes:
-    """Return a custom section of a WebAssembly module; both texts must be short."""
     content = bytes([len(name)]) + name.encode() + text.encode()
     assert len(content) < 128, "a length of one byte"
     return bytes([0, len(content)]) + content
 
 
 def guid_inside(module: bytes) -> str:
-    """Return the GUID that a module bears; an empty string where it has none."""
     found = re.search(SECTION.encode() + rb"(\{[0-9a-f-]{36}\})\Z", module)
     return found[1].decode() if found else ""
 
 
 def references(folder: str) -> dict[str, int]:
-    """Return the value references of a model's variables, as FMI 3.0 has them."""
     model = load_model(folder)
     arrays = {array.name: ARRAY_BASE + i for i, array in enumerate(model.arrays)}
     return {v.name: v.slot for v in model.variables if not v.series} | arrays
 
 
 def array_sizes(folder: str) -> dict[str, int]:
-    """Return how many numbers each array of a model has."""
     return {array.name: array.size for array in load_model(folder).arrays}

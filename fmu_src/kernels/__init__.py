@@ -1,4 +1,5 @@
-"""The numbers of the FMUs: plain functions on floats in a flat memory.
+"""The equations of the FMUs and the rules on their motions, as functions on a list of floats.
 
-The same source runs in pure Python and compiled, with the same bits.
+Each number of a model has its index in that list, a slot named in ``memory.py``. The same source
+runs in pure Python and compiled, with the same bits.
 """

@@ -29,9 +29,7 @@ WORK = 1e7  # evaluations until a release is given up
 
 
 def deviate(m, time):
-    """Write a matrix for each impact that maps a deviation before it to that before the next one,
-    displacements in m, velocities in m per unit of tau; and how long contact lasts.
-    """
+    """Write each impact's matrix to the next one's deviation, m and m/tau; and contact times."""
     m[at.SIDE] = 1.0
     derive(m)
     m[at.CUBIC_SET] = 1.0
@@ -54,10 +52,7 @@ def deviate(m, time):
 
 
 def go_to_side(m, row):
-    """Go over to the system, or the mirrored one, in which an impact is at the inner end.
-
-    Deviations have another sign in both, before the impact and after it: their matrix is one.
-    """
+    """Go over to the system, or its mirror image, in which an impact is at the inner end."""
     gap = m[row + X2] - m[row + X1] + m[at.CLEARANCE]
     side = 1.0 if 2.0 * gap < m[at.LIMIT] else -1.0
     if side != m[at.SIDE]:  # rarely
@@ -65,9 +60,7 @@ def go_to_side(m, row):
 
 
 def write_saltation(m, row, matrix):
-    """Write ``R + (F+ - R F-) n^T/(n F-)`` of an impact; where contact follows, that both masses
-    move to their centre.
-    """
+    """Write ``R + (F+ - R F-) n^T/(n F-)`` of an impact; in contact, both to their centre."""
     side, one, two = m[at.SIDE], m[at.SHARE], m[at.MU] * m[at.SHARE]
     if m[at.WALL] != 0.0:  # infinitely heavy
         two = 1.0
@@ -121,7 +114,7 @@ def add_jump(m, place, jump):
 
 
 def contact_duration(m, row, span):
-    """Return how long permanent contact after an impact lasts, in tau, at most a span."""
+    """Return how long contact after an impact lasts, in tau, at most a span."""
     set_phase(m, m[at.ETA_TURNS] * m[at.OMEGA] * m[row + TIME])
     side = m[at.SIDE]
     x, v = side * m[row + X1] - m[at.REST_1], side * m[row + V1] / m[at.OMEGA]

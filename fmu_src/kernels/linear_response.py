@@ -14,10 +14,7 @@ NEVER = float("inf")
 
 
 def write_rest_and_threshold(m, time):
-    """Write the gap between unloaded springs, the places of rest, the threshold, and whether the
-    excitation exceeds it, so that no response without impacts exists: not known with a wall, a
-    stroke, or with loads other than the box's harmonic motion.
-    """
+    """Write the unloaded gap, places of rest, threshold, and whether the excitation exceeds it."""
     offset = m[CLEARANCE]
     if m[BONDED] != 0.0:
         offset = 0.0
@@ -66,5 +63,4 @@ def contact_threshold(m, offset):
 
 
 def magnitude(real, imaginary):
-    """Return the absolute value of a complex number."""
     return math.sqrt(real * real + imaginary * imaginary)

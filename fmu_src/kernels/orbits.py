@@ -56,9 +56,7 @@ def field(m, time):
 
 
 def motion(m, time):
-    """Write, for rows (phase and mode a motion begins with, a later phase, the state it begins
-    with), the state at the later phase and its rates.
-    """
+    """Write, for rows (start's phase, mode, later phase, state), the later state and its rates."""
     count = int(m[ROWS])
     for i in range(count):
         row, to = TABLE + 7 * i, TABLE + 7 * count + 8 * i
@@ -69,9 +67,7 @@ def motion(m, time):
 
 
 def segments(m, time):
-    """Write, for each segment from node to node, the residual of its equations, their derivatives
-    by the nodes before and after it, and the states at its beginning and end.
-    """
+    """Write each segment's residual, derivatives by both nodes, and states at begin and end."""
     count = int(m[ROWS])
     residual = TABLE + NODE * count
     before, after = residual + 4 * count, residual + 20 * count
@@ -127,7 +123,6 @@ def turn_free_parts(m, time, mode, to):
 
 
 def put_steady(m, mode, cosine, sine, to):
-    """Write the state of the steady response."""
     for mass in range(2):
         b = oscillator_at(mode, mass)
         m[to + mass] = m[b + BY_COSINE] * cosine + m[b + BY_SINE] * sine + m[b + OFFSET_BY]
@@ -137,7 +132,6 @@ def put_steady(m, mode, cosine, sine, to):
 
 
 def put_rates(m, mode, sine, state, to):
-    """Write the rates of a state."""
     for mass in range(2):
         b = oscillator_at(mode, mass)
         x, v = m[state + mass], m[state + 2 + mass]
@@ -154,7 +148,6 @@ def inwards_at(m, node):
 
 
 def apart_at(m, node):
-    """Return the gap at a node."""
     return m[ROOM] if m[node + 6] != 0.0 else 0.0
 
 

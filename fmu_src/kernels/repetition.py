@@ -125,9 +125,7 @@ def confirm(m, time):
 
 
 def nearest(m, time):
-    """Write the number of the state that is nearest to a given one, and its distance: the largest
-    difference as a part of the motion's size.
-    """
+    """Write the number of the state nearest to a given one, and its distance over the size."""
     scale(m, 0)
     count, rows = int(m[LATER]), scaled_rows(m)
     x1, x2 = m[GIVEN] / m[SIZE], m[GIVEN + 1] / m[SIZE]
@@ -152,7 +150,6 @@ def lacks_impacts(impacts, n, must):
 
 
 def conclude(m, n, decided):
-    """Write multiplicity and decision into the memory; return 0."""
     m[MULTIPLICITY] = n
     m[DECIDED] = decided
     return 0
@@ -284,10 +281,7 @@ def spread_over_returns(m, first, last, n):
 
 
 def remaining_change(m, n, spread):
-    """Estimate how far n-periodic states still drift (geometric series); infinite if steady.
-
-    What shrinks by q over the samples and has moved by the spread still moves by spread q/(1 - q).
-    """
+    """Estimate what n-periodic states still drift: q of the spread, a geometric series."""
     ratio = contraction_ratio(m, n)
     if ratio >= MAX_DYING_RATIO:
         return INFINITE

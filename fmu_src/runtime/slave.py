@@ -78,12 +78,10 @@ class Logger(ctypes.Structure):
     )
 
     def categories(self) -> list[str]:
-        """Return the categories that the importer wants; an empty list for all of them."""
         places = range(self.begin, self.end, ctypes.sizeof(Text))
         return [Text.from_address(place).read().decode() for place in places]
 
     def hand_over(self, category: str, text: str) -> None:
-        """Pass an error's message to the importer at once."""
         functions = self.functions.contents
         message = text.replace("%", "%%").encode()  # it is a printf format
         name, status = self.name.read(), 3  # fmi2Error
@@ -167,7 +165,6 @@ class Slave:
             pass
 
     def refuse(self, text: str) -> NoReturn:
-        """Raise an error with ``text`` as its message: the call returns an error status."""
         self.report(text)
         self.hand_over(text)
         for kept in (type(self), self, self.log_queue):
@@ -190,14 +187,12 @@ class Slave:
                 logger.hand_over(category, text)
 
     def category(self) -> str:
-        """Return the category under which the importer hears of errors."""
         if not self._logger:
             return ERRORS
         wanted = Logger.from_address(self._logger).categories()
         return ALL if ALL in wanted and ERRORS not in wanted else ERRORS
 
     def complain(self, text: str) -> None:
-        """Log an error without raising."""
         from pythonfmu.enums import Fmi2Status
 
         self.report(text)
@@ -206,7 +201,6 @@ class Slave:
     # -- life cycle --------------------------------------------------------------------------------
 
     def setup_experiment(self, start_time: float, stop_time: float | None = None, *_: Any) -> None:
-        """Set start and stop time of the experiment; the tolerance does not matter."""
         if self._phase != INSTANTIATED:
             self.refuse("fmi2SetupExperiment: expected one call before initialisation")
         if start_time - start_time != 0.0:
@@ -223,37 +217,31 @@ class Slave:
         self._phase = INITIALIZING
 
     def exit_initialization_mode(self) -> None:
-        """Check the values set and initialise the kernel with them."""
         if self._phase != INITIALIZING:
             self.refuse("fmi2ExitInitializationMode: expected one call in initialisation mode")
         self.start()
         self._phase = STEPPING
 
     def start(self) -> None:
-        """Initialise the kernel with the present values."""
         if self._stale:
             self.enter("initialize", self._start_time)
 
     def enter(self, entry: str, time: float) -> None:
-        """Call an entry point of the kernel, which computes the outputs for the values set."""
         code = self._entries[entry](self._memory, time)
         if code:
             self.refuse(explain(self.model, self._memory, code))
         self._stale = False
 
     def catch_up(self) -> None:
-        """Compute the outputs for the values set since they were computed."""
         if self._phase == INITIALIZING:
             self.start()
         elif self._phase == STEPPING and self.model.refresh:
             self.enter("refresh", self._memory[self.model.time_slot])
 
     def terminate(self) -> None:
-        """End the simulation run; values can still be read."""
         self._phase = TERMINATED
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Do one communication step; where it cannot be done, log why and return False."""
         try:
             problem = self.step_problem(current_time, step_size)
             problem = problem or self.step(current_time + step_size)
@@ -266,7 +254,6 @@ class Slave:
         return not problem
 
     def warn_short_step(self, time: float, step_size: float) -> None:
-        """Log once that a step is so short that the time stays the same."""
         from pythonfmu.enums import Fmi2Status
 
         if not self._warned:
@@ -276,7 +263,6 @@ class Slave:
             self.log(text, Fmi2Status.warning, WARNINGS)
 
     def step_problem(self, current_time: float, step_size: float) -> str:
-        """Say why a step cannot be tried; return an empty string if it can."""
         if self._phase != STEPPING:
             return "fmi2DoStep: expected after initialisation and before fmi2Terminate"
         if not 0.0 <= step_size < float("inf"):
@@ -296,7 +282,6 @@ class Slave:
         return ""
 
     def step(self, time: float) -> str:
-        """Advance to ``time``; on failure put the memory back and return the reason."""
         coast = self._entries.get("coast")
         if coast and not coast(self._memory, time):
             return ""
@@ -313,7 +298,6 @@ class Slave:
     # -- values ------------------------------------------------------------------------------------
 
     def find(self, references: Sequence[int], kind: str) -> list[Variable]:
-        """Return the variables at value references, all of one type."""
         found = []
         for reference in references:
             known = 0 <= reference < len(self.model.variables)
@@ -363,7 +347,6 @@ class Slave:
         self._stale = True
 
     def write_problem(self, variable: Variable, value: float) -> str:
-        """Say why a variable cannot be set now, or not to that value; empty if it can."""
         given = f"{variable.name} = {variable.text(value)}"
         if variable.calculated:
             return f"{given}: an output cannot be set, expected a parameter or an input"

@@ -23,64 +23,34 @@ Entry = Callable[[Any, float], int]  # memory and time (s) -> code, 0 for succes
 
 @dataclass(frozen=True)
 class Variable:
-    """One variable of an FMU.
-
-    Attributes
-    ----------
-    name, description, unit : str
-        As in ``modelDescription.xml``; unit ``"1"`` is dimensionless, ``""`` for what has none.
-    causality, variability, initial : str
-        FMI 2.0 attributes.
-    type : str
-        REAL, INTEGER or BOOLEAN.
-    start : float
-        Start value, for all that is not calculated.
-    minimum, maximum : float or None
-        Range, both included.
-    nominal : float
-        Order of magnitude; 0: that of the start value, or 1.
-    display_unit : str
-        Unit in which tools show it, where that is not ``unit``.
-    dependencies : tuple of str
-        The inputs that the output follows at once, without a step.
-    initial_dependencies : tuple of str
-        The variables known at the start that the calculated initial value depends on.
-    input_derivatives : int
-        How many of the variables that follow in the table are its time derivatives: together they
-        are a polynomial in time, which begins where one of them is set.
-    series : str
-        Name of the array it is an element of, where FMI 3.0 has only the array.
-    slot : int
-        Place in the table, in the kernel's memory, and the FMI value reference; see
-        :func:`numbered`.
-    """
+    """One variable of an FMU; causality, variability and initial are FMI 2.0 attributes."""
 
     name: str
     description: str
     causality: str
-    unit: str = ""
+    unit: str = ""  # "1" is dimensionless, "" what has none
     variability: str = "continuous"
     initial: str = ""
     type: str = REAL
-    start: float = 0.0
-    minimum: float | None = None
+    start: float = 0.0  # of all that is not calculated
+    minimum: float | None = None  # included, as the maximum
     maximum: float | None = None
-    nominal: float = 0.0
-    display_unit: str = ""
-    dependencies: tuple[str, ...] = ()
-    initial_dependencies: tuple[str, ...] = ()
+    nominal: float = 0.0  # order of magnitude; 0: that of the start value, or 1
+    display_unit: str = ""  # in which tools show it, where that is not `unit`
+    dependencies: tuple[str, ...] = ()  # inputs that the output follows at once, without a step
+    initial_dependencies: tuple[str, ...] = ()  # of the calculated initial value
+    # how many of the variables behind it are its time derivatives: a polynomial in time together,
+    # which begins where one of them is set
     input_derivatives: int = 0
-    series: str = ""
-    slot: int = -1
+    series: str = ""  # the array that it is an element of, where FMI 3.0 has only the array
+    slot: int = -1  # in table and memory, and FMI's value reference, see `numbered`
 
     @property
     def calculated(self) -> bool:
-        """Whether the FMU computes the variable, so that nobody can set it."""
         return self.causality in ("output", "local")
 
     @property
     def fixed(self) -> bool:
-        """Whether the variable can be set before the end of initialisation only."""
         return self.variability == "fixed"
 
     def text(self, value: float) -> str:
@@ -113,32 +83,26 @@ class Variable:
 
 
 def parameter(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
-    """Return a parameter, fixed unless said otherwise."""
     given = {"variability": "fixed", "initial": "exact", **more}
     return Variable(name, description, "parameter", unit, start=start, **given)
 
 
 def positive(name: str, unit: str, start: float, description: str) -> Variable:
-    """Return a parameter that is not zero."""
     return parameter(name, unit, start, description, minimum=TINY, maximum=LARGE)
 
 
 def not_negative(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
-    """Return a parameter that may be zero."""
     return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE, **more)
 
 
 def start_value(
     name: str, unit: str, description: str, limit: float = DRIVE_LIMIT, **more: Any
 ) -> Variable:
-    """Return the start value of a co-ordinate, of either sign."""
     return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit, **more)
 
 
 def evaluation_limit(function: str) -> Variable:
-    """Return the parameter that bounds the longest communication step, by evaluations of a
-    function.
-    """
+    """Return the parameter that bounds a communication step by evaluations of a function."""
     return parameter(
         "evaluation_limit",
         "",
@@ -153,7 +117,6 @@ def evaluation_limit(function: str) -> Variable:
 
 
 def drive(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
-    """Return an input, of either sign unless said otherwise."""
     given = {"minimum": -HUGE, "maximum": HUGE, **more}
     return Variable(name, description, "input", unit, start=start, **given)
 
@@ -161,24 +124,12 @@ def drive(name: str, unit: str, start: float, description: str, **more: Any) -> 
 def output(
     name: str, unit: str, description: str, known: Iterable[str] = (), **more: Any
 ) -> Variable:
-    """Return an output, calculated from the start values ``known``."""
     given = {"initial": "calculated", "initial_dependencies": tuple(known), **more}
     return Variable(name, description, "output", unit, **given)
 
 
 def numbered(variables: Sequence[Variable], memory: ModuleType) -> tuple[Variable, ...]:
-    """Return the variables in their order, each with its place as its slot.
-
-    Parameters
-    ----------
-    variables : sequence of Variable
-    memory : module
-        Of the kernel: has the same slots under the variables' names in capitals.
-
-    Returns
-    -------
-    tuple of Variable
-    """
+    """Return the variables with their places as slots, which the memory has by their names."""
     for place, variable in enumerate(variables):
         name, _, element = variable.name.partition("[")
         slot = getattr(memory, name.upper()) + (int(element[:-1]) - 1 if element else 0)
@@ -191,52 +142,30 @@ def numbered(variables: Sequence[Variable], memory: ModuleType) -> tuple[Variabl
 
 @dataclass(frozen=True)
 class Array:
-    """An array of FMI 3.0 over variables that stand in the table one after the other.
-
-    Attributes
-    ----------
-    name, description : str
-    first : str
-        Name of the first variable.
-    size : int
-    """
+    """An array of FMI 3.0 over variables that stand in the table one after the other."""
 
     name: str
     description: str
-    first: str
+    first: str  # name of the first variable
     size: int
 
 
 @dataclass(frozen=True)
 class Clock:
-    """A triggered output clock of FMI 3.0.
-
-    Attributes
-    ----------
-    name, description : str
-    counter : str
-        The variable that grows with each tick.
-    """
+    """A triggered output clock of FMI 3.0."""
 
     name: str
     description: str
-    counter: str
+    counter: str  # the variable that grows with each tick
 
 
 @dataclass(frozen=True)
 class Terminal:
-    """Variables that are connected together with those of another model.
-
-    Attributes
-    ----------
-    name, description : str
-    members : mapping of str to str
-        Variables by their names within the terminal: those of the same name belong together.
-    """
+    """Variables that are connected together with those of another model."""
 
     name: str
     description: str
-    members: Mapping[str, str]
+    members: Mapping[str, str]  # variables by the names that both models know
 
 
 @dataclass(frozen=True)
@@ -254,89 +183,40 @@ class SlotRange:
 
 @dataclass(frozen=True, eq=False)  # each is one thing: known by itself, not by its contents
 class Model:
-    """Everything that the exporters need to know of a model.
-
-    Attributes
-    ----------
-    name, description, version, author, license : str
-    variables : tuple of Variable
-        In the order of their slots, from 0 without gaps, see :func:`numbered`.
-    memory_size : int
-        Number of floats of an instance's memory.
-    written_only : tuple of int
-        First slot and number of slots that a step writes and never reads: a step that fails need
-        not put them back.
-    limited : int
-        The code of ``advance`` where the parameter ``evaluation_limit`` was reached: the step is
-        discarded, no error.
-    time_slot, stop_slot, set_slot : int
-        Slots of the communication point reached, of the flag that ends a step at its first event,
-        and of the first of the flags that tell of inputs set, see :attr:`set_flags`.
-    initialize, advance : callable
-        The kernel's entry points, ``(memory, time) -> code``; 0 is success.
-    differentiate : callable
-        Another one: rates of change of the outputs at the point reached, the inputs as they are,
-        into ``rates``.
-    restore : callable
-        Another one, with the start time: recomputes what the parameters decide in a memory
-        that came from outside.
-    ranges : tuple of SlotRange
-        Of the memory behind the variables: numbers that index, count or bound a loop, and those
-        that need not be finite. All others are finite.
-    rates : mapping of int to int
-        Slots of rates by the slots of outputs: those of the outputs behind each follow as these do.
-    refresh : callable or None
-        A third one, of a model with outputs that follow an input at once: the outputs for the
-        inputs as set now.
-    coast : callable or None
-        A fourth one, tried first: a step on which only outputs change. Where it does not return 0
-        it has changed nothing, and ``advance`` does the step.
-    messages : dict of int to str
-        What a code of the entry points says, as one line, see :func:`explain`.
-    stop_time, step_size : float
-        Default experiment, s.
-    arrays : tuple of Array
-    clock : Clock or None
-    terminals : tuple of Terminal
-    series_count : str
-        The parameter that says how many elements of the series a step fills.
-    excitation : tuple of str
-        Inputs that describe an excitation of the model's own: parameters in the plain form.
-    """
+    """Everything that the exporters need to know of a model; entry points return 0 for success."""
 
     name: str
     description: str
     version: str
     author: str
     license: str
-    variables: tuple[Variable, ...]
-    memory_size: int
-    written_only: tuple[int, int]
-    limited: int
-    time_slot: int
-    stop_slot: int
-    set_slot: int
+    variables: tuple[Variable, ...]  # in the order of their slots, from 0 without gaps
+    memory_size: int  # floats of an instance
+    written_only: tuple[int, int]  # first slot and count: a step never reads them, if it fails too
+    limited: int  # code of `advance` where `evaluation_limit` is reached: discarded, no error
+    time_slot: int  # of the communication point reached
+    stop_slot: int  # of the flag that ends a step at its first event
+    set_slot: int  # of the first of the flags that tell of inputs set, see `set_flags`
     initialize: Entry
     advance: Entry
-    differentiate: Entry
-    restore: Entry
+    differentiate: Entry  # writes the outputs' rates of change, the inputs as they are
+    restore: Entry  # recomputes what the parameters decide in a memory that came from outside
+    # of slots behind the variables: what indexes, counts or bounds a loop, or need not be finite
     ranges: tuple[SlotRange, ...]
-    rates: Mapping[int, int]
-    messages: Mapping[int, str]
-    stop_time: float
+    rates: Mapping[int, int]  # slots of rates by slots of outputs; those behind each follow alike
+    messages: Mapping[int, str]  # what a code says, as one line, see `explain`
+    stop_time: float  # of the default experiment, s
     step_size: float
     arrays: tuple[Array, ...] = ()
     clock: Clock | None = None
     terminals: tuple[Terminal, ...] = ()
-    series_count: str = ""
-    excitation: tuple[str, ...] = ()
-    refresh: Entry | None = None
-    coast: Entry | None = None
+    series_count: str = ""  # the parameter of how many elements of the series a step fills
+    excitation: tuple[str, ...] = ()  # inputs that are parameters in the plain form
+    refresh: Entry | None = None  # where outputs follow an input at once: for inputs as set now
+    coast: Entry | None = None  # tried first: only outputs change; else it has changed nothing
 
     def rate_slot(self, variable: Variable) -> int:
-        """Return the slot of a variable's rate of change; -1 if it is no continuous output and has
-        none.
-        """
+        """Return the slot of a continuous output's rate of change, else -1."""
         if variable.causality != "output" or variable.variability != "continuous":
             return -1
         first = max(slot for slot in self.rates if slot <= variable.slot)
@@ -344,9 +224,7 @@ class Model:
 
     @property
     def set_flags(self) -> dict[int, int]:
-        """Slots of the flags to be raised when an input with derivatives, or one of these, is set,
-        to whatever value; by the input's slot.
-        """
+        """Slots of the flags to raise where an input with derivatives, or one of these, is set."""
         values = [v for v in self.variables if v.input_derivatives]
         return {
             slot: self.set_slot + place
@@ -369,9 +247,7 @@ class Model:
 
 
 def hidden_problem(model: Model, memory: Sequence[float]) -> str:
-    """Say which slot behind the variables cannot have its value; return an empty string if all
-    can.
-    """
+    """Say which slot behind the variables cannot have its value; empty if all can."""
     ranges = {slot: row for row in model.ranges for slot in range(row.first, row.first + row.size)}
     for slot in range(len(model.variables), model.memory_size):
         value = float(memory[slot])
@@ -381,9 +257,7 @@ def hidden_problem(model: Model, memory: Sequence[float]) -> str:
 
 
 def with_slots(messages: Mapping[int, str], memory: ModuleType) -> dict[int, str]:
-    """Return messages with the slots of a kernel's memory in place of their names: ``{E}`` is
-    ``{6}``.
-    """
+    """Return messages with slots in place of their names: ``{E}`` is ``{6}``."""
 
     def slot(match: re.Match[str]) -> str:
         return f"{{{getattr(memory, match.group(1))}"

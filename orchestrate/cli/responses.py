@@ -31,7 +31,9 @@ class Simulate(OfStructure, OfBox, Beside, Asked, Stored, Results):
   {program} simulate --eta 1.2 --start 0,0.5,0,0                from a gap of 0.5 m"""
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        yield from printing.extents(data, "x1 x2 x_rel a1_abs a2_abs")
+        at_wall = data.attrs.get("wall")  # it is no mass 2
+        names = "x1 x_rel a1_abs" if at_wall else "x1 x2 x_rel a1_abs a2_abs"
+        yield from printing.extents(data, names)
         yield from printing.impact_lines(data)
 
 

@@ -85,7 +85,6 @@ class AttractorsJob(SeriesQuestion):
         return [*itertools.product(range(len(self.series.points)), range(self.starts)), None]
 
     def progress_note(self, first: int) -> str:
-        """Return a note for the progress bar while the last item gathers attractors, else none."""
         return "attractors at neighbours" if first == self.count() - 1 else ""
 
     def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
@@ -101,7 +100,6 @@ class AttractorsJob(SeriesQuestion):
             return settled_table(rows)
 
     def draw_starts(self, decider: MotionDecider, index: int) -> NDArray[np.float64]:
-        """Return the random start states at one value of the parameter."""
         point, seed = decider.point, (self.seed, index)
         if self.scale is not None:
             scale = self.scale[index] if isinstance(self.scale, tuple) else self.scale
@@ -113,7 +111,6 @@ class AttractorsJob(SeriesQuestion):
     def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], table: Table
     ) -> Table:
-        """Group all starts' settled motions into attractors, matched along the parameter."""
         points, order = self.series.points, self.order()
         starts = {n: np.split(rows, len(points)) for n, rows in table.items()}
         settled = [{name: rows[i] for name, rows in starts.items()} for i in order]
@@ -151,7 +148,6 @@ class AttractorsJob(SeriesQuestion):
         return make_dataset(variables, coordinates, title)
 
     def existence_ranges(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
-        """Return the lowest and highest parameter value at which each attractor exists."""
         values = np.array(self.series.values)[:, np.newaxis]
         first = np.where(there, values, np.inf).min(axis=0)
         last = np.where(there, values, -np.inf).max(axis=0)
@@ -174,7 +170,6 @@ def settled_rows(decider: MotionDecider, starts: ArrayLike) -> list[SettledRow]:
 
 
 def settled_table(rows: Sequence[SettledRow]) -> Table:
-    """Return the rows of settled starts as a dict of arrays."""
     features, ends, decided, periods = zip(*rows, strict=True)
     columns = {"features": np.array(features, dtype=float), "end": np.array(ends, dtype=float)}
     return {**columns, "decided": np.array(decided, dtype=np.int8), "periods": np.array(periods)}
@@ -201,7 +196,6 @@ def attractor_columns(matched: MatchedAttractors) -> Table:
 def attractor_variables(
     columns: Mapping[str, Any], along: tuple[str, ...], of: str
 ) -> dict[str, Variable]:
-    """Return dataset variables of attractors (share, features, state) from arrays by name."""
     dims = (*along, "attractor")
     text = "a state at phase 0, of a periodic one the least x1: x1, x2 in m, v1, v2 in m/s"
     return {
@@ -341,11 +335,6 @@ def attractors(
         v2 in m/s), of a periodic one that with the smallest x1; ``first_found``, ``last_found``,
         between which values it is there. Over ``start``: ``attractor_of`` and the ``features`` of
         what a start has settled to.
-
-    Raises
-    ------
-    InputError
-        Where an argument is missing, contradicts another one, or is out of its range.
 
     Notes
     -----

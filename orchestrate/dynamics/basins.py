@@ -11,31 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..errors import InputError
-from ..fmu import (
-    OSCILLATOR,
-    STATE,
-    EventInstance,
-    Instance,
-    begin,
-    finder,
-    stroboscopic_samples,
-)
+from ..fmu import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, stroboscopic_samples
 from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
 from ..model.arguments import checked_integer
 from ..model.outcomes import ABSENT
 from ..model.ranges import PUSHES
+from ..response import questions
 from ..response.labels import make_dataset, si_state_coordinate, variable
-from ..response.questions import (
-    OF_EXCITATION,
-    Point,
-    Question,
-    State,
-    checked_point,
-    checked_state,
-    outside_gap,
-    require_delaminated,
-)
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
@@ -77,14 +60,13 @@ class PlaneAxis(NamedTuple):
     number: int
 
     def values(self) -> Floats:
-        """Return the axis's equidistant coordinate values, from low to high."""
         return np.linspace(self.low, self.high, self.number)
 
 
 class Plane(NamedTuple):
     """Plane of starts: two axes, and the state that the other coordinates are taken from."""
 
-    point: Point
+    point: questions.Point
     x: PlaneAxis
     y: PlaneAxis
     at: tuple[float, ...]  # state in whose neighbourhood the plane lies: x1, x2 in m, v1, v2 in m/s
@@ -125,7 +107,7 @@ def masses_from_gap(
     return middle - half, middle + half
 
 
-class BasinJob(Question):
+class BasinJob(questions.Question):
     """Job of :func:`orchestrate.basin`: all starts on a plane, run until they settle."""
 
     excitation: Excitation  # its phase is that of all starts where `phase` is not a coordinate
@@ -133,7 +115,7 @@ class BasinJob(Question):
     y: PlaneAxis
     known: tuple[tuple[float, ...], ...]  # states on attractors that are known, at phase 0
     settings: SettlingRun
-    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *PUSHES, "phase", *RUN_LENGTHS)
+    replaced: ClassVar[tuple[str, ...]] = (*questions.OF_EXCITATION, *PUSHES, "phase", *RUN_LENGTHS)
     family: ClassVar[tuple[str, ...]] = FAMILY
     chunk_size: ClassVar[int] = 240
     last_item_uses_all: ClassVar[bool] = True
@@ -141,46 +123,47 @@ class BasinJob(Question):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_delaminated(self.structure)
+        questions.require_delaminated(self.structure)
         states = self.plane().starts()[0]
         if self.structure.wall and states[:, 1::2].any():
             raise InputError(
                 "x and y: mass 2 is a wall; expected of x1 and x_rel, v1 and v_rel one"
             )
-        if outside_gap(states, self.structure).all():
+        if questions.outside_gap(states, self.structure).all():
             raise InputError(
                 "x and y: the masses overlap at every start; expected some with x2 >= x1"
             )
 
     def plane(self) -> Plane:
-        return Plane(Point(self.structure, self.excitation), self.x, self.y, self.at)
+        return Plane(questions.Point(self.structure, self.excitation), self.x, self.y, self.at)
 
     def count(self) -> int:
         return self.x.number * self.y.number + 1
 
-    def items(self) -> Sequence[tuple[State, float] | None]:
+    def items(self) -> Sequence[tuple[questions.State, float] | None]:
         states, phases = self.plane().starts()
         return [*zip(map(tuple, states.tolist()), phases.tolist(), strict=True), None]
 
     def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
         """Run starts until they settle (overlapping masses: absent), or group them at the end."""
-        point = Point(self.structure, self.excitation.replace(phase=0.0))  # a start has its own
+        point = questions.Point(
+            self.structure, self.excitation.replace(phase=0.0)
+        )  # a start has its own
         with instance_pair(fmus[OSCILLATOR]) as instances:
             if previous is not None:
                 return self.gather_attractors(instances, point, previous)
             decider = MotionDecider(*instances, point, self.settings)
             rows = [ABSENT_ROW] * len(items)
             states = np.array([state for state, _ in items])
-            apart = np.flatnonzero(~outside_gap(states, self.structure))
+            apart = np.flatnonzero(~questions.outside_gap(states, self.structure))
             starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in apart.tolist()]
             for i, row in zip(apart.tolist(), settled_rows(decider, starts), strict=True):
                 rows[i] = row
             return settled_table(rows)
 
     def gather_attractors(
-        self, instances: tuple[Instance, EventInstance | None], point: Point, table: Table
+        self, instances: tuple[Instance, EventInstance | None], point: questions.Point, table: Table
     ) -> Table:
-        """Group all starts' settled motions into attractors; return arrays with starts' labels."""
         there = table["decided"] != ABSENT
         starts = {name: rows[there] for name, rows in table.items()}
         matched = continue_attractors(instances, [point], [starts], self.settings, self.known)
@@ -209,8 +192,9 @@ class BasinJob(Question):
         return make_dataset(variables, coordinates, title)
 
 
-def run_to_phase_zero(instance: Instance, point: Point, state: State, phase: float) -> State:
-    """Simulate from a start at a phase until the box is at phase 0; return the state there."""
+def run_to_phase_zero(
+    instance: Instance, point: questions.Point, state: questions.State, phase: float
+) -> questions.State:
     left = -phase % TURN
     if left == 0.0:
         return state
@@ -221,7 +205,6 @@ def run_to_phase_zero(instance: Instance, point: Point, state: State, phase: flo
 
 
 def checked_axis(name: str, argument: Any) -> PlaneAxis:
-    """Return a ``PlaneAxis`` from the user's (name, low, high, count); raise if invalid."""
     expected = f"expected (name, low, high, count) with a name of {', '.join(AXES)}"
     try:
         axis, low, high, count = argument
@@ -290,11 +273,6 @@ def basin(
         which no start of it leads; ``multiplicity``, ``impacts_per_period``, ``xi_rel_max``,
         ``multiplier``, ``decided_by``, and ``state`` at phase 0 as there.
 
-    Raises
-    ------
-    InputError
-        Where an argument is missing, contradicts another one, or is out of its range.
-
     Notes
     -----
     A start at another phase is run on to phase 0 first. What a response settles to is decided as
@@ -310,7 +288,7 @@ def basin(
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
-    point = checked_point(structure, eta, frequency, amplitude, **pushes)
+    point = questions.checked_point(structure, eta, frequency, amplitude, **pushes)
     run = SettlingRun.from_settings(settings, transient=transient, settle=settle, samples=samples)
     known: KnownAttractors | None = None
     if x is None or y is None:
@@ -329,14 +307,13 @@ def basin(
         excitation=point.excitation.replace(phase=phase),
         x=sides[0],
         y=sides[1],
-        at=checked_state("at", at, structure),
+        at=questions.checked_state("at", at, structure),
         known=known.states if known else (),
         settings=run,
     )
 
 
 def mean_over_attractors(found: xr.Dataset, frequency: float) -> Floats:
-    """Return the mean state over attractors of :func:`attractors`, found at this frequency."""
     over = [name for name in found.get("state", xr.DataArray()).dims if name != "coordinate"]
     if "attractor" not in over or any(
         found.sizes[name] > 1 for name in over if name != "attractor"
@@ -354,7 +331,7 @@ def mean_over_attractors(found: xr.Dataset, frequency: float) -> Floats:
 class KnownAttractors(NamedTuple):
     """Attractors found beforehand, from which the default plane of starts is laid out."""
 
-    states: tuple[State, ...]  # a state on each at phase 0
+    states: tuple[questions.State, ...]  # a state on each at phase 0
     samples: Floats  # states of all of them at phase 0
     gap: float  # largest gap of their motions, m, or the unit of length where that is 0
     frequency: float  # of the box, rad/s
@@ -368,9 +345,8 @@ class KnownAttractors(NamedTuple):
 
 
 def find_known_attractors(
-    point: Point, settings: SettlingRun, running: Mapping[str, Any]
+    point: questions.Point, settings: SettlingRun, running: Mapping[str, Any]
 ) -> KnownAttractors:
-    """Find attractors from a few random starts, to lay the default plane around them."""
     structure, excitation = point
     search: Any = {name: getattr(settings, name) for name in RUN_LENGTHS} | {"settings": settings}
     search |= {name: running[name] for name in running.keys() & {"fmu", "build_folder"}}

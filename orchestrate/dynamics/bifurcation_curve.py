@@ -56,7 +56,6 @@ class BifurcationCurve:
 
     @classmethod
     def from_orbit(cls, family: Family, point: OrbitPoint, kind: int) -> BifurcationCurve:
-        """Return the equations of the curve through a bifurcation found on a branch."""
         place, extra = -1, np.zeros(0)
         if kind == Kind.TORUS:
             which = np.abs(np.abs(point.pairs) - 1.0).argmin()
@@ -77,12 +76,10 @@ class BifurcationCurve:
 
     @property
     def accuracy(self) -> float:
-        """Largest residual with which a root of the equations counts as solved."""
         return self.family.accuracy
 
     @property
     def first_parameter(self) -> int:
-        """Index of the first of the two parameters among the unknowns."""
         return self.family.size
 
     def multiplier(self, unknowns: Floats) -> complex:
@@ -92,7 +89,6 @@ class BifurcationCurve:
         return REAL_MULTIPLIERS[self.kind]
 
     def orbit(self, unknowns: Floats) -> PeriodicOrbit:
-        """Return the periodic orbit contained in a vector of unknowns."""
         return self.family.orbit(unknowns[: self.family.size + 2])
 
     def update_border(self, unknowns: Floats) -> None:
@@ -108,7 +104,6 @@ class BifurcationCurve:
         return np.asarray(matrix * self.scale[: self.family.size], dtype=complex)
 
     def condition(self, unknowns: Floats) -> Floats:
-        """Return the residual of the bifurcation condition, without the orbit's equations."""
         if self.kind == Kind.GRAZING:
             return self.orbit(unknowns).nodes[self.place, CLOSING : CLOSING + 1]
         if self.kind == Kind.TOUCHING:
@@ -129,7 +124,6 @@ class BifurcationCurve:
         return np.array([defect.real, defect.imag] if self.kind == Kind.TORUS else [defect.real])
 
     def residual(self, unknowns: Floats) -> Floats:
-        """Return the residual of the orbit's equations and of the bifurcation condition."""
         orbit = self.family.residual(unknowns[: self.family.size + 2])
         return np.append(orbit, self.condition(unknowns))
 
@@ -146,7 +140,6 @@ class BifurcationCurve:
         return np.vstack([np.hstack([orbit, blank]), np.array(own).T])
 
     def why_no_motion(self, unknowns: Floats) -> str:
-        """Return why a root is no possible motion (a flight grazes ...); empty if it is."""
         orbit = self.orbit(unknowns)
         closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
         if self.kind == Kind.GRAZING:
@@ -189,13 +182,11 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         return curve.first_parameter, curve.family.setting.limits
 
     def go_on_from(self, point: Root) -> Root:
-        """Set the stepper to a root and renew the bordering vectors there; return the root."""
         self.stepper.root = point
         self.stepper.curve.update_border(point.unknowns)
         return point
 
     def end_before(self, step: BranchStep[Root]) -> tuple[str, Iterable[Root]]:
-        """Return why motions end within a step (or ``""``), and the last root that is one."""
         reason = self.stepper.curve.why_no_motion(step.after.unknowns)
         return reason, self.last_motion(step) if reason else ()
 

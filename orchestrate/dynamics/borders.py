@@ -19,20 +19,9 @@ from ..response.questions import EXCITATION_PARAMETERS, OF_EXCITATION, Question,
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
+from . import branches
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcation_kinds import KINDS, Kind
-from .branches import (
-    NODES,
-    OF_SETTING,
-    checked_bifurcation_index,
-    checked_limits,
-    complete_excitation,
-    pushes_at_start,
-    require_inside_limits,
-    require_orbit_dataset,
-    start_nodes,
-    varied_setting,
-)
 from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_points
 from .continuation import SOLVER_ERRORS, Root, newton_correct, unit_vector
@@ -51,7 +40,12 @@ from .tracer import ContinuationSettings
 
 POINT = "codimension_two"
 LEFT = "what is left of both conditions, of the multipliers' polynomial over its largest part"
-KEPT = ("state", "xi", "multipliers", *NODES)  # variables of orbits that those points have, too
+KEPT = (
+    "state",
+    "xi",
+    "multipliers",
+    *branches.NODES,
+)  # variables of orbits that those points have, too
 
 
 class BorderJob(Question):
@@ -63,7 +57,7 @@ class BorderJob(Question):
     period: int
     kind: int
     values: tuple[float, float]  # of the parameters there
-    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *OF_SETTING, "bifurcation")
+    replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *branches.OF_SETTING, "bifurcation")
     item_columns: ClassVar[tuple[str, ...]] = ()  # points of the curve
 
     def call_text(self) -> str:
@@ -73,7 +67,6 @@ class BorderJob(Question):
         return call_from_start(self, values, bifurcation=kind, **keywords, **more)
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        """Trace the bifurcation curve over both parameters; return its points as a table."""
         curve, root = start_root(self)
         settings = ContinuationSettings(self.longest, self.most)
         back, forth = (
@@ -107,7 +100,6 @@ class BorderJob(Question):
 
 
 def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
-    """Solve for the bifurcation at which a border curve begins; return equations and root."""
     # both at once: at a fold the orbit at a fixed parameter is no simple root
     (sequence, nodes), values = job.start.as_guess(job.period), np.array(job.values)
     family = Family.from_nodes(job.setting, sequence, nodes)
@@ -204,8 +196,8 @@ def border(
     ('Neimark-Sacker', array([0.69, 0.71]))
     """
     require_delaminated(structure)
-    require_orbit_dataset(start, several=True)
-    checked_bifurcation_index(start, "bifurcation", bifurcation)
+    branches.require_orbit_dataset(start, several=True)
+    branches.checked_bifurcation_index(start, "bifurcation", bifurcation)
     names = tuple(over)
     check_parameters(names)
     if len(set(names)) != 2 or len(names) != 2 or names[0] != start.attrs.get("over"):
@@ -214,25 +206,24 @@ def border(
             f"{start.attrs.get('over')!r}"
         )
     pairs = checked_limit_pairs(names, limits)
-    nodes, kind = start_nodes(start, "bifurcation", bifurcation)
+    nodes, kind = branches.start_nodes(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
     excitation = excitation_arguments(eta, frequency, amplitude)
-    pushes = pushes_at_start(start, box_acceleration=box_acceleration, force1=force1, force2=force2)
+    pushes = branches.pushes_at_start(
+        start, box_acceleration=box_acceleration, force1=force1, force2=force2
+    )
     first = start.isel(point=0)
-    given = complete_excitation(first, names, excitation, pairs[0], structure, pushes)
+    given = branches.complete_excitation(first, names, excitation, pairs[0], structure, pushes)
     second = second_start_value(structure, names[1], given)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):
-        require_inside_limits(name, number, pair)
-    setting = varied_setting(structure, given, names, pairs)
+        branches.require_inside_limits(name, number, pair)
+    setting = branches.varied_setting(structure, given, names, pairs)
     own = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "kind": kind}
     return as_given(f"_{'_'.join(names)}", values=(value, second), **own)
 
 
 def lies_on_curve(curve: xr.Dataset, question: Mapping[str, Any], near: float = 1e-3) -> bool:
-    """Return whether a border passes another bifurcation of its kind, within a part of the range.
-
-    The bifurcation is that of keywords ``start``, ``bifurcation``, ``over`` and ``limits``.
-    """
+    """Return whether a border passes another start's bifurcation of its kind."""
     start, (across, along) = question["start"], question["over"]
     found = start.isel(bifurcation=question["bifurcation"])
     level = Structure.from_attributes(start.attrs).parameters().get(along, np.nan)
@@ -245,9 +236,8 @@ def lies_on_curve(curve: xr.Dataset, question: Mapping[str, Any], near: float = 
 
 
 def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
-    """Return both parameters' limits as (low, high) of floats; raise if invalid."""
     try:
-        return tuple(checked_limits(*each) for each in zip(names, limits, strict=True))
+        return tuple(branches.checked_limits(*each) for each in zip(names, limits, strict=True))
     except (TypeError, ValueError):
         expected = "expected a lower and an upper one for each parameter"
         raise InputError(f"limits = {limits!r}: {expected}") from None
@@ -256,7 +246,6 @@ def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[floa
 def second_start_value(
     structure: Structure, name: str, arguments: tuple[tuple[str, float], ...]
 ) -> float:
-    """Return the second parameter's start value: of excitation or structure."""
     if name in EXCITATION_PARAMETERS and name not in dict(arguments):
         box = (pair for pair in arguments if pair[0] in EXCITATION_PARAMETERS)
         forms = "; ".join(f"{given} = {value!r}" for given, value in box)

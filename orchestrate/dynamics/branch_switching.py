@@ -18,7 +18,6 @@ AWAY = 1e-3  # along the new branch, in unknowns over their scale: where its gap
 
 
 def leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
-    """Return the first orbit and direction of the branch that leaves at a bifurcation's kind."""
     if kind == Kind.FLIP:
         return double_period(point)
     if kind == Kind.TOUCHING:

@@ -75,7 +75,6 @@ class BranchJob(Question):
         return call_from_start(self, np.array([self.value]), **keywords, **more)
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        """Continue the branch from its first orbit; return orbits and bifurcations as a table."""
         guess = self.start.as_guess(self.period)
         settings = ContinuationSettings(self.longest, self.most)
         try:
@@ -111,7 +110,6 @@ class BranchJob(Question):
 def join_segments(
     segments: list[OrbitSegment],
 ) -> tuple[list[OrbitPoint], list[Bifurcation[OrbitPoint]]]:
-    """Join a branch's two segments; return its orbits in order, and its bifurcations."""
     forth = segments[-1]
     if len(segments) == 1:
         return forth.points, forth.bifurcations
@@ -227,7 +225,6 @@ def varied_setting(
     over: tuple[str, ...],
     limits: tuple[tuple[float, float], ...],
 ) -> Setting:
-    """Return a setting whose parameters vary; raise where a limit is out of its range."""
     kept = {name: number for name, number in given if name not in over}
     fixed = tuple((name, number) for name, number in kept.items() if number or name not in PUSHES)
     setting = Setting(structure, fixed, over, limits)
@@ -237,7 +234,6 @@ def varied_setting(
 
 
 def require_orbit_dataset(start: Any, several: bool) -> None:
-    """Raise ``InputError`` unless ``start`` is a dataset of one orbit (or ``several`` allowed)."""
     if not hasattr(start, "sizes"):
         raise InputError(
             f"start = {start!r}: expected a dataset of orbit or branch; a number of the parameter "
@@ -252,7 +248,6 @@ def require_orbit_dataset(start: Any, several: bool) -> None:
 
 
 def require_same_parameter(start: xr.Dataset, over: str, switch: int | None) -> None:
-    """Raise unless a branch, at whose bifurcation another begins, is along the same parameter."""
     along = start.attrs.get("over", over)
     if switch is not None and along != over:
         raise InputError(
@@ -272,7 +267,6 @@ def pushes_at_start(start: xr.Dataset | None, **arguments: float | None) -> dict
 
 
 def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
-    """Return the limits (low, high) as floats; raise unless they are two numbers in order."""
     pair = excitation_numbers(over, limits)
     if not isinstance(pair, tuple) or len(pair) != 2 or not pair[0] < pair[1]:
         raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
@@ -322,7 +316,6 @@ def find_first_orbit(
     period: int,
     running: Mapping[str, Any],
 ) -> tuple[xr.Dataset, float]:
-    """Find an orbit to begin a branch without ``start``; return it and the parameter's value."""
     excitation: dict[str, Any] = dict(arguments)
     value = excitation[over] if over in excitation else limits[0]
     if over not in excitation:
@@ -336,14 +329,12 @@ def find_first_orbit(
 def orbit_at(
     structure: Structure, excitation: Mapping[str, Any], period: int, running: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Return the orbit that :func:`orchestrate.orbit` finds, computed by the same FMU."""
     kept = {name: running[name] for name in running.keys() & {"fmu", "build_folder", "progress"}}
     options: dict[str, Any] = {**excitation, **kept}
     return orbit(structure, period=period, **options)
 
 
 def require_inside_limits(over: str, value: float, limits: tuple[float, float]) -> None:
-    """Raise ``InputError`` unless the parameter's start value lies between its limits."""
     if not limits[0] <= value <= limits[1]:
         unit = f" rad/s, {value / TURN:.6g} Hz," if over == "frequency" else ""
         raise InputError(
@@ -370,7 +361,6 @@ def start_value(
 
 
 def checked_bifurcation_index(start: xr.Dataset, name: str, number: int) -> int:
-    """Return a bifurcation's index; raise unless the start's dataset has it."""
     count = start.sizes.get(BIFURCATION, 0)
     if not count:
         raise InputError(f"{name} = {number!r}: start has no bifurcations; expected a branch")

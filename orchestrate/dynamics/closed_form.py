@@ -113,10 +113,7 @@ class ClosedForm:
 
     @property
     def linear_mode(self) -> int:
-        """The mode of the response that never impacts, -1 where there is none.
-
-        In flight its gap, in contact its force (18), is a constant and a harmonic.
-        """
+        """The mode of the response that never impacts, -1 without one."""
         mode, gap = self.rest_mode, float(self.offset[1] - self.offset[0])
         if mode == FREE:
             swings = np.stack([self.cosine[:2], self.sine[:2]])

@@ -79,7 +79,6 @@ class SettlingRun(AttractorSettings):
 
     @classmethod
     def from_settings(cls, settings: AttractorSettings | None, **lengths: Any) -> SettlingRun:
-        """Return the run by thresholds, or the usual ones, and by its lengths."""
         given = AttractorSettings() if settings is None else settings
         if not isinstance(given, AttractorSettings):
             raise InputError(f"settings = {given!r}: expected AttractorSettings(longest=..., ...)")
@@ -163,7 +162,6 @@ def run_until_settled(
 def settled_by_number(
     numbers: NDArray[np.intp], responses: Iterable[Response], periods: int
 ) -> dict[int, SettledResponse]:
-    """Return responses that have settled after the transient, by the numbers of their starts."""
     pairs = zip(numbers.tolist(), responses, strict=True)
     return {number: SettledResponse(response, periods) for number, response in pairs}
 

@@ -106,11 +106,9 @@ class CharacteristicPolynomial:
         self.coefficients: Floats = coefficients * np.exp(largest - self.log_size)
 
     def __call__(self, multiplier: complex) -> complex:
-        """Return the characteristic polynomial's value at a (complex) multiplier."""
         return complex(np.polynomial.polynomial.polyval(multiplier, self.coefficients))
 
     def slope(self, multiplier: float) -> float:
-        """Return the characteristic polynomial's derivative at a real multiplier."""
         polynomial = np.polynomial.Polynomial(self.coefficients)
         return float(polynomial.deriv()(multiplier))
 
@@ -129,7 +127,6 @@ class CharacteristicPolynomial:
 def locate_points(
     curve: BifurcationCurve, roots: list[Root], ends: tuple[str, str]
 ) -> list[CodimensionTwoPoint]:
-    """Locate the points of codimension two along a traced curve, in order."""
     points = list(end_points(curve, roots[0], ends[0], 0.0))
     for number, (before, after) in enumerate(zip(roots[:-1], roots[1:], strict=True)):
         points += sorted(
@@ -143,7 +140,6 @@ def locate_points(
 def points_between(
     curve: BifurcationCurve, before: Root, after: Root, number: float
 ) -> Iterator[CodimensionTwoPoint]:
-    """Yield the codimension-two points between two neighbouring roots, by sign changes."""
     curve.update_border(before.unknowns)
     chord = (after.unknowns - before.unknowns) / curve.scale
     before, after = (
@@ -159,7 +155,6 @@ def points_between(
     for kind in ON_CURVE.get(curve.kind, ()):
 
         def value(position: float, kind: PointKind = kind) -> float:
-            """Return the kind's test function at an arclength after ``before``."""
             root = stepper.root_after(position) if position else before
             return test_function_value(curve, root, kind, log_size=log_size)
 
@@ -197,7 +192,6 @@ def test_function_value(
     known: CharacteristicPolynomial | None = None,
     log_size: float = -np.inf,
 ) -> float:
-    """Return a kind's test function at a root of the curve: it changes sign at such a point."""
     if kind in ANGLES:
         return float(root.unknowns[-1] - ANGLES[kind])
     if kind == PointKind.CUSP:
@@ -265,7 +259,6 @@ def end_points(
 def solve_end(
     curve: BifurcationCurve, root: Root, kind: PointKind, reason: str, position: float
 ) -> CodimensionTwoPoint:
-    """Solve for the codimension-two point at which a curve ends, by Newton's method."""
     size = curve.family.size + 2
     resonance = kind in (PointKind.RESONANCE_1, PointKind.RESONANCE_2)
     curve.update_border(root.unknowns)

@@ -158,7 +158,6 @@ def unit_tangent(matrix: Floats) -> Floats:
 
 
 def fix_sign(vector: Floats) -> Floats:
-    """Return a vector or its negative, so that its leading component is positive."""
     return vector if vector[leading_component(vector)] > 0.0 else -vector
 
 

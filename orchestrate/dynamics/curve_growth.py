@@ -91,7 +91,6 @@ class CurveGrower:
         self.direction: Floats | None = None  # of the last chord
 
     def grow(self, first: float = 0.0) -> GrownCurve:
-        """Grow the curve from parameter ``first`` to its end; return all its points."""
         settings, curve = self.settings, GrownCurve()
         curve.add(self.image(first), 0.0)
         step, change_ahead = 0.05, None
@@ -156,7 +155,6 @@ class CurveGrower:
         self.direction = None
 
     def end_reason(self, curve: GrownCurve) -> str:
-        """Return why the curve ends at its last point (length, points ...); empty if not."""
         settings, last = self.settings, curve.points[-1]
         if curve.arclength[-1] >= settings.length:
             return LENGTH

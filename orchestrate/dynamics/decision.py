@@ -5,10 +5,11 @@
   with a deviation that dies: that halves from one stretch to the next.
 - It is on an *orbit* that Newton's method finds from its impacts over these periods: a possible
   motion, stable, to which the FMU `returns` with the same impacts, and to which the response, if
-  nearer than `near`, comes at least half as fast as the multipliers say, or lies within `same`.
+  nearer than `near`, comes at least half as fast as the multipliers say, watched over a multiple of
+  its own periods, or lies within `same`.
   Within `apart * converged` of an earlier start's orbit, and ever nearer, it is not run on.
-- Without such an orbit, states that repeat within `converged` are *repeated*.
-- They are *undecided* near an unstable orbit, or without the impacts that such a motion must have.
+- Without such an orbit, states that repeat within `converged` are *repeated*; *undecided* near an
+  unstable orbit, or without the impacts that such a motion must have.
 - All else is *irregular*, a torus or chaos; undecided if another start repeats only after half of
   `longest`: then it may be a long transient. Irregular motions of starts are joined within
   `alike_irregular`; one that comes later joins the nearest largest gap.
@@ -31,13 +32,7 @@ from ..response.respond import Response, respond
 from .clusters import ReachedMotion, SettlingRun, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting, acting
-from .orbit_search import (
-    Guess,
-    guess_from_impacts,
-    least_periods,
-    solve_orbit,
-    why_no_motion,
-)
+from .orbit_search import Guess, guess_from_impacts, least_periods, solve_orbit, why_no_motion
 from .periodic_orbit import ImpactSequence, PeriodicOrbit
 from .settled_motion import Floats, SettledMotion
 from .turning_points import rotate_to_phase_zero
@@ -51,11 +46,7 @@ class MotionDecider:
     """Decides to which motions responses at one point settle; remembers the orbits found."""
 
     def __init__(
-        self,
-        plain: Instance,
-        eventful: EventInstance | None,
-        point: Point,
-        settings: SettlingRun,
+        self, plain: Instance, eventful: EventInstance | None, point: Point, settings: SettlingRun
     ) -> None:
         self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
         excitation = point.excitation
@@ -84,7 +75,6 @@ class MotionDecider:
         return decided
 
     def motion_of(self, response: Response, done: int) -> tuple[SettledMotion, Floats]:
-        """Run a settled response on until its motion is known; return it and a state on it."""
         unstable = False
         while True:
             motion, doubtful = self.periodic_motion(response)
@@ -98,7 +88,6 @@ class MotionDecider:
             done += dropped + self.settings.samples
 
     def run_on(self, response: Response, dropped: int) -> Response:
-        """Simulate a response on for some more periods; return the new response."""
         samples, converged = self.settings.samples, self.settings.converged
         return respond(self.plain, *self.point, response.end, dropped, samples, converged)
 
@@ -113,7 +102,8 @@ class MotionDecider:
             orbit, free_phase = self.orbit_near(response.end, periods)
             motion = self.stable_motion(orbit, free_phase)
             unstable |= orbit is not None and motion is None
-            if motion and self.converges_to(response.end, motion) and self.repeats_in_fmu(motion):
+            comes = motion is not None and self.converges_to(response.end, motion, periods)
+            if motion and comes and self.repeats_in_fmu(motion):
                 return self.remember(motion), False
         return None, unstable
 
@@ -151,19 +141,17 @@ class MotionDecider:
     # -- known motions ----------------------------------------------------------------------------
 
     def known_motion_at(self, state: ArrayLike, n: int) -> SettledMotion | None:
-        """Return the known motion of ``n`` periods that passes at a state; None if on none."""
         for motion in self.known:
             distance = motion.nearest(state)[1]
             within = self.settings.same if motion.decided == ORBIT else self.settings.alike
             if distance < within and motion.multiplicity == n:
                 return motion
             near = motion.decided == ORBIT and distance < self.settings.near
-            if near and self.converges_to(state, motion):
+            if near and self.converges_to(state, motion, n):
                 return motion
         return None
 
     def remember(self, motion: SettledMotion) -> SettledMotion:
-        """Store a stable orbit; return it, or the equal one already stored."""
         for known in self.known:
             if known.is_same_orbit_as(motion, self.settings.same):
                 return known
@@ -171,18 +159,16 @@ class MotionDecider:
         return motion
 
     def stable_motion(self, orbit: PeriodicOrbit | None, free_phase: float) -> SettledMotion | None:
-        """Return a stable orbit as a motion; None without one."""
         if orbit is None or not orbit.stable:
             return None
         return SettledMotion.from_orbit(self.point, orbit, free_phase)
 
     def stable_orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
-        """Solve for a stable orbit of some periods near a state; None without one."""
         motion = self.stable_motion(*self.orbit_near(state, periods))
         return self.remember(motion) if motion and self.repeats_in_fmu(motion) else None
 
-    def converges_to(self, state: ArrayLike, motion: SettledMotion) -> bool:
-        """Return whether the FMU's response from a state comes closer to a stable orbit."""
+    def converges_to(self, state: ArrayLike, motion: SettledMotion, n: int) -> bool:
+        """Return whether the response from a state, of ``n`` periods so far, comes to an orbit."""
         excitation, periods = self.point.excitation, motion.multiplicity
         begin(self.plain, *self.point, state)
         if motion.free_phase > 0.0:
@@ -194,6 +180,8 @@ class MotionDecider:
         rate = max(motion.multiplier, 1e-3)
         turns = math.ceil(math.log(DYING) / math.log(rate))
         turns = max(1, min(turns, self.settings.longest // periods))
+        whole = n // math.gcd(n, periods)  # what repeats after n periods is as near again after it
+        turns = math.ceil(turns / whole) * whole
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)
@@ -253,7 +241,6 @@ class MotionDecider:
         return own if own is not None and own.nearest(state)[1] < self.settings.same else None
 
     def stays_on(self, motion: SettledMotion) -> bool:
-        """Return whether the FMU, started on an orbit, is still on it after its period."""
         excitation = self.point.excitation
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         try:
@@ -305,7 +292,6 @@ def phase_far_from_impacts(orbit: PeriodicOrbit) -> float:
 def count_impacts_from_pause(
     instance: Instance, point: Point, state: ArrayLike, periods: int
 ) -> int:
-    """Count the impacts of some periods, begun in a pause between impacts."""
     begin(instance, *point, state)
     width = point.excitation.period / PIECES
     counts: list[int] = []

@@ -39,12 +39,10 @@ class Setting:
         return cls(structure, excitation, (name,), limits)
 
     def point(self, values: Floats) -> Point:
-        """Return structure and excitation with the varying parameters at these values."""
         varied = zip(self.over, map(float, values), strict=True)
         return make_point(self.structure, {**dict(self.excitation), **dict(varied)})
 
     def orbit_call(self, values: Floats, period: int, guess: str) -> str:
-        """Return Python source of the ``orbit(...)`` call at these values of the parameters."""
         point, arguments = self.point(values), dict(self.excitation)
         arguments.update(zip(self.over, map(float, values), strict=True))
         shown = {name: arguments[name] for name in QUANTITIES if name in arguments}
@@ -52,7 +50,6 @@ class Setting:
         return f"orbit({', '.join([repr(point.structure), *parts, f'guess={guess}'])})"
 
     def form(self, values: Floats) -> ClosedForm:
-        """Return the closed-form coefficients at these values of the parameters."""
         return closed_form(self, np.asarray(values, dtype=float).tobytes())
 
 
@@ -70,7 +67,6 @@ def acting(pushes: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
 
 
 def check_parameters(over: tuple[str, ...]) -> None:
-    """Raise ``InputError`` unless all names are parameters that can vary."""
     box = (name for name in QUANTITIES if name != "level")  # the amplitude varies instead
     known = (*box, *PARAMETERS)
     for name in over:
@@ -102,13 +98,11 @@ class Family:
 
     @property
     def accuracy(self) -> float:
-        """Return the largest residual with which an orbit counts as solved."""
         if not self.size:
             return RESIDUAL
         return RESIDUAL * float(self.scale[POSITION]) / np.sqrt(len(self.sequence.kinds))
 
     def orbit(self, unknowns: Floats) -> PeriodicOrbit:
-        """Return the periodic orbit contained in a vector of unknowns."""
         key = unknowns.tobytes()
         if self.last is None or self.last[0] != key:
             nodes, form = unknowns[: self.size].copy(), self.setting.form(unknowns[self.size :])
@@ -116,7 +110,6 @@ class Family:
         return self.last[1]
 
     def residual(self, unknowns: Floats) -> Floats:
-        """Return the residual of the orbit's equations at a vector of unknowns."""
         return self.orbit(unknowns).residual()
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
@@ -130,9 +123,7 @@ class HeldFamily(Family):
     """The same equations for Newton's method that holds the parameters."""
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return the Jacobian; before the root the parameters' columns, which nothing asks for,
-        are zero.
-        """
+        """Return the Jacobian; only at the root with the parameters' columns."""
         if at_root:
             return super().jacobian(unknowns)
         columns = np.zeros((self.size, len(self.setting.limits)))
@@ -147,7 +138,6 @@ def central_difference(
     high: float,
     step: float = 0.0,
 ) -> Floats:
-    """Return a function's derivative by one unknown, by a central difference within limits."""
     value = unknowns[which]
     step = step or 1e-6 * max(abs(value), 1e-3 * (high - low))
     ends = []

@@ -49,7 +49,6 @@ class AttractorsAtValue:
     labels: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
     def group_starts(self, starts: Table, settings: AttractorSettings) -> None:
-        """Group random starts by the motions that they settled to: attractors; label each start."""
         features, ends, decided = (starts[name] for name in ("features", "end", "decided"))
         self.labels = np.full(len(ends), -1, dtype=np.intp)
         seen: dict[bytes, int] = {}
@@ -71,7 +70,6 @@ class AttractorsAtValue:
             self.labels[members] = len(self.motions) - 1
 
     def motion_from_features(self, row: Floats, state: Floats, decided: int) -> SettledMotion:
-        """Rebuild a settled motion from its stored row of numbers and its state at phase 0."""
         decider, n = self.decider, int(row[0])
         known = decider.known_motion_at(state, n)
         if known is None and decided == ORBIT:
@@ -118,7 +116,6 @@ class AttractorsAtValue:
 
 
 def may_be_different_branches(motion: SettledMotion, other: SettledMotion, distance: float) -> bool:
-    """Return whether motions at neighbouring values differ enough to be of different branches."""
     counts = motion.multiplicity, motion.impacts_per_period
     if counts != (other.multiplicity, other.impacts_per_period):
         return True
@@ -136,7 +133,6 @@ class MatchedAttractors:
 
     @property
     def count(self) -> int:
-        """Number of different attractors over all values of the parameter."""
         return 1 + max(max(row) for row in self.numbers)
 
 
@@ -147,7 +143,6 @@ def continue_attractors(
     settings: SettlingRun,
     seeds: Sequence[Sequence[float]] = (),
 ) -> MatchedAttractors:
-    """Return the attractors along a parameter from random starts, continued and matched."""
     values = [AttractorsAtValue(MotionDecider(*instances, point, settings)) for point in points]
     for value, starts_there in zip(values, starts, strict=True):
         value.group_starts(starts_there, settings)
@@ -200,7 +195,6 @@ def match_neighbours(
     links: Links,
     distance: float = AttractorSettings.neighbour,
 ) -> list[tuple[int, int]]:
-    """Return index pairs of attractors at two neighbouring values that are the same attractor."""
     j = i + 1
     forth = [links[i, a, j] for a in range(len(before.motions))]
     back = [links[j, b, i] for b in range(len(value.motions))]

@@ -45,7 +45,6 @@ class ImpactStatisticsJob(ImpactsQuestion):
     chunk_size: ClassVar[int] = 40
 
     def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
-        """Return the statistics of one response's impacts, in the order of ``FIELDS``."""
         numbers = response_statistics(impacts, item, self.periods)
         return [numbers[name] for name in FIELDS]
 
@@ -57,7 +56,6 @@ class ImpactStatisticsJob(ImpactsQuestion):
 
 
 def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) -> dict[str, float]:
-    """Return the impact statistics and Lyapunov exponent of one response, by ``FIELDS`` names."""
     structure, excitation = item.point
     span = period_in_tau(excitation.eta(structure))
     exponent = exponent_of(impacts, periods, item.point)
@@ -134,11 +132,6 @@ def impact_statistics(
         ``closing_min``, ``closing_sum``. Times between impacts over T: ``distance_min``,
         ``distance_max``. ``exponent`` and ``standard_error`` as in :func:`orchestrate.lyapunov`,
         NaN where there are too few impacts.
-
-    Raises
-    ------
-    InputError
-        Where an argument is missing, contradicts another one, or is out of its range.
 
     Notes
     -----

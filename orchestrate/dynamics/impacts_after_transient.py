@@ -36,7 +36,6 @@ class ImpactsQuestion(StartedSeriesQuestion, ABC):
         return [FollowedResponse(*each) for each in zip(points, map(tuple, starts), strict=True)]
 
     def work(self, fmus: Fmus, items: Sequence[FollowedResponse], previous: Table | None) -> Table:
-        """Simulate responses past their transients, then record impacts; return a row for each."""
         rows = []
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             for item in items:
@@ -54,7 +53,6 @@ class ImpactsQuestion(StartedSeriesQuestion, ABC):
 
 
 def state_after_transient(instance: Instance, item: FollowedResponse, transient: int) -> State:
-    """Simulate ``transient`` periods in the FMU; return the state at phase 0."""
     if not transient:
         return item.start
     begin(instance, *item.point, item.start)
@@ -65,6 +63,5 @@ def state_after_transient(instance: Instance, item: FollowedResponse, transient:
 def follow_impacts(
     instance: EventInstance, point: Point, start: ArrayLike, periods: int
 ) -> Impacts:
-    """Simulate some periods from a state; return their impacts, non-dimensional."""
     begin(instance, *point, start)
     return nondimensional_impacts(instance.impacts(0.0, periods * point.excitation.period), point)

@@ -49,14 +49,12 @@ class Exponent(NamedTuple):
 
 
 def min_impacts(batches: int = BATCHES) -> int:
-    """Return the number of impacts needed to estimate an exponent and its error."""
     return 2 * batches
 
 
 def largest_exponent(
     impacts: Impacts, end: float, point: Point, blocks: int = BLOCKS, batches: int = BATCHES
 ) -> Exponent:
-    """Return the largest Lyapunov exponent and its error, from a response's impacts in a span."""
     if len(impacts.time) < min_impacts(batches):
         return Exponent(math.nan, math.nan)
     call, found = call_of(impacts, end, point), np.empty(2)
@@ -75,7 +73,6 @@ def exponent_of(
 
 
 def exact_exponent_without_impacts(point: Point) -> Exponent | None:
-    """Return the exact exponent of a response that never impacts; None if it may impact."""
     structure = point.structure
     form = ClosedForm.from_structure(*point)
     mode = INNER if structure.bonded else form.linear_mode
@@ -116,7 +113,6 @@ class LyapunovJob(ImpactsQuestion):
     chunk_size: ClassVar[int] = 5
 
     def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
-        """Return one response's exponent, error and impact rate, and the spectrum if asked for."""
         rate = len(impacts.time) / self.periods
         if not self.spectrum:
             return [*self.exponent(impacts, item), rate]
@@ -145,7 +141,6 @@ class LyapunovJob(ImpactsQuestion):
         return exponent_of(impacts, self.periods, item.point, self.blocks, self.batches)
 
     def require_enough_impacts(self, impacts: Impacts, item: FollowedResponse) -> None:
-        """Raise ``InputError`` if a response has too few impacts to estimate an error."""
         count, needed = len(impacts.time), min_impacts(self.batches)
         if count < needed:
             enough = f" (periods >= {-(-needed * self.periods // count)})" if count else ""
@@ -174,7 +169,6 @@ class LyapunovJob(ImpactsQuestion):
 
 
 def spectrum_variables(along: str, rows: NDArray[np.float64]) -> dict[str, Variable]:
-    """Return dataset variables of all four exponents, their errors, and the dimension."""
     exponents, errors = rows[:, :STATES], rows[:, STATES:]
     dimensions = [kaplan_yorke_dimension(row) for row in exponents]
     text = "Kaplan-Yorke dimension of the attractor in the stroboscopic section"

@@ -68,7 +68,6 @@ def compound_matrices(matrices: Floats, order: int) -> Floats:
 def lyapunov_spectrum(
     impacts: Impacts, end: float, point: Point, blocks: int, batches: int
 ) -> Spectrum:
-    """Return all four exponents and their errors, from a response's impacts in a span."""
     matrices, _ = deviations(impacts, end, point)
     rank = CONTACT_RANK if impacts.sticks.any() else STATES
     exponents, errors = np.full(STATES, -math.inf), np.full(STATES, math.nan)

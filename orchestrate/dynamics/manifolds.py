@@ -20,18 +20,10 @@ from ..response.questions import require_delaminated
 from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
+from . import curve_growth
 from .branches import complete_excitation, orbit_at, pushes_at_start, require_orbit_dataset
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS, fix_sign
-from .curve_growth import (
-    CONVERGED,
-    LENGTH,
-    POINTS,
-    CurveGrower,
-    CurvePoint,
-    GrownCurve,
-    GrowthSettings,
-)
 from .orbit_records import pad_rows
 from .orbit_search import solve_orbit
 from .orbits import (
@@ -45,7 +37,7 @@ from .periodic_orbit import ON_CIRCLE, PHASE, PeriodicOrbit
 from .turning_points import stroboscopic_states
 
 SIDES = ("+", "-")
-ENDS = {0: LENGTH, 1: POINTS, 2: CONVERGED}
+ENDS = {0: curve_growth.LENGTH, 1: curve_growth.POINTS, 2: curve_growth.CONVERGED}
 COUNTS = ("impact_count", "contact_count")
 ROUNDING = 16.0 * float(np.finfo(float).eps)  # of a state's largest number, with room
 ROUNDED = 2.0**-44, 2.0**-36  # to that a saddle's numbers are rounded, and its eigenvector
@@ -140,7 +132,6 @@ class ManifoldJob(SingleOrbitQuestion):
         return call_from_start(self, self.values, **keywords)
 
     def saddle(self) -> Saddle:
-        """Solve for the saddle from the start's nodes by Newton's method; raise without one."""
         guess = self.start.as_guess(self.period)
         try:
             family, root = solve_orbit(self.setting, guess, self.values)
@@ -160,28 +151,29 @@ class ManifoldJob(SingleOrbitQuestion):
         return saddle
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        """Grow both sides of the manifold from the saddle; return their points as a table."""
         saddle = self.saddle()
         with Instance(fmus[OSCILLATOR]) as instance:
             growth, largest = math.log(saddle.growth_factor), float(np.abs(saddle.state).max())
-            settings = GrowthSettings(
+            settings = curve_growth.GrowthSettings(
                 length=self.length * saddle.size,
                 spacing=self.spacing * saddle.size,
                 angle=self.angle,
                 max_points=self.most,
                 size=saddle.size,
-                max_step=GrowthSettings.max_step * max(1.0, math.log(2.0) / growth),
+                max_step=curve_growth.GrowthSettings.max_step * max(1.0, math.log(2.0) / growth),
                 resolution=ROUNDING * largest / (self.distance * saddle.size * growth),
             )
             curves = [
-                CurveGrower(self.point_function(instance, saddle, sign), settings).grow()
+                curve_growth.CurveGrower(
+                    self.point_function(instance, saddle, sign), settings
+                ).grow()
                 for sign in (1.0, -1.0)
             ]
         return {**curves_table(curves, saddle), "saddle": saddle.state[np.newaxis]}
 
     def point_function(
         self, instance: Instance, saddle: Saddle, sign: float
-    ) -> Callable[[float], CurvePoint]:
+    ) -> Callable[[float], curve_growth.CurvePoint]:
         """Return a function s -> point of one side, which iterates the stroboscopic map."""
         point = self.setting.point(self.values)
         time = saddle.periods_per_return * point.excitation.period
@@ -195,11 +187,11 @@ class ManifoldJob(SingleOrbitQuestion):
 
         own = run(saddle.state, 1)[1]  # what happens on the orbit itself is no change
 
-        def image(s: float) -> CurvePoint:
+        def image(s: float) -> curve_growth.CurvePoint:
             returns = math.floor(s)
             distance = self.distance * saddle.size * saddle.growth_factor ** (s - returns)
             state, counts = run(saddle.state + sign * distance * saddle.direction, returns)
-            return CurvePoint(s, state, tuple(int(n) for n in counts - returns * own))
+            return curve_growth.CurvePoint(s, state, tuple(int(n) for n in counts - returns * own))
 
         return image
 
@@ -212,7 +204,7 @@ class ManifoldJob(SingleOrbitQuestion):
         return make_dataset(variables, coordinates, title, **dict(self.excitation))
 
 
-def curves_table(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
+def curves_table(curves: Sequence[curve_growth.GrownCurve], saddle: Saddle) -> Table:
     """Return both sides' points, breaks and ends as arrays, padded with NaN to equal length."""
     sides = []
     for curve in curves:  # state, arclength and s of each point, a row of NaN at each break
@@ -236,7 +228,6 @@ def curves_table(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
 
 
 def curve_variables(table: Table, point: Any) -> dict[str, Any]:
-    """Return dataset variables of the manifold's points: states, gap, arclength, iterate."""
     faces, along = table["rows"][..., :4], ("side", "point")
     xi, gap = faces.copy(), faces[..., 1] - faces[..., 0]
     xi[..., 1] -= point.structure.gap_offset / point.length
@@ -261,7 +252,6 @@ def curve_variables(table: Table, point: Any) -> dict[str, Any]:
 
 
 def break_variables(table: Table) -> dict[str, Any]:
-    """Return dataset variables of the manifold's breaks: place, distance, impacts gained."""
     texts = {
         "iterate": "number of the last point before the break",
         "arclength": "from the saddle to the break",

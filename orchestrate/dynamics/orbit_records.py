@@ -112,7 +112,6 @@ def orbit_row(instance: EventInstance, family: Family, unknowns: Floats, residua
 
 
 def pad_rows(rows: Sequence[Floats], fill: float) -> Floats:
-    """Stack arrays of different lengths into one, the shorter ones filled up with ``fill``."""
     most = max(len(row) for row in rows)
     table = np.full((len(rows), most, *rows[0].shape[1:]), fill)
     for index, row in enumerate(rows):
@@ -121,7 +120,6 @@ def pad_rows(rows: Sequence[Floats], fill: float) -> Floats:
 
 
 def orbit_table(rows: Sequence[Table]) -> Table:
-    """Return the numbers of orbits as a dict of arrays, one row per orbit."""
     columns = {name: [row[name] for row in rows] for name in rows[0]}
     padded = {"kinds": pad_rows(columns.pop("kinds"), -1).astype(int)}
     padded["nodes"] = pad_rows(columns.pop("nodes"), np.nan)
@@ -129,7 +127,6 @@ def orbit_table(rows: Sequence[Table]) -> Table:
 
 
 def located_table(prefix: str, orbits: Sequence[Table], located: Sequence[Any]) -> Table:
-    """Return points located on a branch as arrays: their orbits, kinds and positions."""
     rows = orbit_table(orbits) if orbits else {}
     rows["kind"] = np.array([each.kind for each in located], dtype=int)
     rows["place"] = np.array([each.position for each in located], dtype=float)
@@ -144,7 +141,6 @@ def split_located(table: Table, prefix: str) -> tuple[Table, Table]:
 
 
 def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
-    """Return dataset coordinates of a table of orbits: parameters, state and sample names."""
     points = [setting.point(values) for values in table["values"]]
     excitations = [point.excitation for point in points]
     along: dict[str, Any] = {
@@ -166,7 +162,6 @@ def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Var
 
 
 def orbit_variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
-    """Return all dataset variables of a table of orbits: states, impacts, stability, checks."""
     points = [setting.point(values) for values in table["values"]]
     frequency = np.array([point.excitation.frequency for point in points])
     omega = np.array([point.structure.omega for point in points])
@@ -199,7 +194,6 @@ def located_variables(
     parameters: Mapping[str, str],
     kept: Sequence[str],
 ) -> dict[str, Variable]:
-    """Return dataset variables of points located on a branch: kind, place, parameters, orbit."""
     line = "branch" if len(setting.over) == 1 else "curve"
     place = f"position along the {line}'s points: between two where not whole"
     data = {
@@ -221,7 +215,6 @@ def located_variables(
 def branch_dataset(
     setting: Setting, table: Table, more: Mapping[str, Variable], attributes: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Return the dataset of orbits along a branch, with more variables."""
     names = orbit_coordinates(setting, table, "point")
     data = {**orbit_variables(setting, table, "point"), **names, **more}
     return xr.Dataset(data, attrs=attributes).set_coords(list(names))
@@ -251,7 +244,6 @@ def impact_columns(
 
 
 def stability_columns(table: Table, eta: Floats) -> dict[str, NDArray[Any]]:
-    """Return the orbits' multipliers, their product, stability and exponents."""
     # inside the unit circle they decide nothing where the FMU has other impacts
     multipliers, time = table["multipliers"], table["zero"].shape[1] * 2.0 * np.pi / eta
     size = np.hypot(*np.moveaxis(multipliers, -1, 0))

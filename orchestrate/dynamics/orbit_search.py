@@ -37,7 +37,6 @@ Guess = tuple[ImpactSequence, Floats]
 def guess_from_state(
     instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
 ) -> Guess:
-    """Run the FMU some periods from a state at phase 0; return its impacts as an orbit guess."""
     begin(instance, *point, state)
     impacts = instance.impacts(0.0, periods * point.excitation.period)
     return guess_from_impacts(impacts, point, form, periods)
@@ -115,7 +114,6 @@ def solve_orbit(
     max_iterations: int = 25,
     max_distance: float = 100.0,
 ) -> tuple[Family, Root]:
-    """Solve for a periodic orbit from a guess by Newton's method; return equations and root."""
     sequence, nodes = guess
     family = Family.from_nodes(setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), values)
@@ -162,7 +160,6 @@ def least_periods(orbit: PeriodicOrbit, within: float = 1e-6) -> int:
 def check_orbit_in_fmu(
     instance: EventInstance, setting: Setting, values: Floats, orbit: PeriodicOrbit
 ) -> tuple[bool, float]:
-    """Run the FMU through an orbit; return whether impacts agree, and the error of its return."""
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
     begin(instance, *point, point.from_faces(state))
@@ -189,7 +186,6 @@ def check_orbit_in_fmu(
 def first_possible_orbit(
     setting: Setting, guesses: Iterable[Guess], values: Floats, *, stable: bool = False
 ) -> tuple[Family, Root]:
-    """Solve guesses in turn; return equations and root of the first possible orbit."""
     reason, unstable = "", None
     for guess in guesses:
         try:

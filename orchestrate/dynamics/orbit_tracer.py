@@ -46,7 +46,6 @@ class OrbitPoint:
 
     @cached_property
     def orbit(self) -> PeriodicOrbit:
-        """Return the periodic orbit of this point of a branch."""
         return self.family.orbit(self.root.unknowns)
 
     @property
@@ -55,7 +54,6 @@ class OrbitPoint:
 
     @cached_property
     def multipliers(self) -> NDArray[np.complex128]:
-        """Return the orbit's Floquet multipliers, the largest first."""
         return self.orbit.multipliers()
 
     @cached_property
@@ -109,21 +107,17 @@ class OrbitPoint:
         return self.contact_margin(kind)
 
     def zero_is_bifurcation(self, kind: Kind) -> bool:
-        """Return whether this zero of a kind's test function is a true bifurcation."""
         # the product of two real multipliers may be 1 as well as that of a pair on the unit circle
         if kind != Kind.TORUS:
             return True
         return bool((np.abs(np.abs(self.pairs) - 1.0) < 1e-6).any())
 
     def reversed(self) -> OrbitPoint:
-        """Return the same point with its tangent reversed, to continue the other way."""
         return OrbitPoint(self.family, self.root.reversed())
 
 
 def scaled_product(multipliers: NDArray[np.complex128], *, pairs: bool) -> float:
-    """Return the product of 1 + multiplier, or of 1 - two, over their sizes: no number if grazing
-    makes all infinite.
-    """
+    """Return the product of 1 + multiplier, or 1 - two, over their sizes; NaN if grazing."""
     with np.errstate(invalid="ignore"):
         values = -multipliers
         if pairs:
@@ -155,20 +149,16 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         return family.size, family.setting.limits
 
     def accepts(self, root: Root) -> bool:
-        """Return whether all flights between the root's impacts have positive duration."""
         orbit = self.stepper.curve.orbit(root.unknowns)
         return bool((orbit.durations[~orbit.contact] > 0.0).all())
 
     def test_function(self, point: OrbitPoint, kind: Kind) -> float:
-        """Return a point's test function of a bifurcation kind: it changes sign there."""
         return point.test_function(kind)
 
     def zero_is_bifurcation(self, kind: Kind, point: OrbitPoint, part: float) -> bool:
-        """Return whether a located zero is a true bifurcation, and not the step's own start."""
         return part > 1e-7 and point.zero_is_bifurcation(kind)
 
     def locate(self, step: BranchStep[OrbitPoint]) -> list[LocatedBifurcation[OrbitPoint]]:
-        """Locate the bifurcations in a step, up to where its orbit has half the period."""
         located = super().locate(step)
         for i, each in enumerate(located):
             if is_halved(each, step.before):
@@ -208,7 +198,6 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         return changed, None
 
     def end_without_root(self, segment: BranchSegment[OrbitPoint]) -> None:
-        """Set why a branch ends where Newton fails: contact lost, or no convergence."""
         last = segment.points[-1]
         if last.orbit.contact.any() and last.contact_margin(Kind.CONTACT_LOST) < 1e-6:
             segment.add_bifurcation(Kind.CONTACT_LOST, last, 0.0)
@@ -235,7 +224,6 @@ def fit_impacts(point: OrbitPoint) -> OrbitPoint:
 
 
 def add_or_drop_chattering_impacts(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit with one more chattering impact, or without those that (17) excludes."""
     orbit, margins = point.orbit, point.sticking_margins
     kinds, nodes = list(orbit.sequence.kinds), orbit.nodes
     if point.contact_margin(Kind.CONTACT_BEGUN) < point.contact_margin(Kind.CONTACT_LOST):

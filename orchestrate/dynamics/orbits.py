@@ -17,14 +17,8 @@ from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Number, Transient, checked_integer, checked_numbers, whole
+from ..response import questions
 from ..response.labels import make_dataset
-from ..response.questions import (
-    OF_EXCITATION,
-    Question,
-    checked_point,
-    checked_state,
-    require_delaminated,
-)
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
@@ -78,15 +72,14 @@ def call_from_start(job: Any, values: Floats, **keywords: Any) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SingleOrbitQuestion(Question, ABC):
+class SingleOrbitQuestion(questions.Question, ABC):
     """Base of questions about one orbit at a fixed excitation."""
 
     excitation: tuple[tuple[str, float], ...]  # as the user gave it
-    replaced: ClassVar[tuple[str, ...]] = OF_EXCITATION
+    replaced: ClassVar[tuple[str, ...]] = questions.OF_EXCITATION
 
     @property
     def setting(self) -> Setting:
-        """Return structure and excitation as setting of the orbit's equations."""
         return Setting.fixed(self.structure, (*self.excitation, *acting(vars(self))))
 
     @property
@@ -112,7 +105,6 @@ class OrbitJob(SingleOrbitQuestion):
         return f"orbit({', '.join(parts)})"
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        """Solve for the orbit by Newton's method; return its record as a table of one row."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return orbit_table([find_orbit(instance, self)])
 
@@ -126,7 +118,6 @@ class OrbitJob(SingleOrbitQuestion):
 
 
 def find_orbit(instance: EventInstance, job: OrbitJob) -> Table:
-    """Solve for a job's orbit from its guesses, checked in the FMU; return its row, or raise."""
     setting, values = job.setting, job.values
     try:
         tried = orbit_guesses(instance, job, setting, values)
@@ -143,7 +134,6 @@ def find_orbit(instance: EventInstance, job: OrbitJob) -> Table:
 def orbit_guesses(
     instance: EventInstance, job: OrbitJob, setting: Setting, values: Floats
 ) -> Iterator[Guess]:
-    """Yield the user's guess; without one, close returns of the response, then single impacts."""
     point, form, guess = setting.point(values), setting.form(values), job.guess
     if guess is not None and guess.state:
         yield guess_from_state(instance, point, form, np.array(guess.state), job.period)
@@ -165,12 +155,11 @@ def orbit_guesses(
 def checked_guess(
     guess: Any, structure: Structure, frequency: float, period: int
 ) -> FirstGuess | None:
-    """Return the user's guess as plain numbers, None if not given; raise if its form is unknown."""
     expected = "expected a state, impact times, or a result of orbit or branch"
     if guess is None:
         return None
     if not isinstance(guess, Mapping):
-        return FirstGuess(state=checked_state("guess", guess, structure))
+        return FirstGuess(state=questions.checked_state("guess", guess, structure))
     if "node_kind" in guess:
         return guess_from_result(guess)
     if "impact_time" not in guess:
@@ -186,7 +175,6 @@ def checked_guess(
 
 
 def guess_from_result(result: Mapping[Any, Any]) -> FirstGuess:
-    """Return the guess that repeats an orbit from a dataset of ``orbit`` or ``branch``."""
     kinds = np.asarray(result["node_kind"])
     if kinds.ndim != 1:
         raise InputError("guess: several orbits; expected one (in Python branch.isel(point=0))")
@@ -199,7 +187,6 @@ def guess_from_result(result: Mapping[Any, Any]) -> FirstGuess:
 def excitation_arguments(
     eta: ArrayLike | None, frequency: ArrayLike | None, amplitude: ArrayLike | None
 ) -> tuple[tuple[str, float], ...]:
-    """Return the excitation arguments that are given, as (name, float) pairs."""
     arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
     return tuple((name, float(np.asarray(v))) for name, v in arguments.items() if v is not None)
 
@@ -282,8 +269,8 @@ def orbit(
     array([-3.3595, -0.5903, -0.5903, -0.1421])
     """
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
-    point = checked_point(structure, eta, frequency, amplitude, **pushes)
-    require_delaminated(structure)
+    point = questions.checked_point(structure, eta, frequency, amplitude, **pushes)
+    questions.require_delaminated(structure)
     point.excitation.check(structure)
     count = checked_integer("period", period, 1, MAX_PERIODS)
     excitation = excitation_arguments(eta, frequency, amplitude)

@@ -22,18 +22,9 @@ from ..model import PARAMETERS, Structure
 from ..model.arguments import Count, Numbers, Positive, Transient, whole
 from ..model.outcomes import UNDECIDED
 from ..model.spelling import expected_one_of
+from ..response import questions
 from ..response.labels import column_variables, flags, make_dataset, parameter_variable
 from ..response.multiplicity import DECIDED, Decision
-from ..response.questions import (
-    QUANTITIES,
-    Point,
-    Question,
-    check_excitation_form,
-    checked_state,
-    checked_structure,
-    excitation_numbers,
-    make_point,
-)
 from ..response.respond import DecidedResponse, Response, decisions_from, responses_from
 from ..response.response_loop import LoopSettings, response_loop
 from ..response.signatures import as_given, question
@@ -57,12 +48,12 @@ EXPONENT = {
 }
 
 
-class MapJob(Question):
+class MapJob(questions.Question):
     """Job of :func:`orchestrate.map`: responses over two parameters, each from the same start."""
 
     # parameters of the excitation and the structure; two of them are lists
     given: tuple[tuple[str, Numbers], ...]
-    replaced: ClassVar[tuple[str, ...]] = (*QUANTITIES, "over", "values")
+    replaced: ClassVar[tuple[str, ...]] = (*questions.QUANTITIES, "over", "values")
     family: ClassVar[tuple[str, ...]] = FAMILY
     chunk_size: ClassVar[int] = 120
 
@@ -71,7 +62,7 @@ class MapJob(Question):
         _ = self.points  # what is wrong is said before any work
 
     @property
-    def points(self) -> tuple[Point, ...]:
+    def points(self) -> tuple[questions.Point, ...]:
         """Return structure and excitation of all grid points, the second parameter fastest."""
         return map_points(self.structure, self.given)
 
@@ -81,12 +72,11 @@ class MapJob(Question):
         return {name: value for name, value in self.given if isinstance(value, tuple)}
 
     def parameters(self) -> dict[str, Any]:
-        """Return the job's parameters for its identity, map parameters under their own names."""
         others = super().parameters()
         del others["given"]
         return {**{name: json_data(value) for name, value in self.given}, **others}
 
-    def items(self) -> Sequence[Point]:
+    def items(self) -> Sequence[questions.Point]:
         return self.points
 
     def chunks(self) -> list[Chunk]:
@@ -96,8 +86,7 @@ class MapJob(Question):
         starts = enumerate(range(0, count, size))
         return [Chunk(i, first, min(first + size, count), None) for i, first in starts]
 
-    def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
-        """Compute a chunk of the map's points by the FMU; return them as a table."""
+    def work(self, fmus: Fmus, items: Sequence[questions.Point], previous: Table | None) -> Table:
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             decided = zip(items, self.decided_responses(plain, items), strict=True)
             rows = [self.row(eventful, item, *each) for item, each in decided]
@@ -106,12 +95,11 @@ class MapJob(Question):
     def row(
         self,
         eventful: EventInstance,
-        item: Point,
+        item: questions.Point,
         response: Response,
         decision: Decision,
         rate: float,
     ) -> list[float]:
-        """Return one point's results in the order of ``FIELDS``, and ``EXPONENT`` if asked for."""
         n, decided = decision
         impacts = follow_impacts(eventful, item, response.end, self.samples // 2)
         impulse = impacts.impulse(item.structure, item.speed).max(initial=0.0) / item.structure.m1
@@ -122,7 +110,7 @@ class MapJob(Question):
         return numbers
 
     def decided_responses(
-        self, instance: Instance, items: Sequence[Point]
+        self, instance: Instance, items: Sequence[questions.Point]
     ) -> list[DecidedResponse]:
         """Run points on until their multiplicity is decided; return responses, impacts a period."""
         loop, ends = response_loop(instance), np.tile(self.start, (len(items), 1))
@@ -167,10 +155,9 @@ class MapJob(Question):
 @lru_cache(maxsize=4)
 def map_points(
     structure: Structure, arguments: tuple[tuple[str, Numbers], ...]
-) -> tuple[Point, ...]:
-    """Return structure and excitation of each grid point, row by row; raise if not two lists."""
+) -> tuple[questions.Point, ...]:
     values = dict(arguments)
-    check_excitation_form(values.keys())
+    questions.check_excitation_form(values.keys())
     lists = {name: value for name, value in arguments if isinstance(value, tuple)}
     if len(lists) != 2:
         names = ", ".join(lists) or "none"
@@ -179,7 +166,7 @@ def map_points(
         if len(set(column)) < len(column):
             raise InputError(f"{name}: a value twice; expected each once")
     rows = (dict(zip(lists, row, strict=True)) for row in itertools.product(*lists.values()))
-    return tuple(make_point(structure, {**values, **row}) for row in rows)
+    return tuple(questions.make_point(structure, {**values, **row}) for row in rows)
 
 
 @question(MapJob)
@@ -249,11 +236,6 @@ def map(
         where asked for ``exponent`` per unit of tau, with its ``standard_error``, NaN where there
         are too few impacts, and its ``verdict`` as of :func:`orchestrate.lyapunov`.
 
-    Raises
-    ------
-    InputError
-        Where an argument is missing, contradicts another one, or is out of its range.
-
     Notes
     -----
     An impulse follows from its closing velocity by (15). Where attractors coexist a map shows the
@@ -281,7 +263,9 @@ def map(
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
     pushed = {name: value for name, value in pushes.items() if not np.array_equal(value, 0.0)}
     asked: dict[str, Any] = {**box, **pushed, **others}
-    numbers = {n: excitation_numbers(n, value) for n, value in asked.items() if n not in running}
+    numbers = {
+        n: questions.excitation_numbers(n, value) for n, value in asked.items() if n not in running
+    }
     given = tuple((name, value) for name, value in numbers.items() if value is not None)
-    start = checked_state("start", start, checked_structure(structure))
+    start = questions.checked_state("start", start, questions.checked_structure(structure))
     return as_given(given=given, start=start, running=running)

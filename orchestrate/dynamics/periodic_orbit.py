@@ -37,12 +37,10 @@ class ImpactSequence:
 
     @cached_property
     def sticks(self) -> NDArray[np.bool_]:
-        """Return, for each node, whether permanent contact follows it."""
         return np.array(self.kinds, dtype=int) % AT_OUTER_END == STICK
 
     @cached_property
     def releases(self) -> NDArray[np.bool_]:
-        """Return, for each node, whether it is a release from permanent contact."""
         return np.array(self.kinds, dtype=int) % AT_OUTER_END == RELEASE
 
     @cached_property
@@ -52,7 +50,6 @@ class ImpactSequence:
 
     @cached_property
     def modes(self) -> NDArray[np.int_]:
-        """Return the mode of the segment after each node."""
         return np.where(self.sticks, np.where(self.outer, OUTER, INNER), FREE)
 
     @property
@@ -61,14 +58,12 @@ class ImpactSequence:
         return len(self.kinds) - int(self.releases.sum())
 
     def doubled(self) -> ImpactSequence:
-        """Return the sequence repeated twice, over twice the periods."""
         return ImpactSequence(2 * self.periods, self.kinds * 2)
 
     def without(self, node: int) -> ImpactSequence:
         return ImpactSequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
 
     def with_impact(self, before: int, outer: bool = False) -> ImpactSequence:
-        """Return the sequence with an impact inserted before the node of this index."""
         kind = IMPACT + AT_OUTER_END * outer
         return ImpactSequence(self.periods, (*self.kinds[:before], kind, *self.kinds[before:]))
 
@@ -102,7 +97,6 @@ class PeriodicOrbit:
 
     @cached_property
     def ends(self) -> Floats:
-        """Return the phases, rad, at which segments between nodes end."""
         phases = next_rows(self.begins)
         phases[-1] += TURN * self.sequence.periods
         return phases
@@ -119,7 +113,6 @@ class PeriodicOrbit:
 
     @cached_property
     def contact(self) -> NDArray[np.bool_]:
-        """Return, for each segment, whether it is permanent contact."""
         return self.modes != FREE
 
     @cached_property
@@ -152,7 +145,6 @@ class PeriodicOrbit:
         return numbers[:, :4], numbers[:, 4:]
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
-        """Return the states at phases inside given segments, by the closed form, shape (n, 4)."""
         return self.motion(segment, phase)[0]
 
     @property
@@ -167,7 +159,6 @@ class PeriodicOrbit:
         return matrices
 
     def residual(self) -> Floats:
-        """Return the residual of the orbit's equations at its nodes, shape (4 k,)."""
         return self.segments[0].ravel() if self.count else np.zeros(0)
 
     def jacobian(self, multiplier: complex = 1.0) -> NDArray[np.inexact]:

@@ -38,7 +38,6 @@ class PoincareJob(OneMotionQuestion):
     family: ClassVar[tuple[str, ...]] = FAMILY
 
     def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
-        """Simulate the motion after its transient; return states and times of the section."""
         point, period = items[0], self.excitation.period
         with Instance(fmus[OSCILLATOR]) as plain:
             start = state_after_transient(
@@ -154,11 +153,6 @@ def poincare(
         ``phase`` of the box, ``time``; at impacts also ``impact_velocity``, the closing speed
         before them, and ``sticks``. There may be none: a motion without impacts has no section at
         impacts.
-
-    Raises
-    ------
-    InputError
-        Where an argument is missing, contradicts another one, or is out of its range.
 
     Notes
     -----

@@ -39,7 +39,6 @@ class SettledMotion:
 
     @classmethod
     def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
-        """Return a stable orbit of Newton's method as a settled motion."""
         periods, faces = orbit.sequence.periods, stroboscopic_states(orbit)
         faces[:, 1] = np.maximum(faces[:, 0], faces[:, 1])  # in contact, within rounding
         states = point.from_faces(faces)
@@ -83,7 +82,6 @@ class SettledMotion:
 
     @cached_property
     def free_states(self) -> Floats:
-        """Return the orbit's states at its impact-free phase."""
         assert self.orbit is not None, "no orbit"
         return self.point.from_faces(stroboscopic_states(self.orbit, self.free_phase))
 

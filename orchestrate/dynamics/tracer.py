@@ -112,7 +112,6 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
     # -- the loop ----------------------------------------------------------------------------------
 
     def trace(self, start: Point) -> BranchSegment[Point]:
-        """Trace the branch from a start point until it ends; return the segment."""
         segment, rates = BranchSegment([start]), dict.fromkeys(self.kinds, np.inf)
         try:
             while not segment.end:

@@ -96,7 +96,6 @@ class Amplitudes:
 
     @classmethod
     def from_orbit(cls, orbit: PeriodicOrbit, turns: TurningPoints) -> Amplitudes:
-        """Return the amplitudes of an orbit from its extrema and its states at impacts."""
         places = np.array([0.0, orbit.form.gap_offset, 0.0])  # of unloaded springs, and no gap
         ends = np.abs(orbit.arrivals[:, :2] - places[:2]).max(axis=0)
         inside = [

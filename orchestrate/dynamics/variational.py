@@ -22,7 +22,6 @@ from .closed_form import ClosedForm, Floats
 
 @functools.cache
 def exponent_library() -> Any:
-    """Return the library of deviations, as ctypes has it, types set."""
     loaded, table = loaded_loop("exponent"), [c_void_p, c_size_t]
     loaded.exponent_size.argtypes, loaded.exponent_size.restype = [c_size_t], c_size_t
     span = [c_void_p, *table, c_double]

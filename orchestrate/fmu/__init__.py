@@ -3,38 +3,28 @@
 ===================  =================================================================
 module               idea
 ===================  =================================================================
-:mod:`.description`  an FMU's modelDescription.xml, read and validated
-:mod:`.archive`      checks of an FMU archive before it is unpacked
+:mod:`.description`  an FMU's archive and modelDescription.xml, read and validated
 :mod:`.exported`     the FMUs of the present sources: found, or exported where missing
 :mod:`.models`       names of the models
 :mod:`.unit_names`   units by name only
-:mod:`.unpacked`     unpacking of FMUs, once per process
-:mod:`.library`      binaries of FMUs, loaded once per process
+:mod:`.unpacked`     unpacking of FMUs and loading of their binaries, once per process
 :mod:`.instance`     a co-simulation instance: set, step, read, save its state
 :mod:`.fmi`          an instance as the compiled loops call it
-:mod:`.events`       a motion computed impact by impact
-:mod:`.event_loop`   its loop over pieces of the input, samples and impacts
+:mod:`.events`       a motion computed impact by impact, under inputs given as cubics
 :mod:`.oscillator`   an oscillator for its loops: starts, states at equal times
 :mod:`.impacts`      the impacts of a motion
 :mod:`.begin`        start of a motion
-:mod:`.play`         a motion under a box acceleration given as cubics
 :mod:`.channel`      fast calls on one instance, for co-simulation masters
 :mod:`.c_library`    C libraries of the package: found, or compiled
 :mod:`.webassembly`  the kernels for web pages: found, or compiled
 ===================  =================================================================
 """
 
-from .begin import (
-    REST,
-    begin,
-    four_numbers,
-    gap_between,
-)
+from .begin import REST, begin, four_numbers, gap_between
 from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
-from .event_loop import Played
-from .events import NO_INPUT, EventInstance
+from .events import NO_INPUT, PLAYED, EventInstance, Played, Player
 from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_of, up_to_date
 from .impacts import STATE, Impacts
 from .instance import Instance, function_addresses
@@ -47,7 +37,6 @@ from .oscillator import (
     stroboscopic_samples,
     traits,
 )
-from .play import PLAYED, Player
 from .webassembly import build_web_kernels
 
 __all__ = [

@@ -42,7 +42,6 @@ def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDA
 
 
 def four_numbers(start: ArrayLike) -> list[float]:
-    """Return a start state as a list of floats x1, x2, v1, v2; raise unless it is four."""
     try:
         state = np.asarray(start, dtype=float)
     except (TypeError, ValueError):

@@ -52,12 +52,10 @@ def library_path(source: Path, folder: str | PathLike[str] | None = None) -> Pat
 
 @functools.cache
 def loaded_loop(name: str) -> Any:
-    """Load the library of a loop, once per process."""
     return loaded_library(sources.LOOPS / f"{name}.c")
 
 
 def loaded_library(source: Path) -> Any:
-    """Load a C source's shared library."""
     path = library_path(source)
     try:
         return ctypes.CDLL(str(path))
@@ -80,7 +78,6 @@ def trusted_parts(path: Path) -> tuple[Path, ...]:
 def build_libraries(
     folder: str | PathLike[str] | None = None, platforms: Iterable[str] = ()
 ) -> list[Path]:
-    """Compile all C sources of the package for the platforms; return the paths of those made."""
     target, made = default_folder() if folder is None else Path(folder), []
     left: dict[str, list[str]] = {}  # names by the reason
     for source in SOURCES:
@@ -95,7 +92,6 @@ def build_libraries(
 
 
 def compile_library(source: Path, platform: str, folder: Path) -> Path:
-    """Compile one C source for one platform into a folder, atomically; return the path."""
     path = folder / FORM / sources.file_name(source, platform)
     log.info("compiling %s", path)
     library = sources.export(source, platform)

@@ -75,13 +75,11 @@ class Channel:
         return (self._fmu.component, references, count, values, *sizes)
 
     def _call(self, function: Callable[..., int], *arguments: Any) -> None:
-        """Call a C function of the FMU directly; raise ``FmuError`` where it refuses."""
         self.begin()
         if status := function(*arguments):
             self.instance.check(getattr(function, "__name__", "a call"), status)
 
     def references(self) -> tuple[Any, Any]:
-        """Return the value references of inputs and outputs, for compiled code."""
         return self._puts[-1][1], self._gets[1]
 
     def begin(self) -> None:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import io
+import re
+import stat
 import time
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
@@ -13,9 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from .archive import MAX_BYTES, check_identifier, checked_names
 from .unit_names import Unit, unit_by_name
 
+MAX_FILES = 10_000  # far above any real FMU: an archive with more is an attack or an accident
+MAX_BYTES = 1 << 30  # unpacked; the same
 QUIET = 2.0  # s after a change of a file in which its times may not tell of another one
 SI_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
@@ -43,11 +47,9 @@ class Description:
 
     @property
     def is_fmi3(self) -> bool:
-        """True for FMI 3.0, False for 2.0."""
         return self.fmi_version.startswith("3")
 
     def variable(self, name: str) -> Any:
-        """Return FMPy's description of a variable; raise ``InputError`` if it is unknown."""
         try:
             return self.variables[name]
         except KeyError:
@@ -56,7 +58,6 @@ class Description:
 
 
 def describe(path: str | PathLike[str], model: str | None = None) -> Description:
-    """Return an FMU file's :class:`Description`; raise if it is no FMU, or of another model."""
     path = Path(path)
     if not path.is_file():
         own = "`python -m orchestrate build` writes the project's own"
@@ -74,7 +75,6 @@ def describe(path: str | PathLike[str], model: str | None = None) -> Description
 
 
 def describe_runnable(path: str | PathLike[str], model: str | None = None) -> Description:
-    """Return :func:`describe`; raise where the FMU has no binary for this machine."""
     description = describe(path, model)
     if not description.runs_here:
         raise InputError(f"FMU {path}: it has no binary for this machine; export it with one")
@@ -109,6 +109,34 @@ def digest_of(path: Path) -> str:
     if time.time() - max(seen.st_mtime, seen.st_ctime) > QUIET:
         _digests[key] = digest
     return digest
+
+
+def checked_names(data: bytes) -> list[str]:
+    """Return the paths in an FMU's zip; raise if one is outside, or it is too large."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        entries = archive.infolist()
+    if len(entries) > MAX_FILES:
+        raise ValueError(f"{len(entries)} files in it, at most {MAX_FILES} expected")
+    total = sum(entry.file_size for entry in entries)
+    if total > MAX_BYTES:
+        raise ValueError(f"{total} bytes unpacked, at most {MAX_BYTES} expected")
+    names = [entry.orig_filename for entry in entries]
+    if len(set(names)) < len(names):
+        raise ValueError("two files of one name in it")
+    for entry in entries:
+        name = entry.orig_filename
+        parts = name.removesuffix("/").split("/")
+        plain = name.isprintable() and not re.search(r"[\\:]", name)
+        if not plain or {"", ".", ".."} & set(parts):
+            raise ValueError(f"{name!r} in it, expected paths below the archive")
+        if stat.S_ISLNK(entry.external_attr >> 16):
+            raise ValueError(f"{name!r} in it is a link, expected files")
+    return names
+
+
+def check_identifier(name: str) -> None:
+    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+        raise ValueError(f"modelIdentifier {name[:100]!r}, expected letters, digits and _")
 
 
 def read_description(path: Path) -> Description:

@@ -52,7 +52,6 @@ def build(
 def export_all(
     pairs: Iterable[tuple[str, str]], folder: Path, platforms: tuple[str, ...] = ()
 ) -> list[Path]:
-    """Export FMUs for (form, model) pairs; return the files; raise only if all fail."""
     written, reasons = [], []
     for form, name in pairs:
         try:
@@ -69,7 +68,6 @@ def export_all(
 def export(
     name: str, form: str, folder: Path, platforms: tuple[str, ...] = (), level: int = logging.INFO
 ) -> Path:
-    """Export one model in one form to ``folder/FORM/NAME.fmu`` atomically; return the path."""
     check(name, form)
     open_folder(folder)
     announce(folder, level)
@@ -86,7 +84,6 @@ def export(
 
 
 def export_or_copy(name: str, form: str, folder: Path, platforms: tuple[str, ...]) -> Path:
-    """Export an FMU; where nothing can be made here, copy the one that a wheel brings."""
     try:
         return sources.export(name, form, folder, platforms or None)
     except CannotExport:
@@ -100,7 +97,6 @@ def export_or_copy(name: str, form: str, folder: Path, platforms: tuple[str, ...
 
 
 def export_once(name: str, form: str, folder: Path, level: int) -> Description:
-    """Export one FMU under a file lock if it is not up to date; return its description."""
     path = folder / form / f"{name}.fmu"
     with made_once(path):
         if not up_to_date(form, name, folder):
@@ -110,7 +106,6 @@ def export_once(name: str, form: str, folder: Path, level: int) -> Description:
 
 @functools.cache
 def announce(folder: Path, level: int) -> None:
-    """Log that FMUs are now exported to a folder, which takes some seconds a model."""
     text = "exporting FMUs to %s, this once: compiling takes some seconds a model"
     log.log(level, text, folder)
 
@@ -123,7 +118,6 @@ def guid(form: str, name: str) -> str:
 
 
 def check(name: str, form: str) -> None:
-    """Raise ``InputError`` unless the model's name and the form (FMI version) are known ones."""
     if name not in MODELS:
         raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
     if form not in sources.ALL_FORMS:
@@ -131,7 +125,6 @@ def check(name: str, form: str) -> None:
 
 
 def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:
-    """Return whether a folder has a model's FMU whose GUID is that of the present sources."""
     path = Path(folder) / form / f"{name}.fmu"
     try:
         current = path.is_file() and describe(path, name).guid == guid(form, name)
@@ -155,7 +148,6 @@ def default_folder() -> Path:
 
 
 def is_clone(root: Path) -> bool:
-    """Return whether a folder is a clone of this repository, by its pyproject.toml."""
     project = root / "pyproject.toml"
     return project.is_file() and 'name = "vibroimpact"' in project.read_text(encoding="utf-8")
 
@@ -167,7 +159,6 @@ def find(
     fmu: str | PathLike[str] | None = None,
     level: int = logging.INFO,
 ) -> Description:
-    """Return the description of a model's FMU: a given file, an up-to-date one, or a new export."""
     check(model, form)
     if fmu is not None:
         return describe_runnable(fmu, model)
@@ -191,7 +182,6 @@ def find(
 
 @functools.cache
 def warn_once(line: str) -> None:
-    """Log a warning; the same line is logged only once per process."""
     log.warning("%s", line)
 
 

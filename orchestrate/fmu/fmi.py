@@ -52,5 +52,4 @@ class Fmi(ctypes.Structure):
 
 
 def references(instance: Instance, names: Sequence[str]) -> Any:
-    """Return the FMI value references of variables, given by name, as a ctypes array."""
     return (c_uint * len(names))(*(instance.variable(name).valueReference for name in names))

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import FmuError, InputError, VibroimpactError
 from .description import describe
-from .library import loaded
+from .unpacked import loaded
 
 REAL_TYPES = ("Real", "Float64")
 INTEGER_TYPES = ("Integer", "Int32")
@@ -88,11 +88,9 @@ class Instance:
 
     @property
     def is_fmi3(self) -> bool:
-        """True for FMI 3.0, False for 2.0."""
         return self.description.is_fmi3
 
     def _make2(self) -> None:
-        """Instantiate the FMU by FMI 2.0, with callbacks that collect its log messages."""
         import fmpy
         from fmpy import fmi2
 
@@ -105,11 +103,9 @@ class Instance:
         self.call("instantiate", callbacks=self._callbacks, loggingOn=True)
 
     def _make3(self) -> None:
-        """Instantiate the FMU by FMI 3.0, with a callback that collects its log messages."""
         self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
 
     def _calls2(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        """Prepare FMI 2.0's C calls; return those of reset, of initialisation, and of one step."""
         no, zero = c_int(0), c_double()  # no tolerance, no end
         initialize = [
             self.prepared("fmi2SetupExperiment", no, zero, self._start, no, zero),
@@ -120,7 +116,6 @@ class Instance:
         return self.prepared("fmi2Reset"), initialize, step
 
     def _calls3(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        """Prepare FMI 3.0's C calls; return those of reset, of initialisation, and of one step."""
         no, zero = c_bool(False), c_double()
         initialize = [
             self.prepared("fmi3EnterInitializationMode", no, zero, self._start, no, zero),
@@ -131,7 +126,6 @@ class Instance:
         return self.prepared("fmi3Reset"), initialize, step
 
     def __enter__(self) -> Any:
-        """Return the instance itself, for use in a `with` statement."""
         return self
 
     def __exit__(
@@ -140,18 +134,15 @@ class Instance:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Free the instance at the end of a `with` statement."""
         self.close()
 
     def close(self) -> None:
-        """Free the FMU instance; it cannot be used afterwards."""
         if self._open:
             self._open = False
             free = self._fmu.fmi3FreeInstance if self.is_fmi3 else self._fmu.fmi2FreeInstance
             free(self._fmu.component)
 
     def _log(self, *arguments: Any) -> None:
-        """Append the FMU's log message; both FMI versions end in status, category and message."""
         status, _, message = arguments[-3:]
         self._messages.append((int(status), message.decode(errors="replace")))
 
@@ -162,7 +153,6 @@ class Instance:
         return "; ".join(dict.fromkeys(texts))
 
     def failure(self, error: object) -> FmuError:
-        """Return an ``FmuError`` with the FMU's log messages, or ``error``'s text without any."""
         return FmuError(self.logged() or str(error))
 
     def refusal(self, function: str, status: int) -> FmuError:
@@ -180,7 +170,6 @@ class Instance:
             raise self.refusal(function, status)
 
     def call(self, function: str, *args: Any, **kwargs: Any) -> Any:
-        """Call a method of FMPy's FMU object; return its result or raise the FMU's message."""
         self._messages.clear()
         try:
             return getattr(self._fmu, function)(*args, **kwargs)
@@ -204,11 +193,9 @@ class Instance:
         return run
 
     def variable(self, name: str) -> Any:
-        """Return FMPy's description of a variable."""
         return self.description.variable(name)
 
     def set(self, **values: float) -> None:
-        """Set FMU variables given as keywords (name=value)."""
         names = ("Set", *values)
         new_values = list(values.values())
         for call, array, positions in self._transfers.get(names) or self._grouped(names):
@@ -221,7 +208,6 @@ class Instance:
             call()
 
     def get(self, *names: str) -> list[Any]:
-        """Return the values of FMU variables, given by name, as a list in the same order."""
         key = ("Get", *names)
         values: list[Any] = [None] * len(names)
         for call, array, positions in self._transfers.get(key) or self._grouped(key):
@@ -266,8 +252,6 @@ class Instance:
     def _checked(
         self, call: Prepared, variables: Sequence[tuple[Any, int]], values: NDArray[np.float64]
     ) -> Prepared:
-        """Wrap a prepared get call so that it raises if the FMU gives NaN or infinity."""
-
         def run() -> None:
             call()
             if not math.isfinite(values.sum()) and not np.isfinite(values).all():
@@ -277,24 +261,20 @@ class Instance:
         return run
 
     def not_finite_error(self, names: Sequence[str], values: ArrayLike) -> FmuError:
-        """Return an ``FmuError`` that names the first variable whose value is not finite."""
         index = int(np.flatnonzero(~np.isfinite(values))[0])
         text = f"{names[index]} = {np.ravel(values)[index]}"
         return FmuError(f"the FMU {self.description.name} answers {text}; expected a finite number")
 
     def initialize(self, start_time: float = 0.0, **values: float) -> None:
-        """Set start values given as keywords, and take the FMU through initialisation mode."""
         self.set(**values)
         self._start.value = start_time
         for call in self._initialize:
             call()
 
     def reset(self) -> None:
-        """Reset the FMU (fmi2Reset, fmi3Reset) to its state after instantiation."""
         self._reset()
 
     def step(self, time: float, target: float) -> None:
-        """Do one communication step from ``time`` to ``target``, s."""
         self._time.value, self._length.value = time, target - time
         self._step()
 
@@ -305,11 +285,9 @@ class Instance:
         return values
 
     def size(self, *names: str) -> int:
-        """Return how many values :meth:`read` gives for these names (arrays have several)."""
         return len(self._reader(names)[1])
 
     def _reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
-        """Prepare an FMI get call for Real variables; return it and the array that it fills."""
         if names not in self._readers:
             elements = [element for name in names for element in self.elements(name)]
             for variable in (
@@ -331,7 +309,6 @@ class Instance:
         return [(variables[f"{name}[{i + 1}]"], 1) for i in range(count)]
 
     def save_state(self) -> bytes:
-        """Return the FMU's whole state, serialised to bytes by FMI's functions."""
         get, serialize, _, _, free = self.state_calls()
         state = self.call(get)
         try:
@@ -340,7 +317,6 @@ class Instance:
             self.call(free, state)
 
     def restore_state(self, data: bytes) -> None:
-        """Set the FMU to a state from the bytes that :meth:`save_state` gave."""
         _, _, deserialize, put, free = self.state_calls()
         state = self.call(deserialize, data)
         try:

@@ -105,7 +105,6 @@ class ResponseProgress(ctypes.Structure):
 
 @functools.cache
 def respond_library() -> Any:
-    """Return the library of responses, as ctypes has it, types set."""
     loaded = loaded_loop("respond")
     loaded.respond.argtypes = [c_void_p, c_void_p, c_void_p, c_size_t]
     loaded.sample_evenly.argtypes = [c_void_p, c_double, c_double, c_size_t, c_void_p]
@@ -156,19 +155,16 @@ class Oscillator:
 
     @classmethod
     def from_instance(cls, instance: Instance) -> Oscillator:
-        """Return what the loops need of an instance, made once."""
         known: Oscillator | None = instance.cache.get(cls)
         if known is None:
             known = instance.cache[cls] = cls(instance)
         return known
 
     def run(self, name: str, *arguments: Any) -> Any:
-        """Call a function of the library on the instance; return its answer."""
         self.instance._messages.clear()
         return getattr(respond_library(), name)(byref(self.calls), *arguments)
 
     def error(self) -> FmuError:
-        """Return the error of the call at which a loop stopped."""
         fmi: Fmi = self.calls.fmi
         if fmi.status != NOT_FINITE:
             return fmi.error(self.instance)
@@ -179,7 +175,6 @@ class Oscillator:
 
 
 def sampled(instance: Instance, time: float, target: float, count: int) -> Floats:
-    """Step an FMU from ``time`` to ``target``; return ``count`` equidistant states (count, 4)."""
     oscillator, states = Oscillator.from_instance(instance), np.empty((count, len(STATE)))
     if not oscillator.run("sample_evenly", time, target, count, states.ctypes.data):
         raise oscillator.error()
@@ -189,7 +184,6 @@ def sampled(instance: Instance, time: float, target: float, count: int) -> Float
 def stroboscopic_samples(
     instance: Instance, period: float, transient: int, samples: int
 ) -> tuple[Floats, float]:
-    """Run the FMU over some periods; return states at phase 0, and the largest gap."""
     oscillator, states, peak = Oscillator.from_instance(instance), empty(samples), c_double()
     places = states.ctypes.data, byref(peak)
     if not oscillator.run("sample_periods", period, transient, samples, *places):
@@ -198,7 +192,6 @@ def stroboscopic_samples(
 
 
 def empty(count: int) -> Floats:
-    """Return an array for states, not filled."""
     return np.empty((count, len(STATE)))
 
 

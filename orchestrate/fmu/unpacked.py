@@ -1,19 +1,24 @@
-"""Unpacking of FMUs into the temporary folder of the process."""
+"""FMUs unpacked into the temporary folder of the process, and their binaries, loaded once there."""
 
 from __future__ import annotations
 
+import atexit
+import copy
 import hashlib
 import io
 import shutil
+import sys
 import tempfile
 import threading
 from pathlib import Path
+from typing import Any
 
 from ..errors import InputError, StoreError
 from ..temporary import process_folder
 from .description import Description
 
 _lock = threading.RLock()
+_loaded: dict[tuple[str, str], Any] = {}  # by folder and binary
 
 
 def unpacked(description: Description) -> Path:
@@ -49,3 +54,25 @@ def unpack(data: bytes, folder: Path) -> None:
     except BaseException:
         shutil.rmtree(partial, ignore_errors=True)
         raise
+
+
+def loaded(description: Description, name: str) -> Any:
+    """Return FMPy's FMU object for a new, not yet instantiated instance; the binary is cached."""
+    key = str(unpacked(description)), description.identifier
+    with _lock:
+        if key not in _loaded:
+            _loaded[key] = load(description, key[0])
+            if sys.platform == "win32":  # which deletes no binary that is loaded
+                atexit.register(_loaded[key].freeLibrary)
+    fmu = copy.copy(_loaded[key])
+    fmu.instanceName = name
+    return fmu
+
+
+def load(description: Description, folder: str) -> Any:
+    from fmpy import fmi2, fmi3
+
+    make = fmi3.FMU3Slave if description.is_fmi3 else fmi2.FMU2Slave
+    return make(
+        guid=description.guid, unzipDirectory=folder, modelIdentifier=description.identifier
+    )

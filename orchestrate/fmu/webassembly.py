@@ -19,28 +19,17 @@ from fmu_src.export.sources import model_sources
 from ..errors import InputError
 from ..files import made_once, open_folder, write_whole
 from ..model.ranges import PUSHES
-from . import event_loop
+from . import events, oscillator
 from .exported import SHIPPED, default_folder
 from .models import OSCILLATOR
-from .oscillator import (
-    COUNTS,
-    DEVIATING,
-    READ_VARIABLES,
-    SAMPLE_SERIES,
-    START_VALUES,
-    TRAIT_NAMES,
-    OscillatorCalls,
-    ResponseProgress,
-    ResponseTask,
-)
 
 log = logging.getLogger(__name__)
 FILE = Path("wasm") / "models.wasm"
 KINDS = {c_double: "f64", c_bool: "u8", c_int: "i32"}  # else of 32 bits
 WIDTHS = {"f64": 8, "u8": 1, "i32": 4, "u32": 4}
 STRUCTURES = (
-    *(OscillatorCalls, ResponseTask, ResponseProgress),
-    *(event_loop.PlayerCalls, event_loop.PlayTask, event_loop.PlayProgress),
+    *(oscillator.OscillatorCalls, oscillator.ResponseTask, oscillator.ResponseProgress),
+    *(events.PlayerCalls, events.PlayTask, events.PlayProgress),
 )
 
 
@@ -79,7 +68,6 @@ def read_module(path: Path, guid: str) -> bytes:
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
-    """Compile models and loops to a WebAssembly file; return its path, or none if it cannot be."""
     try:
         return [compile_module(default_folder() if folder is None else Path(folder))]
     except CannotExport as reason:
@@ -90,19 +78,19 @@ def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
 def loop_tables(*more: type[ctypes.Structure]) -> dict[str, Any]:
     """Return what a page needs to call the loops, as JSON: structures, names, and their order."""
     structures: tuple[type[ctypes.Structure], ...] = (*STRUCTURES, *more)
-    booleans = [name for name, value in START_VALUES.items() if isinstance(value, bool)]
+    booleans = [name for name, value in oscillator.START_VALUES.items() if isinstance(value, bool)]
     return {
         "structures": {kind.__name__: layout(kind) for kind in structures},
         "pushes": PUSHES,
-        "set": {name: float(value) for name, value in START_VALUES.items()},
+        "set": {name: float(value) for name, value in oscillator.START_VALUES.items()},
         "booleans": booleans,
-        "reals": [name for name in START_VALUES if name not in booleans],
-        "read": READ_VARIABLES,
-        "series": SAMPLE_SERIES,
-        "capacity": sources.array_sizes(MODELS[OSCILLATOR])[SAMPLE_SERIES[0]],
-        "counts": COUNTS,
-        "traits": TRAIT_NAMES,
-        "deviating": DEVIATING,
+        "reals": [name for name in oscillator.START_VALUES if name not in booleans],
+        "read": oscillator.READ_VARIABLES,
+        "series": oscillator.SAMPLE_SERIES,
+        "capacity": sources.array_sizes(MODELS[OSCILLATOR])[oscillator.SAMPLE_SERIES[0]],
+        "counts": oscillator.COUNTS,
+        "traits": oscillator.TRAIT_NAMES,
+        "deviating": oscillator.DEVIATING,
     }
 
 
@@ -151,13 +139,11 @@ def numbers_in(structure: ctypes.Structure) -> dict[str, float]:
 
 
 def kernel_digest(model: str) -> str:
-    """Return a digest (32 hexadecimal digits) of a model's kernel sources."""
     files = model_sources(MODELS[model])
     return fingerprint({name: files[name] for name in files if name.startswith("kernels/")})
 
 
 def compile_module(folder: Path) -> Path:
-    """Compile the models and loops to a file in a folder atomically; return the path."""
     path = folder / FILE
     log.info("compiling %s", path)
     module = sources.export()

@@ -19,19 +19,16 @@ STATE = ("x1", "x2", "v1", "v2")  # of a state in m and m/s
 def make_dataset(
     variables: Mapping[str, Variable], coordinates: Mapping[str, Variable], title: str, **more: Any
 ) -> xr.Dataset:
-    """Return a dataset of variables and coordinates, with its title and more attributes."""
     return xr.Dataset(variables, coordinates, {"title": title, **more})
 
 
 def variable(dims: Dims, values: Any, units: str, long_name: str, **more: Any) -> Variable:
-    """Return a dataset variable as a tuple (dims, values, attributes with units and long name)."""
     return dims, values, {"units": units, "long_name": long_name, **more}
 
 
 def column_variables(
     dims: Dims, texts: Mapping[str, str], values: Iterable[Any]
 ) -> dict[str, Variable]:
-    """Return a dict of dimensionless variables, from a dict of long names and columns."""
     parts = zip(texts.items(), values, strict=True)
     return {name: variable(dims, column, "1", text) for (name, text), column in parts}
 
@@ -45,23 +42,19 @@ def flags(dims: Dims, values: Any, long_name: str, meanings: Mapping[int, str]) 
 
 
 def yes_or_no(dims: Dims, values: Any, long_name: str) -> Variable:
-    """Return a variable of truth values as CF flags: 0 for no, 1 for yes."""
     return flags(dims, values, long_name, {0: "no", 1: "yes"})
 
 
 def parameter_variable(name: str, dims: Dims, values: Any) -> Variable:
-    """Return a structure's or excitation's parameter as a variable with its unit, by name."""
     quantity = {**STRUCTURE, **RATIO_QUANTITIES, **EXCITATION, "level": LEVEL}[name]
     return variable(dims, np.asarray(values, dtype=float), quantity.unit, quantity.description)
 
 
 def nondimensional_state_coordinate() -> dict[str, Variable]:
-    """Return the coordinate of a state's four numbers in the paper's units."""
     text = "co-ordinate of the state: x/(a eta^2), and its derivative by tau"
     return {"coordinate": variable("coordinate", np.array(COORDINATES), "1", text)}
 
 
 def si_state_coordinate() -> dict[str, Variable]:
-    """Return the coordinate of a state's four numbers in m and m/s."""
     text = "co-ordinate of the state: x1, x2 in m, v1, v2 in m/s"
     return {"coordinate": variable("coordinate", np.array(STATE), "1", text)}

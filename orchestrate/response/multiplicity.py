@@ -56,7 +56,6 @@ def find_repetition(
 def decide_multiplicity(
     samples: ArrayLike, frequency: float, gap: float, tolerance: float
 ) -> Decision:
-    """Decide a response's multiplicity by the rule of ``kernels.repetition.decide``."""
     memory = apply_rule("decide_multiplicity", samples, (frequency, gap, tolerance))
     return Decision(int(memory[repetition.MULTIPLICITY]), int(memory[repetition.DECIDED]))
 
@@ -75,7 +74,6 @@ def nearest_state(
 def apply_rule(
     name: str, samples: ArrayLike, settings: tuple[float, float, float]
 ) -> NDArray[np.float64]:
-    """Run a compiled function of the kernel; return its memory."""
     states = np.asarray(samples, dtype=float)
     memory = np.zeros(memory_size(len(states)))
     memory[: repetition.MULTIPLICITY] = len(states), *settings

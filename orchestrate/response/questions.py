@@ -77,7 +77,6 @@ class Point(NamedTuple):
         return faces
 
     def from_faces(self, faces: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return SI states from states in the paper's units with faces, as :meth:`faces` gives."""
         states: NDArray[np.float64] = faces * self.scale
         if self.structure.wall:
             states[..., 1::2] = 0.0  # but for rounding
@@ -119,7 +118,6 @@ class Series:
     amplitudes: NDArray[np.float64]
 
     def coordinates(self) -> dict[str, Variable]:
-        """Return dataset coordinates: the parameter, eta, frequency, amplitude and period."""
         along: dict[str, ArrayLike] = {
             "eta": self.etas,
             "frequency": self.frequencies,
@@ -154,7 +152,6 @@ def make_series(
     values: Numbers | None = None,
     pushes: tuple[tuple[str, Numbers], ...] = (),
 ) -> Series:
-    """Return the operating points along the parameter whose argument is a list of values."""
     excitation_values: dict[str, Any] = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
     excitation_values |= dict(pushes)
     excitation = {name: value for name, value in excitation_values.items() if value is not None}
@@ -197,7 +194,6 @@ def point_rows(
 def varied_values(
     over: str | None, values: Numbers | None, excitation: Mapping[str, Numbers]
 ) -> dict[str, Any]:
-    """Return the parameter named ``over`` with its values, as a dict; empty without ``over``."""
     if over is None:
         if values is not None:
             raise InputError(
@@ -215,7 +211,6 @@ def varied_values(
 
 
 def check_excitation_form(names: Any) -> None:
-    """Raise unless the argument names make one complete form of excitation."""
     if EXCITATION_PARAMETERS.keys() & set(names) not in COMPLETE:
         present = (
             " and ".join(f"{name}=" for name in EXCITATION_PARAMETERS if name in names) or "nothing"
@@ -224,7 +219,6 @@ def check_excitation_form(names: Any) -> None:
 
 
 def check_lengths(name: str, over: str | None, varied: Mapping[str, tuple[float, ...]]) -> None:
-    """Raise unless one parameter varies, or frequency and amplitude lists have equal lengths."""
     others = [other for other in varied if other != name]
     if over and others:
         raise InputError(f"{others[0]}: is a list beside over = {over!r}; expected one number")
@@ -237,7 +231,6 @@ def check_lengths(name: str, over: str | None, varied: Mapping[str, tuple[float,
 
 
 def make_point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
-    """Return the operating point for a structure with parameters changed and an excitation."""
     changes = {name: value for name, value in arguments.items() if name not in QUANTITIES}
     pushes = {name: arguments[name] for name in PUSHES if name in arguments}
     changed = structure.replace(**changes) if changes else structure
@@ -262,7 +255,6 @@ def checked_point(
     amplitude: ArrayLike | None,
     **pushes: ArrayLike | None,
 ) -> Point:
-    """Return the operating point of scalar excitation arguments; raise if incomplete or lists."""
     arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude, **pushes}
     given = {name: value for name, value in arguments.items() if value is not None}
     values = {name: excitation_numbers(name, value) for name, value in given.items()}
@@ -277,7 +269,6 @@ def checked_point(
 
 
 def checked_structure(structure: object) -> Structure:
-    """Return the argument unchanged; raise ``InputError`` unless it is a ``Structure``."""
     if not isinstance(structure, Structure):
         raise InputError(f"structure = {structure!r}: expected a Structure")
     return structure
@@ -291,10 +282,7 @@ def require_bonded_twin(structure: Structure) -> None:
 
 
 def require_delaminated(structure: object, asked: str = "") -> Structure:
-    """Return the argument unchanged; raise ``InputError`` unless it is a delaminated structure.
-
-    ``asked``: the function that asks, where it knows neither a wall nor a stroke.
-    """
+    """Raise unless ``asked`` knows the structure: delaminated, without a wall or a stroke."""
     if checked_structure(structure).bonded:
         raise InputError("bonded = True: expected a delaminated structure (bonded = false)")
     if asked:
@@ -303,7 +291,6 @@ def require_delaminated(structure: object, asked: str = "") -> Structure:
 
 
 def excitation_numbers(name: str, value: ArrayLike | None) -> Numbers | None:
-    """Return numbers, an excitation's checked for their range; None if not given."""
     quantity = QUANTITIES.get(name)
     if quantity is None:
         return checked_numbers(name, value)
@@ -352,7 +339,6 @@ def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> 
 
 
 def checked_state(name: str, value: ArrayLike | None, structure: Structure) -> tuple[float, ...]:
-    """Return one start state as four floats, rest by default; raise if there are several."""
     rows = checked_states(name, value, structure)
     if len(rows) != 1:
         raise InputError(f"{name}: {len(rows)} states; expected one")
@@ -426,7 +412,6 @@ class Question(Job, ABC):
 
 
 def answer_question(job: Question, running: Mapping[str, Any]) -> xr.Dataset:
-    """Answer a question by the FMU that the running options choose."""
     return answer(job, running, finder(running))
 
 
@@ -460,13 +445,11 @@ class SeriesQuestion(Question, ABC):
 
     @property
     def series(self) -> Series:
-        """Return the operating points along the parameter."""
         arguments = self.eta, self.frequency, self.amplitude, self.over, self.values
         return make_series(self.structure, *arguments, self.pushes)
 
     @property
     def pushes(self) -> tuple[tuple[str, Numbers], ...]:
-        """Return the loads other than the box's harmonic motion by name, if not zero."""
         given = ((name, getattr(self, name, 0.0)) for name in PUSHES if name != self.over)
         return tuple((name, value) for name, value in given if value != 0.0)
 

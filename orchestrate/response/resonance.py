@@ -18,14 +18,7 @@ from ..model.outcomes import IRREGULAR
 from ..running.job import Table
 from ..running.options import Running
 from .labels import Variable, make_dataset, parameter_variable, variable, yes_or_no
-from .questions import (
-    Point,
-    Series,
-    Values,
-    excitation_numbers,
-    make_series,
-    require_bonded_twin,
-)
+from .questions import Point, Series, Values, excitation_numbers, make_series, require_bonded_twin
 from .signatures import as_given, question
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, response_variables
 from .threshold import threshold_variables
@@ -50,11 +43,9 @@ class ResonanceJob(SweepJob):
             raise InputError("direction = 'given': expected one of up, down, both")
 
     def parameters(self) -> dict[str, Any]:
-        """Return the job's parameters for its identity, without the start."""
         return {name: value for name, value in super().parameters().items() if name != "start"}
 
     def independent_series(self) -> int:
-        """Return how many sweeps are independent: each direction, for both structures."""
         return len(KINDS) * super().independent_series()
 
     def items(self) -> Sequence[Point]:
@@ -77,19 +68,16 @@ class ResonanceJob(SweepJob):
         return np.array(ordered)
 
     def variables(self, table: Table) -> dict[str, Variable]:
-        """Return dataset variables of the curves: amplitudes, accelerations, multiplicity."""
         along, length = (*DIMENSIONS, self.series.name), self.series.units[:, 0]
         return {**self.threshold(), **response_variables(along, table, length, REPORTED)}
 
     def threshold(self) -> dict[str, Variable]:
-        """Return dataset variables of the contact threshold; empty without a clearance."""
         structure = self.structure.as_delaminated()
         if structure.gap_offset == 0.0 or structure.stroke or self.pushes:  # unknown there
             return {}
         return threshold_variables(structure, self.series.name, self.series.frequencies)
 
     def coordinates(self) -> dict[str, Variable]:
-        """Return dataset coordinates: structure, direction, excitation, frequency in Hz."""
         name = self.series.name
         turns = self.series.frequencies / (2.0 * np.pi)
         directions = ["up", "down"] if self.direction == "both" else [self.direction]
@@ -110,7 +98,6 @@ class ResonanceJob(SweepJob):
         return glued + [ordered.isel(structure=1, direction=i) for i in range(data.direction.size)]
 
     def peaks(self, data: xr.Dataset) -> dict[str, Variable]:
-        """Return dataset variables of the peaks: maxima of the larger displacement."""
         rows, noise = [], []
         for curve in self.curves(data):
             parts = str(curve.structure.values) != KINDS[0]  # glued, no response is irregular
@@ -128,7 +115,6 @@ class ResonanceJob(SweepJob):
         }
 
     def jumps(self, data: xr.Dataset) -> dict[str, Variable]:
-        """Return dataset variables of the jumps of the largest gap, by direction."""
         rows, sizes, name = [], [], self.series.name
         for curve in self.curves(data):
             down = str(curve.direction.values) == "down"
@@ -156,7 +142,6 @@ class ResonanceJob(SweepJob):
         return (high - low > self.jump * high) | (len(values) == 1)
 
     def locations(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
-        """Return variables of structure, direction and frequency for peaks or jumps."""
         labels = {name: [str(row[name].values) for row in rows] for name in DIMENSIONS}
         words = {
             f"{what}_{name}": variable(what, np.array(texts, dtype="U11"), "1", name)
@@ -175,7 +160,6 @@ class ResonanceJob(SweepJob):
 
 
 def distinct_numbers(name: str, value: Any) -> tuple[float, ...]:
-    """Return one or more numbers as a tuple; raise ``InputError`` if one is repeated."""
     values = excitation_numbers(name, value)
     listed = values if isinstance(values, tuple) else (values,)
     if values is None or len(set(listed)) < len(listed):
@@ -191,23 +175,19 @@ class ResonanceLevelsJob(ResonanceJob):
 
     @property
     def series(self) -> Series:
-        """Return the operating points of the first level along the frequency."""
         return make_series(self.structure, None, self.frequency, self.amplitudes(self.level[0]))
 
     def amplitudes(self, level: float) -> tuple[float, ...]:
-        """Return the box's amplitudes, m, that give a level at all frequencies."""
         return tuple(level / f**2 for f in self.frequency)
 
     @cached_property
     def level_jobs(self) -> tuple[ResonanceJob, ...]:
-        """Return one resonance job per level, in the order of the levels."""
         own = {field.name: getattr(self, field.name) for field in fields(ResonanceJob)}
         return tuple(
             ResonanceJob(**own | {"amplitude": self.amplitudes(level)}) for level in self.level
         )
 
     def independent_series(self) -> int:
-        """Return how many sweeps are independent, over all levels."""
         return len(self.level) * super().independent_series()
 
     def items(self) -> Sequence[Point]:
@@ -234,7 +214,6 @@ class ResonanceLevelsJob(ResonanceJob):
         return result
 
     def rows_of_level(self, index: int, curve: xr.Dataset, name: str) -> xr.Dataset:
-        """Return the peaks or jumps of one level's curves, with a variable of the level."""
         of_kind = [str(key) for key, values in curve.data_vars.items() if values.dims == (name,)]
         part = curve[of_kind].reset_coords(drop=True)
         level = np.full(curve.sizes[name], self.level[index])
@@ -298,12 +277,6 @@ def resonance(
         ``peak_irregular`` marks peaks inside a range of irregular responses: amplitudes of these
         are the largest of a few periods, and differ by chance from one frequency to the next.
 
-    Raises
-    ------
-    InputError
-        Where a required argument is missing, arguments contradict each other, or a number is
-        out of its range.
-
     Notes
     -----
     A sweep of (6), (10) and (15) as in section 3.1 of the paper, see :func:`orchestrate.sweep`;
@@ -358,11 +331,6 @@ def resonance_levels(
         What :func:`orchestrate.resonance` answers, with ``level`` as first dimension; of each peak
         and jump its ``peak_level``, ``jump_level``. The threshold of a structure with a clearance,
         ``threshold_acceleration`` over the frequency, is one curve for all levels.
-
-    Raises
-    ------
-    InputError
-        Where a number is out of its range.
 
     Examples
     --------

@@ -42,7 +42,6 @@ class Response:
         return self.repetition(self.tolerance).multiplicity
 
     def repetition(self, tolerance: float) -> Repetition:
-        """Return the multiplicity within a tolerance, and the largest deviation from it."""
         return find_repetition(self.samples, self.frequency, self.x_rel_max, tolerance)
 
     def lacks_impacts(self, impacts: float, n: int) -> bool:
@@ -51,7 +50,6 @@ class Response:
 
     @property
     def gap(self) -> NDArray[np.float64]:
-        """Return the gap at the samples, m."""
         return gap_between(self.samples, self.gap_offset)
 
 
@@ -64,7 +62,6 @@ def respond(
     samples: int,
     tolerance: float,
 ) -> Response:
-    """Simulate a transient and samples from a state at phase 0; return the response."""
     points = [Point(structure, excitation)]
     settings = LoopSettings(transient=transient, samples=samples)
     results = response_loop(instance).respond(points, [four_numbers(start)], settings)
@@ -77,7 +74,6 @@ def responses_from(
     tolerance: float,
     multiplicity: Sequence[int] | None = None,
 ) -> Iterator[Response]:
-    """Yield the responses of a loop's rows, with their multiplicity where it has been found."""
     count = results.states.shape[1]
     columns = zip(*(results.counts[name].tolist() for name in COUNTS), strict=True)
     for i, (point, numbers) in enumerate(zip(points, columns, strict=True)):
@@ -106,7 +102,6 @@ class DecidedResponse(NamedTuple):
 
 
 def decisions_from(results: Responses, responses: Iterable[Response]) -> Iterator[DecidedResponse]:
-    """Yield the responses of a loop that decides, with their decisions."""
     decisions = (results.counts[name].tolist() for name in ("multiplicity", "decided"))
     columns = *decisions, results.impacts.tolist()
     for response, n, decided, impacts in zip(responses, *columns, strict=True):

@@ -16,14 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..fmu import START_VALUES, Instance, Oscillator, traits
 from ..fmu.fmi import BROKEN, PAUSED, references
 from ..fmu.impacts import STATE
-from ..fmu.oscillator import (
-    COUNTED,
-    COUNTS,
-    PEAKS,
-    KnownMotions,
-    ResponseProgress,
-    ResponseTask,
-)
+from ..fmu.oscillator import COUNTED, COUNTS, PEAKS, KnownMotions, ResponseProgress, ResponseTask
 from .multiplicity import memory_size
 from .questions import Point
 
@@ -99,7 +92,6 @@ class Rows(NamedTuple):
 
 
 def response_loop(instance: Instance) -> ResponseLoop:
-    """Return the loop of an FMU instance, made once."""
     loop: ResponseLoop | None = instance.cache.get(ResponseLoop)
     if loop is None:
         loop = instance.cache[ResponseLoop] = ResponseLoop(instance)
@@ -117,7 +109,6 @@ class ResponseLoop:
     def respond(
         self, points: Sequence[Point], starts: ArrayLike, settings: LoopSettings
     ) -> Responses:
-        """Compute responses from their starts, or from the first of a chain."""
         chosen, count, rows = settings, len(points), self.rows(points)
         counts = np.zeros((count, len(COUNTS)), np.int32)
         results = Responses(

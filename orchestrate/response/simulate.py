@@ -46,14 +46,12 @@ class SimulateJob(OneMotionQuestion):
     family: ClassVar[tuple[str, ...]] = FAMILY
 
     def grid(self) -> NDArray[np.float64]:
-        """Return the equally spaced times, s, at which the motion is sampled."""
         numbers = np.arange(self.periods * self.points + 1)
         return (self.transient + numbers / self.points) * self.excitation.period
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Simulate the motion in the FMU; return its samples and its impacts as a table."""
         grid = self.grid()
         with EventInstance(fmus[OSCILLATOR]) as instance:
             begin(instance, *items[0], self.start)
@@ -69,7 +67,6 @@ class SimulateJob(OneMotionQuestion):
     def accelerations(
         self, rows: NDArray[np.float64], touching: NDArray[np.bool_]
     ) -> dict[str, NDArray[np.float64]]:
-        """Return accelerations of box and masses, absolute and relative, from samples."""
         point, phase = self.items()[0], rows[:, OUTPUTS.index("phase")]
         box = acceleration_of_box(point.excitation, phase)
         first, second = accelerations_under(rows[:, :4], point, phase, touching).T
@@ -90,7 +87,6 @@ class SimulateJob(OneMotionQuestion):
         return make_dataset(variables, self.coordinates(), title)
 
     def coordinates(self) -> dict[str, Variable]:
-        """Return dataset coordinates of time: in seconds, in units of tau, in periods."""
         time = self.grid()
         tau, turns = self.structure.omega * time, time / self.excitation.period
         return {
@@ -101,7 +97,6 @@ class SimulateJob(OneMotionQuestion):
 
 
 def impact_variables(table: Table) -> dict[str, Variable]:
-    """Return dataset variables of impacts: time, closing speed, impulse, sticking."""
     closing, impulse = table["impact_velocity"], table["impulse"]
     text = "whether permanent contact follows the impact (17)"
     return {
@@ -113,7 +108,6 @@ def impact_variables(table: Table) -> dict[str, Variable]:
 
 
 def impact_columns(impacts: Impacts, structure: Structure) -> Table:
-    """Return impacts as table columns: time, closing speed, impulse, sticking."""
     names = "impact_time", "impact_velocity", "impulse", "sticks"
     columns = impacts.time, impacts.closing, impacts.impulse(structure), impacts.sticks
     return dict(zip(names, columns, strict=True))
@@ -171,12 +165,6 @@ def simulate(
         ``box_acceleration``; ``contact_force`` in N and ``in_contact``. Over ``impact``:
         ``impact_time`` in s, ``impact_velocity``, the closing speed in m/s, ``impulse`` in N s,
         and ``sticks``.
-
-    Raises
-    ------
-    InputError
-        Where a required argument is missing, arguments contradict each other, or a number is
-        out of its range.
 
     Notes
     -----

@@ -36,7 +36,6 @@ Floats = NDArray[np.float64]
 
 @functools.cache
 def spectrum_library() -> Any:
-    """Return the library of spectra, as ctypes has it, types set."""
     loaded = loaded_loop("spectrum")
     loaded.spectrum_size.restype, loaded.spectrum_size.argtypes = c_size_t, [c_size_t]
     loaded.amplitude_spectrum.argtypes = [c_void_p, c_size_t, c_void_p, c_void_p]
@@ -89,14 +88,12 @@ class SpectraJob(SeriesQuestion):
             )
 
     def orders(self) -> Floats:
-        """Return the spectral lines as multiples of the excitation frequency."""
         orders = np.arange(self.periods * self.points // 2 + 1) / self.periods
         return orders[orders <= self.highest]
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Compute a chunk of spectra: bonded, delaminated, and delaminated without impulses."""
         amplitudes = []
         with Instance(fmus[OSCILLATOR]) as instance:
             for structure, excitation in items:
@@ -106,7 +103,6 @@ class SpectraJob(SeriesQuestion):
         return {"acceleration": np.array(amplitudes)}
 
     def spectrum(self, instance: Instance, point: Point) -> tuple[Floats, Floats]:
-        """Simulate a response; return both masses' spectra with impulses, and without."""
         span, count = point.excitation.period, self.periods * self.points
         first, last = self.transient * span, (self.transient + self.periods) * span
         begin(instance, *point, REST)
@@ -182,12 +178,6 @@ def spectra(
         ``order``, multiples of the excitation frequency; ``line`` has the frequencies in rad/s.
         Kinds: ``bonded`` and ``delaminated`` with the impacts' impulses; ``sampled``: delaminated
         without them, as a sampled accelerometer shows it.
-
-    Raises
-    ------
-    InputError
-        Where a required argument is missing, arguments contradict each other, or a number is
-        out of its range.
 
     Notes
     -----

@@ -18,16 +18,7 @@ from ..running.array_blocks import lazy_rows
 from ..running.job import FAMILY, Table
 from ..running.options import Running
 from ..running.store import StoredRows
-from .labels import (
-    COORDINATES,
-    Dims,
-    Variable,
-    flags,
-    make_dataset,
-    nondimensional_state_coordinate,
-    variable,
-    yes_or_no,
-)
+from . import labels
 from .multiplicity import DECIDED
 from .questions import Point, StartedSeriesQuestion, Values
 from .respond import DecidedResponse, decisions_from, responses_from
@@ -75,19 +66,17 @@ class SweepJob(StartedSeriesQuestion):
 
     def to_answer(self) -> SweepJob:
         """Return the job; that of values that do not depend on another if each has its start."""
-        if len(self.start) == len(COORDINATES):
+        if len(self.start) == len(labels.COORDINATES):
             return self
-        starts = np.reshape(self.start, (-1, len(COORDINATES)))
+        starts = np.reshape(self.start, (-1, len(labels.COORDINATES)))
         return RunOnJob(**vars(self) | {"direction": "given", "start": starts})
 
     def orders(self) -> list[NDArray[np.intp]]:
-        """Return the indices of the values in computing order, an array per direction."""
         up = np.argsort(self.series.values, kind="stable")
         known = {"up": [up], "down": [up[::-1]], "both": [up, up[::-1]]}
         return known.get(self.direction) or [np.arange(len(up))]
 
     def independent_series(self) -> int:
-        """Return the number of directions: up and down are independent."""
         return len(self.orders())
 
     def count(self) -> int:
@@ -99,7 +88,6 @@ class SweepJob(StartedSeriesQuestion):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Compute a chunk of responses; each starts from the end of the one before."""
         start, offset = self.start, self.structure.gap_offset
         if previous is not None:
             start, offset = previous["end"][-1], float(previous["gap_offset"][-1])
@@ -108,7 +96,6 @@ class SweepJob(StartedSeriesQuestion):
     def table(
         self, fmus: Mapping[str, Path], points: Sequence[Point], starts: ArrayLike, **chain: Any
     ) -> Table:
-        """Return a chunk's table: responses one from the other, or each from its own start."""
         names = ("transient", "samples", "tolerance", "peak_periods")
         own: Any = {name: getattr(self, name) for name in names}
         settings = LoopSettings(**own, decides=True, **chain)
@@ -121,7 +108,6 @@ class SweepJob(StartedSeriesQuestion):
         return {**table, **dict(zip(PEAKS, results.peaks.T, strict=True))}
 
     def row(self, decided: DecidedResponse) -> dict[str, Any]:
-        """Return one response's numbers by column name."""
         response, found, impacts = decided
         return {
             "gap": response.gap,
@@ -134,7 +120,6 @@ class SweepJob(StartedSeriesQuestion):
         }
 
     def boundary_state(self, table: Table) -> bytes:
-        """Return, as bytes, the state that the next chunk's first response starts from."""
         return bytes(table["end"][-1].tobytes())
 
     def dataset(self, table: Table) -> xr.Dataset:
@@ -143,7 +128,7 @@ class SweepJob(StartedSeriesQuestion):
         # each column leaves the table: of a long sweep there is no room for two
         ordered = {name: in_order.get(name, self.in_order)(table.pop(name)) for name in [*table]}
         title = f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
-        return make_dataset(self.variables(ordered), self.coordinates(), title)
+        return labels.make_dataset(self.variables(ordered), self.coordinates(), title)
 
     def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
         """Reorder rows from computing order to the values' order, (direction, value) if both."""
@@ -167,9 +152,8 @@ class SweepJob(StartedSeriesQuestion):
 
         return lazy_rows(numbers.shape, gaps.shape[1], read)
 
-    def variables(self, table: Table) -> dict[str, Variable]:
-        """Return the result's variables, which become the CSV columns, from response rows."""
-        along: Dims = (self.series.name,)
+    def variables(self, table: Table) -> dict[str, labels.Variable]:
+        along: labels.Dims = (self.series.name,)
         if self.direction == "both":
             along = ("direction", self.series.name)
         text = "stroboscopic samples of the gap xi_2 - xi_1 (21)"
@@ -177,22 +161,23 @@ class SweepJob(StartedSeriesQuestion):
         end[..., :2] /= units[:, :1]  # in place, of a long sweep
         end[..., 2:] /= units[:, 1:]
         return {
-            "xi_rel": variable((*along, "sample"), table["gap"], "1", text),
+            "xi_rel": labels.variable((*along, "sample"), table["gap"], "1", text),
             **response_variables(along, table, units[:, 0], RESPONSE_QUANTITIES),
-            "end_state": variable((*along, "coordinate"), end, "1", END),
+            "end_state": labels.variable((*along, "coordinate"), end, "1", END),
         }
 
-    def coordinates(self) -> dict[str, Variable]:
-        """Return dataset coordinates: parameter, excitation, sample numbers, direction."""
+    def coordinates(self) -> dict[str, labels.Variable]:
         numbers = np.arange(self.transient + 1, self.transient + self.samples + 1)
         coordinates = {
             **self.series.coordinates(),
-            **nondimensional_state_coordinate(),
-            "sample": variable("sample", numbers, "1", "excitation period n of the sample"),
+            **labels.nondimensional_state_coordinate(),
+            "sample": labels.variable("sample", numbers, "1", "excitation period n of the sample"),
         }
         if self.direction == "both":
             text = "order in which the values were computed"
-            coordinates["direction"] = variable("direction", np.array(["up", "down"]), "1", text)
+            coordinates["direction"] = labels.variable(
+                "direction", np.array(["up", "down"]), "1", text
+            )
         return coordinates
 
 
@@ -209,22 +194,22 @@ class RunOnJob(SweepJob):
         return list(zip(points, map(tuple, states.tolist()), strict=True))
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
-        """Compute a chunk of responses, each from its own start."""
         return self.table(fmus, [point for point, _ in items], [start for _, start in items])
 
 
 def response_variables(
-    along: Dims, table: Table, length: NDArray[np.float64], quantities: Mapping[str, Any]
-) -> dict[str, Variable]:
-    """Return dataset variables of responses: quantities, contact, multiplicity, how decided."""
+    along: labels.Dims, table: Table, length: NDArray[np.float64], quantities: Mapping[str, Any]
+) -> dict[str, labels.Variable]:
     names = {"xi_rel_max": "x_rel_max", "xi1_max": "x1_max", "xi2_max": "x2_max"}
     numbers = {**table, **{xi: table[x] / length for xi, x in names.items()}}
     contact = "whether permanent contact occurs in the sampled periods"
     return {
-        **{name: variable(along, numbers[name], *quantities[name]) for name in quantities},
-        "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
-        "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
-        "multiplicity_decided": flags(along, table["decided"], HOW_DECIDED, DECIDED),
+        **{name: labels.variable(along, numbers[name], *quantities[name]) for name in quantities},
+        "permanent_contact": labels.yes_or_no(along, table["permanent_contact"], contact),
+        "multiplicity": labels.variable(
+            along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY
+        ),
+        "multiplicity_decided": labels.flags(along, table["decided"], HOW_DECIDED, DECIDED),
     }
 
 
@@ -300,12 +285,6 @@ def sweep(
         box's middle, ``x1_max`` and ``x2_max`` in m, ``xi1_max`` and ``xi2_max`` over a eta^2; and
         ``a1_max``, ``a2_max``, the largest absolute accelerations in m/s2, which an accelerometer
         on a mass reads between impacts.
-
-    Raises
-    ------
-    InputError
-        Where a required argument is missing, arguments contradict each other, or a number is
-        out of its range.
 
     Notes
     -----

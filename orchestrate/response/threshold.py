@@ -29,16 +29,12 @@ ACCURACY = 1e-12  # of a frequency at a minimum; the level there is flat, and ex
 
 
 def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
-    """Return box amplitudes, m, at which the linear response first opens or touches.
-
-    They are 0 without a clearance, and infinite where the halves move alike.
-    """
+    """Return box amplitudes, m, of the first touch or opening; infinite if halves move alike."""
     levels = [traits(structure, each)[THRESHOLD] for each in np.ravel(frequency).tolist()]
     return np.reshape(levels, np.shape(frequency))
 
 
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:
-    """Return dataset variables of the threshold over frequencies, and of its minimum, if any."""
     frequency = np.asarray(frequency, dtype=float)
     amplitudes = threshold_amplitudes(structure, frequency)
     event = threshold_event(structure)

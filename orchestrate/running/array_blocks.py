@@ -16,12 +16,10 @@ Index = tuple[int | slice, ...]
 
 
 def file_block_rows(shape: tuple[int, ...]) -> int:
-    """Return how many rows along the first axis make up a block of a file."""
     return max(1, FILE_BLOCK // max(1, int(np.prod(shape[1:], dtype=float))))
 
 
 def file_block_shape(shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the shape of a file's blocks: some whole rows along the last axis but one."""
     if len(shape) == 1:
         return (min(FILE_BLOCK, shape[0]),)
     return (*([1] * (len(shape) - 2)), min(file_block_rows(shape[-2:]), shape[-2]), shape[-1])

@@ -29,7 +29,6 @@ class LogLines:
 
 
 def progress_bar(label: str, shown: bool, *, total: int, initial: int, unit: str) -> Any:
-    """Return a tqdm progress bar for a notebook, a terminal or a log, as it fits."""
     from tqdm import tqdm
 
     options: dict[str, Any] = {
@@ -59,5 +58,4 @@ def refresh(bar: Any, label: str) -> None:
 
 
 def shortened(label: str) -> str:
-    """Return a label of at most ``MAX_LABEL`` characters."""
     return label if len(label) <= MAX_LABEL else f"{label[: MAX_LABEL - 3]}..."

@@ -79,12 +79,10 @@ class ChunkSchedule:
         return valid
 
     def stored_guess(self, index: int) -> tuple[bytes, Table]:
-        """Return a stored guess of a chunk: its start and its table."""
         table = dict(self.store.get(~index))
         return table.pop(START).tobytes(), table
 
     def problem(self, index: int) -> str:
-        """Return why a stored chunk does not fit this job (number, rows); empty if it does."""
         number = max(index, ~index)
         if number >= len(self.chunks):
             return f"none of the {len(self.chunks)} of this job"
@@ -97,7 +95,6 @@ class ChunkSchedule:
 
     @property
     def complete(self) -> bool:
-        """Return whether the job's final dataset exists."""
         return self.result is not None
 
     def done(self) -> int:
@@ -106,7 +103,6 @@ class ChunkSchedule:
         return self._stored_items + sum(map(self.size, self.guesses)) + last
 
     def size(self, index: int) -> int:
-        """Return the number of items of a chunk."""
         return self.chunks[index].stop - self.chunks[index].start
 
     def make_items(self) -> None:
@@ -117,17 +113,14 @@ class ChunkSchedule:
     # -- what may be computed next ----------------------------------------------------------------
 
     def next_task(self, may_guess: bool = True) -> Task | None:
-        """Return the next chunk to compute, sure ones before guesses; None if none can."""
         guesses = may_guess and self.wasted <= VAIN * self._stored_items
         finders = (self.certain_tasks, self.continuing_tasks, self.gap_task)[: 3 if guesses else 1]
         return next((task for find in finders for task in find()), None)
 
     def is_untouched(self, index: int) -> bool:
-        """Return whether a chunk is not computed, not running and not guessed."""
         return index in self.left and index not in self.under_way and index not in self.guesses
 
     def certain_tasks(self) -> Iterator[Task]:
-        """Yield tasks for untouched chunks whose true start state is known."""
         for chunk in self.left.values():
             if self.is_certain(chunk):
                 yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
@@ -141,7 +134,6 @@ class ChunkSchedule:
         return self.end_of(chunk.after)
 
     def end_of(self, index: int) -> Table:
-        """Return the last row of a stored chunk as the start of the next one; cached."""
         if index not in self._ends:
             self._ends[index] = last_entries(self.store.get(index))
         return self._ends[index]
@@ -165,7 +157,6 @@ class ChunkSchedule:
                     yield Task(chunk, self.items_of(chunk), previous, (), True)
 
     def started_elsewhere(self, index: int, previous: Table) -> bool:
-        """Return whether a guess started from another state than the end of the chunk before."""
         guess = None if index in self.under_way else self.guesses.get(index)
         return guess is not None and guess.start != self.job.boundary_state(previous)
 
@@ -181,7 +172,6 @@ class ChunkSchedule:
             yield Task(chunk, self.items_of(chunk), None, warmup_items, True)
 
     def gaps(self) -> Iterator[tuple[int, int]]:
-        """Yield runs of consecutive untouched chunks as pairs (first, one past the last)."""
         first = last = 0
         for index in filter(self.is_untouched, self.left):
             if index != last or self.chunks[index].after is None:
@@ -191,11 +181,9 @@ class ChunkSchedule:
         yield first, last
 
     def items_of(self, chunk: Chunk) -> Sequence[Any]:
-        """Return the job's items that belong to a chunk."""
         return self.item_range(chunk.start, chunk.stop)
 
     def item_range(self, first: int, last: int) -> Sequence[Any]:
-        """Return the items from ``first`` up to, not including, ``last``."""
         assert self.items is not None, "items not made"
         return self.items[first:last]
 
@@ -210,7 +198,6 @@ class ChunkSchedule:
     # -- what was computed ------------------------------------------------------------------------
 
     def add_result(self, task: Task, start: bytes, table: Table) -> None:
-        """Store a worker's chunk or keep it as a guess; finish the job after the last."""
         index = task.chunk.index
         assert self.job.has_rows_of(table, self.size(index)), f"{self.job.name}: item_columns"
         self.under_way.discard(index)
@@ -224,7 +211,6 @@ class ChunkSchedule:
         self.finish_if_done()
 
     def store_chunk(self, index: int, table: Table) -> None:
-        """Write a chunk with a true start to the store, and remember its last row."""
         self.store.put(index, table)
         del self.left[index]
         self._stored_items += self.size(index)
@@ -233,7 +219,6 @@ class ChunkSchedule:
             self._ends[index] = last_entries(table)
 
     def resolve_guesses(self) -> None:
-        """Store guessed chunks whose start equals the end of the chunk before; discard others."""
         for index in sorted(self.guesses):
             after = self.chunks[index].after
             if after is None or after not in self.left:
@@ -245,7 +230,6 @@ class ChunkSchedule:
                 self.store.drop(~index)
 
     def finish_if_done(self) -> None:
-        """Build, mark with provenance and store the final dataset, if all chunks are done."""
         if self.complete or self.left:
             return
         if self.wasted:
@@ -256,7 +240,6 @@ class ChunkSchedule:
         self.items = None
 
     def table(self) -> Table:
-        """Return the arrays of all chunks, concatenated (and a last one that uses all)."""
         last = len(self.chunks) - 1
         if self.job.last_item_uses_all:
             return {**self.store.table(last), **self.store.get(last)}

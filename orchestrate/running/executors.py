@@ -46,7 +46,6 @@ def compute(
     warmup_items: Sequence[Any],
     code: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Table]:
-    """Compute a chunk of a job; return the start state used, as bytes, and the chunk's table."""
     own_code = code_digests(type(job).__module__) if code is not None else {}
     if code is not None and own_code != code:
         names = changed_modules(own_code, code)
@@ -64,7 +63,6 @@ def compute(
 
 @functools.lru_cache(maxsize=16)
 def write_fmu_once(model: str, content: bytes) -> Path:
-    """Write an FMU's bytes, sent to this worker, to a temporary file once; return its path."""
     folder = process_folder() / f"sent-{hashlib.sha256(content).hexdigest()[:32]}"
     folder.mkdir(exist_ok=True)
     return write_whole(folder / f"{model}.fmu", lambda path: path.write_bytes(content))
@@ -83,7 +81,6 @@ class InlineExecutor(Executor):
     """Executor without workers: runs each call in this thread as soon as it is submitted."""
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Run a call at once; return a finished future, or raise its exception."""
         future: Future[Any] = Future()
         future.set_result(fn(*args, **kwargs))
         return future
@@ -91,7 +88,6 @@ class InlineExecutor(Executor):
 
 @contextmanager
 def in_this_process() -> Iterator[Workers]:
-    """Provide the present thread as the one worker."""
     yield Workers(InlineExecutor(), lambda: 1)
 
 
@@ -110,7 +106,6 @@ class ThreadExecutor(Executor):
             call()
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Run a call as soon as a thread is free; return its future."""
         future: Future[Any] = Future()
 
         def call() -> None:
@@ -137,10 +132,7 @@ def threads(count: int) -> Iterator[Workers]:
 
 @contextmanager
 def processes(count: int, foreign: str = "") -> Iterator[Workers]:
-    """Provide loky's processes, which stay for the next question; on an error they are killed.
-
-    New ones for other ``foreign`` FMUs: what these load, as Python modules, may differ by version.
-    """
+    """Provide loky's processes, new ones for other FMUs; an error kills them."""
     import loky
 
     with sigint_blocked():
@@ -166,7 +158,6 @@ def processes(count: int, foreign: str = "") -> Iterator[Workers]:
 
 
 def format_end(error: BrokenExecutor) -> str:
-    """Return what is known of the end of a worker process, from loky's message."""
     names = dict.fromkeys(re.findall(r"(SIG[A-Z]+)\(|EXIT\((\d+)\)", str(error)))
     ends = [f"by {name}" if name else f"with exit code {code}" for name, code in names]
     return (

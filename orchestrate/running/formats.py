@@ -43,7 +43,6 @@ def write(data: xr.Dataset, path: Path) -> list[Path]:
 
 
 def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
-    """Return a dataset as pandas tables, one per set of dimensions; units in the headers."""
     data = without_repetition(data)
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, array in data.data_vars.items():
@@ -93,7 +92,6 @@ def to_dataframe(data: xr.Dataset, units: str = "") -> pd.DataFrame:
 
 
 def without_repetition(data: xr.Dataset) -> xr.Dataset:
-    """Return a dataset as it is shown: each frequency once, converted numbers to 13 digits."""
     shown = as_shown(data)
     twice = [
         name
@@ -110,7 +108,6 @@ def without_repetition(data: xr.Dataset) -> xr.Dataset:
 
 
 def make_table(data: xr.Dataset) -> pd.DataFrame:
-    """Return a dataset whose variables share dimensions as a pandas table, a row per point."""
     import pandas as pd
 
     decoded = {name: decode_flags(array) for name, array in data.variables.items()}
@@ -141,7 +138,6 @@ def column_heading(name: str, data: xr.Dataset) -> str:
 
 
 def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write a dataset as CSV files, one for each set of dimensions; return their paths."""
     frames = tables(data)
     written = []
     for name, frame in frames.items():
@@ -151,7 +147,6 @@ def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
 
 
 def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write a dataset as an Excel file, a sheet per table and one ``about``; return its path."""
     import pandas as pd
 
     frames = tables(data)
@@ -182,7 +177,6 @@ def write_texts_as_texts(sheet: Any) -> None:
 
 
 def metadata_table(data: xr.Dataset) -> pd.DataFrame:
-    """Return a pandas table of a dataset's variables (unit, meaning) and its attributes."""
     import pandas as pd
 
     data = as_shown(data)
@@ -195,7 +189,6 @@ def metadata_table(data: xr.Dataset) -> pd.DataFrame:
 
 
 def write_mat(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write a dataset as a MATLAB file: arrays, units, long names, dimensions; return its path."""
     from scipy.io import savemat
 
     variables = data.variables.items()

@@ -49,7 +49,6 @@ Identity = dict[str, Any]
 
 
 def identity_of(job: Job, fmus: Mapping[str, Fmu]) -> Identity:
-    """Return a job's identity as a dict: its parameters, digests of code and FMUs."""
     identity: Identity = {
         "question": {"kind": type(job).__name__, **job.parameters()},
         "fmu": {model: fmus[model].guid for model in job.models},
@@ -60,7 +59,6 @@ def identity_of(job: Job, fmus: Mapping[str, Fmu]) -> Identity:
 
 
 def difference(stored: Identity, current: Identity) -> str:
-    """Return one line on where two identities differ; an empty string if they are equal."""
     for part in sorted(set(stored) | set(current), key=lambda name: (name != "question", name)):
         line = first_difference(stored.get(part), current.get(part), "")
         if line and part == "code":
@@ -73,19 +71,16 @@ def difference(stored: Identity, current: Identity) -> str:
 
 
 def same_question(stored: Identity, current: Identity) -> bool:
-    """Return whether two identities have equal job parameters, whatever their code and FMU."""
     return stored.get("question") == current.get("question")
 
 
 def changed_modules(stored: Mapping[str, str], current: Mapping[str, str]) -> str:
-    """Return a text with the source files whose digests differ, at most three by name."""
     names = sorted(name for name in {*stored, *current} if stored.get(name) != current.get(name))
     shown = ", ".join(f"{name.replace('.', '/')}.py" for name in names[:3])
     return shown if len(names) <= 3 else f"{shown} and {len(names) - 3} more"
 
 
 def first_difference(a: Any, b: Any, name: str) -> str:
-    """Return one line on the first entry in which two nested values differ; empty if equal."""
     if a == b:
         return ""
     if isinstance(a, dict) and isinstance(b, dict):
@@ -120,7 +115,6 @@ def code_digests(module: str) -> dict[str, str]:
 
 @functools.cache
 def source_file(module: str) -> Path | None:
-    """Return the source file of a module of this package, or of a kernel; None of others."""
     parts = module.split(".")
     if len(parts) == 1 or (parts[0] != ROOT and parts[:2] != KERNELS):
         return None

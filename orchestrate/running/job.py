@@ -64,7 +64,6 @@ class Job(ABC):
             object.__setattr__(self, name, check(name, getattr(self, name)))
 
     def check_family(self) -> None:
-        """Raise ``InputError`` if a structure has a wall or a stroke that the job does not know."""
         for field in fields(self):
             value = getattr(self, field.name)
             if isinstance(value, Job):
@@ -91,7 +90,6 @@ class Job(ABC):
         """Compute a chunk's items by the FMUs, in a worker; return arrays, see `item_columns`."""
 
     def has_rows_of(self, table: Table, count: int) -> bool:
-        """Return whether a chunk's table has the rows that its items have by `item_columns`."""
         names = set(table if self.item_columns is None else self.item_columns).intersection(table)
         lengths = {len(table[name]) for name in names if table[name].ndim}
         return bool(table) and lengths <= {count}
@@ -125,7 +123,6 @@ class Job(ABC):
         return f"{self.asked or type(self).__name__}({', '.join(parts)})"
 
     def chunks(self) -> list[Chunk]:
-        """Split the items into chunks of ``chunk_size``; return them in order."""
         count, series = self.count() - self.last_item_uses_all, self.independent_series()
         chunks: list[Chunk] = []
         for number in range(series):
@@ -139,14 +136,12 @@ class Job(ABC):
 
 
 def refuse_family(asked: str, structure: Any, known: tuple[str, ...] = ()) -> None:
-    """Raise ``InputError`` if a structure has a wall or a stroke that a function does not know."""
     given = {name: getattr(structure, name, None) for name in FAMILY if name not in known}
     are_numbers = all(isinstance(value, (bool, float)) for value in given.values())
     refuse_unknown(asked, given if given and are_numbers and not structure.bonded else {})
 
 
 def refuse_unknown(asked: str, given: Mapping[str, Any]) -> None:
-    """Raise ``InputError`` if anything given is not zero that a function does not know."""
     for name, value in given.items():
         if value:
             text = f"{asked} does not know it yet; expected a question without it"
@@ -172,7 +167,6 @@ def json_data(value: Any) -> Any:
 
 
 def summarize_list(values: Any) -> Any:
-    """Return a list as JSON data; long ones of numbers as first, last, count, digest."""
     parts = list(values)
     if len(parts) <= MAX_LISTED or not all(
         isinstance(part, (int, float, np.number)) for part in parts

@@ -33,20 +33,17 @@ def journal_path(result: Path, anew: bool = False) -> Path:
 
 
 def discard(path: Path) -> None:
-    """Delete the SQLite files of a journal, those that exist."""
     for ending in ENDINGS:
         Path(f"{path}{ending}").unlink(missing_ok=True)
 
 
 def pack(table: Table) -> bytes:
-    """Serialise a dict of arrays to bytes (NumPy's npz format)."""
     stream = io.BytesIO()
     np.savez(stream, **table)  # type: ignore[arg-type]
     return stream.getvalue()
 
 
 def unpack(data: bytes) -> Table:
-    """Return the dict of arrays from bytes that :func:`pack` made."""
     with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
         return dict(arrays)
 
@@ -79,7 +76,6 @@ class Journal:
             ) from error
 
     def _prepare(self) -> None:
-        """Set SQLite's pragmas and create the journal's tables if they are missing."""
         self._db.execute("PRAGMA journal_mode=WAL")
         self._db.execute("PRAGMA synchronous=NORMAL")  # a power cut may cost the last chunks
         self._db.execute("CREATE TABLE IF NOT EXISTS about (name TEXT PRIMARY KEY, text TEXT)")
@@ -111,7 +107,6 @@ class Journal:
         return restored, begun
 
     def _row_checksum(self, index: int, data: bytes) -> str:
-        """Return the checksum of a chunk's row: over identity, chunk number and data."""
         return checksum_of_parts(self._identity_text, str(index).encode(), data)
 
     def indices(self) -> set[int]:
@@ -124,7 +119,6 @@ class Journal:
         return numbers
 
     def _content(self, index: int) -> bytes:
-        """Return the bytes of a stored chunk; none where it is damaged."""
         rows = self._query("SELECT sha256, CAST(data AS BLOB) FROM chunks WHERE i = ?", index)
         for digest, data in rows:
             if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
@@ -132,23 +126,19 @@ class Journal:
         return b""
 
     def drop(self, index: int, reason: str) -> None:
-        """Delete a stored chunk; log the reason for which it is recomputed, if there is one."""
         if reason:
             log.warning("%s: chunk %s is %s, it is recomputed", self.path, index, reason)
         self._query("DELETE FROM chunks WHERE i = ?", index)
 
     def is_empty(self) -> bool:
-        """Return whether the journal has no chunk stored."""
         return not self._query("SELECT 1 FROM chunks LIMIT 1")
 
     def get(self, index: int) -> Table:
-        """Return a stored chunk as a dict of arrays; raise ``StoreError`` if it is damaged."""
         if data := self._content(index):
             return unpack(data)
         raise StoreError(f"{self.path}: chunk {index} is damaged; repeat the call to recompute it")
 
     def put(self, index: int, table: Table) -> None:
-        """Store a computed chunk (dict of arrays) under its number, with a checksum."""
         data = pack(table)
         values = index, self._row_checksum(index, data), data
         self._query("INSERT OR REPLACE INTO chunks VALUES (?, ?, ?)", *values)
@@ -164,18 +154,15 @@ class Journal:
             raise StoreError(f"{self.path}: {error}; {advice}") from error
 
     def close(self) -> None:
-        """Close the journal's database connection."""
         if hasattr(self, "_db"):
             self._db.close()
 
     def remove(self) -> None:
-        """Close the journal and delete its files, once the finished result is written."""
         self.close()
         discard(self.path)
 
 
 def lock_result(path: Path) -> HeldLock:
-    """Lock a result that is to be computed; raise where another process computes it."""
     place = path.with_name(f"{path.name}.lock")
     try:
         return HeldLock(place)

@@ -33,14 +33,12 @@ def read_dataset(path: Path) -> xr.Dataset:
 
 
 def check_size(path: Path, size: int) -> None:
-    """Raise if a file unpacks to more bytes than one of its size may."""
     most = allowed_memory(path.stat().st_size)
     if size > most:
         raise InputError(f"{path}: unpacks to {size} bytes; expected at most {most}")
 
 
 def stored_size(file: Any) -> int:
-    """Return how many bytes the numbers of an open file take."""
     return sum(
         prod(one.shape) * (one.dtype.itemsize if isinstance(one.dtype, np.dtype) else TEXT)
         for one in file.variables.values()
@@ -48,7 +46,6 @@ def stored_size(file: Any) -> int:
 
 
 def netcdf_content(path: Path, most: int) -> dict[str, Any]:
-    """Return variables and attributes as they are stored; of a large file no numbers."""
     import netCDF4
 
     with netCDF4.Dataset(path) as file:
@@ -67,7 +64,6 @@ def netcdf_content(path: Path, most: int) -> dict[str, Any]:
 
 
 def variable_content(variable: Any, is_large: bool) -> dict[str, Any]:
-    """Return dimensions, attributes and numbers of a variable; large ones are read and dropped."""
     values = None
     if is_large:
         for block in block_indices(variable.shape):

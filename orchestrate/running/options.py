@@ -97,12 +97,10 @@ class RunOptions:
 
     @classmethod
     def from_keywords(cls, running: Mapping[str, object]) -> RunOptions:
-        """Return the options from keyword arguments; raise TypeError for an unknown one."""
         check_keywords(running)
         return cls(**running)  # type: ignore[arg-type]
 
     def paths(self) -> Iterator[tuple[str, object]]:
-        """Yield the paths that are given, with the names of their keywords."""
         fmus = self.fmu.values() if isinstance(self.fmu, Mapping) else (self.fmu,)
         every = [("store", self.store), *(("fmu", fmu) for fmu in fmus)]
         every.append(("build_folder", self.build_folder))
@@ -123,7 +121,6 @@ class RunOptions:
 
 
 def check_keywords(names: Iterable[str], own: Iterable[str] = ()) -> None:
-    """Raise TypeError for a keyword that is neither a function's own nor one of these options."""
     running = [field.name for field in fields(RunOptions)]
     known = [*own, *running]
     for name in names:

@@ -15,7 +15,6 @@ from .job import Job, brief
 def with_provenance(
     dataset: xr.Dataset, job: Job, identity: Identity, fmus: Mapping[str, Fmu], begun: str
 ) -> xr.Dataset:
-    """Return a dataset with attributes on its origin: parameters, FMU, versions, time."""
     call = job.call_text()
     attributes: dict[str, Any] = {
         **flatten_parameters(job.parameters()),
@@ -38,7 +37,6 @@ def describe_dataset(data: xr.Dataset) -> str:
 
 
 def fmu_attributes(fmus: Mapping[str, Fmu]) -> dict[str, str]:
-    """Return dataset attributes with the name, GUID and FMI version of each FMU."""
     attributes: dict[str, str] = {}
     for model, fmu in fmus.items():
         ending = f"_{model}" if len(fmus) > 1 else ""
@@ -49,7 +47,6 @@ def fmu_attributes(fmus: Mapping[str, Fmu]) -> dict[str, str]:
 
 
 def flatten_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """Return nested job parameters as a flat dict of numbers and texts, for NetCDF attributes."""
     attributes: dict[str, Any] = {}
     for name, value in parameters.items():
         if isinstance(value, dict) and "sha256" not in value:

@@ -46,7 +46,6 @@ def answer(
 def answer_all(
     jobs: Sequence[Job], folder: Path, options: RunOptions, find: FmuFinder
 ) -> dict[str, Path]:
-    """Compute many jobs into NetCDF files in a folder; return their paths by job name."""
     open_folder(folder)
     Runner(jobs, replace(options, store=folder), find).run()
     return {job.name: folder / f"{job.name}.nc" for job in jobs}
@@ -71,7 +70,6 @@ class Runner:
         self.computed_items = 0  # items computed by this call
 
     def run(self) -> dict[str, xr.Dataset]:
-        """Compute all results that are not stored yet; return all datasets by job name."""
         try:
             self.open()
             if not self.finished():
@@ -89,7 +87,6 @@ class Runner:
                 schedule.store.close()
 
     def open(self) -> None:
-        """Open the store of each job and read which results and chunks it already has."""
         for job in self.jobs:
             fmus = {model: self.fmus[model] for model in job.models}
             identity = identity_of(job, fmus)
@@ -101,11 +98,9 @@ class Runner:
                 raise
 
     def finished(self) -> bool:
-        """Return whether every job has its final dataset."""
         return all(schedule.complete for schedule in self.schedules.values())
 
     def compute_all(self) -> None:
-        """Compute all jobs: in this process while little is left, then with parallel workers."""
         with self.bar() as bar:
             if not (self.options.cluster or self.foreign):
                 with threads(1) if self.in_threads else in_this_process() as workers:
@@ -118,7 +113,6 @@ class Runner:
                     self.work(workers, fmus, bar, lambda: True)
 
     def workers(self) -> AbstractContextManager[Workers]:
-        """Return new workers: of a cluster if one is given, else threads or processes."""
         count = self.options.workers
         if self.options.cluster:
             from .cluster import cluster  # brings asyncio, which worker processes do without
@@ -129,11 +123,9 @@ class Runner:
         return threads(count) if self.in_threads else processes(count)
 
     def done(self) -> int:
-        """Return how far the progress bar is, over all jobs together."""
         return sum(schedule.done() for schedule in self.schedules.values())
 
     def little_left(self) -> bool:
-        """Return whether the rest is too short, by time or tasks, to be worth parallel workers."""
         if self.options.workers == 1 or not self.computed_items:
             return True
         left = sum(schedule.job.total() for schedule in self.schedules.values()) - self.done()
@@ -141,20 +133,17 @@ class Runner:
         return seconds < MIN_PARALLEL_SECONDS or self.busy_workers() < 2
 
     def busy_workers(self) -> int:
-        """Return how many workers could compute chunks now, an estimate over all jobs."""
         return sum(
             schedule.open_tasks() for schedule in self.schedules.values() if self.ready(schedule)
         )
 
     def bar(self) -> Any:
-        """Return a progress bar over the items of all jobs."""
         total = sum(schedule.job.total() for schedule in self.schedules.values())
         unit = self.jobs[0].item if len(self.jobs) == 1 else "item"
         shown = self.options.progress
         return progress_bar(self.title(), shown, total=total, initial=self.done(), unit=unit)
 
     def title(self) -> str:
-        """Return the progress bar's title: the job's name, or the number of jobs."""
         return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"
 
     def work(
@@ -164,7 +153,6 @@ class Runner:
         bar: Any,
         go_on: Callable[[], bool],
     ) -> None:
-        """Submit chunks and collect results until all jobs are done or ``go_on()`` is false."""
         while not self.finished() and (go_on() or self.futures):
             if go_on():
                 self.hand_out(workers, fmus, bar)
@@ -192,7 +180,6 @@ class Runner:
         }
 
     def hand_out(self, workers: Workers, fmus: Mapping[str, Path | bytes], bar: Any) -> None:
-        """Submit the next tasks of all ready jobs until the workers' queue is full."""
         for schedule in self.schedules.values():
             while len(self.futures) < workers.max_in_flight() and self.ready(schedule):
                 # nothing that is sure waits behind a guess
@@ -231,7 +218,6 @@ def import_xarray() -> None:
 def compute_datasets(
     jobs: Iterable[Job], running: Mapping[str, object], find: FmuFinder
 ) -> list[xr.Dataset]:
-    """Compute several jobs in parallel with common workers; return their datasets in order."""
     listed = list(jobs)
     results = Runner(listed, RunOptions.from_keywords(running), find).run()
     return [results[job.name] for job in listed]

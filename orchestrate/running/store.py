@@ -99,7 +99,6 @@ class StoredRows:
         self.shape = int(self.ends[-1]), width
 
     def rows(self, chosen: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Return rows by their numbers, (n, width)."""
         result = np.empty((len(chosen), self.shape[1]))
         chunk = np.searchsorted(self.ends, chosen, side="right")
         for index in np.unique(chunk).tolist():
@@ -152,7 +151,6 @@ class Disk(Store):
             STARTED.add(path)
 
     def open_journal(self, path: Path) -> Journal:
-        """Return this job's open journal, made if it is missing."""
         journal = Journal(path, self.identity, now())
         try:
             self.check(journal.identity, path)
@@ -172,7 +170,6 @@ class Disk(Store):
             return False
 
     def check(self, stored: Identity, path: Path) -> None:
-        """Raise if a stored identity is another calculation's, or stale and not to be kept."""
         reason = difference(stored, self.identity)
         if not reason:
             return
@@ -190,20 +187,16 @@ class Disk(Store):
 
     @property
     def journal(self) -> Journal:
-        """The open journal of a job that is not finished."""
         assert self._journal is not None, "finished"
         return self._journal
 
     def indices(self) -> set[int]:
-        """Return the numbers of the intact chunks in the journal."""
         return self.journal.indices()
 
     def get(self, index: int) -> Table:
-        """Return a chunk from the journal, by its number, as a dict of arrays."""
         return self.journal.get(index)
 
     def put(self, index: int, table: Table) -> None:
-        """Store a computed chunk, a dict of arrays, under its number in the journal."""
         self.journal.put(index, table)
         STARTED.add(self.journal.path)
 
@@ -227,7 +220,6 @@ class Disk(Store):
         return table
 
     def drop(self, index: int, reason: str = "") -> None:
-        """Delete a chunk from the journal by its number, with a warning that names the reason."""
         self.journal.drop(index, reason)
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
@@ -254,7 +246,6 @@ class Disk(Store):
 
 
 def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
-    """Return a job's storage: on disk if the options name a ``store`` path, else in memory."""
     path = options.path(name)
     return Store() if path is None else Disk(path, identity, options)
 
@@ -283,12 +274,10 @@ def load(path: Path, read: Callable[[Path], xr.Dataset] | None = None) -> xr.Dat
 
 
 def load_foreign(path: Path) -> xr.Dataset:
-    """Return the dataset of a NetCDF file that may come from anybody, as :func:`load` does."""
     return load(path, read_dataset)
 
 
 def open_result(path: Path) -> xr.Dataset:
-    """Return the dataset of a NetCDF file, read in this process."""
     with small_chunk_cache():
         # what is read of a large one, for the checksum or by a user, does not stay in memory
         data = xr.open_dataset(path, engine="netcdf4", cache=False)
@@ -313,7 +302,6 @@ def small_chunk_cache() -> Iterator[None]:
 
 
 def create_variable(file: Any, name: str, array: xr.DataArray) -> Any:
-    """Create a variable for a large array in an open file, to be written block by block."""
     for dimension, size in array.sizes.items():
         if dimension not in file.dimensions:
             file.createDimension(str(dimension), size)
@@ -330,13 +318,11 @@ def create_variable(file: Any, name: str, array: xr.DataArray) -> Any:
 
 
 def is_netcdf(path: Path) -> bool:
-    """Return whether a file begins with the signature of NetCDF 3 or 4."""
     with path.open("rb") as file:
         return file.read(4).startswith((b"\x89HDF", b"CDF"))
 
 
 def read_identity(path: Path) -> Identity:
-    """Return the identity dict stored in a finished NetCDF result's attributes."""
     import netCDF4
 
     try:
@@ -352,7 +338,6 @@ def read_identity(path: Path) -> Identity:
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
-    """Write a dataset as NetCDF with a checksum attribute, atomically; return the path."""
     from xarray.backends import NetCDF4DataStore
 
     dataset = dataset.assign_attrs({ATTRIBUTE: checksum(dataset)})

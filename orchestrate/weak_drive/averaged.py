@@ -186,7 +186,6 @@ def neimark_sacker_points(
 def stability_limits(
     structure: Structure, drive: Drive
 ) -> tuple[BifurcationPoint | None, BifurcationPoint | None]:
-    """Return the point where a slow voltage ramp loses stability, upward and downward."""
     points, stable = branch_stability(structure, drive)
     if not points:
         return None, None
@@ -211,7 +210,6 @@ def branch_stability(
 
 
 def stationary_curve(structure: Structure, drive: Drive) -> xr.Dataset:
-    """Return voltage, amplitude and stability of stationary motions over the speed, SI."""
     Omega = np.linspace(0.3, 3.0, 20001)
     volts = no_load_speed(structure, drive, Omega) * drive.volts(structure)
     points, stable = branch_stability(structure, drive)
@@ -235,7 +233,6 @@ def imaginary_part(polynomial: Polynomial) -> Polynomial:
 
 
 def polish_root(polynomial: Polynomial, root: float) -> float:
-    """Improve a root of a polynomial by at most three Newton steps."""
     derivative = polynomial.deriv()
     value, slope = polynomial(root), derivative(root)
     for _ in range(3):

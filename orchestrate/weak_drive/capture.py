@@ -31,14 +31,7 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import averaged
-from .capture_rule import (
-    DECISIONS,
-    NO_LOAD,
-    UNDECIDED,
-    CaptureOutcome,
-    settling_test,
-    usual_limit,
-)
+from .capture_rule import DECISIONS, NO_LOAD, UNDECIDED, CaptureOutcome, settling_test, usual_limit
 from .controllers import Controller
 from .couple import couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
@@ -79,7 +72,6 @@ class CaptureJob(Job):
         return [replace_parameter(system, self.over, value) for value in self.values] or [system]
 
     def work(self, fmus: Fmus, items: Sequence[System], previous: Any) -> Table:
-        """Simulate starts at all voltages and bisect for the threshold voltage."""
         rows, borders = [], []
         with motor_runs(fmus) as begin:
             for system in items:
@@ -93,7 +85,6 @@ class CaptureJob(Job):
     def run_from_rest(
         self, begin: Callable[[MotorJob], MotorRun], system: System, voltage: float
     ) -> CaptureOutcome:
-        """Simulate one start from rest at a voltage until the speed has settled."""
         test = settling_test(*system, self.stay, self.distance(system))
         if voltage <= system.drive.motor_constant * test.threshold:
             return CaptureOutcome(NO_LOAD)
@@ -126,11 +117,7 @@ class CaptureJob(Job):
         above = low - folds > 2e-4 * volts[kept]
         variables = {
             "passes": yes_or_no(over, passes > 0, "whether the motor passes the resonance"),
-            "decision": (
-                over,
-                np.vectorize(DECISIONS.get)(decisions),
-                {"long_name": how},
-            ),
+            "decision": (over, np.vectorize(DECISIONS.get)(decisions), {"long_name": how}),
             "passage_time": variable(over, times, "s", text),
             "speed": variable(over, speeds, "rad/s", "mean speed at which the motor has settled"),
             "border": variable(along, 0.5 * (low + high), "V", edge, tolerance=self.tolerance),
@@ -161,11 +148,8 @@ class CaptureJob(Job):
 
 
 def run_until_settled(
-    run: MotorRun,
-    steps: range,
-    outcome: Callable[[np.ndarray, np.ndarray], CaptureOutcome],
+    run: MotorRun, steps: range, outcome: Callable[[np.ndarray, np.ndarray], CaptureOutcome]
 ) -> CaptureOutcome:
-    """Simulate a run until its recorded speed decides the outcome, or to its end."""
     times, speeds = np.zeros(0), np.zeros(0)
     first = 0
     while first < len(steps):
@@ -220,7 +204,6 @@ def threshold_voltage(
 
 
 def replace_parameter(system: System, over: str, value: float) -> System:
-    """Replace one parameter of the drive or of the structure, and return both."""
     if over in DRIVE_NAMES:
         return system._replace(drive=system.drive.replace(**{over: value}))
     return system._replace(structure=system.structure.replace(**{over: value}))
@@ -229,7 +212,6 @@ def replace_parameter(system: System, over: str, value: float) -> System:
 def check_parameter_values(
     over: str | None, values: ArrayLike | None, system: System
 ) -> tuple[float, ...]:
-    """Check the values of the varied parameter and return them as a tuple of numbers."""
     if (over is None) != (values is None):
         raise InputError(f"over = {over!r} and values = {values!r}: expected both, or none of them")
     if over is None:
@@ -308,11 +290,6 @@ def capture(
         other where the speed passes without a gap. ``fold`` (V), bonded and without a controller:
         by the averaged theory no motion below the resonance exists above it, and ``above_fold``
         says where the border lies higher all the same, by more than the theory's error.
-
-    Raises
-    ------
-    InputError
-        Where an argument is not what is expected.
 
     Notes
     -----

@@ -63,7 +63,6 @@ class SettlingTest:
     errors: float = 3.0  # of the settled speed, within which it may be on either side
 
     def judge_record(self, time: np.ndarray, speed: np.ndarray) -> CaptureOutcome:
-        """Decide from the speed's record: captured, passed or undecided."""
         speeds, block = np.abs(speed) / self.omega, self.rule.block
         mean, error = settled_speed(speeds, self.rule)
         if math.isnan(mean):
@@ -91,7 +90,6 @@ def last_crossing(beyond: np.ndarray) -> int:
 
 
 def settling_test(structure: Structure, drive: Drive, stay: int, distance: float) -> SettlingTest:
-    """Create the test of a structure and its drive, for a tolerance of the voltage over K omega."""
     omega = structure.omega
     threshold = own_resonance.dividing_speed(structure, drive) * omega
     tolerance = min(max(FINENESS * distance, MIN_TOLERANCE), MAX_TOLERANCE)

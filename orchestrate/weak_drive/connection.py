@@ -66,10 +66,7 @@ MOTOR = Connection(  # the first two outputs are what the step control needs
 
 
 def checked_links(
-    connect: Mapping[str, str],
-    drive: Description,
-    units: Mapping[str, str],
-    alone: bool = False,
+    connect: Mapping[str, str], drive: Description, units: Mapping[str, str], alone: bool = False
 ) -> dict[str, Link]:
     """Return the connections by our names; raise ``InputError`` where one cannot be made.
 
@@ -108,7 +105,6 @@ def checked_links(
 
 
 def checked_units(units: Mapping[str, str] | None, drive: Description) -> dict[str, str]:
-    """Return units by the drive's names; raise ``InputError`` for one that is not known."""
     if not isinstance(units or {}, Mapping):
         raise InputError(f"units = {units!r}: expected units by names of the drive")
     for name, unit in (units or {}).items():
@@ -119,7 +115,6 @@ def checked_units(units: Mapping[str, str] | None, drive: Description) -> dict[s
 
 
 def checked_variable(drive: Description, name: str, causality: str, any_type: bool = False) -> Any:
-    """Return a variable of the drive of a causality; raise ``InputError`` if it has another."""
     if name not in drive.variables:
         raise InputError(
             f"the FMU {drive.name} has no variable {name!r}{near(name, drive.variables)}; "
@@ -200,7 +195,6 @@ def proposals(drive: Description) -> dict[str, str]:
 
 
 def reason_for(drive: Description, ours: str, theirs: str) -> str:
-    """Return why a variable of the drive is proposed for one of ours."""
     variable = drive.variable(theirs)
     if ours == theirs:
         return "has the same name"

@@ -226,7 +226,6 @@ def check_internal_step(duration: float, step: float, drive: Description, estima
 
 
 def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Values:
-    """Return start values of the drive by its names; raise ``InputError`` for what it has not."""
     checked: list[tuple[str, float | bool]] = []
     for name, value in parameters.items():
         if checked_variable(drive, name, "", any_type=True).initial == "calculated":
@@ -261,7 +260,6 @@ def checked_inputs(
 
 
 def checked_record(record: Sequence[str], drive: Description) -> tuple[str, ...]:
-    """Return the names of what is recorded of the drive; raise ``InputError`` if one is not its."""
     if isinstance(record, str):
         record = [record]
     for name in record:

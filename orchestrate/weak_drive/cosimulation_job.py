@@ -19,10 +19,10 @@ from numpy.typing import ArrayLike
 from ..errors import FmuError, InputError
 from ..fmu.begin import REST, begin
 from ..fmu.description import Description, describe
+from ..fmu.events import BOX as BOX_ACCELERATION
+from ..fmu.events import PLAYED, Player
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR
-from ..fmu.play import BOX as BOX_ACCELERATION
-from ..fmu.play import PLAYED, Player
 from ..lazy import xr
 from ..model import Excitation
 from ..model.arguments import Count, Positive
@@ -30,13 +30,7 @@ from ..response.labels import Variable, variable, yes_or_no
 from ..response.questions import Question
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Chunk, Fmus, Table, brief, json_data
-from .connection import (
-    MOTION,
-    PUSHES,
-    Connection,
-    Link,
-    checked_links,
-)
+from .connection import MOTION, PUSHES, Connection, Link, checked_links
 from .controllers import InputControl
 from .inputs import Input, Inputs
 from .master import DriveSide, Master, Scheme
@@ -86,7 +80,7 @@ class Coupling(Run):
         self.divides_first = "box_acceleration" not in connection.links and not fixed
         super().__init__(master, inputs)
 
-    def rows(self, items: range) -> Table:
+    def step_table(self, items: range) -> Table:
         """Do the steps of some items; return nodes, cubics, work, and what is recorded."""
         steps = range(items.start * self.parts, items.stop * self.parts)
         recorded = []
@@ -109,7 +103,6 @@ class Coupling(Run):
         return table
 
     def check_forces(self, times: ArrayLike, forces: ArrayLike) -> None:
-        """Raise ``FmuError`` with what to look at where the coupling diverges."""
         limit = DIVERGED * (self.job.structure.k1 + self.job.structure.k2)
         rows = np.column_stack([times, forces])[: 0 if self.job.alone else None]
         for time, force in rows[np.abs(rows[:, 1]) > limit][:1]:
@@ -127,7 +120,7 @@ class Coupling(Run):
         if steps.start or not divides:
             return self.inputs.run(self.master, steps, h, int(divides))
         parts = np.array(BEGINNING) / sum(BEGINNING) * h
-        rows = self.inputs.rows(np.append(0.0, np.cumsum(parts)), self.master.width)
+        rows = self.inputs.over_steps(np.append(0.0, np.cumsum(parts)), self.master.width)
         runs = (self.master.run(rows[i : i + 1], h) for i, h in enumerate(parts.tolist()))
         pieces = joined([*runs])
         if self.master.ended:
@@ -158,7 +151,6 @@ class CosimulateJob(CoupledJob, Question):
 
     @property
     def alone(self) -> bool:
-        """Return whether the drive runs without a structure."""
         return not {"box_force", *PUSHES} & set(dict(self.connect))
 
     def call_text(self) -> str:
@@ -170,11 +162,9 @@ class CosimulateJob(CoupledJob, Question):
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
     def steps(self) -> int:
-        """Return the number of communication steps of the duration."""
         return round(self.duration / self.step)
 
     def times(self, parts: int = 1) -> Floats:
-        """Return the communication points, s, of steps divided into equal parts."""
         return np.linspace(0.0, self.duration, parts * self.steps() + 1)
 
     def chunks(self) -> list[Chunk]:
@@ -185,7 +175,6 @@ class CosimulateJob(CoupledJob, Question):
         return [Chunk(0, 0, last, None), Chunk(1, last, last + 1, 0)]
 
     def progress_note(self, first: int) -> str:
-        """Return the progress bar's note where a run cannot be resumed."""
         if first or describe(self.drive).saves_states:
             return ""
         return "run (not resumable)"
@@ -204,7 +193,7 @@ class CosimulateJob(CoupledJob, Question):
                     coupling = Coupling(self, one, drive, parts, float(response[0]))
                     if before:
                         coupling.set_state(before)
-                    found = {**coupling.rows(steps), **coupling.get_state()}
+                    found = {**coupling.step_table(steps), **coupling.get_state()}
                     coupling.close()
                     warned |= drive.warnings
             table |= {f"{name} {parts}": values for name, values in found.items()}
@@ -212,13 +201,11 @@ class CosimulateJob(CoupledJob, Question):
         return table
 
     def begin_drive(self, drive: Instance, inputs: Inputs) -> Connection:
-        """Initialise the drive with its inputs at the start; return how it is connected."""
         drive.initialize(**dict(self.start_values), **inputs.start_values())
         links = self.links(drive.description)
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
 
     def links(self, drive: Description) -> dict[str, Link]:
-        """Return the connections by our names."""
         return checked_links(dict(self.connect), drive, dict(self.units), self.alone)
 
     def response_to_force(self) -> Floats:
@@ -272,7 +259,6 @@ class CosimulateJob(CoupledJob, Question):
         return (1, 2) if self.estimate else (1,)
 
     def conclude(self, fmus: Fmus, table: Table) -> Table:
-        """Return the motion under the accelerations of all steps, over time, and its impacts."""
         runs = {parts: rows_of(table, parts) for parts in self.finenesses()}
         times, ended = self.reached(runs)
         times = self.times(self.points)[: self.points * (len(times) - 1) + 1]
@@ -307,7 +293,6 @@ class CosimulateJob(CoupledJob, Question):
         return {**columns, **impact_columns(impacts, self.structure)}
 
     def reached(self, runs: Mapping[int, Table]) -> tuple[Floats, str]:
-        """Return the communication points that all runs reached, and by what they ended earlier."""
         ends = [np.max(run["nodes"], initial=0.0) for run in runs.values()]
         last, times = min(ends), self.times()
         both = zip(runs.values(), ends, strict=True)
@@ -339,7 +324,6 @@ class CosimulateJob(CoupledJob, Question):
         )
 
     def motion_variables(self, table: Table, at_steps: str) -> dict[str, Variable]:
-        """Return the variables of the box, and of the structure if there is one."""
         shown = {**IN_TIME, **IN_TIME_TOO}
         work = shown.pop("box_work")
         acceleration = variable("time", table["box_acceleration"], *shown["box_acceleration"])
@@ -353,7 +337,6 @@ class CosimulateJob(CoupledJob, Question):
         return found | impact_variables(table)
 
     def drive_variables(self, table: Table, at_steps: str) -> dict[str, Variable]:
-        """Return what is recorded of the drive, with its estimated error, and of a control."""
         count, found = len(table["step_time"]), {}
         recorded, finer = (table.get(f"recorded {i}", NOTHING)[:count].T for i in (1, 2))
         for i, name in enumerate(self.record):
@@ -370,7 +353,6 @@ class CosimulateJob(CoupledJob, Question):
 
 
 def rows_of(table: Table, parts: int) -> Table:
-    """Return the columns of the run whose steps are divided into so many parts, by their names."""
     end = f" {parts}"
     return {name.removesuffix(end): table[name] for name in table if name.endswith(end)}
 

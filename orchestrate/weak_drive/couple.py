@@ -46,7 +46,6 @@ class CoupleJob(MotorJob):
     hysteresis: HysteresisSettings = field(default_factory=HysteresisSettings)
 
     def run_here(self, fmus: Fmus) -> Table:
-        """Run all chunks one after the other in this process and join their tables."""
         *chunks, _ = self.chunks()
         tables: list[Table] = []
         for chunk in chunks:
@@ -56,19 +55,22 @@ class CoupleJob(MotorJob):
         return {**table, **self.conclude(fmus, table)}
 
     def progress_note(self, first: int) -> str:
-        """Return the progress bar's note for the chunk of the hysteresis loop."""
         return "voltages held at jumps" if first == self.steps() else ""
 
     def conclude(self, fmus: Fmus, table: Table) -> Table:
-        """Hold voltages over each ramp; return the jumps of both directions."""
         if self.control is not None:
             return {"verdicts": np.array([], VERDICT)}
         with motor_runs(fmus) as start:
             volts = RampRecord(self, table, True).sense * self.drive.volts(self.structure)
-            units = self.scheme.h, self.structure.omega, volts, self.hold
             loop = HysteresisLoop(
                 lambda schedule: start(replace(self, schedule=schedule)),
-                *(self.schedule, *units, self.hysteresis, growth_rate),
+                self.schedule,
+                step=self.scheme.h,
+                omega=self.structure.omega,
+                volts=volts,
+                max_hold=self.hold,
+                settings=self.hysteresis,
+                growth=growth_rate,
             )
             loop.add_checkpoints(table, self.chunk_size, self.steps())
             found = [(up, loop.decide(RampRecord(self, table, up))) for up in (True, False)]
@@ -106,7 +108,6 @@ class CoupleJob(MotorJob):
         return xr.Dataset({**variables, **jump_columns}, coordinates, self.attributes(table))
 
     def jump_variables(self, table: Table) -> tuple[list[str], dict[str, Variable]]:
-        """Build the variables of all jumps and their labels: "up", "down", then further ones."""
         records = [RampRecord(self, table, up) for up in (True, False)]
         each = list(zip(DIRECTIONS, self.jumps(table), records, strict=True))
         first = [(way, jumps[0] if jumps else None, record) for way, jumps, record in each]
@@ -129,7 +130,6 @@ class CoupleJob(MotorJob):
         return jump_labels(directions), columns
 
     def decision(self, jump: Jump | None, record: RampRecord) -> tuple[str, str]:
-        """Return how a jump or its absence was decided, and why there is no jump."""
         if jump is not None and jump.outcome == UNDECIDED:
             volts = record.sense * self.drive.volts(self.structure)
             low, high = volts * jump.low, volts * jump.high
@@ -161,7 +161,6 @@ class CoupleJob(MotorJob):
         }
 
     def attributes(self, table: Table) -> dict[str, str | float]:
-        """Return the dataset's title and the relative energy errors of the coupling."""
         motor = float(table["motor"][-1])
         return {
             "title": f"Weak drive, {self.structure.kind} structure: each revolution of the motor",
@@ -189,7 +188,6 @@ def bracket_variables(
 
 
 def require_motor(structure: Structure, drive: Drive) -> None:
-    """Raise an error unless these are a structure of two masses and a drive with a motor."""
     refuse_family("a motor", checked_structure(structure))
     if not isinstance(drive, Drive):
         raise InputError(f"drive = {drive!r}: expected a Drive, such as Drive.from_file('quick')")
@@ -208,7 +206,6 @@ def schedule_from_arguments(
     back: bool = True,
     spin_up: float | None = None,
 ) -> Schedule:
-    """Build the voltage schedule from the arguments of :func:`couple`."""
     require_motor(structure, drive)
     if isinstance(voltage, Schedule):
         return voltage
@@ -241,7 +238,6 @@ def schedule_from_arguments(
 def scheme_from_arguments(
     structure: Structure, step: float | None, tolerance: float | None = None, sampled: bool = False
 ) -> Scheme:
-    """Choose communication step and tolerance from :func:`couple` arguments."""
     omega = structure.omega
     if tolerance is None:
         # of the displacements errors are about half as large
@@ -264,7 +260,6 @@ def couple_job(
     hold: float | None = None,
     hysteresis: HysteresisSettings | None = None,
 ) -> CoupleJob:
-    """Check the arguments of a coupled run and build its job."""
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
     steps = schedule.duration / scheme.h
@@ -282,11 +277,11 @@ def couple_job(
         at_rest = control is not None
         speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
     check("speed_start", speed_start, "rad/s")
-    if hold is None:
-        hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
+    hysteresis = hysteresis or HysteresisSettings()
+    hold = hysteresis.usual_hold(structure, drive) if hold is None else hold
     check("hold", hold, "s", low=0.0)
     run = (structure, drive, schedule, scheme, float(speed_start), float(hold), control)
-    return CoupleJob(f"couple_{structure.kind}", *run, hysteresis or HysteresisSettings())
+    return CoupleJob(f"couple_{structure.kind}", *run, hysteresis)
 
 
 def couple(

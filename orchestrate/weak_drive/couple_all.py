@@ -46,7 +46,6 @@ def couple_job_from_numbers(
     back: bool,
     step: float | None,
 ) -> couple.CoupleJob:
-    """Build the job of one coupled run from non-dimensional voltages and rate."""
     structure, drive = system
     couple.require_motor(structure, drive)
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
@@ -95,11 +94,6 @@ def couple_all(
     xarray.Dataset
         What :func:`orchestrate.couple` gives, over ``run`` too, with the coordinates ``system``,
         ``structure`` and ``rate``; NaN where a run has fewer revolutions than another.
-
-    Raises
-    ------
-    InputError
-        Where an argument is not what is expected.
 
     Examples
     --------

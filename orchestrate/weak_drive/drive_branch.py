@@ -80,7 +80,6 @@ class DriveBranchJob(Job):
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def work(self, fmus: Fmus, items: Sequence[Structure], previous: Table | None) -> Table:
-        """Trace all legs of each structure and return them as arrays padded with NaN."""
         rows = []
         for structure in items:
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[MOTOR_SHAKER]) as shaker:
@@ -99,7 +98,6 @@ class DriveBranchJob(Job):
 
     @property
     def settings(self) -> ContinuationSettings:
-        """Return the continuation settings: longest step and number of points."""
         return ContinuationSettings(self.longest, self.most - 1)
 
     def max_turns(self, structure: Structure) -> int:
@@ -107,7 +105,6 @@ class DriveBranchJob(Job):
         return 1 if structure.bonded else self.period
 
     def make_shooter(self, fmus: tuple[Instance, Instance], structure: Structure) -> Shooter:
-        """Return what shoots motions of a structure, whose unit is the largest amplitude."""
         low, high = (speed / structure.omega for speed in self.speeds)
         sizes = averaged.amplitude(structure, self.drive, np.linspace(low, high, 2001))
         length = float(sizes.max()) * self.drive.length
@@ -115,7 +112,6 @@ class DriveBranchJob(Job):
         return Shooter(fmus, structure, self.drive, turns, self.steps, length)
 
     def trace_legs(self, shooter: Shooter) -> list[Leg]:
-        """Trace the branch from the lowest speed, and from the highest if needed."""
         low, high = (speed / shooter.structure.omega for speed in self.speeds)
         turns = self.max_turns(shooter.structure)
         below = self.trace_leg(shooter, (low, high), up=True)
@@ -129,7 +125,6 @@ class DriveBranchJob(Job):
         return [*legs, *(Leg(end=NOT_BEGUN) for _ in LEGS[len(legs) :])]
 
     def needs_doubled_leg(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
-        """Return whether a period doubling starts a leg that is not traced yet."""
         if flip.kind != Kind.FLIP or 2 * flip.point.period.revolutions > turns:
             return False
         ends = [leg.points[-1].coordinates for leg in legs if leg.end == HALVED]
@@ -164,7 +159,6 @@ class DriveBranchJob(Job):
         return DriveTracer(shooter, start, speeds, self.settings).trace(start)
 
     def motion_table(self, motions: Sequence[Motion]) -> np.ndarray:
-        """Convert motions to a table of speed, voltage, amplitude and multipliers."""
         table = np.full((self.most, len(COLUMNS) + MULTIPLIERS), np.nan, dtype=complex)
         volts, omega = self.drive.volts(self.structure), self.structure.omega
         for row, motion in zip(table, motions, strict=False):
@@ -209,7 +203,6 @@ class DriveBranchJob(Job):
 
 
 def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Variable]:
-    """Convert a table of motions to the variables of a dataset."""
     variables: dict[str, Variable] = {
         name: variable(dims, numbers[..., i].real, unit, text)
         for i, (name, (unit, text)) in enumerate(COLUMNS.items())
@@ -270,11 +263,6 @@ def drive_branch(
         grazing of a flight (the masses touch once more) or of an impact (one vanishes). The leg
         from the lowest speed goes up; where it does not arrive at the highest, another one goes
         down from there. Off the first two period doublings go the branches of twice the period.
-
-    Raises
-    ------
-    InputError
-        Where an argument is not what is expected.
 
     Notes
     -----

@@ -58,7 +58,6 @@ class DriveSpectraJob(Job):
         return np.asarray(orders[orders <= self.highest])
 
     def work(self, fmus: Fmus, items: Sequence[Structure], previous: Table | None) -> Table:
-        """Compute both masses' acceleration spectra and the mean motor speed."""
         records = [self.record_displacements(fmus, structure) for structure in items]
         lines = len(self.orders())
         spectra, speeds = [], []
@@ -92,7 +91,6 @@ class DriveSpectraJob(Job):
         return np.array([found["x1"] - rest_1 + box, found["x2"] - rest_2 + box])
 
     def is_captured(self, fmus: Fmus) -> bool:
-        """Simulate, and return whether the delaminated structure's motor is still captured."""
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         threshold = own_resonance.dividing_speed(structure, self.drive) * structure.omega
         return short.record_displacements(fmus, structure)[1] < threshold

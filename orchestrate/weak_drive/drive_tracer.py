@@ -15,16 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..dynamics import continuation
 from ..dynamics.bifurcation_kinds import KINDS, Kind
 from ..dynamics.closed_form import Floats
-from ..dynamics.continuation import (
-    ArclengthStepper,
-    NoConvergenceError,
-    Root,
-    newton_correct,
-    unit_tangent,
-    unit_vector,
-)
 from ..dynamics.tracer import (
     LIMIT,
     MAX_POINTS,
@@ -50,7 +43,6 @@ class Margins(NamedTuple):
 
 
 def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
-    """Simulate one period and return its smallest gap and smallest closing speed."""
     shooter.angle = angle
     master, voltage = shooter.begin_period(unknowns)
     gaps, closing = [math.inf], [math.inf]
@@ -112,7 +104,7 @@ ITERATIONS = 12  # of Newton's method from a guess that is not of the branch its
 class Motion(NamedTuple):
     """Store one stationary motion of a branch: root, Jacobian, multipliers and period."""
 
-    root: Root
+    root: continuation.Root
     matrix: Floats  # jacobian there
     multipliers: np.ndarray  # floquet multipliers, the largest first
     period: Period
@@ -125,22 +117,19 @@ class Motion(NamedTuple):
         return self.root.unknowns[-2:]
 
 
-class ShooterStepper(ArclengthStepper[Shooter]):
+class ShooterStepper(continuation.ArclengthStepper[Shooter]):
     """Step along a branch by arclength, each attempt from the current motion's Jacobian."""
 
     jacobian: Floats
 
     def move_to(self, motion: Motion) -> None:
-        """Make a motion the current one, with its Jacobian."""
         self.root, self.jacobian = motion.root, motion.matrix
 
-    def root_after(self, length: float) -> Root:
-        """Solve for the motion at a distance along the branch from the current one."""
+    def root_after(self, length: float) -> continuation.Root:
         self.curve.restart(self.root.unknowns, self.jacobian)
         return super().root_after(length)
 
-    def solve_at(self, unknown: int, value: float) -> Root:
-        """Solve for the nearby motion with a given value of one unknown."""
+    def solve_at(self, unknown: int, value: float) -> continuation.Root:
         self.curve.restart(self.root.unknowns, self.jacobian)
         return super().solve_at(unknown, value)
 
@@ -170,7 +159,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         )
         super().__init__(stepper, settings.max_points)
 
-    def point(self, root: Root) -> Motion:
+    def point(self, root: continuation.Root) -> Motion:
         return motion_at(self.shooter, root, self.stepper.root.tangent)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
@@ -184,12 +173,10 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         self.half_period_change = half_period_change(self.shooter, motion.root)
         return motion
 
-    def accepts(self, root: Root) -> bool:
-        """Return whether a new motion has as many impacts as the one before."""
+    def accepts(self, root: continuation.Root) -> bool:
         return self.shooter.shoot(root.unknowns).is_connected_to(self.shot)
 
     def test_function(self, point: Motion, kind: Kind) -> float:
-        """Evaluate the test function of a bifurcation, which is zero there."""
         values = point.multipliers
         if kind == Kind.FOLD:
             return float(point.root.tangent[-2])
@@ -206,7 +193,6 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return {"xtol": 1e-6 * length}
 
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
-        """Return why the leg ends if it has reached half the period; else empty text."""
         # beyond, the same motions come again, half a period later
         change = half_period_change(self.shooter, step.after.root)
         return (HALVED if self.half_period_change @ change < 0.0 else ""), ()
@@ -229,8 +215,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
             segment.add_bifurcation(kind, last, 0.0)
 
 
-def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
-    """Compute multipliers and period of a root just solved for; return them as a motion."""
+def motion_at(shooter: Shooter, root: continuation.Root, direction: Floats) -> Motion:
     along = root if root.tangent @ direction > 0.0 else root.reversed()
     values = shooter.multipliers()
     period = shooter.observe_period(root.unknowns)
@@ -238,15 +223,13 @@ def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
 
 
 def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
-    """Solve for the motion of a given speed, starting from a guess."""
     shooter.renew_jacobian(guess)
-    speed = unit_vector(len(guess), -1)
-    root = newton_correct(shooter, guess, speed, max_iterations=ITERATIONS)
+    speed = continuation.unit_vector(len(guess), -1)
+    root = continuation.newton_correct(shooter, guess, speed, max_iterations=ITERATIONS)
     return motion_at(shooter, root, speed if up else -speed)
 
 
 def double_period(shooter: Shooter, flip: Motion) -> Motion:
-    """Solve for a motion of twice the period near a period doubling."""
     for distance in (3e-3, 1e-3, 3e-4):
         shooter.begin_together(flip.together)
         shooter.repeat_after(flip.period.revolutions)
@@ -254,10 +237,10 @@ def double_period(shooter: Shooter, flip: Motion) -> Motion:
         away = np.append(shooter.flip_direction(), [0.0, 0.0])
         guess = flip.root.unknowns + distance * away
         shooter.repeat_after(2 * shooter.turns)
-        with contextlib.suppress(NoConvergenceError):
-            root = newton_correct(shooter, guess, away, max_iterations=ITERATIONS)
+        with contextlib.suppress(continuation.NoConvergenceError):
+            root = continuation.newton_correct(shooter, guess, away, max_iterations=ITERATIONS)
             return motion_at(shooter, root, away)
-    raise NoConvergenceError("no motion of twice the period near a period doubling")
+    raise continuation.NoConvergenceError("no motion of twice the period near a period doubling")
 
 
 def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
@@ -270,14 +253,14 @@ def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
     unknowns = shooter.begin_later(root.unknowns, period.clear, together)
     matrix = shooter.renew_jacobian(unknowns)
     direction = np.append(np.zeros(shooter.size), root.tangent[-2:])  # of voltage and speed
-    tangent = unit_tangent(np.vstack([matrix, direction]))
+    tangent = continuation.unit_tangent(np.vstack([matrix, direction]))
     moved = replace(root, unknowns=unknowns, tangent=tangent)
     return motion._replace(
         root=moved, matrix=matrix, angle=shooter.angle, together=shooter.together
     )
 
 
-def half_period_change(shooter: Shooter, root: Root) -> Floats:
+def half_period_change(shooter: Shooter, root: continuation.Root) -> Floats:
     """Return how the state changes over half the period; 0 for an odd one."""
     if shooter.turns % 2:
         return np.zeros(1)

@@ -66,7 +66,6 @@ class EnergyBalance:
         return Energies._make([*since, missing, sums[1], sums[2]])
 
     def lost(self, record: Record) -> Floats:
-        """Return the energy that the structure loses in each step, in dampers and impacts."""
         before, after = record.before.motion(), record.after.motion()
         h, acceleration = record.after["h"], record.after.acceleration()
         # the relative momentum over a step is a quartic in t/h
@@ -89,11 +88,9 @@ class EnergyBalance:
         return own + s.preload * motion.x_rel
 
     def get_state(self) -> list[float]:
-        """Return the sums as a list of floats, to be restored later."""
         return [*self.sums.tolist(), *self.start.tolist()]
 
     def set_state(self, numbers: list[float]) -> None:
-        """Restore the sums that :meth:`get_state` returned."""
         self.sums, self.start = np.array(numbers[:3]), np.array(numbers[3:])
 
 

@@ -90,7 +90,6 @@ def range_of_mass(structure: Structure, record: Record) -> Range:
 
 
 def range_of_box(record: Record) -> Range:
-    """Return the lowest and the highest box position within each step."""
     position, velocity = record["box_position"], record["box_velocity"]
     found = Range(np.minimum(position[:-1], position[1:]), np.maximum(position[:-1], position[1:]))
     turning = np.flatnonzero(velocity[:-1] * velocity[1:] < 0.0)

@@ -57,7 +57,6 @@ def growth_rate(run: MotorRun, voltage: float, speed: float) -> float:
 
 
 def largest_multiplier(shooter: Shooter, guess: Floats) -> float:
-    """Return the largest absolute value of the multipliers of the motion near a guess."""
     normal, offset = unit_vector(len(guess), -2), np.zeros_like(guess)
     for _ in range(ITERATIONS):
         jacobian = shooter.renew_jacobian(guess + offset)

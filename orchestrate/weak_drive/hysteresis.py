@@ -31,6 +31,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..model.drive import Drive
+from ..model.structure import Structure
 from ..running.job import Table
 from .ramp_record import RampRecord
 from .run import MotorRun, state_rows
@@ -54,9 +56,15 @@ class HysteresisSettings(SettledSettings):
     landings: int = 6  # voltages past a small loss, or one against the voltage, that are tried
     lives: float = 5.0  # times that a motion has to last what it took to settle, or lasted past it
     growths: float = 30.0  # growth times after which a motion is seen to last, or not
-    patience: float = 10.0  # longest holds that these may be
-    budget: float = 60.0  # longest holds of a ramp, beside its grid
+    patience: float = 10.0  # `max_hold` that these may be
+    budget: float = 60.0  # `max_hold` of a ramp, beside its grid
     parts: tuple[float, ...] = (0.5, 0.25, 0.75)  # of a step: where a speed between is sought
+    base_hold: float = 4000.0  # longest hold by default, in 1/omega, of a rotor without inertia
+    rotor_holds: float = 200.0  # and the times 1/b, in which the rotor settles, added to it
+
+    def usual_hold(self, structure: Structure, drive: Drive) -> float:
+        """Return the longest time, s, for which a voltage is held by default."""
+        return (self.base_hold + self.rotor_holds / drive.b(structure)) / structure.omega
 
 
 class HeldPoint(NamedTuple):
@@ -90,21 +98,20 @@ class HysteresisLoop:
         step: float,
         omega: float,
         volts: float,
-        longest: float,
+        max_hold: float,
         settings: HysteresisSettings | None = None,
         growth: Callable[[MotorRun, float, float], float] | None = None,
     ) -> None:
-        # `volts` is negative where the motor turns backward; `longest` is the longest hold, s;
+        # `volts` is negative where the motor turns backward; `max_hold` is in s;
         # `growth` returns the rate, 1/s, at which disturbances of a run's motion grow
         self.begin, self.schedule, self.step = begin, schedule, step
-        self.omega, self.volts, self.longest = omega, volts, longest
+        self.omega, self.volts, self.max_hold = omega, volts, max_hold
         self.settings, self.growth = settings or HysteresisSettings(), growth
         self.checkpoints: dict[int, Table] = {}
         self.left_out: set[float] = set()  # voltages at which a motion does not settle again
         self.spent = 0.0  # s, for which motions of a ramp were held on
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
-        """Store the ramp's saved states by their communication step."""
         for i in range(len(table["master_memory"])):
             state = state_rows(table, slice(i, i + 1))
             self.checkpoints[min((i + 1) * every, steps)] = state
@@ -121,7 +128,6 @@ class HysteresisLoop:
         return self.checkpoints.get(step)
 
     def hold_step(self, step: int) -> HeldPoint:
-        """Hold the voltage that the ramp has at a step, from its state there."""
         voltage = self.schedule.voltage((step + 0.5) * self.step) / self.volts
         return self.hold(self.state_before(step), voltage, voltage)
 
@@ -136,7 +142,7 @@ class HysteresisLoop:
         # for the time `least`, s, unless it has left
         settings = self.settings
         moves = math.ceil(abs(voltage - first) / settings.rate / self.omega / self.step)
-        count = moves + math.ceil((least + self.longest) / self.step)
+        count = moves + math.ceil((least + self.max_hold) / self.step)
         piece = max(1, round(settings.piece / self.omega / self.step))
         times = (0.0, moves * self.step, count * self.step)
         volts = (self.volts * first, self.volts * voltage, self.volts * voltage)
@@ -159,18 +165,16 @@ class HysteresisLoop:
     # -- the rule --
 
     def decide(self, record: RampRecord) -> list[Jump]:
-        """Return all jumps of a run in one direction, by their voltages."""
         jumps = []
         for leg in record.legs():
             first, last = record.eta0(leg[[0, -1]]).tolist()
-            if self.longest:
+            if self.max_hold:
                 jumps += self.jumps(self.hold_step(record.step(int(leg[0]))), last)
             else:
                 jumps.append(Jump(UNDECIDED, first, last))
         return merge_overlapping(jumps, record.sign)
 
     def jumps(self, first: HeldPoint, last: float) -> list[Jump]:
-        """Return the jumps between a held point and a voltage: an empty list for none."""
         sign = math.copysign(1.0, last - first.voltage)
         points = self.hold_grid(first, last)
         if not points:
@@ -182,7 +186,7 @@ class HysteresisLoop:
             least = self.least(low, high)
             if self.excess(points, i, jumps) <= 0.0:
                 i += 1
-            elif self.spent > self.settings.budget * self.longest:
+            elif self.spent > self.settings.budget * self.max_hold:
                 del points[i + 1 :]
             elif self.insert_between(points, i):
                 continue
@@ -291,7 +295,7 @@ class HysteresisLoop:
     def least(self, low: HeldPoint, high: HeldPoint) -> float:
         """Return for how long, s, a motion before a step has to last if it may be a transient."""
         least = self.settings.lives * max(low.time, high.time)
-        return min(least, self.settings.patience * self.longest)
+        return min(least, self.settings.patience * self.max_hold)
 
     def lasting(self, point: HeldPoint, high: HeldPoint, least: float) -> HeldPoint:
         """Hold a motion until it is known to last; return it, or what it has become."""
@@ -300,7 +304,7 @@ class HysteresisLoop:
         if rate <= 0.0:
             return point._replace(lasts=math.inf)
         grown = self.settings.growths / rate if rate > 0.0 else 0.0
-        if grown > self.settings.patience * self.longest:
+        if grown > self.settings.patience * self.max_hold:
             return point._replace(speed=math.nan, lasts=0.0)
         least = max(grown, least - point.lasts)
         if least <= 0.0:
@@ -352,7 +356,6 @@ class HysteresisLoop:
 
 
 def slope(low: HeldPoint, high: HeldPoint) -> float:
-    """Return the change of the speed with the voltage over a step."""
     return (high.speed - low.speed) / (high.voltage - low.voltage)
 
 

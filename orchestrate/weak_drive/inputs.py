@@ -33,7 +33,6 @@ class Supply(NamedTuple):
     speed: float  # at the start, rad/s
 
     def begin(self) -> ControllerState:
-        """Return the controller's initial state."""
         return self.controller.begin(self.speed)
 
 
@@ -62,11 +61,10 @@ class Inputs:
         self.state: ControllerState = self.control.begin() if self.control else ()
 
     def start_values(self) -> dict[str, float]:
-        """Return the inputs at time 0 by name."""
         values = {name: one.voltage(0.0) for name, one in [*self.held, *self.cubics]}
         return {name: values.get(name, 0.0) for name in self.names}
 
-    def rows(self, edges: Floats, width: int = 0, earlier: int = 0) -> Floats:
+    def over_steps(self, edges: Floats, width: int = 0, earlier: int = 0) -> Floats:
         """Return the inputs of the steps between edges, but some earlier ones.
 
         Of a control it is what its supply has on average, or 0. Where a row has the width for it,
@@ -95,7 +93,7 @@ class Inputs:
         """Run both FMUs over some steps of one length, which all have from the first one on."""
         earlier = min(2, steps.start - first)  # steps whose first moments are made up for in these
         edges = np.arange(steps.start - earlier, steps.stop + 1, dtype=np.float64) * h
-        rows = self.rows(edges, master.width, earlier)
+        rows = self.over_steps(edges, master.width, earlier)
         if self.control is None:
             return master.run(rows, h)
         return master.run_controlled(self._controlled(rows.tolist(), h, master), len(rows), h)

@@ -65,7 +65,6 @@ class JumpVoltagesJob(Job):
         return [self.structure.as_bonded(), *varied]
 
     def work(self, fmus: Fmus, items: Sequence[Structure], previous: Any) -> Table:
-        """Run the ramps of some structures; return jumps, and where each ramp shows them."""
         rows, shown, decided = [], [], []
         for structure in items:
             slowest = couple_job(structure, self.drive, self.schedules[0], self.scheme)
@@ -173,11 +172,6 @@ def jump_voltages(
         lost, with half of its bracket as ``standard_error``; NaN where there is no jump or it is
         undecided, as ``decided`` says. Over ``rate`` (V/s) too the ``voltage`` at which each ramp
         shows a jump.
-
-    Raises
-    ------
-    InputError
-        Where an argument is not what is expected.
 
     Notes
     -----

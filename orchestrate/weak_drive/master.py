@@ -21,9 +21,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 from ..fmu.c_library import loaded_loop
 from ..fmu.channel import Channel, SimulationEnded, StepAnswer
+from ..fmu.events import CUBICS
 from ..fmu.fmi import NOT_FINITE, Fmi, references
 from ..fmu.instance import REAL_TYPES, WARNING, Instance, function_addresses
-from ..fmu.play import CUBICS
 from .connection import FORCE, MOTOR, PUSHES, Connection, Link
 from .step_record import BOX, LEADING, PLACE, OscillatorOutputs, Record
 
@@ -52,7 +52,6 @@ class Scheme:
     halves_discarded: bool = False  # a step that the drive discards, where it can go back
 
     def __post_init__(self) -> None:
-        """Check step length and tolerance."""
         if not (math.isfinite(self.h) and self.h > 0.0):
             raise InputError(f"step {self.h}: expected a number > 0, in s")
         if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
@@ -61,7 +60,6 @@ class Scheme:
             )
 
     def most_rows(self, intervals: int) -> int:
-        """Return how many steps a number of intervals may take."""
         halves = self.tolerance or self.halves_discarded
         return intervals << self.halvings if halves else intervals
 
@@ -105,7 +103,6 @@ class Links(ctypes.Structure):
 
     @classmethod
     def of(cls, links: Sequence[tuple[int, Link]]) -> Links:
-        """Describe the connections of one direction."""
         places, scales = (c_int * 4)(*(i for i, _ in links)), (one.scale for _, one in links)
         return cls(len(links), places, (c_double * 4)(*scales))
 
@@ -132,7 +129,6 @@ class Pair(ctypes.Structure):
 
 @functools.cache
 def couple_loop() -> Any:
-    """Return the C function of the loop, once per process."""
     library = loaded_loop("couple")
     sizes = (c_uint * 4).in_dll(library, "sizes_of_couple")
     assert [*sizes] == [ctypes.sizeof(Pair), MOTION, DRIVE, END + MOTOR.outputs.index("angle")]
@@ -204,7 +200,6 @@ class Master:
         self.begin(start_time)
 
     def begin(self, start_time: float = 0.0) -> None:
-        """Begin a run of both instances as they have been initialised; read their outputs."""
         unknown = [math.nan] * len(self.connection.inputs)
         step, motion = [start_time, *[0.0] * (MOTION - TIME - 1)], self.oscillator.get()
         self.drive.put((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())  # its acceleration follows it
@@ -221,7 +216,6 @@ class Master:
 
     @property
     def motion(self) -> OscillatorOutputs:
-        """Return the oscillator's outputs at the present time."""
         return OscillatorOutputs._make(self.row[MOTION:DRIVE])
 
     def __getitem__(self, name: str) -> float:
@@ -292,12 +286,10 @@ class Master:
         return len(self.connection.inputs) * (2 if self.connection.recorded else 1)
 
     def recorded(self, inputs: Sequence[float]) -> list[float]:
-        """Return what is recorded of the drive, in its own units, under some inputs."""
         self.drive.put((self.row[MOTION + FORCE_PLACE], 0.0, 0.0, 0.0), inputs)
         return [float(value) for value in self.drive.instance.get(*self.connection.recorded)]
 
     def _described(self) -> Pair:
-        """Describe both FMUs and the scheme in the C structure."""
         connection, drive = self.connection, self.drive
         pair = Pair(Side.of(self.oscillator, ["impact_count"]), Side.of(drive.channel))
         for name in ("tolerance", "easy", "halvings"):
@@ -336,13 +328,11 @@ class Master:
     # -- to go on elsewhere --
 
     def get_state(self) -> list[float]:
-        """Return the master's own state as a list of floats, to be restored later."""
         known = 2 * self.pair.point_count
         memory = [x for name in MEMORY for x in getattr(self.pair, name)]
         return [*self.row, *memory, *self.pair.points[:known], *[math.nan] * (2 * PAST - known)]
 
     def set_state(self, numbers: Sequence[float]) -> None:
-        """Restore the state that :meth:`get_state` returned."""
         rest = iter(numbers)
         self.row = [next(rest) for _ in self.names]
         for name, count in MEMORY.items():

@@ -57,7 +57,7 @@ class PassageJob(couple.CoupleJob):
 
     item_columns: ClassVar[tuple[str, ...]] = tuple(KEPT + name for name in SAMPLES)
 
-    def rows(self, run: MotorRun, steps: range) -> Table:
+    def kept_table(self, run: MotorRun, steps: range) -> Table:
         """Run some communication steps; return their revolutions and all samples."""
         record = run.record(steps)
         revolutions, energies = run.revolutions.add(record)
@@ -137,11 +137,6 @@ def passage(
         positions and velocities of the masses (relative to the box) and of the box, and energies
         since the start (J). Over ``jump`` what :func:`orchestrate.couple` says of the jumps.
 
-    Raises
-    ------
-    InputError
-        Where an argument is not what is expected.
-
     Examples
     --------
     >>> from orchestrate import Drive, Structure, passage
@@ -184,10 +179,6 @@ def waterfall(
     xarray.Dataset
         ``acceleration`` (m/s2) over ``time`` (s, the middle of the revolutions) and ``order``, the
         multiple of the motor's speed; and mean ``speed`` (rad/s) and ``voltage`` (V) over time.
-
-    Raises
-    ------
-    InputError
 
     Notes
     -----
@@ -242,7 +233,6 @@ def waterfall(
 
 
 def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:
-    """Raise an error unless spectra over revolutions can be computed."""
     if mass not in (1, 2):
         raise InputError(f"mass = {mass!r}: expected 1 or 2")
     checked_integer("revolutions", revolutions, 1)

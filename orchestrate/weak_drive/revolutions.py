@@ -82,13 +82,10 @@ class Revolutions:
         return found[: find(values, along, across, places, len(ends), last, rows)]
 
     def _widen(self, largest: Floats) -> None:
-        """Add the largest values of some steps to the present revolution."""
         self.largest = np.maximum(self.largest, largest.max(axis=1, initial=NOTHING))
 
     def get_state(self) -> list[float]:
-        """Return the unfinished revolution as a list of floats, to be restored later."""
         return [*self.last.tolist(), *self.largest.tolist()]
 
     def set_state(self, numbers: Sequence[float]) -> None:
-        """Restore the state that :meth:`get_state` returned."""
         self.last, self.largest = np.array(numbers[:3]), np.array(numbers[3:])

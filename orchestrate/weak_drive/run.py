@@ -57,11 +57,9 @@ class Run:
             self._saved = {}
 
     def record(self, steps: range) -> Record:
-        """Run some communication steps; return their record."""
         return self.inputs.run(self.master, steps, self.master.scheme.h)
 
     def close(self) -> None:
-        """Free what was saved of both FMUs to go back."""
         self.master.close()
 
     def get_state(self) -> Table:
@@ -71,7 +69,6 @@ class Run:
         return {name: np.array([value]) for name, value in {**states, **numbers}.items()}
 
     def set_state(self, table: Table) -> None:
-        """Restore the state in the last row of a table."""
         for name, instance in self._saved.items():
             instance.restore_state(bytes(table[name + STATE][-1]).removesuffix(END))
         for name, one in self._memories.items():
@@ -107,7 +104,6 @@ class CoupledJob(Job, ABC):
         return range(self.count())
 
     def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
-        """Compute one chunk of communication steps, or what follows from all at the end."""
         if items[0] < self.steps():
             return self.advance(fmus, range(items[0], items[-1] + 1), previous)
         assert previous is not None
@@ -131,18 +127,16 @@ class MotorJob(CoupledJob):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
 
     def steps(self) -> int:
-        """Return the number of communication steps of the schedule."""
         return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
     def advance(self, fmus: Fmus, steps: range, previous: Table | None) -> Table:
-        """Do some steps of a run of its own; return their rows, and its state."""
         with begin_run(self, fmus) as run:
             if previous is not None:
                 run.set_state(previous)
-            return {**self.rows(run, steps), **run.get_state()}
+            return {**self.kept_table(run, steps), **run.get_state()}
 
-    def rows(self, run: MotorRun, steps: range) -> Table:
-        """Run some communication steps; return what is kept of them."""
+    def kept_table(self, run: MotorRun, steps: range) -> Table:
+        """Run some communication steps; return what is kept of them: the revolutions."""
         return run.revolve(steps)
 
 
@@ -162,14 +156,12 @@ class MotorRun(Run):
         super().__init__(master, inputs, balance=balance, revolution=self.revolutions)
 
     def record(self, steps: range) -> Record:
-        """Run some communication steps; return their record."""
         record = super().record(steps)
         if self.master.ended:  # our own drives do not
             raise FmuError(self.master.ended)
         return record
 
     def revolve(self, steps: range) -> Table:
-        """Run some communication steps; return the table of completed revolutions."""
         return self.revolutions.add(self.record(steps))[0]
 
     def speeds(self, steps: range) -> np.ndarray:
@@ -195,6 +187,5 @@ def motor_runs(fmus: Fmus) -> Iterator[Callable[[MotorJob], MotorRun]]:
 
 @contextmanager
 def begin_run(job: MotorJob, fmus: Fmus) -> Iterator[MotorRun]:
-    """Create both FMU instances, start a run on them and free them at the end."""
     with motor_runs(fmus) as start, closing(start(job)) as run:
         yield run

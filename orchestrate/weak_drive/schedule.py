@@ -26,7 +26,6 @@ def check(
     high: float = math.inf,
     exclusive: bool = False,
 ) -> None:
-    """Raise an error unless a number is finite and within its allowed range."""
     number = isinstance(value, numbers.Real) and not isinstance(value, bool)
     if not (number and math.isfinite(value) and low <= value <= high) or (
         exclusive and value == low
@@ -48,11 +47,9 @@ class Schedule(ABC):
 
     @property
     def duration(self) -> float:
-        """Return the duration of the whole run, s."""
         return self.course.times[-1]
 
     def voltage(self, time: float) -> float:
-        """Return the voltage at a time, V."""
         return self.course.voltage(time)
 
     def trend(self, times: np.ndarray) -> np.ndarray:
@@ -161,10 +158,6 @@ class Course(Schedule):
         s, from 0, never falling; two equal ones are a step.
     voltages : tuple of float
         V.
-
-    Raises
-    ------
-    InputError
 
     Examples
     --------

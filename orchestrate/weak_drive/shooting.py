@@ -87,7 +87,6 @@ class Shooter:
         self.begin_together(structure.bonded)
 
     def take_drive(self, drive: Drive) -> None:
-        """Set the drive; its parameters are wanted at each start."""
         self.drive, self.parameters = drive, drive.parameters()
 
     def begin_together(self, together: bool) -> None:
@@ -111,12 +110,10 @@ class Shooter:
         self._last: tuple[Floats, Floats] | None = None
 
     def repeat_after(self, revolutions: int) -> None:
-        """Set after how many revolutions the motion is to repeat."""
         self.turns, self.count = revolutions, self.count // self.turns * revolutions
         self.matrix, self._last = np.empty((0, 0)), None
 
     def change_in(self, unknowns: Floats, revolutions: int) -> Floats:
-        """Return how the state changes over a given number of revolutions."""
         turns, matrix, last = self.turns, self.matrix, self._last
         self.repeat_after(revolutions)
         try:
@@ -128,7 +125,6 @@ class Shooter:
     # -- both FMUs over a period --
 
     def start_master(self, state: Floats, voltage: float, h: float) -> Master:
-        """Initialise both FMUs in a state and return their master."""
         oscillator, shaker = self.fmus
         oscillator.reset()
         shaker.reset()
@@ -147,7 +143,6 @@ class Shooter:
         return self.master
 
     def close(self) -> None:
-        """Free what was saved of both FMUs."""
         if self.master is not None:
             self.master.close()
 
@@ -158,7 +153,6 @@ class Shooter:
         return self.start_master(unknowns[:-2], voltage, period / self.count), voltage
 
     def scaled_state(self, master: Master) -> Floats:
-        """Return the present state of both FMUs, scaled by its units."""
         values = [master.row[place] - rest for place, rest in self.places]
         if "motor_current" in self.names:
             values += self.fmus[1].get("motor_current")
@@ -192,11 +186,9 @@ class Shooter:
         return self.scaled_state(master)
 
     def _touching(self, master: Master) -> bool:
-        """Return whether the masses of a delaminated structure are in contact."""
         return not self.structure.bonded and master.motion.x_rel == 0.0
 
     def shoot(self, unknowns: Floats) -> Shot:
-        """Simulate one period from given unknowns; return the final state and impacts."""
         try:
             master, voltage = self.begin_period(unknowns)
             kept = master.run(np.full(self.count, voltage)).after
@@ -271,11 +263,9 @@ class Shooter:
         return self.matrix
 
     def restart(self, root: Floats, matrix: Floats) -> None:
-        """Reset the Jacobian to that of a known root."""
         self.matrix, self._last = matrix, (root, np.zeros(self.size + 1))
 
     def renew_jacobian(self, unknowns: Floats) -> Floats:
-        """Compute the Jacobian by finite differences."""
         base = self.shoot(unknowns)
         matrix = np.stack(
             [self.derivative(unknowns, i, base) for i in range(len(unknowns))], axis=1
@@ -287,7 +277,6 @@ class Shooter:
         return self.matrix
 
     def derivative(self, unknowns: Floats, which: int, base: Shot) -> Floats:
-        """Compute the derivative of the final state by one unknown."""
         known: dict[float, Shot] = {0.0: base}
 
         def end_state_shifted_by(change: float) -> Floats | None:
@@ -309,7 +298,6 @@ class Shooter:
         raise NoConvergenceError("a grazing is too near for a derivative")
 
     def multipliers(self) -> np.ndarray:
-        """Return the Floquet multipliers of the last motion, the largest first."""
         # without the angle's own, which is 1 for every motion
         values = np.linalg.eigvals(self.map_derivative())
         return np.asarray(values[np.argsort(-np.abs(values))])

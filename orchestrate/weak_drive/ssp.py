@@ -71,7 +71,12 @@ Links = Mapping[str, Link]
 REAL = {"1.0": "Real", "2.0": "Float64"}  # types, by the version of SSP
 
 
-def qualified_tag(prefix: str, name: str) -> str:
+def add(parent: ET.Element, tag: str, **attributes: str) -> ET.Element:
+    return ET.SubElement(parent, qualified(tag), attributes)
+
+
+def qualified(tag: str) -> str:
+    prefix, _, name = tag.partition(":")
     return f"{{{NAMESPACES[prefix]}}}{name}"
 
 
@@ -84,61 +89,43 @@ def xml_bytes(root: ET.Element) -> bytes:
 
 
 def parameter_file_path(component: str) -> str:
-    """Return the path of a component's parameter file inside the package."""
     return f"resources/{component}.ssv"
 
 
 def add_units(root: ET.Element, components: Components) -> None:
-    """Add the definitions of all used units to the XML document."""
-    parent = ET.SubElement(root, qualified_tag("ssd", "Units"))
+    parent = add(root, "ssd:Units")
     each = [(c, c.unit(p)) for c in components.values() for p in (*c.inputs, *c.outputs)]
     used = {unit: one.fmu.units[unit] for one, unit in each if unit}
     for name, unit in sorted(used.items()):
-        element = ET.SubElement(parent, qualified_tag("ssc", "Unit"), name=name)
         powers = {base: str(power) for base, power in unit.exponents.items()}
         if unit.factor != 1.0:
             powers["factor"] = repr(unit.factor)
-        ET.SubElement(element, qualified_tag("ssc", "BaseUnit"), powers)
+        add(add(parent, "ssc:Unit", name=name), "ssc:BaseUnit", **powers)
 
 
 def add_component(elements: ET.Element, name: str, one: Component, version: str) -> None:
-    """Add one FMU with its connectors and parameter file to the XML document."""
-    source, kind = f"resources/{one.path.name}", "application/x-fmu-sharedlibrary"
-    component = ET.SubElement(
-        elements, qualified_tag("ssd", "Component"), name=name, type=kind, source=source
-    )
-    connectors = ET.SubElement(component, qualified_tag("ssd", "Connectors"))
+    file = {"type": "application/x-fmu-sharedlibrary", "source": f"resources/{one.path.name}"}
+    component = add(elements, "ssd:Component", name=name, **file)
+    connectors = add(component, "ssd:Connectors")
     for kind, ports in (("input", one.inputs), ("output", one.outputs)):
         for port in ports:
-            connector = ET.SubElement(
-                connectors, qualified_tag("ssd", "Connector"), name=port, kind=kind
-            )
+            connector = add(connectors, "ssd:Connector", name=port, kind=kind)
             unit = {"unit": one.unit(port)} if one.unit(port) else {}
-            ET.SubElement(connector, qualified_tag("ssc", REAL[version]), unit)
-    bindings = ET.SubElement(component, qualified_tag("ssd", "ParameterBindings"))
-    ET.SubElement(
-        bindings, qualified_tag("ssd", "ParameterBinding"), source=parameter_file_path(name)
-    )
+            add(connector, f"ssc:{REAL[version]}", **unit)
+    bindings = add(component, "ssd:ParameterBindings")
+    add(bindings, "ssd:ParameterBinding", source=parameter_file_path(name))
 
 
 def add_master(system: ET.Element, step: float) -> None:
     """Add OMSimulator's annotation with the fixed step of its master."""
     # its C interface reads oms:FixedStepMaster, its Python interface oms:SimulationInformation
     length = format(Decimal(repr(step)), "f")  # its schema takes no exponent
-    annotations = ET.SubElement(system, qualified_tag("ssd", "Annotations"))
-    annotation = ET.SubElement(
-        annotations, qualified_tag("ssc", "Annotation"), type="org.openmodelica"
-    )
-    information = ET.SubElement(
-        ET.SubElement(annotation, qualified_tag("oms", "Annotations")),
-        qualified_tag("oms", "SimulationInformation"),
-        {"name": "oms_ma_default", "method": "oms_ma", "fixedStepSize": length},
-    )
-    ET.SubElement(
-        information,
-        qualified_tag("oms", "FixedStepMaster"),
-        {"description": "oms-ma", "stepSize": length, "relativeTolerance": "0.0001"},
-    )
+    annotations = add(system, "ssd:Annotations")
+    annotation = add(annotations, "ssc:Annotation", type="org.openmodelica")
+    method = {"name": "oms_ma_default", "method": "oms_ma", "fixedStepSize": length}
+    information = add(add(annotation, "oms:Annotations"), "oms:SimulationInformation", **method)
+    master = {"description": "oms-ma", "stepSize": length, "relativeTolerance": "0.0001"}
+    add(information, "oms:FixedStepMaster", **master)
 
 
 def add_connection(connections: ET.Element, ours: str, link: Link, given: bool) -> None:
@@ -150,58 +137,43 @@ def add_connection(connections: ET.Element, ours: str, link: Link, given: bool) 
     factor = 1.0 / link.scale if given else link.scale
     if factor != 1.0:
         places["suppressUnitConversion"] = "true"
-    connection = ET.SubElement(connections, qualified_tag("ssd", "Connection"), places)
+    connection = add(connections, "ssd:Connection", **places)
     if factor != 1.0:
-        transformation = qualified_tag("ssc", "LinearTransformation")
-        ET.SubElement(connection, transformation, factor=repr(factor), offset="0.0")
+        add(connection, "ssc:LinearTransformation", factor=repr(factor), offset="0.0")
 
 
 def system_description(
-    description: str,
-    times: tuple[float, float],
-    components: Components,
-    links: Links,
-    version: str,
+    description: str, times: tuple[float, float], components: Components, links: Links, version: str
 ) -> bytes:
-    """Build the XML file that describes both FMUs and their connections."""
     stop_time, step = times
-    root = ET.Element(
-        qualified_tag("ssd", "SystemStructureDescription"), name="WeakDrive", version=version
-    )
-    system = ET.SubElement(
-        root, qualified_tag("ssd", "System"), name="WeakDrive", description=description
-    )
-    elements = ET.SubElement(system, qualified_tag("ssd", "Elements"))
+    named = {"name": "WeakDrive", "version": version}
+    root = ET.Element(qualified("ssd:SystemStructureDescription"), named)
+    system = add(root, "ssd:System", name="WeakDrive", description=description)
+    elements = add(system, "ssd:Elements")
     for name, one in components.items():
         add_component(elements, name, one, version)
-    connections = ET.SubElement(system, qualified_tag("ssd", "Connections"))
+    connections = add(system, "ssd:Connections")
     for ours, link in links.items():
         add_connection(connections, ours, link, ours in OSCILLATES)
     add_master(system, step)
     add_units(root, components)
-    ET.SubElement(
-        root, qualified_tag("ssd", "DefaultExperiment"), startTime="0.0", stopTime=repr(stop_time)
-    )
+    add(root, "ssd:DefaultExperiment", startTime="0.0", stopTime=repr(stop_time))
     return xml_bytes(root)
 
 
 def parameter_values(values: Values, version: str) -> bytes:
     """Build the XML file of a component's parameters; false ones are left out."""
-    root = ET.Element(qualified_tag("ssv", "ParameterSet"), version=version, name=SET)
-    group = ET.SubElement(root, qualified_tag("ssv", "Parameters"))
+    root = ET.Element(qualified("ssv:ParameterSet"), version=version, name=SET)
+    group = add(root, "ssv:Parameters")
     for variable, value in values.items():
-        if value is False:
-            continue
-        parameter = ET.SubElement(group, qualified_tag("ssv", "Parameter"), name=variable)
-        if value is True:
-            ET.SubElement(parameter, qualified_tag("ssv", "Boolean"), value="true")
-        else:
-            ET.SubElement(parameter, qualified_tag("ssv", REAL[version]), value=repr(float(value)))
+        if value is not False:
+            kind = "Boolean" if value is True else REAL[version]
+            text = "true" if value is True else repr(float(value))
+            add(add(group, "ssv:Parameter", name=variable), f"ssv:{kind}", value=text)
     return xml_bytes(root)
 
 
 def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
-    """Write files into a zip archive, reproducible to the byte."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
@@ -257,9 +229,6 @@ def write_ssp(
     -------
     Path
 
-    Raises
-    ------
-    InputError
     StoreError
         Where the file cannot be written.
 
@@ -306,7 +275,6 @@ def write_ssp(
 
 
 def fmu_path(model: str) -> Path:
-    """Return the path of an own FMU of FMI 2.0."""
     from ..fmu.exported import find
 
     return find(model, "fmi2").path
@@ -315,7 +283,6 @@ def fmu_path(model: str) -> Path:
 def motor_component(
     drive: Drive, fmu: Path | None, voltage: float | None, speed: float | None
 ) -> tuple[Component, Links, str]:
-    """Return the motor's component, its connections, and words for the title."""
     if voltage is None:
         raise InputError("voltage: expected with a motor, in V")
     check("voltage", voltage, "V")

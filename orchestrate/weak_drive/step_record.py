@@ -60,23 +60,19 @@ class Record:
 
     @property
     def before(self) -> Record:
-        """Return the states at which the steps begin."""
         return replace(self, columns=self.columns[:, :-1])
 
     @property
     def after(self) -> Record:
-        """Return the states at which the steps end."""
         return replace(self, columns=self.columns[:, 1:])
 
     def at_ends(self) -> Record:
-        """Return the states at the ends of communication intervals only."""
         return replace(self, columns=self.columns[:, self.ends])
 
     def __getitem__(self, name: str) -> Floats:
         return self.columns[self.names.index(name)]
 
     def motion(self) -> OscillatorOutputs:
-        """Return the oscillator's outputs, an array for each."""
         first = PLACE["x1"]
         return OscillatorOutputs._make(self.columns[first : first + len(OscillatorOutputs._fields)])
 
@@ -92,7 +88,6 @@ class Record:
 
 
 def joined(records: Sequence[Record]) -> Record:
-    """Join the records of runs that follow each other."""
     starts = np.cumsum([0, *(record.columns.shape[1] - 1 for record in records)])
     columns = [records[0].columns[:, :1], *(record.after.columns for record in records)]
     ends = [start + record.ends for start, record in zip(starts, records, strict=False)]

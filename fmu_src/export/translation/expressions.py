@@ -123,7 +123,6 @@ class Expressions(ABC):
     # -- what is read --
 
     def literal(self, node: ast.Constant) -> Value:
-        """Translate a number, or a truth value."""
         if isinstance(node.value, bool):
             return Value(str(int(node.value)), TRUTH)
         if isinstance(node.value, (int, float)):
@@ -131,7 +130,6 @@ class Expressions(ABC):
         raise self.refuse(node, repr(node.value), "a number")
 
     def read(self, node: ast.Name | ast.Attribute) -> Value:
-        """Translate a variable, or a constant of a module."""
         if isinstance(node, ast.Name) and node.id in self.types:
             return Value(in_c(node.id), self.types[node.id])
         thing, module, name = self.resolved(node)
@@ -140,7 +138,6 @@ class Expressions(ABC):
         return Value(self.kernel.constant(module, name), WHOLE if isinstance(thing, int) else REAL)
 
     def resolved(self, node: ast.expr) -> tuple[object, ModuleType, str]:
-        """Return what a name stands for, and the module and name that it was defined under."""
         name = ast.unparse(node)
         thing = resolve_name(self.module, name)
         if thing is None:
@@ -152,7 +149,6 @@ class Expressions(ABC):
         return thing, *origin(self.module, name)
 
     def subscript(self, node: ast.Subscript) -> Value:
-        """Translate a slot of the memory, parts of a tuple, or an entry of a table."""
         if self.is_table(node.value):
             numbers, module, name = self.resolved(node.value)
             assert isinstance(numbers, tuple)
@@ -180,7 +176,6 @@ class Expressions(ABC):
         return whole.item(index)
 
     def is_table(self, node: ast.expr) -> bool:
-        """Return whether a name stands for a tuple of numbers, a module's constant."""
         if not isinstance(node, (ast.Name, ast.Attribute)) or ast.unparse(node) in self.types:
             return False
         thing = resolve_name(self.module, ast.unparse(node))
@@ -189,7 +184,6 @@ class Expressions(ABC):
     # -- what is computed --
 
     def operation(self, node: ast.BinOp) -> Value:
-        """Translate ``a + b`` and the like."""
         if type(node.op) not in OPERATORS:
             raise self.refuse(node, ast.unparse(node), "one of + - * / % &")
         sign, rank = OPERATORS[type(node.op)]
@@ -203,7 +197,6 @@ class Expressions(ABC):
         return Value(f"{one.within(rank)} {sign} {other.within(rank + 1)}", kind, rank)
 
     def unary(self, node: ast.UnaryOp) -> Value:
-        """Translate ``-a`` and ``not a``."""
         if isinstance(node.op, ast.Not):
             return Value(f"!{self.truth(node.operand).within(UNARY)}", TRUTH, UNARY)
         if not isinstance(node.op, ast.USub):
@@ -213,14 +206,12 @@ class Expressions(ABC):
         return Value(f"-({text})" if text.startswith("-") else f"-{text}", value.type, UNARY)
 
     def truth(self, node: ast.expr) -> Value:
-        """Translate an expression that is true or false; refuse any other."""
         value = self.expression(node)
         if value.type != TRUTH:
             raise self.refuse(node, ast.unparse(node), "a comparison")
         return value
 
     def boolean_operation(self, node: ast.BoolOp) -> Value:
-        """Translate ``a and b``, ``a or b``."""
         sign, rank = ("&&", AND) if isinstance(node.op, ast.And) else ("||", OR)
         first, *others = node.values
         values = [self.truth(first), *self.conditional(others, self.truth)]
@@ -228,7 +219,6 @@ class Expressions(ABC):
         return Value(f" {sign} ".join(value.within(BITS) for value in values), TRUTH, rank)
 
     def comparison(self, node: ast.Compare) -> Value:
-        """Translate ``a < b``, ``a < b < c``."""
         first, *others = self.operands([node.left, *node.comparators])
         middle = [v if is_simple(v) or "(" not in v.text else self.keep(v) for v in others[:-1]]
         values = [first, *middle, others[-1]]
@@ -243,7 +233,6 @@ class Expressions(ABC):
         return Value(" && ".join(pair.text for pair in pairs), TRUTH, AND)
 
     def conditional_expression(self, node: ast.IfExp) -> Value:
-        """Translate ``a if b else c``."""
         test = self.truth(node.test)
         one, other = self.conditional([node.body, node.orelse], self.expression)
         kind = common_type([one.type, other.type])
@@ -266,7 +255,6 @@ class Expressions(ABC):
         )
 
     def call(self, node: ast.Call) -> Value:
-        """Translate a call of a kernel's function, or of one that C has."""
         name = ast.unparse(node.func)
         if node.keywords:
             raise self.refuse(node, ast.unparse(node), "arguments without names")
@@ -332,5 +320,4 @@ def in_c(name: str) -> str:
 
 
 def is_simple(value: Value) -> bool:
-    """Return whether an expression is a variable, or a part of one."""
     return value.rank == ATOM and all(part.isidentifier() for part in value.text.split("."))

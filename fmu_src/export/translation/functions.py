@@ -14,17 +14,8 @@ from types import FunctionType
 from typing import Any, Protocol
 
 from ..errors import CannotExport
+from . import subset
 from .expressions import OPERATORS, Expressions, Names, in_c, is_simple
-from .subset import (
-    Block,
-    assigned_in,
-    comments_of,
-    may_declare,
-    names_in,
-    needs_temporaries,
-    owner_blocks,
-    parse_function,
-)
 from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Value, common_type
 
 WIDTH = 100
@@ -66,8 +57,8 @@ class Body(Expressions):
     def __init__(self, kernel: Kernel, unit: Unit) -> None:
         self.kernel, self.unit = kernel, unit
         self.module = sys.modules[unit.function.__module__]
-        self.tree, self.first, source = parse_function(unit.function)
-        self.comments = comments_of(source)
+        self.tree, self.first, source = subset.parse_function(unit.function)
+        self.comments = subset.comments_of(source)
         self.parameters = [argument.arg for argument in self.tree.args.args]
         if len(self.parameters) != len(unit.kinds):
             raise self.refuse(self.tree, "a call with other arguments", "all of them")
@@ -81,12 +72,10 @@ class Body(Expressions):
         self.reset()
 
     def reset(self) -> None:
-        """Discard the lines and declarations written so far."""
         self.lines: list[str] = []
         self.declared, self.count_of_kept, self.depth = set(self.parameters), 0, 1
 
     def translate(self) -> None:
-        """Set the unit's result and text."""
         body = self.tree.body[1:] if ast.get_docstring(self.tree) else self.tree.body
         known: dict[str, Type] = {}
         while known != self.types:  # a variable may turn out to be real after its first use
@@ -103,22 +92,21 @@ class Body(Expressions):
     def definition_head(self) -> list[str]:
         """Return the docstring's summary as a comment, and the function's declaration."""
         summary = " ".join((ast.get_docstring(self.tree) or "").partition("\n\n")[0].split())
-        comment = f"/* {summary.replace('``', '').replace(':func:', '').replace('`', '')} */"
+        plain = summary.replace("``", "").replace(":func:", "").replace("`", "")
+        comment = wrapped(f"/* {plain} */", "", "   ") if plain else []
         c_type = self.kernel.c_type
         parameters = [f"{c_type(self.types[name])} {in_c(name)}" for name in self.parameters]
         self.unit.is_inline = self.hints.get(self.tree.lineno) == INLINE
         line = f"{STORAGE} {c_type(self.unit.result)} {self.unit.name}({', '.join(parameters)})"
-        return [*wrapped(comment, "", "   "), *wrapped(line, "", INDENT)]
+        return [*comment, *wrapped(line, "", INDENT)]
 
     # -- what expressions ask for --
 
     def refuse(self, node: ast.AST, what: str, expected: str) -> CannotExport:
-        """Return the error that names a line outside the subset."""
         line = self.first + getattr(node, "lineno", 1) - 1
         return CannotExport(f"{self.module.__file__}, line {line}: {what}; expected {expected}")
 
     def keep(self, value: Value) -> Value:
-        """Return a variable that the value is assigned to before the present statement."""
         if not self.may_keep:
             instead = "it in a statement of its own before"
             raise self.refuse(self.tree, f"{value.text} would be evaluated too early", instead)
@@ -130,7 +118,6 @@ class Body(Expressions):
     def function(
         self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
     ) -> tuple[str, Type]:
-        """Return the name in C of another function, and its result's type."""
         if function in self.kernel.begun:  # nobody could say how much stack it takes
             raise self.refuse(node, f"{function.__name__} calls itself", "a loop, no recursion")
         unit = self.kernel.unit(function, kinds)
@@ -141,33 +128,30 @@ class Body(Expressions):
     # -- lines --
 
     def line(self, text: str) -> None:
-        """Write one line of C at the present depth."""
         indent = INDENT * self.depth
         self.lines += wrapped(text, indent, indent + INDENT)
 
-    def block(self, statements: Block) -> None:
-        """Translate statements in their order, each after its comments."""
+    def block(self, statements: subset.Block) -> None:
         for statement in statements:
             if self.is_final:
                 for line in [line for line in sorted(self.comments) if line <= statement.lineno]:
                     self.line(f"/* {self.comments.pop(line)} */")
             self.statement(statement)
 
-    def inner_block(self, statements: Block) -> None:
-        """Translate a block inside another."""
+    def inner_block(self, statements: subset.Block) -> None:
         self.depth += 1
         self.block(statements)
         self.depth -= 1
 
-    def declare_first(self, body: Block) -> None:
+    def declare_first(self, body: subset.Block) -> None:
         """Declare the variables that no assignment can declare, and name unused arguments."""
-        used = set().union(*map(names_in, body))
+        used = set().union(*map(subset.names_in, body))
         for name in [name for name in self.parameters if name not in used]:
             self.line(f"(void){in_c(name)};")
         several: dict[Type, list[str]] = {}
-        for name, owner in owner_blocks(body).items():
-            first = next(statement for statement in owner if name in names_in(statement))
-            if name not in self.declared and not may_declare(first, name):
+        for name, owner in subset.owner_blocks(body).items():
+            first = next(statement for statement in owner if name in subset.names_in(statement))
+            if name not in self.declared and not subset.may_declare(first, name):
                 self.declared.add(name)
                 several.setdefault(self.types[name], []).append(name)
         for kind, names in several.items():
@@ -195,7 +179,6 @@ class Body(Expressions):
         known[type(node)](node)
 
     def assign(self, node: ast.Assign) -> None:
-        """Translate ``a = b``, ``a = b = c``, ``a, b = c, d``, ``a, b = f(m)``."""
         target = node.targets[0]
         if isinstance(target, ast.Tuple) and len(node.targets) == 1:
             self.assign_parts(target.elts, node.value)
@@ -209,10 +192,9 @@ class Body(Expressions):
             self.set(one, value)
 
     def assign_parts(self, targets: Sequence[ast.expr], source: ast.expr) -> None:
-        """Assign a tuple's parts to several names or slots."""
         if isinstance(source, ast.Tuple):
             parts = self.operands(source.elts)
-            if needs_temporaries(targets, source.elts):
+            if subset.needs_temporaries(targets, source.elts):
                 parts = [self.keep(part) for part in parts]
         else:
             whole = self.expression(source)
@@ -226,7 +208,6 @@ class Body(Expressions):
                 self.set(target, part)
 
     def set(self, target: ast.expr, value: Value) -> None:
-        """Assign a value to a variable or a slot."""
         if isinstance(target, ast.Subscript):
             self.line(f"{self.subscript(target).text} = {value.converted(REAL).text};")
             return
@@ -241,7 +222,6 @@ class Body(Expressions):
         self.line(f"{declaration}{in_c(name)} = {value.converted(kind).text};")
 
     def augmented_assignment(self, node: ast.AugAssign) -> None:
-        """Translate ``a += b``."""
         if type(node.op) not in OPERATORS:
             raise self.refuse(node, ast.unparse(node), "+=, -=, *= or /=")
         sign = OPERATORS[type(node.op)][0]
@@ -256,13 +236,11 @@ class Body(Expressions):
         self.line(f"{self.expression(node.target).text} {sign}= {value.converted(REAL).text};")
 
     def call_alone(self, node: ast.Expr) -> None:
-        """Translate a call whose result is not used."""
         if not isinstance(node.value, ast.Call):
             raise self.refuse(node, ast.unparse(node), "a call")
         self.line(f"{self.expression(node.value).text};")
 
     def return_statement(self, node: ast.Return) -> None:
-        """Translate ``return``, with or without a value."""
         if node.value is None:
             self.results.append(NOTHING)
             self.line("return;")
@@ -273,7 +251,6 @@ class Body(Expressions):
         self.line(f"return {value.converted(kind).text};")
 
     def if_statement(self, node: ast.If) -> None:
-        """Translate ``if``, ``elif`` and ``else``, with what a comment says of the test."""
         hint, test, before = (
             self.hints.get(node.lineno, ""),
             self.truth(node.test).text,
@@ -290,7 +267,6 @@ class Body(Expressions):
         self.is_rare = before
 
     def for_loop(self, node: ast.For) -> None:
-        """Translate ``for i in range(...)``."""
         loop, target = node.iter, node.target
         is_range = isinstance(loop, ast.Call) and ast.unparse(loop.func) == "range"
         ends = loop.args if is_range and isinstance(loop, ast.Call) else []
@@ -299,7 +275,7 @@ class Body(Expressions):
         values = [self.expression(end) for end in ends]
         first, last = (Value("0", WHOLE), *values) if len(values) == 1 else values[:2]
         step = ast.literal_eval(ends[2]) if len(values) == 3 else 1
-        changed = {one.id for one in assigned_in(node.body) if isinstance(one, ast.Name)}
+        changed = {one.id for one in subset.assigned_in(node.body) if isinstance(one, ast.Name)}
         if last.text in changed or not (is_simple(last) or last.text.isdigit()):
             last = self.keep(last)  # Python asks for it once
         name = "round" if target.id == "_" else in_c(target.id)
@@ -315,7 +291,6 @@ class Body(Expressions):
         self.declared = before
 
     def while_loop(self, node: ast.While) -> None:
-        """Translate ``while``."""
         (test,) = self.conditional([node.test], self.truth)
         self.line(f"while ({test.text}) {{")
         self.inner_block(node.body)
@@ -323,7 +298,6 @@ class Body(Expressions):
 
 
 def wrapped(text: str, first: str, later: str) -> list[str]:
-    """Break a line of C where it is too long; return the lines."""
     return textwrap.wrap(
         text,
         WIDTH,

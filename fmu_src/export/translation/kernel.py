@@ -133,13 +133,11 @@ class Translation:
         raise CannotExport(f"{name}: too many things of this name")
 
     def constant(self, module: ModuleType, name: str) -> str:
-        """Return the name in C of a module's number, and remember its value."""
         known = self.own_name(name, (module.__name__, name), module.__name__)
         self.constants[known] = getattr(module, name)
         return known
 
     def c_type(self, kind: Type) -> str:
-        """Return the name in C of a type; that of a tuple of reals says how many they are."""
         if isinstance(kind, str):
             return C_TYPES[kind]
         if kind not in self.structures:
@@ -151,7 +149,6 @@ class Translation:
         return self.structures[kind]
 
     def declarations(self) -> list[str]:
-        """Return the declarations of whole numbers (slots), real constants, and structures."""
         whole = sorted((n, name) for name, n in self.constants.items() if isinstance(n, int))
         real = [(name, n) for name, n in self.constants.items() if isinstance(n, float)]
         tables = [(name, n) for name, n in self.constants.items() if isinstance(n, tuple)]

@@ -17,7 +17,6 @@ Block = list[ast.stmt]
 
 @functools.cache
 def parse_function(function: FunctionType) -> tuple[ast.FunctionDef, int, str]:
-    """Return a function's syntax tree, its first line in its file, and its source."""
     lines, first = inspect.getsourcelines(function)
     source = textwrap.dedent("".join(lines))
     tree = ast.parse(source).body[0]
@@ -26,7 +25,6 @@ def parse_function(function: FunctionType) -> tuple[ast.FunctionDef, int, str]:
 
 
 def comments_of(source: str) -> dict[int, str]:
-    """Return the comments in a source, by line."""
     tokens = tokenize.generate_tokens(io.StringIO(source).readline)
     kind = tokenize.COMMENT
     return {token.start[0]: token.string.lstrip("# ") for token in tokens if token.type == kind}
@@ -46,7 +44,6 @@ def writes_memory(function: FunctionType) -> bool:
 
 
 def resolve_name(module: ModuleType, name: str) -> object:
-    """Return what a dotted name stands for in a module; None where it stands for nothing."""
     thing: object = module
     for part in name.split("."):
         thing = getattr(thing, part, None)
@@ -80,7 +77,6 @@ def names_in(node: ast.AST) -> set[str]:
 
 
 def targets_of(statement: ast.stmt) -> list[ast.expr]:
-    """Return what a statement assigns to, tuples taken apart."""
     if isinstance(statement, ast.AugAssign):
         return [statement.target]
     if not isinstance(statement, ast.Assign):
@@ -93,7 +89,6 @@ def targets_of(statement: ast.stmt) -> list[ast.expr]:
 
 
 def assigned_in(block: Block) -> list[ast.expr]:
-    """Return all that statements assign to, including those inside others."""
     inside = [part for statement in block for part in ast.walk(statement)]
     statements = [part for part in inside if isinstance(part, ast.stmt)]
     return [target for statement in statements for target in targets_of(statement)]

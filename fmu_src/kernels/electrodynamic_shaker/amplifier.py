@@ -32,9 +32,7 @@ def decide_limits(m):
 
 
 def leading_term(m, series, terms, lowest):
-    """Return the number of the first term from ``lowest`` on that is not zero; ``terms`` if there
-    is none.
-    """
+    """Return the number of the first term from ``lowest`` on that is not zero, else ``terms``."""
     order = lowest
     while order < terms and m[series + order] == 0.0:
         order += 1
@@ -65,18 +63,18 @@ def write_guard(m, series, terms, factor, constant):
 def limit_current(m, h):
     """Decide whether the current of a voltage amplifier is held at its limit."""
     limit, lags = m[at.OTHER_LIMIT], m[at.COIL_INDUCTANCE] > 0.0
-    current = m[at.STATE + at.AMPERES]
+    current = m[at.STATE + at.COIL_CURRENT]
     if not lags:
-        induced = m[at.FORCE_FACTOR] * m[at.STATE + at.SPEED]
+        induced = m[at.FORCE_FACTOR] * m[at.STATE + at.VELOCITY]
         current = (m[at.SOURCE_SERIES] - induced) / m[at.COIL_RESISTANCE]
     side = 1.0 if current >= 0.0 else -1.0
     m[at.OTHER_SIDE] = side
     if lags and side * current < limit:
         return
-    m[at.STATE + at.AMPERES] = side * limit
-    write_constant(m, at.AMPERE_SERIES, side * limit)
+    m[at.STATE + at.COIL_CURRENT] = side * limit
+    write_constant(m, at.CURRENT_SERIES, side * limit)
     write_prescribed_motion(m, h)
-    write_guard(m, at.VOLT_SERIES, at.TERMS, -side, 0.0)
+    write_guard(m, at.VOLTAGE_SERIES, at.TERMS, -side, 0.0)
     for k in range(at.CUBIC):
         m[at.GUARD + k] += side * m[at.SOURCE_SERIES + k]
     decide_held(m, side, lags)
@@ -88,7 +86,7 @@ def follow_command(m, h):
     A current that is not the command's is on its way there; without a voltage limit it jumps.
     """
     limit, lags = m[at.OTHER_LIMIT], m[at.COIL_INDUCTANCE] > 0.0
-    current, source = m[at.STATE + at.AMPERES], m[at.SOURCE_SERIES]
+    current, source = m[at.STATE + at.COIL_CURRENT], m[at.SOURCE_SERIES]
     if lags and m[at.FOLLOWED] == 0.0:
         gap = source - current
         if limit > 0.0 and abs(gap) > SAME * (abs(source) + abs(current)):
@@ -96,14 +94,14 @@ def follow_command(m, h):
             m[at.HELD] = m[at.OTHER_SIDE]
             return
         m[at.STATE + at.INPUT_WORK] += 0.5 * m[at.COIL_INDUCTANCE] * gap * (source + current)
-    m[at.STATE + at.AMPERES] = source
+    m[at.STATE + at.COIL_CURRENT] = source
     if limit == 0.0:
         return
-    copy_source(m, at.AMPERE_SERIES)
+    copy_source(m, at.CURRENT_SERIES)
     write_prescribed_motion(m, h)
-    side = 1.0 if m[at.VOLT_SERIES] >= 0.0 else -1.0
+    side = 1.0 if m[at.VOLTAGE_SERIES] >= 0.0 else -1.0
     m[at.OTHER_SIDE] = side
-    write_guard(m, at.VOLT_SERIES, at.TERMS, side, -limit)
+    write_guard(m, at.VOLTAGE_SERIES, at.TERMS, side, -limit)
     decide_held(m, side, lags)
 
 

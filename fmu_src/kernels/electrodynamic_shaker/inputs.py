@@ -4,9 +4,7 @@ from . import memory as at
 
 
 def cubic_begins(m, flag, inputs):
-    """Return whether a cubic restarts: an input has another value, or one was set of a cubic
-    that is no constant.
-    """
+    """Return whether a cubic restarts: an input changed, or one of a cubic that moves was set."""
     moves = False
     for i in range(at.CUBIC):
         before = m[at.STATE_INPUTS + inputs - at.COMMAND + i]
@@ -24,9 +22,7 @@ def keep_inputs(m):
 
 
 def write_inputs(m, h):
-    """Write command, source and force over an interval of length ``h`` that begins as the present
-    one does.
-    """
+    """Write command, source and force over an interval of length ``h``."""
     now = m[at.INTERVAL] * m[at.SPACING]
     age = ((m[at.ORIGIN] - m[at.COMMAND_TIME]) + m[at.ORIGIN_LOW]) + now
     write_cubic(m, at.COMMAND_SERIES, at.STATE_INPUTS, age, h)

@@ -15,7 +15,6 @@ LEAST = 1e-40  # of the bound, relative to the terms: its inverse stays far from
 
 
 def find_event(m):
-    """Find the first event of the present interval."""
     m[at.EVENT] = NONE
     m[at.EVENT_KIND] = at.NO_EVENT
     if m[at.COMMAND_LIMIT] > 0.0:
@@ -23,8 +22,8 @@ def find_event(m):
     if m[at.OTHER_LIMIT] > 0.0:
         watch_other(m)
     if m[at.TRAVEL_LIMIT] > 0.0:
-        watch_limit(m, at.PLACE_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], 1.0, 0, at.TRAVEL_EVENT)
-        watch_limit(m, at.PLACE_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], -1.0, 0, at.TRAVEL_EVENT)
+        watch_limit(m, at.POSITION_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], 1.0, 0, at.TRAVEL_EVENT)
+        watch_limit(m, at.POSITION_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], -1.0, 0, at.TRAVEL_EVENT)
 
 
 def watch_command(m):
@@ -43,9 +42,9 @@ def watch_other(m):
     """Look for the event that the other quantity reaches its limit, or leaves it."""
     limit, side = m[at.OTHER_LIMIT], m[at.OTHER_SIDE]
     order = int(m[at.OTHER_ORDER]) if m[at.INTERVAL] == 0.0 else 0
-    own, other = at.VOLT_SERIES, at.AMPERE_SERIES
+    own, other = at.VOLTAGE_SERIES, at.CURRENT_SERIES
     if m[at.CURRENT_CONTROL] != 0.0:
-        own, other = at.AMPERE_SERIES, at.VOLT_SERIES
+        own, other = at.CURRENT_SERIES, at.VOLTAGE_SERIES
     if m[at.HELD] != 0.0:
         write_guard(m, own, at.TERMS, -m[at.HELD], 0.0)
         for k in range(at.CUBIC):
@@ -93,9 +92,7 @@ def first_root(m, order):
 
 
 def walk(m, first, size):
-    """Return the first root of GUARD, divided by the power of its ``first`` term, or NONE; no
-    number where that cannot be decided.
-    """
+    """Return the first root of GUARD over its ``first`` power, NONE, or NaN: undecided."""
     bound = LEAST * size
     for k in range(first + 5, at.TERMS):
         j = k - first
@@ -113,7 +110,7 @@ def walk(m, first, size):
 
 
 def derivatives(m, first, part):
-    """Return value and four derivatives of GUARD, divided by the power of its ``first`` term."""
+    """Return value and four derivatives of GUARD over the power of its ``first`` term."""
     h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(at.DEGREE, first - 1, -1):
         h4 = h4 * part + h3

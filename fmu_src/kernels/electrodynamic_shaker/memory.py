@@ -61,9 +61,9 @@ OTHER_LIMIT = slot()  # 0: none
 
 # -- where the present state began: at an event, or where an input was set -------------------------
 inside = Slots()
-PLACE = inside()
-SPEED = inside()
-AMPERES = inside()
+POSITION = inside()
+VELOCITY = inside()
+COIL_CURRENT = inside()
 INPUT_WORK = inside()  # of the amplifier,
 HEAT = inside()  # of the resistance,
 LOSS = inside()  # of the suspension's damper,
@@ -96,10 +96,10 @@ SPACING = slot()  # its length, s; all series are in parts of it
 COMMAND_SERIES = slot(CUBIC)
 SOURCE_SERIES = slot(CUBIC)  # of the command, clipped
 FORCE_SERIES = slot(TERMS)  # zeros behind its cubic
-PLACE_SERIES = slot(TERMS)
-SPEED_SERIES = slot(TERMS)
-AMPERE_SERIES = slot(TERMS)
-VOLT_SERIES = slot(TERMS)
+POSITION_SERIES = slot(TERMS)
+VELOCITY_SERIES = slot(TERMS)
+CURRENT_SERIES = slot(TERMS)
+VOLTAGE_SERIES = slot(TERMS)
 WORK_SERIES = slot(WORK_TERMS)  # of the four energies
 HEAT_SERIES = slot(WORK_TERMS)
 LOSS_SERIES = slot(WORK_TERMS)

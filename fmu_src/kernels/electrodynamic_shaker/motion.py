@@ -20,7 +20,6 @@ def begin_state(m):
 
 
 def begin_interval(m):
-    """Write all that the present interval is described by."""
     set_spacing(m)
     write_inputs(m, m[at.SPACING])
     write_interval(m)
@@ -28,7 +27,6 @@ def begin_interval(m):
 
 
 def set_spacing(m):
-    """Set the length of the present state's intervals."""
     m[at.SPACING] = m[at.VOLTAGE_SPACING] if is_voltage_driven(m) else m[at.CURRENT_SPACING]
 
 
@@ -83,7 +81,7 @@ def end_state(m):
     commanded = m[at.CURRENT_CONTROL] != 0.0
     if other and lags and not held and not commanded:
         limit = m[at.OTHER_LIMIT]
-        m[at.BEGIN + at.AMPERES] = limit if m[at.BEGIN + at.AMPERES] > 0.0 else -limit
+        m[at.BEGIN + at.COIL_CURRENT] = limit if m[at.BEGIN + at.COIL_CURRENT] > 0.0 else -limit
     m[at.FOLLOWED] = 1.0 if other or not held else 0.0
     m[at.COMMAND_LOWEST] = 0.0 if other else 1.0
     # an inductive current comes to its limit, or to the command, at any balance
@@ -103,13 +101,7 @@ def move_origin(m, age):
 
 
 def run_to(m, time):
-    """Run through all intervals and events up to ``time``.
-
-    Returns
-    -------
-    int
-        OK, TRAVEL with the time in REPORT, UNFINISHED, or NOT_FINITE.
-    """
+    """Run through all intervals and events up to ``time``; in REPORT is how far it came."""
     while True:
         local = local_time(m, time)
         begun = m[at.INTERVAL] * m[at.SPACING]
@@ -119,7 +111,7 @@ def run_to(m, time):
         if m[at.EVENT_KIND] != at.NO_EVENT and event <= local:
             if m[at.EVENT_KIND] == at.TRAVEL_EVENT:
                 write_states(m, at.BEGIN, m[at.EVENT])
-                m[at.BOX_POSITION] = m[at.BEGIN + at.PLACE]
+                m[at.BOX_POSITION] = m[at.BEGIN + at.POSITION]
                 m[at.REPORT] = m[at.ORIGIN] + event
                 return at.TRAVEL
             end_state(m)

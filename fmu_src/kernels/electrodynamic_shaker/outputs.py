@@ -8,14 +8,14 @@ from .series import slopes, value, write_states
 def write_outputs(m):
     part, h = part_at(m, m[at.TIME]), m[at.SPACING]
     write_states(m, at.GUARD, part)
-    position, velocity = m[at.GUARD + at.PLACE], m[at.GUARD + at.SPEED]
-    current = m[at.GUARD + at.AMPERES]
-    voltage = value(m, at.VOLT_SERIES, at.DEGREE, part)
+    position, velocity = m[at.GUARD + at.POSITION], m[at.GUARD + at.VELOCITY]
+    current = m[at.GUARD + at.COIL_CURRENT]
+    voltage = value(m, at.VOLTAGE_SERIES, at.DEGREE, part)
     factor, mass, stiffness = m[at.FORCE_FACTOR], m[at.TABLE_MASS], m[at.SUSPENSION_STIFFNESS]
     force = factor * current + value(m, at.FORCE_SERIES, at.CUBIC - 1, part)
     force -= m[at.SUSPENSION_DAMPING] * velocity + stiffness * position
     acceleration = force / mass
-    rise = factor * slopes(m, at.AMPERE_SERIES, at.DEGREE, part)[0] / h
+    rise = factor * slopes(m, at.CURRENT_SERIES, at.DEGREE, part)[0] / h
     rise += slopes(m, at.FORCE_SERIES, at.CUBIC - 1, part)[0] / h
     rise -= m[at.SUSPENSION_DAMPING] * acceleration + stiffness * velocity
     m[at.BOX_POSITION] = position
@@ -39,9 +39,6 @@ def write_outputs(m):
 
 
 def check_finite(m):
-    """Return OK, or NOT_FINITE where an output, or the next event, has left the range of
-    floating-point numbers.
-    """
     total = m[at.EVENT]
     for i in range(at.BOX_POSITION, at.TIME):
         total += m[i]

@@ -6,18 +6,12 @@ from .series import slopes, value
 
 
 def differentiate(m, time):
-    """Write the rates of change of the outputs into OUTPUT_RATES; ``time`` is not used.
-
-    Returns
-    -------
-    int
-        OK.
-    """
+    """Write the rates of change of the outputs into OUTPUT_RATES; ``time`` is not used."""
     part, h = part_at(m, m[at.TIME]), m[at.SPACING]
     velocity, acceleration = m[at.BOX_VELOCITY], m[at.BOX_ACCELERATION]
-    current_1, current_2 = slopes(m, at.AMPERE_SERIES, at.DEGREE, part)
+    current_1, current_2 = slopes(m, at.CURRENT_SERIES, at.DEGREE, part)
     _, force_2 = slopes(m, at.FORCE_SERIES, at.CUBIC - 1, part)
-    voltage_1, _ = slopes(m, at.VOLT_SERIES, at.DEGREE, part)
+    voltage_1, _ = slopes(m, at.VOLTAGE_SERIES, at.DEGREE, part)
     current, voltage, factor = m[at.CURRENT], m[at.VOLTAGE], m[at.FORCE_FACTOR]
     snap = (factor * current_2 + force_2) / h / h - m[at.SUSPENSION_DAMPING] * m[at.BOX_JERK]
     heat = m[at.COIL_RESISTANCE] * current * current

@@ -13,18 +13,15 @@ from . import memory as at
 
 
 def is_voltage_driven(m):
-    """Return whether a voltage drives the coil: a commanded one while no current is held, or one
-    held at its limit.
-    """
+    """Return whether a voltage drives the coil: commanded, or held at its limit."""
     if m[at.CURRENT_CONTROL] != 0.0:
         return m[at.HELD] != 0.0
     return m[at.HELD] == 0.0
 
 
 def write_interval(m):
-    """Write all series of the present interval from the states at its beginning."""
     driven = is_voltage_driven(m)
-    driver = at.VOLT_SERIES if driven else at.AMPERE_SERIES
+    driver = at.VOLTAGE_SERIES if driven else at.CURRENT_SERIES
     if m[at.HELD] != 0.0:
         write_constant(m, driver, m[at.HELD] * m[at.OTHER_LIMIT])
     else:
@@ -51,62 +48,59 @@ def copy_source(m, series):
 
 def next_motion_terms(m, k, part):
     """Write the terms k + 1 of position and velocity; ``part`` is the interval over k + 1."""
-    position, velocity = m[at.PLACE_SERIES + k], m[at.SPEED_SERIES + k]
-    force = m[at.FORCE_FACTOR] * m[at.AMPERE_SERIES + k] + m[at.FORCE_SERIES + k]
+    position, velocity = m[at.POSITION_SERIES + k], m[at.VELOCITY_SERIES + k]
+    force = m[at.FORCE_FACTOR] * m[at.CURRENT_SERIES + k] + m[at.FORCE_SERIES + k]
     force -= m[at.SUSPENSION_DAMPING] * velocity + m[at.SUSPENSION_STIFFNESS] * position
-    m[at.PLACE_SERIES + k + 1] = part * velocity
-    m[at.SPEED_SERIES + k + 1] = part * (force / m[at.TABLE_MASS])
+    m[at.POSITION_SERIES + k + 1] = part * velocity
+    m[at.VELOCITY_SERIES + k + 1] = part * (force / m[at.TABLE_MASS])
 
 
 def opposing_voltage(m, k):
     """Return term k of the voltage over the resistance and that induced by the motion."""
-    drop = m[at.COIL_RESISTANCE] * m[at.AMPERE_SERIES + k]
-    return drop + m[at.FORCE_FACTOR] * m[at.SPEED_SERIES + k]
+    drop = m[at.COIL_RESISTANCE] * m[at.CURRENT_SERIES + k]
+    return drop + m[at.FORCE_FACTOR] * m[at.VELOCITY_SERIES + k]
 
 
 def write_driven_motion(m, h):
-    """Write the series of motion and current for the voltage in VOLT_SERIES."""
+    """Write the series of motion and current for the voltage in VOLTAGE_SERIES."""
     inductance = m[at.COIL_INDUCTANCE]
-    m[at.PLACE_SERIES] = m[at.STATE + at.PLACE]
-    m[at.SPEED_SERIES] = m[at.STATE + at.SPEED]
-    m[at.AMPERE_SERIES] = m[at.STATE + at.AMPERES]
+    m[at.POSITION_SERIES] = m[at.STATE + at.POSITION]
+    m[at.VELOCITY_SERIES] = m[at.STATE + at.VELOCITY]
+    m[at.CURRENT_SERIES] = m[at.STATE + at.COIL_CURRENT]
     for k in range(at.DEGREE):
         part = h / (k + 1)
         if inductance > 0.0:
-            rest = m[at.VOLT_SERIES + k] - opposing_voltage(m, k)
-            m[at.AMPERE_SERIES + k + 1] = part * (rest / inductance)
+            rest = m[at.VOLTAGE_SERIES + k] - opposing_voltage(m, k)
+            m[at.CURRENT_SERIES + k + 1] = part * (rest / inductance)
         else:
-            m[at.AMPERE_SERIES + k] = current_term_without_inductance(m, k)
+            m[at.CURRENT_SERIES + k] = current_term_without_inductance(m, k)
         next_motion_terms(m, k, part)
     if inductance == 0.0:
-        m[at.AMPERE_SERIES + at.DEGREE] = current_term_without_inductance(m, at.DEGREE)
+        m[at.CURRENT_SERIES + at.DEGREE] = current_term_without_inductance(m, at.DEGREE)
 
 
 def current_term_without_inductance(m, k):
-    """Return term k of the current without inductance."""
-    rest = m[at.VOLT_SERIES + k] - m[at.FORCE_FACTOR] * m[at.SPEED_SERIES + k]
+    rest = m[at.VOLTAGE_SERIES + k] - m[at.FORCE_FACTOR] * m[at.VELOCITY_SERIES + k]
     return rest / m[at.COIL_RESISTANCE]
 
 
 def write_prescribed_motion(m, h):
-    """Write the series of motion and voltage for the current in AMPERE_SERIES."""
-    m[at.PLACE_SERIES] = m[at.STATE + at.PLACE]
-    m[at.SPEED_SERIES] = m[at.STATE + at.SPEED]
+    """Write the series of motion and voltage for the current in CURRENT_SERIES."""
+    m[at.POSITION_SERIES] = m[at.STATE + at.POSITION]
+    m[at.VELOCITY_SERIES] = m[at.STATE + at.VELOCITY]
     for k in range(at.DEGREE):
         next_motion_terms(m, k, h / (k + 1))
-        rise = m[at.COIL_INDUCTANCE] * m[at.AMPERE_SERIES + k + 1] * ((k + 1) / h)
-        m[at.VOLT_SERIES + k] = opposing_voltage(m, k) + rise
-    m[at.VOLT_SERIES + at.DEGREE] = opposing_voltage(m, at.DEGREE)
+        rise = m[at.COIL_INDUCTANCE] * m[at.CURRENT_SERIES + k + 1] * ((k + 1) / h)
+        m[at.VOLTAGE_SERIES + k] = opposing_voltage(m, k) + rise
+    m[at.VOLTAGE_SERIES + at.DEGREE] = opposing_voltage(m, at.DEGREE)
 
 
 def write_energies(m, h, driven):
-    """Write the series of the amplifier's work, the heat, the loss and the work of the force on
-    the box.
-    """
-    cubic, other = at.AMPERE_SERIES, at.VOLT_SERIES
+    """Write the series of the amplifier's work, heat, loss, and work of the force on the box."""
+    cubic, other = at.CURRENT_SERIES, at.VOLTAGE_SERIES
     if driven:
-        cubic, other = at.VOLT_SERIES, at.AMPERE_SERIES
-    current, speed = at.AMPERE_SERIES, at.SPEED_SERIES
+        cubic, other = at.VOLTAGE_SERIES, at.CURRENT_SERIES
+    current, speed = at.CURRENT_SERIES, at.VELOCITY_SERIES
     write_work(m, at.WORK_SERIES, m[at.STATE + at.INPUT_WORK], cubic, other, h)
     resistance = h * m[at.COIL_RESISTANCE]
     if driven:
@@ -120,9 +114,7 @@ def write_energies(m, h, driven):
 
 
 def write_work(m, to, begun, cubic, other, factor):
-    """Write the series of ``begun`` and ``factor`` times the integral of a cubic times another
-    series.
-    """
+    """Write the series of ``begun`` plus ``factor`` times an integral of cubic times series."""
     m[to] = begun
     for n in range(at.WORK_DEGREE):
         first = n - at.DEGREE if n > at.DEGREE else 0
@@ -134,7 +126,7 @@ def write_work(m, to, begun, cubic, other, factor):
 
 
 def write_square(m, to, begun, series, factor):
-    """Write the series of ``begun`` and ``factor`` times the integral of a series' square."""
+    """Write the series of ``begun`` plus ``factor`` times the integral of a series' square."""
     m[to] = begun
     for n in range(at.WORK_DEGREE):
         j = n - at.DEGREE if n > at.DEGREE else 0
@@ -149,7 +141,6 @@ def write_square(m, to, begun, series, factor):
 
 
 def value(m, series, degree, part):
-    """Return a series' value at a ``part`` of its interval."""
     total = m[series + degree]
     for k in range(degree - 1, -1, -1):
         total = total * part + m[series + k]
@@ -166,15 +157,14 @@ def slopes(m, series, degree, part):
 
 
 def write_states(m, to, part):
-    """Write the states at a ``part`` of the present interval."""
     position, velocity, current = 0.0, 0.0, 0.0
     for k in range(at.DEGREE, -1, -1):
-        position = position * part + m[at.PLACE_SERIES + k]
-        velocity = velocity * part + m[at.SPEED_SERIES + k]
-        current = current * part + m[at.AMPERE_SERIES + k]
-    m[to + at.PLACE] = position
-    m[to + at.SPEED] = velocity
-    m[to + at.AMPERES] = current
+        position = position * part + m[at.POSITION_SERIES + k]
+        velocity = velocity * part + m[at.VELOCITY_SERIES + k]
+        current = current * part + m[at.CURRENT_SERIES + k]
+    m[to + at.POSITION] = position
+    m[to + at.VELOCITY] = velocity
+    m[to + at.COIL_CURRENT] = current
     work, heat, loss, pushed = 0.0, 0.0, 0.0, 0.0
     for k in range(at.WORK_DEGREE, -1, -1):
         work = work * part + m[at.WORK_SERIES + k]

@@ -13,13 +13,7 @@ WORK_MOST = 4e6  # series of a step: some seconds, compiled; EVALUATION_LIMIT ma
 
 
 def initialize(m, time):
-    """Begin at ``time`` (s) from the parameters, start values and inputs in ``m``.
-
-    Returns
-    -------
-    int
-        OK, or one of the codes of :mod:`.memory`.
-    """
+    """Begin at ``time`` (s) from parameters, start values and inputs; return a code of memory."""
     for i in range(at.BOX_POSITION, at.EVALUATION_LIMIT):
         m[i] = 0.0
     for i in range(at.TIME, at.SIZE):
@@ -37,11 +31,11 @@ def initialize(m, time):
     limited = m[at.CURRENT_CONTROL] == 0.0 and m[at.CURRENT_LIMIT] > 0.0
     if limited and m[at.COIL_INDUCTANCE] > 0.0 and abs(m[at.CURRENT_START]) > m[at.CURRENT_LIMIT]:
         return at.START_CURRENT
-    m[at.BEGIN + at.PLACE] = m[at.POSITION_START]
-    m[at.BEGIN + at.SPEED] = m[at.VELOCITY_START]
+    m[at.BEGIN + at.POSITION] = m[at.POSITION_START]
+    m[at.BEGIN + at.VELOCITY] = m[at.VELOCITY_START]
     # without a voltage limit a commanded current jumps from zero to the first command
     jumps = m[at.CURRENT_CONTROL] != 0.0 and m[at.VOLTAGE_LIMIT] == 0.0
-    m[at.BEGIN + at.AMPERES] = 0.0 if jumps else m[at.CURRENT_START]
+    m[at.BEGIN + at.COIL_CURRENT] = 0.0 if jumps else m[at.CURRENT_START]
     keep_inputs(m)
     begin_state(m)
     write_outputs(m)
@@ -49,13 +43,7 @@ def initialize(m, time):
 
 
 def derive(m):
-    """Compute what follows from the parameters.
-
-    Returns
-    -------
-    int
-        OK, or INDUCTANCE where a time constant is too short.
-    """
+    """Compute what follows from the parameters; INDUCTANCE: a time constant is too short."""
     set_spacings(m)
     m[at.REPORT] = SHORTEST
     if m[at.CURRENT_CONTROL] != 0.0:
@@ -68,27 +56,14 @@ def derive(m):
 
 
 def restore(m, time):
-    """Recompute what the parameters decide in a saved memory; ``time`` is not used.
-
-    Returns
-    -------
-    int
-        OK, or INDUCTANCE of a forged one.
-    """
+    """Recompute what the parameters decide in a saved memory; ``time`` is not used."""
     code = derive(m)
     set_spacing(m)
     return code
 
 
 def advance(m, time):
-    """Advance to the communication point ``time`` (s) with the inputs in ``m``.
-
-    Returns
-    -------
-    int
-        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be
-        thrown away.
-    """
+    """Advance to ``time`` (s); after another code than OK the memory is to be thrown away."""
     renew_inputs(m)
     m[at.TARGET] = time
     m[at.WORK] = 0.0
@@ -109,13 +84,7 @@ def advance(m, time):
 
 
 def refresh(m, time):
-    """Write the outputs for the inputs as they are now; ``time`` is not used.
-
-    Returns
-    -------
-    int
-        OK, or NOT_FINITE.
-    """
+    """Write the outputs for the inputs as they are now; ``time`` is not used."""
     renew_inputs(m)
     write_outputs(m)
     return check_finite(m)

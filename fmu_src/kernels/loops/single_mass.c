@@ -3,6 +3,8 @@
 
 #include "fmi.h"
 
+/* w^2, 2 zeta w, q and c; friction and the speed below which it is viscous; the stop's stiffness r over
+   the spring's, its distance p, and on which side (1, -1) it is: the numbers of `coefficients`. */
 typedef struct { double stiffness, damping, square, cube, friction, slow, stop, position, side; } Mass;
 
 static double acceleration(const Mass *p, double base, double x, double v) {
@@ -14,7 +16,9 @@ static double acceleration(const Mass *p, double base, double x, double v) {
     return -base - force;
 }
 
-/* Displacements at the beginning of each cubic and at the end of the last one, as long as they are bounded. */
+/* Integrate from rest under `count` cubics of the base's acceleration (value and three derivatives, a row
+   for each `step`), in `parts` of a step. Writes the displacement at the beginning of each cubic and at the
+   end of the last one, and stops where it reaches `bound`. */
 EXPORT void displace(const Mass *p, const double *cubics, size_t count, double step, int parts, double bound, double *displacement) {
     double x = 0.0, v = 0.0, h = step / parts;
     displacement[0] = x;

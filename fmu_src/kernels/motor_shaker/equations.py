@@ -1,6 +1,4 @@
-"""Box and rotor as one right-hand side.
-
-A mass matrix of two rows, the motor's circuit, and the energies they exchange.
+"""The equations of motion of box and rotor, the motor's circuit, and the energies they exchange.
 
 With S = unbalance_mass unbalance_radius, position y, angle phi, speed w, current i:
 
@@ -12,8 +10,9 @@ With S = unbalance_mass unbalance_radius, position y, angle phi, speed w, curren
 from ..numerics.elementary import TWO_PI, sincos_turns
 from . import memory as at
 
-MOST_TURNS = 1e9  # of a stage: beyond, it is a failed try,
-NO_NUMBER = 1e400 - 1e400  # and the sub-step is tried again
+# turns of the rotor in a stage: beyond, its rates are no numbers, so that the sub-step is halved
+MOST_TURNS = 1e9
+NO_NUMBER = 1e400 - 1e400
 
 
 def begin_force(m):
@@ -54,15 +53,7 @@ def accelerations(m, sine, cosine, p, q):
 
 
 def compute_rates(m, stage, t):
-    """Write the right-hand side at the states in STAGE into row ``stage`` of RATES.
-
-    Parameters
-    ----------
-    m : flat memory
-    stage : int
-    t : float
-        Time since the force was set, s.
-    """
+    """Write the rates at STAGE, ``t`` s after the force was set, to row ``stage`` of RATES."""
     turn = m[at.TURN] + m[at.STAGE + at.ROTATION] / TWO_PI
     position, velocity = m[at.STAGE + at.POSITION], m[at.STAGE + at.VELOCITY]
     speed = m[at.STAGE + at.ROTATION_SPEED]

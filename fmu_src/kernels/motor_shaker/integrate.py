@@ -20,10 +20,7 @@ TINY, MANY = 1e-300, 1e6
 
 
 def compute_stages(m, t, h):
-    """Compute all stages of a sub-step of length ``h``; its end is in NEXT.
-
-    It begins ``t`` after the force was set.
-    """
+    """Compute a sub-step's stages, ``t`` after the force was set; its end is in NEXT."""
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s]
     compute_rates(m, 0, t)
@@ -39,10 +36,7 @@ def compute_stages(m, t, h):
 
 
 def error_scale(m, state, h):
-    """Return the scale that an error of a state is measured by.
-
-    Its own size, and what the other states make of it within the sub-step.
-    """
+    """Return a state's scale of error: its size, and what the others make of it in the sub-step."""
     size = max(abs(m[at.STATE + state]), abs(m[at.NEXT + state]))
     speed = max(abs(m[at.STATE + at.ROTATION_SPEED]), abs(m[at.NEXT + at.ROTATION_SPEED]))
     arm = m[at.UNBALANCE] / m[at.BOX_MASS]
@@ -63,10 +57,7 @@ def error_scale(m, state, h):
 
 
 def squared_error(m, row, h):
-    """Return the sum over the states of a difference of two orders, over what is allowed, squared.
-
-    The differences are in STAGE then.
-    """
+    """Return the squared difference of two orders, over what is allowed; uses STAGE."""
     sum_rates(m, row, at.STAGE)
     total = 0.0
     for state in range(at.CONTROLLED):
@@ -76,10 +67,7 @@ def squared_error(m, row, h):
 
 
 def error_ratio(m, h):
-    """Return the estimated error of the sub-step over what is allowed.
-
-    Hairer's combination of the estimates of order 5 and 3.
-    """
+    """Return the error over what is allowed: Hairer's combination of orders 5 and 3."""
     sum_5, sum_3 = squared_error(m, DEVIATION_5, h), squared_error(m, DEVIATION_3, h)
     if sum_5 == 0.0:
         return 0.0
@@ -87,7 +75,6 @@ def error_ratio(m, h):
 
 
 def accept_substep(m):
-    """Make the sub-step's end the present state."""
     turned = m[at.NEXT + at.ROTATION]
     for state in range(at.STATES):
         m[at.STATE + state] = m[at.NEXT + state]
@@ -100,10 +87,7 @@ def accept_substep(m):
 
 
 def length_factor(ratio):
-    """Return how much longer the next sub-step may be, for an error ``ratio`` of this one.
-
-    Its eighth root, by square roots.
-    """
+    """Return the next sub-step's length over this one's: the eighth root of 1 over the error."""
     if ratio < 1e-8:
         return LARGEST
     change = SAFETY / math.sqrt(math.sqrt(math.sqrt(ratio)))
@@ -111,13 +95,7 @@ def length_factor(ratio):
 
 
 def integrate_step(m, length):
-    """Integrate over a communication step of ``length`` s.
-
-    Returns
-    -------
-    int
-        OK, or why it cannot be done; REPORT then is how far it came, s.
-    """
+    """Integrate ``length`` seconds; return OK, or why not, with the time reached in REPORT."""
     t, age = 0.0, m[at.TIME] - m[at.FORCE_TIME]
     while t < length:
         left = length - t

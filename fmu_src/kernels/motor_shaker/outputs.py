@@ -9,7 +9,6 @@ from .equations import accelerations, force_now, static_current
 
 
 def write_outputs(m):
-    """Write all outputs but the angle, which is summed where it grows."""
     sine, cosine = sincos_turns(m[at.TURN])
     position, velocity = m[at.STATE + at.POSITION], m[at.STATE + at.VELOCITY]
     speed = m[at.STATE + at.ROTATION_SPEED]
@@ -51,10 +50,7 @@ def current_rate(m, rotor):
 
 
 def jerks(m, sine, cosine, box, rotor):
-    """Return the time derivatives of the accelerations of box and rotor.
-
-    The equations differentiated once, with the voltage constant.
-    """
+    """Return the third derivatives of box and rotor: the equations once more, voltage constant."""
     unbalance, speed = m[at.UNBALANCE], m[at.STATE + at.ROTATION_SPEED]
     p = force_now(m)[1] - m[at.BOX_DAMPING] * box - m[at.BOX_STIFFNESS] * m[at.STATE + at.VELOCITY]
     p += unbalance * speed * (3.0 * rotor * sine + speed * speed * cosine)

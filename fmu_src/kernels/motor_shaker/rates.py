@@ -7,13 +7,7 @@ from .outputs import current_rate, jerks
 
 
 def differentiate(m, time):
-    """Write the rates of change of the outputs into OUTPUT_RATES; ``time`` is not used.
-
-    Returns
-    -------
-    int
-        OK.
-    """
+    """Write the rates of change of the outputs into OUTPUT_RATES; ``time`` is not used."""
     sine, cosine = sincos_turns(m[at.TURN])
     box, speed = m[at.BOX_ACCELERATION], m[at.SPEED]
     rotor = rotor_acceleration(m, sine, cosine)
@@ -39,23 +33,17 @@ def differentiate(m, time):
 
 
 def right_hand_side(m, sine):
-    """Return the right-hand side of the box's equation at the communication point, N."""
     speed = m[at.SPEED]
     p = m[at.UNBALANCE] * speed * speed * sine - m[at.BOX_DAMPING] * m[at.BOX_VELOCITY]
     return p - m[at.BOX_STIFFNESS] * m[at.BOX_POSITION] + force_now(m)[0]
 
 
 def rotor_acceleration(m, sine, cosine):
-    """Return the acceleration of the rotor, rad/s2."""
     return accelerations(m, sine, cosine, right_hand_side(m, sine), m[at.MOTOR_TORQUE])[1]
 
 
 def snap(m, sine, cosine, b):
-    """Return the second time derivative of the box's acceleration, the equations differentiated
-    twice.
-
-    ``b`` is the rotor's acceleration.
-    """
+    """Return the fourth derivative of the box's position; ``b`` is the rotor's acceleration."""
     unbalance, w, a = m[at.UNBALANCE], m[at.SPEED], m[at.BOX_ACCELERATION]
     a_dot, b_dot = jerks(m, sine, cosine, a, b)
     resistance, constant = m[at.ARMATURE_RESISTANCE], m[at.MOTOR_CONSTANT]

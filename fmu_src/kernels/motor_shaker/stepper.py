@@ -20,13 +20,7 @@ REGULAR = 1.000001  # M J over S^2, at least: the rotor is not all unbalance, no
 
 
 def initialize(m, time):
-    """Begin at ``time`` (s) from the parameters, start values and inputs in ``m``.
-
-    Returns
-    -------
-    int
-        OK, or one of the codes of :mod:`.memory`.
-    """
+    """Begin at ``time`` (s) from parameters, start values and inputs; return a code of memory."""
     for i in range(at.BOX_POSITION, at.EVALUATION_LIMIT):
         m[i] = 0.0
     for i in range(at.TIME, at.SIZE):
@@ -48,13 +42,7 @@ def initialize(m, time):
 
 
 def restore(m, time):
-    """Compute what follows from the parameters, of a saved memory too; ``time`` is not used.
-
-    Returns
-    -------
-    int
-        OK, or INERTIA.
-    """
+    """Compute what follows from the parameters, of a saved memory too; ``time`` is not used."""
     unbalance = m[at.UNBALANCE_MASS] * m[at.UNBALANCE_RADIUS]
     m[at.UNBALANCE] = unbalance
     if not m[at.BOX_MASS] * m[at.ROTOR_INERTIA] >= REGULAR * unbalance * unbalance:
@@ -64,14 +52,7 @@ def restore(m, time):
 
 
 def advance(m, time):
-    """Advance to the communication point ``time`` (s) with the inputs in ``m``.
-
-    Returns
-    -------
-    int
-        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be
-        thrown away.
-    """
+    """Advance to ``time`` (s); after another code than OK the memory is to be thrown away."""
     begin_force(m)
     before = m[at.TIME]
     length = time - before
@@ -99,9 +80,7 @@ def advance(m, time):
 
 
 def fastest_decay(m):
-    """Return the largest rate, 1/s, at which something decays: the box's speed by its damper, the
-    current by the armature's resistance, or, without inductance, the rotor's speed by the motor.
-    """
+    """Return the largest decay rate, 1/s: of damper, armature or, without inductance, the rotor."""
     constant, resistance = m[at.MOTOR_CONSTANT], m[at.ARMATURE_RESISTANCE]
     if m[at.ARMATURE_INDUCTANCE] > 0.0:
         motor = resistance / m[at.ARMATURE_INDUCTANCE]
@@ -111,20 +90,13 @@ def fastest_decay(m):
 
 
 def refresh(m, time):
-    """Write the outputs for the inputs as they are now; ``time`` is not used.
-
-    Returns
-    -------
-    int
-        OK, or NOT_FINITE.
-    """
+    """Write the outputs for the inputs as they are now; ``time`` is not used."""
     begin_force(m)
     write_outputs(m)
     return check_finite(m)
 
 
 def check_finite(m):
-    """Return OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
     total = 0.0
     for i in range(at.BOX_POSITION, at.TIME):
         total += m[i]

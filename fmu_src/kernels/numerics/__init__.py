@@ -1,1 +1,1 @@
-"""What the kernels share: elementary functions with the same bits on every machine, first roots."""
+"""Numerics of all kernels: sine, exponential, first roots of quintics; slots of the memory."""

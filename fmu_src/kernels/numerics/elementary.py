@@ -16,19 +16,7 @@ EXP_ZERO = 700.0  # e^-700 = 1e-304: from here on zero, before subnormal numbers
 
 
 def sincos_turns(u):
-    """Return sine and cosine of ``2 pi u``.
-
-    An argument in turns reduces to an eighth of a turn without any rounding.
-
-    Parameters
-    ----------
-    u : float
-        Angle in turns, ``|u| < 2**50``.
-
-    Returns
-    -------
-    sine, cosine : float
-    """
+    """Return sine and cosine of ``2 pi u``, ``|u| < 2**50``: turns reduce without any rounding."""
     nearest = 4.0 * u + 0.5
     x = (u - 0.25 * math.floor(nearest)) * TWO_PI
     y = x * x
@@ -54,17 +42,7 @@ def sincos_turns(u):
 
 
 def exp_decay(x):
-    """Return ``e**-x`` for ``x >= 0``; 0 from 700 on.
-
-    Parameters
-    ----------
-    x : float
-        Not negative.
-
-    Returns
-    -------
-    float
-    """
+    """Return ``e**-x`` for ``x >= 0``; 0 from 700 on."""
     if x > EXP_ZERO:
         return 0.0
     k = math.floor(x * LOG2_E + 0.5)
@@ -91,13 +69,7 @@ def fraction(u):
 
 
 def small_rotation(y):  # inline
-    """Return ``cos x`` and ``sin(x)/x`` for ``y = x**2``, ``|y| <= 0.42``; cosh and sinh where y <
-    0.
-
-    Returns
-    -------
-    cosine, sine_over_x : float
-    """
+    """Return ``cos x``, ``sin(x)/x`` of ``y = x**2``, ``|y| <= 0.42``; cosh, sinh where y < 0."""
     y2 = y * y
     y4 = y2 * y2
     c = (1.0 - y * 0.5) + y2 * (1.0 / 24.0 - y * (1.0 / 720.0))

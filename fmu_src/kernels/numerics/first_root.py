@@ -20,9 +20,7 @@ CONVERGED = 1e-8  # relative: the next step of Newton's method would be its squa
 
 
 def parabola_root(h0, h1, h2):
-    """Return the first positive root of ``h0 + h1 s + h2 s^2/2`` for ``h0 >= 0``; infinity if there
-    is none.
-    """
+    """Return the first positive root of ``h0 + h1 s + h2 s^2/2``, ``h0 >= 0``, or infinity."""
     square = h1 * h1 - 2.0 * h0 * h2
     if square < 0.0:
         return INFINITE
@@ -35,9 +33,7 @@ def parabola_root(h0, h1, h2):
 
 
 def lowest_curvature(h2, h3, h4, bound, s):
-    """Return c so that the parabola ``h0 + h1 t + c t^2/2`` is below the quintic for ``0 <= t <=
-    s``.
-    """
+    """Return c such that ``h0 + h1 t + c t^2/2`` is below the quintic for ``0 <= t <= s``."""
     bent = h4 * (1.0 / 12.0) - bound * s * (1.0 / 60.0)
     lowered = h3 * (1.0 / 3.0) + (s * bent if bent < 0.0 else 0.0)
     return h2 + s * lowered if lowered < 0.0 else h2
@@ -92,24 +88,7 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
 
 
 def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
-    """Return one step of the walk, and whether it ends on the root.
-
-    Parameters
-    ----------
-    h0, h1, h2, h3, h4, bound : float
-        As in :func:`clear_step`; any sign of h0.
-    tau : float
-        Where the walk stands.
-    reach : float
-        Longest step wanted, > 0.
-    accuracy : float
-        Wanted of the root's place.
-
-    Returns
-    -------
-    step : float
-    found : bool
-    """
+    """Return a step of the walk from ``tau``, h0 of any sign; and whether it ends on the root."""
     if h0 <= 0.0:
         return 0.0, True
     if h1 < 0.0:

@@ -14,10 +14,7 @@ HIGHEST = 5
 
 
 def gap_acceleration(m, x, v, cosine, sine, tau):  # inline
-    """Return f of (18), the gap's acceleration at displacement ``x`` of both masses from where they
-    rest together, common velocity ``v``, a phase and an age of the state; negative where they are
-    pressed together.
-    """
+    """Return f of (18) with both masses ``x`` from where they rest together; negative: pressed."""
     force = m[at.FORCE_V] * v + m[at.FORCE_X] * x
     if m[at.PRELOAD] != 0.0:  # rarely
         force += m[at.PRELOAD]
@@ -28,16 +25,7 @@ def gap_acceleration(m, x, v, cosine, sine, tau):  # inline
 
 
 def first_nonzero_derivative(m, x, v, lowest):
-    """Return the first derivative of f, from order ``lowest`` on, that does not vanish from (x, v)
-    on.
-
-    Returns
-    -------
-    order : int
-        -1 where all vanish.
-    value : float
-        The derivative, 0 where all vanish.
-    """
+    """Return order >= ``lowest`` (-1: none) and value of f's first derivative that is not 0."""
     sine, cosine = m[at.SINE], m[at.COSINE]
     d_cos, d_sin = m[at.OSCILLATOR_3 + at.DRIVE], m[at.OSCILLATOR_3 + at.DRIVE + 1]
     c0, c1, c2, c3 = cubic_drive(m, at.OSCILLATOR_3, 0.0)

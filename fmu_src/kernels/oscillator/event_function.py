@@ -24,7 +24,6 @@ AHEAD = 5.0  # spacings from an evaluation on for which its bound holds
 
 
 def set_flight_event_function(m):
-    """Set the event function of a flight: the gap, ``xi_2 - xi_1`` and the clearance."""
     m[at.EVENT_OFFSET] = m[at.GAP_OFFSET]
     for i in range(2):
         m[at.EVENT_HARMONIC + i] = m[at.HARMONIC_2 + i] - m[at.HARMONIC_1 + i]
@@ -38,9 +37,7 @@ def set_flight_event_function(m):
 
 
 def set_contact_event_function(m):
-    """Set the event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 -
-    omega_2^2) xi_3`` (18).
-    """
+    """Set the event function of contact, -f (18)."""
     m[at.EVENT_OFFSET] = -m[at.PRELOAD]
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     h_cos, h_sin, eta = m[at.HARMONIC_3], m[at.HARMONIC_3 + 1], m[at.ETA]
@@ -66,9 +63,7 @@ def set_contact_event_function(m):
 
 
 def is_constant(m):
-    """Return whether the event function is a constant above zero: at rest with a clearance, or
-    pressed together by two oscillators that are alike.
-    """
+    """Return whether the event function is a constant > 0: at rest, or two oscillators alike."""
     if m[at.EVENT_OFFSET] <= 0.0 or m[at.SECULAR] != 0.0:
         return False
     size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
@@ -81,22 +76,17 @@ def is_constant(m):
 
 
 def force_phasor(m, x, v):
-    """Return the free part of -f (18) from the free part of the displacement, as value and
-    derivative.
-    """
+    """Return the free part of -f (18), value and derivative, from that of the displacement."""
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     return p * v + q * x, p * free_acceleration(m, at.OSCILLATOR_3, x, v) + q * v
 
 
 def free_acceleration(m, b, x, v):
-    """Return the acceleration of a free part: ``x'' = -2 D x' - omega^2 x``."""
     return -(2.0 * m[b + at.DAMPING] * v + m[b + at.OMEGA_SQUARED] * x)
 
 
 def derivative_bounds(m, order):
-    """Return bounds of the event function's derivative of an order >= 4 at all later times: of the
-    steady part and of the free parts A and B at tau = 0.
-    """
+    """Return bounds of a derivative (order >= 4) from now on: steady part, free A and B."""
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     for _ in range(order):
         steady *= m[at.ETA]
@@ -121,7 +111,6 @@ def envelope(m, b, x, v):
 
 
 def begin_nodes(m):
-    """Set the state's first interval: the event function at its end, and the remainder."""
     start_nodes(m)
     set_node_values(m, at.RIGHT_VALUES, at.RIGHT, m[at.RIGHT_AGE])
     set_remainder(m)
@@ -138,9 +127,7 @@ def set_node_values(m, slot, node, tau):
 
 
 def set_remainder(m):
-    """Set how far the quintic between two nodes may be wrong, from the node to the left on, until
-    the state is rewritten.
-    """
+    """Set how far the quintic between two nodes may be wrong until the state is rewritten."""
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     square = m[at.NODE_ETA] * m[at.NODE_ETA]
     bound = steady * (square * square * square)
@@ -202,9 +189,7 @@ def difference_bound(m, order, x, v, x_b, v_b, time):
 
 
 def event_values(m, plain, x, v, x_b, v_b, cosine, sine, tau):  # inline
-    """Return the event function and two derivatives from all phasors; ``plain`` as in
-    :func:`.nodes.next_phasors`.
-    """
+    """Return the event function and two derivatives from all phasors."""
     if plain or m[at.MODE] == at.FLIGHT:
         h0, h1 = x_b - x, v_b - v
         h2 = free_acceleration(m, at.OSCILLATOR_2, x_b, v_b) - free_acceleration(
@@ -243,13 +228,7 @@ def free_part_derivatives(m, b, x, v):
 
 
 def evaluate(m, tau):  # inline
-    """Evaluate the event function at ``tau``: value, four derivatives, and a bound of the fifth
-    that holds for AHEAD spacings from there on.
-
-    Returns
-    -------
-    h0, h1, h2, h3, h4, bound : float
-    """
+    """Evaluate at ``tau``: value, four derivatives, a bound of the fifth for AHEAD spacings."""
     m[at.WORK] += 1.0
     if m[at.SERIES] != 0.0:  # rarely
         h0, h1, h2, h3, h4 = gap_derivatives(m, tau)

@@ -31,9 +31,7 @@ def inputs_changed(m):
 
 
 def begin_segment(m):
-    """Set the excitation constants from the present inputs; a cubic continues where its inputs were
-    not set.
-    """
+    """Set the excitation from the present inputs; a cubic runs on where its inputs were not set."""
     scale = 1.0 / m[at.OMEGA]
     renew_cubic(m, 0, at.BOX_ACCELERATION, at.SEGMENT_INPUTS + 2, -scale * scale)
     renew_cubic(m, 1, at.FORCE1, at.SEGMENT_INPUTS + 8, 1.0)
@@ -46,11 +44,7 @@ def begin_segment(m):
 
 
 def renew_cubic(m, place, inputs, known, unit):
-    """Restart a cubic at the present state's start if one of its inputs was set, or has
-    another value than in the segment before, ``known``.
-
-    ``unit`` turns its value, in SI, into that of a forcing.
-    """
+    """Restart a cubic if an input was set or changed; ``unit`` turns SI into a forcing."""
     begins = m[at.CUBIC_SET + place] != 0.0
     for i in range(4):
         if m[known + i] != m[inputs + i]:
@@ -68,7 +62,6 @@ def renew_cubic(m, place, inputs, known, unit):
 
 
 def mirror(m):
-    """Go over to the mirrored system, or back."""
     m[at.SIDE] = -m[at.SIDE]
     set_side(m)
     set_excitation(m)
@@ -100,7 +93,6 @@ def set_excitation(m):
 
 
 def is_any(m, first, count):
-    """Return whether any of some slots is not zero."""
     for i in range(count):
         if m[first + i] != 0.0:
             return True
@@ -117,17 +109,13 @@ def set_drive(m, b):
 
 
 def harmonic_drive(m, b, cosine, sine):  # inline
-    """Return the harmonic forcing of one oscillator, by sine alone, and its first derivative, at a
-    phase.
-    """
+    """Return an oscillator's harmonic forcing, by sine alone, and its first derivative."""
     d_sin = m[b + at.DRIVE + 1]
     return d_sin * sine, d_sin * m[at.ETA] * cosine
 
 
 def set_harmonic(m, b, harmonic):
-    """Set the forced amplitudes a_i, b_i of (11), times the forcing; zeros where the amplitude
-    grows.
-    """
+    """Set the forced amplitudes a_i, b_i of (11), times the forcing; zeros where they grow."""
     d_cos, d_sin, eta = m[b + at.DRIVE], m[b + at.DRIVE + 1], m[at.ETA]
     m[harmonic] = 0.0
     m[harmonic + 1] = 0.0
@@ -141,14 +129,12 @@ def set_harmonic(m, b, harmonic):
 
 
 def drive_at(m, b, cosine, sine, tau):
-    """Return a forcing and its first derivative at a phase, ``tau`` after the present state's
-    start.
-    """
+    """Return a forcing and its derivative at a phase, ``tau`` after the state's start."""
     return drive_by_ages(m, b, cosine, sine, cubic_ages(m, tau))
 
 
 def drive_by_ages(m, b, cosine, sine, ages):
-    """Return a forcing and its first derivative at a phase, so long after the cubics began."""
+    """Return a forcing and its derivative at a phase, the cubics being so old."""
     value, rate = harmonic_drive(m, b, cosine, sine)
     if m[at.CUBIC_PRESENT] == 0.0:
         return value, rate
@@ -157,9 +143,7 @@ def drive_by_ages(m, b, cosine, sine, ages):
 
 
 def cubic_drive(m, b, tau):
-    """Return value and three derivatives of a forcing's cubic part, ``tau`` after the present
-    state's start.
-    """
+    """Return value and three derivatives of a forcing's cubic part."""
     return cubic_by_ages(m, b, cubic_ages(m, tau))
 
 
@@ -169,9 +153,7 @@ def cubic_ages(m, tau):  # inline
 
 
 def cubic_by_ages(m, b, ages):  # inline
-    """Return value and three derivatives of a forcing's cubic part, so long after the cubics
-    began.
-    """
+    """Return value and three derivatives of a forcing's cubic part, the cubics being so old."""
     age, age_1, age_2 = ages
     q0, q1, q2, q3 = cubic_at(m, at.CUBIC, age)
     if m[at.UNEQUAL] != 0.0:  # rarely
@@ -193,11 +175,7 @@ def cubic_at(m, cubic, age):
 
 
 def input_derivative(m, first, order, age):
-    """Return a derivative, in SI, of the cubic that the segment's inputs from slot ``first`` on
-    give, ``age`` (in tau) after it began.
-
-    A constant keeps its bits.
-    """
+    """Return a derivative, in SI, of the inputs' cubic at slot ``first``, ``age`` (tau) old."""
     if age == 0.0:  # usually
         return m[first + order] + 0.0
     time = age / m[at.OMEGA]
@@ -208,11 +186,7 @@ def input_derivative(m, first, order, age):
 
 
 def set_cubic_response(m, b, response):
-    """Set the cubic that solves (6) for a cubic forcing: value and three derivatives, at the
-    present state's start.
-
-    By comparing coefficients.
-    """
+    """Set the cubic that solves (6) for a cubic forcing, by comparing coefficients."""
     cubic = cubic_drive(m, b, 0.0)
     w, twice = m[b + at.OMEGA_SQUARED], 2.0 * m[b + at.DAMPING]
     q3 = cubic[3] / w

@@ -18,9 +18,7 @@ SAFETY = (
 
 
 def bernstein_coefficients(m, l0, l1, l2, r0, r1, r2, low):
-    """Return the six Bernstein coefficients of the quintic from values and derivatives at both
-    ends, b_2 and b_3 lowered by ``low``.
-    """
+    """Return the six Bernstein coefficients of the quintic, b_2 and b_3 lowered by ``low``."""
     fifth, twentieth = m[at.HERMITE], m[at.HERMITE + 1]
     l1, r1 = fifth * l1, fifth * r1
     b2 = (l0 + 2.0 * l1) + (twentieth * l2 - low)
@@ -29,7 +27,6 @@ def bernstein_coefficients(m, l0, l1, l2, r0, r1, r2, low):
 
 
 def present_coefficients(m, low):
-    """Return the Bernstein coefficients of the present interval, b_2 and b_3 lowered by ``low``."""
     return bernstein_coefficients(
         m,
         m[at.LEFT_VALUES],
@@ -43,34 +40,25 @@ def present_coefficients(m, low):
 
 
 def lowest_after(m, h0, h1, h2, low):
-    """Return the lowest of the three coefficients that belong to the left end of an interval, from
-    value and derivatives there.
-    """
+    """Return the lowest of the three coefficients at the left end of an interval."""
     fifth = m[at.HERMITE] * h1
     b2 = (h0 + 2.0 * fifth) + (m[at.HERMITE + 1] * h2 - low)
     return min(h0, min(h0 + fifth, b2))
 
 
 def lowest_before(m, h0, h1, h2, low):
-    """Return the lower of the two inner coefficients that belong to the right end of an interval,
-    from value and derivatives there.
-    """
+    """Return the lower of the two inner coefficients at the right end of an interval."""
     fifth = m[at.HERMITE] * h1
     b3 = (h0 - 2.0 * fifth) + (m[at.HERMITE + 1] * h2 - low)
     return min(h0 - fifth, b3)
 
 
 def has_no_root(b0, b1, b2, b3, b4, b5):
-    """Return whether the Bernstein coefficients prove that the quintic has no root, except perhaps
-    at the interval's start.
-    """
+    """Return whether the coefficients prove no root, but perhaps at the interval's start."""
     return min(min(b0, b1), min(b2, b3), b4) >= 0.0 and b5 > 0.0
 
 
 def interval_is_below(m, ceiling):
-    """Return whether the event function certainly does not rise above ``ceiling`` in the present
-    interval.
-    """
     b0, b1, b2, b3, b4, b5 = present_coefficients(m, -m[at.REMAINDER])
     return max(max(b0, b1), max(b2, b3), max(b4, b5)) <= ceiling
 
@@ -111,9 +99,7 @@ def clear_part(b0, b1, b2, b3, b4, b5):
 
 
 def last_crossing(b0, b1, b2, b3, b4, b5):
-    """Return a point slightly before the last root of a quintic that is negative at 1; 0 if none is
-    found.
-    """
+    """Return a point just before the last root of a quintic negative at 1; 0 if none is found."""
     a1, a2 = 5.0 * (b1 - b0), 10.0 * ((b2 - b1) - (b1 - b0))
     a3 = 10.0 * ((b3 - b0) - 3.0 * (b2 - b1))
     a4 = 5.0 * ((b4 + b0) - 4.0 * (b3 + b1) + 6.0 * b2)
@@ -139,9 +125,7 @@ def last_crossing(b0, b1, b2, b3, b4, b5):
 
 
 def part_is_clear(b0, b1, b2, b3, b4, b5, s):
-    """Return whether the quintic's part up to s has no negative coefficient, by de Casteljau's
-    algorithm.
-    """
+    """Return whether the part up to s has no negative coefficient, by de Casteljau's algorithm."""
     if b0 < 0.0:
         return False
     b0, b1, b2, b3, b4 = (

@@ -10,24 +10,16 @@ from . import memory as at
 
 
 def common_velocity(m, v1, v2):
-    """Return the velocity of both masses after a perfectly plastic impact, which keeps the
-    momentum.
-    """
     return (v1 + m[at.MU] * v2) * m[at.SHARE]
 
 
 def restitution_coefficient(m, closing):
-    """Return the coefficient of restitution at a closing velocity (m per unit of tau): e itself, to
-    the last bit, where it is constant.
-    """
+    """Return the coefficient at a closing velocity (m/tau); e to the last bit where constant."""
     return m[at.E] / (1.0 + m[at.E_SLOPE] * (closing * m[at.OMEGA]))
 
 
 def velocities_after_impact(m, v1, v2, e):
-    """Return both velocities after an impact, (15): momentum kept, gap velocity times -e.
-
-    With ``(1+e)/(1+mu)`` in its second line.
-    """
+    """Return both velocities after an impact, (15), with ``(1+e)/(1+mu)`` in its second line."""
     if m[at.WALL] != 0.0:  # rarely
         return -e * (v1 - v2), 0.0
     common = common_velocity(m, v1, v2)
@@ -56,11 +48,7 @@ def chattering_ends(m, separation, force):
 
 
 def count_impact(m, time, closing, e, sticks):
-    """Count an impact and add its loss to the energy balance.
-
-    ``closing`` is the velocity before it (m per unit of tau), ``e`` its coefficient of restitution.
-    Where the masses stick, the energy of the flights left out is lost too.
-    """
+    """Count an impact and its loss, with that of the flights left out where the masses stick."""
     m[at.IMPACT_COUNT] += 1.0
     m[at.IMPACT_TIME] = time
     velocity = closing * m[at.OMEGA]

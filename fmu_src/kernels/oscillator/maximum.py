@@ -19,9 +19,7 @@ SMALLEST, GROWTH = 1e-9, 1.25
 
 
 def walk_with_largest_gap(m, start, target):
-    """Walk to ``target`` and record the largest gap between ``start`` and there; the caller records
-    the gap at ``start`` and at ``target``.
-    """
+    """Walk to ``target``; record the largest gap from ``start``, both ends left to the caller."""
     if m[at.SIDE] < 0.0:  # rarely
         walk(m, target)
         record_least_gap(m, start, target if target < m[at.END] else m[at.END])
@@ -45,9 +43,7 @@ def walk_with_largest_gap(m, start, target):
 
 
 def record_least_gap(m, start, stop):
-    """Raise the recorded maximum to what the stroke leaves of the least gap of the mirrored system
-    in a part of the present state.
-    """
+    """Raise the maximum to what the stroke leaves of the mirrored system's least gap in a part."""
     if m[at.X_REL_MAX] >= m[at.LIMIT]:
         return
     place = m[at.LEFT_AGE] + m[at.HALF_SPACING]
@@ -58,7 +54,6 @@ def record_least_gap(m, start, stop):
 
 
 def record_largest_gap(m, start, stop):
-    """Raise the recorded maximum to the largest gap in a part of the present interval."""
     highest = m[at.X_REL_MAX]
     if interval_is_below(m, highest) or stop <= start:
         return
@@ -73,9 +68,6 @@ def record_largest_gap(m, start, stop):
 
 
 def record_peaks(m, start, stop):
-    """Raise the recorded maxima of displacements and accelerations to those in a part of the
-    present state.
-    """
     place = m[at.LEFT_AGE] + m[at.HALF_SPACING]
     for slot in range(at.X1_MAX, at.A2_MAX + 1):
         highest = largest_value(m, slot, 1.0, start, stop, m[slot])
@@ -85,10 +77,7 @@ def record_peaks(m, start, stop):
 
 
 def step_to_summit(h1, h2, h3, h4, bound, reach):
-    """Return a step towards the next summit, and whether it ends there.
-
-    Height is of second order in the summit's place: 1e-9 of it will do.
-    """
+    """Return a step to the next summit, within 1e-9 of its height, and whether it ends there."""
     root = parabola_root(h1, h2, h3)
     if root < reach and (abs(h4) + bound * root) * root * root * root <= -6e-9 * reach * (
         h2 + h3 * root
@@ -98,9 +87,7 @@ def step_to_summit(h1, h2, h3, h4, bound, reach):
 
 
 def scaled_clear_step(h0, h1, h2, h3, h4, bound, reach):
-    """Return :func:`..numerics.first_root.clear_step` in units of the bound, or of ``-h4`` without
-    one: scaled amplitudes take the same steps.
-    """
+    """Return ``clear_step`` in units of the bound, or of ``-h4``: scaling keeps steps."""
     unit = bound if bound > 0.0 else -h4
     scale = 1.0 / unit if unit > LEAST_BOUND else 1.0
     return clear_step(
@@ -109,9 +96,6 @@ def scaled_clear_step(h0, h1, h2, h3, h4, bound, reach):
 
 
 def gap_rounding(m, tau):
-    """Return the rounding error of the gap at ``tau``, where it was evaluated last: a gap that is
-    larger by less does not count.
-    """
     if m[at.SERIES] != 0.0:
         return 2.0 * EPS * m[at.SERIES_GAP + 1] * m[at.END]
     p = at.POINT
@@ -138,12 +122,7 @@ def evaluate_signal(m, slot, sign, tau):
 
 
 def largest_value(m, slot, sign, start, stop, highest):
-    """Return the larger of ``highest`` and the largest value of ``sign`` times a signal of the
-    present state in ``start <= tau <= stop``.
-
-    From each point the walk continues as far as the signal certainly stays below what is known, or,
-    climbing, to the first root of its slope.
-    """
+    """Return the larger of ``highest`` and a signal's largest value in ``start <= tau <= stop``."""
     tau = start
     reach = AHEAD * m[at.SPACING]
     least = SMALLEST * m[at.SPACING]

@@ -44,13 +44,7 @@ FAINTEST = 2e-292  # m, about 2 to the -969: the last digits of less are below t
 
 
 def state_at(m, tau):
-    """Return displacements and velocities ``tau`` after the state's start, (10).
-
-    Returns
-    -------
-    x1, v1, x2, v2 : float
-        m, and m per unit of tau, from the state's own origin; :func:`gap_between` has the gap.
-    """
+    """Return x1, v1, x2, v2 ``tau`` after the state's start, (10): m, and m per unit of tau."""
     if tau == 0.0:  # rarely
         # exactly what the state began with: a start from rest is at rest
         return m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
@@ -63,7 +57,6 @@ def state_at(m, tau):
 
 
 def state_at_end(m):
-    """Return :func:`state_at` at the state's end."""
     if m[at.MODE] == at.CONTACT and m[at.END] * m[at.RATE] < BRIEF:  # rarely
         x, v = brief_contact(m, m[at.END])
         return x, v, x, v
@@ -74,12 +67,7 @@ def state_at_end(m):
 
 
 def brief_contact(m, tau):
-    """Return displacement and velocity a very short time after a contact's start, by their Taylor
-    series.
-
-    From rest they are far below the rounding of the closed form's terms; whether the masses part
-    hangs on them.
-    """
+    """Return the motion just after contact by Taylor: the closed form rounds it away."""
     twice, square = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING], m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
     drive, rate = harmonic_drive(m, at.OSCILLATOR_3, m[at.COSINE], m[at.SINE])
     cubic = cubic_drive(m, at.OSCILLATOR_3, 0.0)
@@ -103,9 +91,7 @@ def state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
 
 
 def counts_from_unloaded_positions(m):  # inline
-    """Return whether the present state's displacements count from the unloaded positions, not from
-    where the masses rest together.
-    """
+    """Return whether displacements count from unloaded positions, not from rest together."""
     return m[at.MODE] == at.FLIGHT and m[at.SERIES] == 0.0
 
 
@@ -119,9 +105,7 @@ def gap_between(m, tau, x1, x2):  # inline
 
 
 def from_outside(m, x1, v1, x2, v2, gap):
-    """Convert a motion from unloaded positions, with its gap, to what an importer sees: back from
-    the mirrored system, and without what rounding leaves at a wall or beyond the gap's limit.
-    """
+    """Convert a motion to what an importer sees: mirrored back, inside wall and stroke."""
     if m[at.WALL] != 0.0:
         x2, v2 = 0.0, 0.0
     gap = min(gap, m[at.LIMIT])
@@ -131,23 +115,18 @@ def from_outside(m, x1, v1, x2, v2, gap):
 
 
 def from_unloaded(m, x1, x2):  # inline
-    """Convert the displacements of :func:`state_at` to those from the unloaded positions."""
     if m[at.GAP_OFFSET] != 0.0 and not counts_from_unloaded_positions(m):  # rarely
         x1, x2 = x1 + m[at.REST_1], x2 + m[at.REST_2]
     return x1, x2
 
 
 def from_rest_together(m, x1, x2):
-    """Convert the displacements of :func:`state_at` to those from where the masses rest
-    together.
-    """
     if m[at.GAP_OFFSET] != 0.0 and counts_from_unloaded_positions(m):  # rarely
         x1, x2 = x1 - m[at.REST_1], x2 - m[at.REST_2]
     return x1, x2
 
 
 def state_and_phase_at(m, tau):  # inline
-    """Return :func:`state_at`, and cosine and sine of the excitation's phase there."""
     if tau != 0.0 and m[at.SERIES] == 0.0 and m[at.NODE_ETA] != 0.0:
         x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
         x1, v1, x2, v2 = state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
@@ -165,27 +144,21 @@ def beside_wall(m, x):
 
 
 def side_number(m):
-    """Return 1 in the system itself, 2 in the mirrored one."""
     return 1.5 - 0.5 * m[at.SIDE]
 
 
 def common_position(m, x1, x2):
-    """Return the centre of mass, where both masses are put at an impact: they differ by rounding
-    alone.
-    """
+    """Return the centre of mass, where an impact puts both masses: they differ by rounding."""
     return (x1 + m[at.MU] * x2) * m[at.SHARE]
 
 
 def move_origin(m, tau):
-    """Move the origin of time by ``tau`` to a new state's start, (5), without losing digits over
-    millions of states.
-    """
+    """Move the origin of time by ``tau``, (5), without losing digits over millions of states."""
     advance_origin(m, tau)
     set_phase(m, m[at.TURN] + m[at.ETA_TURNS] * tau)
 
 
 def advance_origin(m, tau):
-    """Move the origin of time by ``tau``, but leave the phase."""
     total = m[at.ORIGIN] + tau
     part = total - m[at.ORIGIN]
     error = (m[at.ORIGIN] - (total - part)) + (tau - part)
@@ -199,9 +172,7 @@ def advance_origin(m, tau):
 
 
 def move_origin_to_end(m):
-    """Move the origin of time to the end of the present state; the phase is rotated there from node
-    to node, or recomputed after as many rotations as a block has nodes.
-    """
+    """Move the origin to the state's end; rotate the phase, recompute it after a block."""
     turns = m[at.ROTATIONS] + m[at.AT_END_NODE] + 1.0
     if m[at.AT_END_NODE] == 0.0 or m[at.NODE_ETA] == 0.0 or turns > BLOCK:
         m[at.ROTATIONS] = 0.0
@@ -215,7 +186,6 @@ def move_origin_to_end(m):
 
 
 def set_phase(m, turns):
-    """Set the phase at the state's start, in turns, with its cosine and sine."""
     m[at.TURN] = fraction(turns)
     sine, cosine = sincos_turns(m[at.TURN])
     m[at.SINE] = sine
@@ -223,21 +193,7 @@ def set_phase(m, turns):
 
 
 def begin_state(m, x1, v1, x2, v2, gap, lowest):
-    """Begin the state that follows from displacements and velocities.
-
-    Parameters
-    ----------
-    m : flat memory
-        Origin and phase already moved to the new state's start.
-    x1, v1, x2, v2 : float
-        m, and m per unit of tau; with a gap from the unloaded positions, without one from where
-        the masses rest together.
-    gap : float
-        Between the masses, m.
-    lowest : int
-        First derivative of f that may decide on the boundary: 1 where f is known to vanish, at a
-        release, else 0.
-    """
+    """Begin the state that follows; ``lowest`` is 1 at a release, where f is known to vanish."""
     if m[at.MODE] == at.GLUED:  # rarely
         begin_common(m, at.GLUED, x1, v1)
         m[at.CLEAR] = INFINITE
@@ -250,9 +206,7 @@ def begin_state(m, x1, v1, x2, v2, gap, lowest):
 
 
 def begin_touching_state(m, x, v1, v2, lowest):
-    """Begin the state that follows where the masses touch, at ``x`` from where they rest together,
-    with ``lowest`` as in :func:`begin_state`.
-    """
+    """Begin the state that follows a touch at ``x`` from where the masses rest together."""
     if v1 > v2:
         v1, v2 = collide(m, x, v1, v2)
     if v2 > v1:  # usually
@@ -271,9 +225,7 @@ def begin_touching_state(m, x, v1, v2, lowest):
 
 
 def collide(m, x, v1, v2):
-    """Count an impact and return the velocities after it, both the same where chattering ends in
-    permanent contact.
-    """
+    """Count an impact and return the velocities after it, both the same where chattering ends."""
     closing = v1 - v2
     m[at.IMPACT_SIDE] = side_number(m)
     common = common_velocity(m, v1, v2)
@@ -285,21 +237,16 @@ def collide(m, x, v1, v2):
 
 
 def gap_acceleration_at_start(m, x, v):  # inline
-    """Return f of (18) at the present state's start."""
     return gap_acceleration(m, x, v, m[at.COSINE], m[at.SINE], 0.0)
 
 
 def faces_together(m, x):
-    """Return both displacements from the unloaded positions, ``x`` from where the masses rest
-    together.
-    """
     if m[at.GAP_OFFSET] != 0.0:  # rarely
         return x + m[at.REST_1], x + m[at.REST_2]
     return x, x
 
 
 def begin_flight(m, x1, v1, x2, v2, gap):
-    """Begin a flight, and set the event function's values at its start."""
     open_flight(m, x1, v1, x2, v2, gap)
     slope = v2 - v1
     m[at.LEFT_VALUES] = gap
@@ -313,9 +260,7 @@ def begin_flight(m, x1, v1, x2, v2, gap):
 
 
 def open_flight(m, x1, v1, x2, v2, gap):
-    """Begin a flight from initial conditions that count from the unloaded positions; its event
-    function is the gap.
-    """
+    """Begin a flight from unloaded positions; its event function is the gap."""
     m[at.MODE] = at.FLIGHT
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
@@ -333,9 +278,7 @@ def open_flight(m, x1, v1, x2, v2, gap):
 
 
 def begin_common(m, mode, x, v):
-    """Begin permanent contact or the glued state, both masses as one, from where they rest
-    together; the event function is ``-f`` of (18).
-    """
+    """Begin permanent contact or the glued state; the event function is -f of (18)."""
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
@@ -350,7 +293,7 @@ def begin_common(m, mode, x, v):
 
 
 def open_state(m, x1, v1, x2, v2, gap):
-    """Set a new state's initial conditions, and mark its end as not known yet."""
+    """Set a new state's initial conditions; its end is not known yet."""
     m[at.SERIES] = 0.0
     m[at.AT_END_NODE] = 0.0
     m[at.BEGIN] = x1
@@ -364,9 +307,7 @@ def open_state(m, x1, v1, x2, v2, gap):
 
 
 def begin_after_impact(m, x, v1, v2):
-    """Begin the flight after an impact at displacement ``x`` with velocities ``v2 > v1``; a short
-    flight's end is computed at once.
-    """
+    """Begin the flight after an impact; a short flight's end is computed at once."""
     slope = v2 - v1
     curvature = gap_acceleration_at_start(m, x, v1)
     curvature -= 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
@@ -390,10 +331,7 @@ def begin_after_impact(m, x, v1, v2):
 
 
 def skip_clear_start(m, h1, h2):
-    """Move CLEAR over the part of the first interval that certainly has no root, and return whether
-    there is one; the start is on the boundary, with the event function's derivatives ``h1 > 0``, or
-    ``h1 = 0 < h2``.
-    """
+    """Move CLEAR past the part without root of an interval that starts on the boundary, if any."""
     m[at.LEFT_VALUES] = 0.0
     m[at.LEFT_VALUES + 1] = h1
     m[at.LEFT_VALUES + 2] = h2
@@ -409,18 +347,7 @@ def certified_first_step(m, h1, h2, h3, h4):
 
 
 def leave_boundary(m, order, value):
-    """Leave a start on the boundary where the event function vanishes.
-
-    Parameters
-    ----------
-    m : flat memory
-        With the new state's event function.
-    order : int
-        Of the event function's first derivative that does not vanish, 0 where the event function
-        itself does not, -1 if all vanish.
-    value : float
-        That derivative, > 0.
-    """
+    """Leave the boundary; ``order``, ``value``: first derivative that is not 0, (-1: none)."""
     if order == 0:
         return
     if order < 0:
@@ -443,9 +370,7 @@ def leave_boundary(m, order, value):
 
 
 def grown_to(step, order, value):
-    """Return a bound of what a function whose first derivative that does not vanish has a value is
-    after a step: as a bound of the next derivative adds half at most.
-    """
+    """Return a bound of a function after a step, its derivative adding half at most."""
     size = 1.5 * value
     for k in range(order):
         size *= step / (k + 1.0)
@@ -459,7 +384,6 @@ def derivative_bound(m, order):
 
 
 def end_state(m):
-    """Carry out the end of the present state and begin the next one."""
     m[at.WORK] += 1.0
     x1, v1, x2, v2 = state_at_end(m)
     event = m[at.END_KIND] != at.END_RENEWAL

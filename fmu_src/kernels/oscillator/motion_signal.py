@@ -16,13 +16,7 @@ from .secular import driven_bound
 
 
 def evaluate_motion(m, slot, sign, tau):
-    """Evaluate ``sign`` times a signal, named by the slot of its maximum, at an age of the state.
-
-    Returns
-    -------
-    h0, h1, h2, h3, h4, bound : float
-        Value, four derivatives by tau, and a bound of the fifth for AHEAD spacings from there on.
-    """
+    """Evaluate the signal of a maximum's slot: value, four derivatives, bound of the fifth."""
     m[at.WORK] += 1.0
     second = slot == at.X2_MAX or slot == at.A2_MAX
     b, harmonic, cubic = at.OSCILLATOR_3, at.HARMONIC_3, at.CUBIC_A
@@ -61,10 +55,7 @@ def evaluate_motion(m, slot, sign, tau):
 
 
 def forced_acceleration(m, b, unit, tau, cosine, sine, derivatives, later):
-    """Return the absolute acceleration, ``-unit`` times the one relative to the box less the box's
-    forcing, with four derivatives and a bound of the fifth, from derivatives of the displacement
-    and the bound without forces.
-    """
+    """Return the absolute acceleration, four derivatives and a bound of the fifth."""
     h2, h3, h4, h5 = derivatives
     twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
     eta = m[at.ETA]
@@ -97,11 +88,7 @@ def forcing_at(m, b, tau, cosine, sine):
 
 
 def later_bounds(m, b, harmonic, cubic, tau, x, v, cosine, sine):
-    """Return bounds of the displacement's fifth and sixth derivative from an age of the state on.
-
-    In a short flight, of at most 0.2 of the fastest rate's radian, as in
-    :func:`.series.fifth_bound`.
-    """
+    """Return bounds of the displacement's fifth and sixth derivative from an age on."""
     if m[at.SERIES] != 0.0:  # rarely
         rate, part = m[at.RATE], m[at.RATE_INVERSE]
         f0, f1, f2, f3 = forcing_at(m, b, tau, cosine, sine)
@@ -117,8 +104,5 @@ def later_bounds(m, b, harmonic, cubic, tau, x, v, cosine, sine):
     fifth, sixth = envelope(m, b, x5, x6) + steady, envelope(m, b, x6, x7) + steady * eta
     if m[at.SECULAR] != 0.0:  # rarely
         time = AHEAD * m[at.SPACING]
-        fifth, sixth = (
-            fifth + driven_bound(m, b, 5, time),
-            sixth + driven_bound(m, b, 6, time),
-        )
+        fifth, sixth = (fifth + driven_bound(m, b, 5, time), sixth + driven_bound(m, b, 6, time))
     return fifth, sixth

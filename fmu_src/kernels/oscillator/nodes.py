@@ -26,9 +26,7 @@ FURTHEST = 4503599627370496.0  # 2**52 nodes, or turns: up to there each has its
 
 
 def set_grid(m):
-    """Set the spacing and the constant rotations of a segment, unless they are the same as
-    before.
-    """
+    """Set spacing and rotations of a segment, unless they are those of before."""
     eta = m[at.ETA] if m[at.SHAKEN] != 0.0 else 0.0
     if m[at.SPACING] != 0.0 and eta == m[at.NODE_ETA]:
         return
@@ -55,9 +53,7 @@ def set_grid(m):
 
 
 def node_spacing(fastest):
-    """Return the spacing of the nodes: at most ANGLE over the fastest frequency, eight bits
-    long.
-    """
+    """Return the spacing of nodes: ANGLE over the fastest frequency at most, eight bits long."""
     longest = ANGLE / fastest
     unit = 1.0
     while unit > longest:
@@ -79,9 +75,7 @@ def set_rotation_constants(m, b, h):
 
 
 def rotation_over(m, b, t):
-    """Return the four factors that turn a free part (x, v) over a time ``t``: those that give the
-    later x from x and v, then those that give the later v.
-    """
+    """Return four factors that turn a free part over ``t``: later x, then later v, by x and v."""
     C, S, _ = fundamental_solutions(m, b, t)
     damped = m[b + at.DAMPING] * S
     return C + damped, S, -m[b + at.OMEGA_SQUARED] * S, C - damped
@@ -98,16 +92,12 @@ def max_nodes(m):
 
 
 def is_too_fast(m):
-    """Return whether the fastest change, by a frequency or a damper, is too fast for derivatives to
-    be numbers.
-    """
+    """Return whether the fastest change is too fast for derivatives to be numbers."""
     return not m[at.RATE] <= FASTEST_RATE
 
 
 def is_countable(m, tau):
-    """Return whether nodes and turns of the excitation can be counted up to an age of the present
-    state: every look-up of a node ends.
-    """
+    """Return whether nodes and turns can be counted up to an age: every look-up of a node ends."""
     return tau < FURTHEST * m[at.SPACING] and m[at.ETA_TURNS] * tau < FURTHEST
 
 
@@ -125,9 +115,6 @@ def start_nodes(m):
 
 
 def set_right_phasors(m, node):
-    """Set the phasors of the right node to those one spacing after the phasors in the slots from
-    ``node`` on.
-    """
     x, v, x_b, v_b, cosine, sine = next_phasors(
         m, False, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5]
     )
@@ -135,7 +122,6 @@ def set_right_phasors(m, node):
 
 
 def put_phasors(m, slot, p0, p1, p2, p3, cosine, sine):
-    """Write phasors to six slots, in the order of the arguments."""
     m[slot] = p0
     m[slot + 1] = p1
     m[slot + 2] = p2
@@ -145,16 +131,11 @@ def put_phasors(m, slot, p0, p1, p2, p3, cosine, sine):
 
 
 def is_plain_flight(m):
-    """Return whether the present state is a flight that only a harmonic drives, at no
-    resonance.
-    """
+    """Return whether a harmonic alone drives the present flight, off any resonance."""
     return m[at.MODE] == at.FLIGHT and m[at.SECULAR] == 0.0 and m[at.CUBIC_PRESENT] == 0.0
 
 
 def next_phasors(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
-    """Return all phasors one spacing later; ``plain`` where the state is known to be a plain
-    flight.
-    """
     if not plain and m[at.SECULAR] != 0.0:  # rarely
         return next_driven_phasors(m, x, v, x_b, v_b, cosine, sine)
     a = (at.OSCILLATOR_1 if plain else oscillator_a(m)) + at.STEP_ON
@@ -170,12 +151,10 @@ def next_phasors(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
 
 
 def starts_block(node):
-    """Return whether the phasors at a node are recomputed from the closed form."""
     return math.floor(node * (1.0 / BLOCK)) * BLOCK == node
 
 
 def advance_interval(m):
-    """Make the next interval the present one."""
     m[at.NODE] += 1.0
     m[at.LEFT_AGE] = m[at.RIGHT_AGE]
     m[at.RIGHT_AGE] = (m[at.NODE] + 1.0) * m[at.SPACING]
@@ -213,9 +192,7 @@ def free_part_after(m, b, x, v, t):
 
 
 def driven_part_after(m, b, x, v, t, phases):
-    """Return :func:`free_part_after`, driven on the way where the amplitude grows: ``phases`` are
-    cosine and sine of the excitation before and after.
-    """
+    """Return :func:`free_part_after`, driven by ``phases`` (cosine, sine before and after)."""
     if m[b + at.DRIVEN] == 0.0:  # usually
         return free_part_after(m, b, x, v, t)
     old_cosine, old_sine, cosine, sine = phases
@@ -226,7 +203,6 @@ def driven_part_after(m, b, x, v, t, phases):
 
 
 def next_driven_phasors(m, x, v, x_b, v_b, old_cosine, old_sine):
-    """Return all phasors one spacing later, where amplitudes grow."""
     cosine = old_cosine * m[at.NODE_COSINE] - old_sine * m[at.NODE_SINE]
     sine = old_sine * m[at.NODE_COSINE] + old_cosine * m[at.NODE_SINE]
     phases = old_cosine, old_sine, cosine, sine
@@ -236,7 +212,6 @@ def next_driven_phasors(m, x, v, x_b, v_b, old_cosine, old_sine):
 
 
 def next_driven_part(m, b, x, v, phases):
-    """Return a free part one spacing later, driven on the way where its amplitude grows."""
     step = b + at.STEP_ON
     if m[b + at.DRIVEN] == 0.0:  # usually
         return x * m[step] + v * m[step + 2], x * m[step + 1] + v * m[step + 3]
@@ -244,14 +219,10 @@ def next_driven_part(m, b, x, v, phases):
     v -= initial_push(m, b, old_cosine, old_sine)
     g = b + at.STEP_GROWTH
     x_driven, v_driven = growing_motion(m, m[g], m[g + 1], m[g + 2], m[g + 3], cosine, sine)
-    return (
-        x * m[step] + v * m[step + 2] + x_driven,
-        x * m[step + 1] + v * m[step + 3] + v_driven,
-    )
+    return (x * m[step] + v * m[step + 2] + x_driven, x * m[step + 1] + v * m[step + 3] + v_driven)
 
 
 def seek_interval(m, tau):
-    """Make the interval around ``tau`` the present one."""
     node = math.floor(tau / m[at.SPACING]) * 1.0
     if node * m[at.SPACING] > tau:
         node -= 1.0
@@ -269,13 +240,7 @@ def seek_interval(m, tau):
 
 
 def phasors_at(m, tau):  # inline
-    """Return all phasors at an age of the state, from the nearer node.
-
-    Returns
-    -------
-    x_a, x_b, v_a, v_b, cosine, sine : float
-        Displacements before velocities: so a compiler takes both free parts side by side.
-    """
+    """Return x_a, x_b, v_a, v_b, cosine, sine at an age, from the nearer node."""
     if tau < m[at.LEFT_AGE] or tau > m[at.RIGHT_AGE]:  # rarely
         seek_interval(m, tau)
     node, t = at.LEFT, tau - m[at.LEFT_AGE]
@@ -295,9 +260,7 @@ def phasors_at(m, tau):  # inline
 
 
 def set_phasors_at_end(m, t):
-    """Set the phasors at the state's end, where that is a short time ``t`` after the point
-    evaluated last: by their Taylor series, of which six terms leave less than 1e-17.
-    """
+    """Set the phasors at a near end by six Taylor terms, which leave less than 1e-17."""
     if t * m[at.RATE] > NEAR or m[at.SECULAR] != 0.0:  # rarely
         return
     p = at.POINT
@@ -315,7 +278,6 @@ def set_phasors_at_end(m, t):
 
 
 def higher_derivatives(m, b, x, v):
-    """Return the derivatives two to six of a free part's displacement."""
     twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
     x2 = -(twice * v + square * x)
     x3 = -(twice * x2 + square * v)
@@ -325,7 +287,6 @@ def higher_derivatives(m, b, x, v):
 
 
 def free_part_by_series(m, b, x, v, t):
-    """Return a free part a short time ``t`` later, by its Taylor series."""
     x2, x3, x4, x5, x6 = higher_derivatives(m, b, x, v)
     half, t2 = 0.5 * t, t * t
     x += t * (
@@ -338,9 +299,7 @@ def free_part_by_series(m, b, x, v, t):
 
 
 def parts_by_functions(m, tau, cosine, sine):
-    """Return both free parts where one decays steeply or grows: from the node before, by elementary
-    functions.
-    """
+    """Return both free parts where one decays steeply or grows, by elementary functions."""
     t, p = tau - m[at.LEFT_AGE], at.LEFT
     phases = m[p + 4], m[p + 5], cosine, sine
     x_a, v_a = driven_part_after(m, oscillator_a(m), m[p], m[p + 1], t, phases)

@@ -13,22 +13,12 @@ SHORT = 0.01
 
 
 def is_plain(m):  # inline
-    """Return whether only the box's harmonic motion and a wide gap between two masses are there:
-    what ``plain`` means below, a constant where it is known.
-    """
+    """Return whether only the box's harmonic motion and a wide gap are there: ``plain`` below."""
     return m[at.UNEQUAL] == 0.0 and m[at.CUBIC_PRESENT] == 0.0
 
 
 def outputs_at(m, tau, plain):  # inline
-    """Return the outputs that belong to a point of time, ``tau`` after the present state's start.
-
-    Returns
-    -------
-    x1, x2, v1, v2, x_rel, v_rel, xi1, xi2, xi_rel, box_force : float
-    contact_force, in_contact, phase, contact_side : float
-    cosine, sine : float
-        Of the excitation's phase; with harmonic forcing only.
-    """
+    """Return the outputs ``tau`` after the state's start, then cosine and sine of the phase."""
     x1, v1, x2, v2, cosine, sine = state_and_phase_at(m, tau)
     omega = m[at.OMEGA]
     flight = m[at.MODE] == at.FLIGHT
@@ -56,9 +46,7 @@ def outputs_at(m, tau, plain):  # inline
 
 
 def box_force_with_wall(m, x1, v1, cosine, sine, tau):
-    """Return the force on the box, of which the wall is a part: of the spring (from unloaded) and
-    the damper, or in contact, where mass 1 rests, what drives the mass.
-    """
+    """Return the force on the box with the wall as its part: spring and damper, or what drives."""
     if m[at.MODE] == at.FLIGHT:
         return m[at.K1] * x1 + m[at.D1] * v1
     drive, _ = drive_at(m, at.GAP, cosine, sine, tau)
@@ -72,7 +60,6 @@ def unit_of_length(m):  # inline
 
 
 def write_outputs(m, seen):  # inline
-    """Write the outputs that :func:`outputs_at` has returned to their slots."""
     motion, boundary, rotation = seen
     m[at.X1], m[at.X2], m[at.V1], m[at.V2], m[at.X_REL], m[at.V_REL] = motion[:6]
     m[at.XI1], m[at.XI2], m[at.XI_REL], m[at.BOX_FORCE] = motion[6:]
@@ -89,22 +76,17 @@ def finite_check_sum(seen):  # inline
 
 
 def last_written_point(m, tau):  # inline
-    """Return the point that was written last, ``tau`` after the present state's start: x1, x2, v1,
-    v2, force on the box, cosine and sine of the phase, and the ages of the cubics, in tau.
-    """
+    """Return the point written last: x1, x2, v1, v2; box force; cosine, sine; the cubics' ages."""
     motion = m[at.X1], m[at.X2], m[at.V1], m[at.V2]
     return motion, m[at.BOX_FORCE], (m[at.PHASE_COSINE], m[at.PHASE_SINE]), cubic_ages(m, tau)
 
 
 def point_of(m, seen, tau):  # inline
-    """Return the point, as :func:`last_written_point` does, of outputs ``tau`` after the present
-    state's start.
-    """
     return seen[0][:4], seen[0][9], seen[2], cubic_ages(m, tau)
 
 
 def drives(m, point, plain):  # inline
-    """Return the forcings of masses 1 and 2 at a point, each with its first derivative by tau."""
+    """Return the forcings of masses 1 and 2 at a point, each with its derivative by tau."""
     _, _, rotation, ages = point
     cosine, sine = rotation
     first = harmonic_drive(m, at.OSCILLATOR_1, cosine, sine)
@@ -136,9 +118,7 @@ def side_sign(m, plain):  # inline
 
 
 def both_rates(m, drive_1, drive_2, x1, v1, x2, v2):  # inline
-    """Return the accelerations of both masses, m/s2; or their rates, m/s3, from velocities,
-    accelerations and the drives' rates.
-    """
+    """Return both accelerations, or jerks from velocities, accelerations and drives' rates."""
     if m[at.MODE] == at.FLIGHT:
         a1 = acceleration(m, at.OSCILLATOR_1, drive_1, x1, v1)
         return a1, acceleration(m, at.OSCILLATOR_2, drive_2, x2, v2)
@@ -147,16 +127,12 @@ def both_rates(m, drive_1, drive_2, x1, v1, x2, v2):  # inline
 
 
 def acceleration(m, b, drive, x, v):  # inline
-    """Return the acceleration of one oscillator at displacement ``x`` (m) and velocity ``v``
-    (m/s).
-    """
     omega = m[at.OMEGA]
     pull = m[b + at.OMEGA_SQUARED] * x
     return omega * (omega * (drive - pull) - 2.0 * m[b + at.DAMPING] * v)
 
 
 def force_rates(m, point, plain):  # inline
-    """Return the first and second time derivative of the force on the box at a point."""
     motion, _, _, _ = point
     _, _, v1, v2 = motion
     first, second = drives(m, point, plain)
@@ -214,10 +190,7 @@ def impulse(m, h, left, reached):  # inline
 
 
 def add_cubic(m, first, age, sign, h, total, moment):
-    """Return an integral over a step of ``h`` seconds, and its moment, with ``sign`` times that of
-    an input's cubic added: ``first`` is the slot of its value, ``age`` (in tau) its age where the
-    step begins.
-    """
+    """Add ``sign`` times the integral, and moment, over ``h`` of the cubic of slot ``first``."""
     power = h
     for i in range(4):  # integrals of tau^i/i! and of tau^(i+1)/i!
         derivative = sign * input_derivative(m, first, i, age)
@@ -228,9 +201,7 @@ def add_cubic(m, first, age, sign, h, total, moment):
 
 
 def harmonic_impulse(m, h, left, reached):
-    """Return the impulse of both harmonic forces over a step of ``h`` seconds, and its moment, from
-    cosine and sine of the phase at both ends.
-    """
+    """Return impulse and moment of both harmonic forces over a step, by its ends' phases."""
     amplitude = m[at.SEGMENT_INPUTS + 6]
     if m[at.WALL] == 0.0:
         amplitude += m[at.SEGMENT_INPUTS + 7]
@@ -251,9 +222,7 @@ def harmonic_impulse(m, h, left, reached):
 
 
 def short_impulse(m, h, left, reached, plain):  # inline
-    """Return impulse and moment as :func:`impulse` over a short step without an impact or a change
-    of state, by the quintic through the force and two derivatives at both points.
-    """
+    """Return impulse and moment of a short step without event, by the force's quintic."""
     rates, rates_after = force_rates(m, left, plain), force_rates(m, reached, plain)
     force, after, square = left[1], reached[1], h * h
     p1, p2, q1, q2 = rates[0] * h, rates[1] * square, rates_after[0] * h, rates_after[1] * square

@@ -63,9 +63,7 @@ def set_wall(m):
 
 
 def set_side(m):
-    """Set what has another sign or size in the mirrored system: where the masses rest together, and
-    what drives them. A wall is driven by nothing.
-    """
+    """Set what has another sign or size in the mirrored system; a wall is driven by nothing."""
     side, mu, kappa = m[at.SIDE], m[at.M2] / m[at.M1], m[at.K2] / m[at.K1]
     clearance = m[at.CLEARANCE] if m[at.BONDED] == 0.0 else 0.0
     if side < 0.0:  # rarely
@@ -93,7 +91,6 @@ def set_side(m):
 
 
 def set_shares(m, b, box, force_1, force_2):
-    """Set the shares of the box's motion and of both forces in a forcing."""
     m[b + at.SHARES] = box
     m[b + at.SHARES + 1] = force_1
     m[b + at.SHARES + 2] = force_2

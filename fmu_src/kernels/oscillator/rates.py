@@ -11,13 +11,7 @@ from .stepper import local_time
 
 
 def differentiate(m, time):
-    """Write the rates of change of the outputs into RATES; ``time`` is not used.
-
-    Returns
-    -------
-    int
-        OK.
-    """
+    """Write the rates of change of the outputs into RATES; ``time`` is not used."""
     tau = local_time(m, m[at.TIME])
     point = last_written_point(m, tau)
     first, second = drives(m, point, False)

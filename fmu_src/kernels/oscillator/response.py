@@ -11,21 +11,7 @@ from . import memory as at
 
 
 def fundamental_solutions(m, b, tau):
-    """Return C and S of (10) for the linear oscillator ``b`` at ``tau``, and the decay ``e^{-r
-    tau}`` of its envelope.
-
-    Parameters
-    ----------
-    m : flat memory
-    b : int
-        First slot of the linear oscillator.
-    tau : float
-        Time since the state's start, >= 0.
-
-    Returns
-    -------
-    C, S, decay : float
-    """
+    """Return C, S of (10) of oscillator ``b`` at ``tau`` >= 0, and its envelope ``e^{-r tau}``."""
     damping, nu_squared, nu = m[b + at.DAMPING], m[b + at.NU_SQUARED], m[b + at.NU]
     rate = m[b + at.ENVELOPE_RATE]
     if nu_squared > 0.0:
@@ -53,34 +39,14 @@ def fundamental_solutions(m, b, tau):
 
 
 def cubic_value(m, response, tau):
-    """Return value and first derivative of a cubic that is kept as value and derivatives at its
-    start.
-    """
+    """Return value and derivative of a cubic kept by value and derivatives at its start."""
     q1, q2, q3 = m[response + 1], m[response + 2], m[response + 3]
     value = m[response] + tau * (q1 + 0.5 * tau * (q2 + tau * q3 * (1.0 / 3.0)))
     return value, q1 + tau * (q2 + 0.5 * tau * q3)
 
 
 def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):  # inline
-    """Return displacement and velocity of one oscillator (10).
-
-    Parameters
-    ----------
-    m : flat memory
-    harmonic, cubic : int
-        First slots of the oscillator's forced amplitudes and response to the cubic.
-    tau : float
-        Time since the state's start.
-    x, v : float
-        The free part there.
-    sine, cosine : float
-        Of the excitation's phase there.
-
-    Returns
-    -------
-    xi, xi' : float
-        m, and m per unit of tau.
-    """
+    """Return displacement and velocity (m, m/tau) of an oscillator (10); x, v: free part."""
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
@@ -90,9 +56,7 @@ def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):  # inline
 
 
 def set_free(m, harmonic, free, cubic, x, v, sine, cosine):
-    """Set displacement and velocity of the free part from the initial conditions (9): alpha_i and
-    beta_i of (11).
-    """
+    """Set the free part by the initial conditions (9): alpha_i and beta_i of (11)."""
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely

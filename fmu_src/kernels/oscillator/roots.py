@@ -9,13 +9,7 @@ import math
 from ..numerics.first_root import EPS, INFINITE, NO_NUMBER, next_step
 from . import memory as at
 from .event_function import evaluate, event_rounding, event_values, set_remainder
-from .hermite import (
-    clear_part,
-    has_no_root,
-    lowest_after,
-    lowest_before,
-    present_coefficients,
-)
+from .hermite import clear_part, has_no_root, lowest_after, lowest_before, present_coefficients
 from .nodes import (
     BLOCK,
     is_plain_flight,
@@ -28,9 +22,7 @@ from .nodes import (
 
 
 def walk(m, target):
-    """Walk on until the state's end is found or no root lies before ``target``; stop early when the
-    step's work is used up.
-    """
+    """Walk until the end is found, ``target`` is clear, or the step's work is used up."""
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
         if m[at.CLEAR] >= m[at.RIGHT_AGE]:
             cross_clear_intervals(m, target, flight_limit(m))
@@ -39,15 +31,11 @@ def walk(m, target):
 
 
 def flight_limit(m):
-    """Return the limit of the gap; infinity but in flight."""
     return m[at.LIMIT] if m[at.MODE] == at.FLIGHT else INFINITE
 
 
 def cross_clear_intervals(m, target, ceiling):
-    """Go on from node to node, not beyond ``target``, while the intervals between have no root and
-    the event function stays below ``ceiling`` in them, which is at most the gap's limit; after many
-    nodes the state is rewritten.
-    """
+    """Go from node to node, to ``target``, without root and below ``ceiling``."""
     if not is_plain_flight(m):  # rarely
         cross_intervals_loop(m, target, ceiling, False, True)
     elif ceiling < INFINITE:
@@ -57,10 +45,7 @@ def cross_clear_intervals(m, target, ceiling):
 
 
 def cross_intervals_loop(m, target, ceiling, plain, watched):  # inline
-    """Do what :func:`cross_clear_intervals` does: ``plain`` in a plain flight, ``watched`` if there
-    may be a ceiling. Both are constants where this is called: a compiler makes a loop of its own
-    for each.
-    """
+    """Do so; ``plain``, ``watched`` (a ceiling) are constants: a loop compiled for each."""
     x, v, x_b, v_b = m[at.RIGHT], m[at.RIGHT + 1], m[at.RIGHT + 2], m[at.RIGHT + 3]
     cosine, sine = m[at.RIGHT + 4], m[at.RIGHT + 5]
     r0, r1, r2 = m[at.RIGHT_VALUES], m[at.RIGHT_VALUES + 1], m[at.RIGHT_VALUES + 2]
@@ -107,16 +92,13 @@ def cross_intervals_loop(m, target, ceiling, plain, watched):  # inline
 
 
 def put_values(m, slot, h0, h1, h2):  # inline
-    """Write the event function and two derivatives to three slots."""
     m[slot] = h0
     m[slot + 1] = h1
     m[slot + 2] = h2
 
 
 def clear_from_node(m):
-    """Move CLEAR to the end of that part of the present interval which certainly has no root, at
-    neither end of the gap, and return whether there is one.
-    """
+    """Move CLEAR past the part of the present interval without root at either end, if any."""
     part = part_without_root(m, False)
     if m[at.LIMIT] < INFINITE and m[at.MODE] == at.FLIGHT:  # rarely
         part = min(part, part_below_limit(m))
@@ -125,14 +107,11 @@ def clear_from_node(m):
 
 
 def part_below_limit(m):
-    """Return the part of the present interval in which the gap certainly stays below its limit."""
     return part_without_root(m, True)
 
 
 def part_without_root(m, other):  # inline
-    """Return the part of the present interval, from its start, in which the event function, or what
-    the gap's limit leaves of it, certainly has no root.
-    """
+    """Return the part, from its start, of the interval without root of function or limit."""
     b0, b1, b2, b3, b4, b5 = end_coefficients(m, other)
     clear = has_no_root(b0, b1, b2, b3, b4, b5)
     if not clear and b5 > 0.0:  # rarely
@@ -145,9 +124,7 @@ def part_without_root(m, other):  # inline
 
 
 def end_coefficients(m, other):  # inline
-    """Return the Bernstein coefficients of a quintic below the event function in the present
-    interval, or below what the gap's limit leaves of it.
-    """
+    """Return Bernstein coefficients below the event function, or what the limit leaves."""
     if not other:  # usually
         return present_coefficients(m, m[at.REMAINDER])
     b0, b1, b2, b3, b4, b5 = present_coefficients(m, -m[at.REMAINDER])
@@ -156,10 +133,7 @@ def end_coefficients(m, other):  # inline
 
 
 def step_inside_interval(m):
-    """Take one certified step inside the present interval, or find the root.
-
-    Without a bound nothing is certain: CLEAR then is no number, and the step fails.
-    """
+    """Take one certified step, or find the root; without a bound CLEAR is no number: it fails."""
     tau = m[at.CLEAR]
     h0, h1, h2, h3, h4, bound = evaluate(m, tau)
     if not bound < INFINITE:  # rarely
@@ -173,10 +147,7 @@ def step_inside_interval(m):
 
 
 def take_step(m, tau, reach, step, found, values):  # inline
-    """Take a step that the event function allows, or a shorter one, if the gap's limit is near.
-
-    ``values`` are the event function's value, four derivatives and bound at ``tau``.
-    """
+    """Take a step that event function (six ``values`` at ``tau``) and gap's limit allow."""
     kind = at.END_EVENT
     if m[at.LIMIT] < INFINITE and m[at.MODE] == at.FLIGHT:  # rarely
         h0, h1, h2, h3, h4, bound = values
@@ -192,7 +163,6 @@ def take_step(m, tau, reach, step, found, values):  # inline
 
 
 def step_to_limit(m, tau, reach, h0, h1, h2, h3, h4, bound):
-    """Return the step that the gap's limit allows, and whether it ends there."""
     left, accuracy = m[at.LIMIT] - h0, root_accuracy(m, tau)
     return next_step(left, -h1, -h2, -h3, -h4, bound, tau, reach, accuracy)
 

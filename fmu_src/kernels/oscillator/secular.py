@@ -21,9 +21,7 @@ SMALL = 0.5  # of |sigma t|: fourteen terms are exact
 
 
 def is_resonant(m, b):
-    """Return whether the linear oscillator ``b`` is driven on its natural frequency, with next to
-    no damping.
-    """
+    """Return whether an oscillator is driven on its natural frequency, with next to no damping."""
     eta, square = m[at.ETA], m[b + at.OMEGA_SQUARED]
     detuning, twice = square - eta * eta, 2.0 * m[b + at.DAMPING] * eta
     near = detuning * detuning + twice * twice <= 4.0 * NEAR_RESONANCE * square * square
@@ -48,7 +46,6 @@ def set_secular(m):
 
 
 def clear_secular(m):
-    """Record that no amplitude grows."""
     m[at.SECULAR] = 0.0
     for i in range(at.GROWTH_SIZE):
         m[at.OSCILLATOR_1 + at.DRIVEN + i] = 0.0
@@ -59,7 +56,6 @@ def clear_secular(m):
 
 
 def set_growth(m, b):
-    """Set the constants by which the amplitude of one oscillator grows."""
     m[at.SECULAR] = 1.0
     m[b + at.DRIVEN] = 1.0
     eta, damping, nu = m[at.ETA], m[b + at.DAMPING], m[b + at.NU]
@@ -83,9 +79,7 @@ def set_step_growth(m, b):
 
 
 def grown_amplitude(m, b, t):
-    """Return the amplitude ``c`` and its rate of change a time ``t >= 0`` after it was zero: parts
-    by cosine and by sine.
-    """
+    """Return the amplitude ``c`` and its rate ``t`` after it was zero, by cosine and by sine."""
     # z = sigma t, and (e^z - 1)/z
     real, imag = -m[b + at.DAMPING] * t, m[b + at.DRIFT] * t
     square = real * real + imag * imag
@@ -114,20 +108,16 @@ def exponential_quotient(real, imag):
 
 
 def initial_push(m, b, cosine, sine):
-    """Return the velocity that the growing amplitude begins with, at a phase."""
     return m[b + at.PUSH] * cosine + m[b + at.PUSH + 1] * sine
 
 
 def growing_motion(m, h_cos, h_sin, d_cos, d_sin, cosine, sine):
-    """Return displacement and velocity from an amplitude and its rate of change, at a phase."""
     forced = m[at.ETA] * (h_sin * cosine - h_cos * sine)
     return h_cos * cosine + h_sin * sine, forced + (d_cos * cosine + d_sin * sine)
 
 
 def forced_derivative(m, b, order):
-    """Return what the forcing adds to a derivative of the displacement, beside what follows from
-    displacement and velocity: parts by cosine and by sine.
-    """
+    """Return what the forcing adds to a derivative of the displacement, by cosine and by sine."""
     if order < 2 or m[b + at.DRIVEN] == 0.0:
         return 0.0, 0.0
     drive_cosine, drive_sine = m[b + at.DRIVE], m[b + at.DRIVE + 1]
@@ -141,7 +131,6 @@ def forced_derivative(m, b, order):
 
 
 def set_event_drive(m):
-    """Set what the forcing adds to the derivatives of the event function, from the first on."""
     flight = m[at.MODE] == at.FLIGHT
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     for k in range(1, at.EVENT_ORDERS + 1):
@@ -158,13 +147,11 @@ def set_event_drive(m):
 
 
 def event_drive(m, order, cosine, sine):
-    """Return the forcing's part of a derivative of the event function, at a phase."""
     i = at.EVENT_DRIVE + 2 * order - 2
     return m[i] * cosine + m[i + 1] * sine
 
 
 def event_drive_bound(m, order):
-    """Return a bound of :func:`event_drive` over all phases."""
     i = at.EVENT_DRIVE + 2 * order - 2
     return abs(m[i]) + abs(m[i + 1])
 
@@ -192,9 +179,7 @@ def driven_bound(m, b, order, time):
 
 
 def driven_event_bound(m, order, time):
-    """Return a bound of what the forcing adds to a derivative of the event function for a ``time``
-    from now on.
-    """
+    """Return a bound of what forcing adds to the event function's derivative over a time."""
     if m[at.MODE] == at.FLIGHT:
         low = driven_bound(m, at.OSCILLATOR_1, order, time)
         return low + driven_bound(m, at.OSCILLATOR_2, order, time)

@@ -17,9 +17,7 @@ ENOUGH = 2e-8  # relative: the next step of Newton's method would be a small par
 
 
 def required_order(m, slope, curvature):
-    """Return the order of the series that a flight needs, which begins with a gap velocity
-    ``slope`` and acceleration ``curvature``: 4 where it is not short.
-    """
+    """Return the order of a flight's series from gap velocity and acceleration; 4: not short."""
     if curvature >= 0.0:
         return 4
     angle = 2.0 * slope * m[at.RATE]
@@ -56,9 +54,7 @@ def fifth_bound(m):
 
 
 def set_series(m, x, v, slope, order):
-    """Set the derivatives of xi_1 and of the gap from ``gap = 0, gap' = slope`` at displacement
-    ``x``, velocity ``v`` of mass 1: at least as many as a series of an order needs.
-    """
+    """Set derivatives of xi_1 and the gap from gap = 0, gap' = slope, up to an order."""
     m[at.SERIES_X] = x
     m[at.SERIES_X + 2] = v
     m[at.SERIES_GAP] = 0.0
@@ -70,9 +66,7 @@ def set_series(m, x, v, slope, order):
 
 
 def set_terms(m, order, unequal):  # inline
-    """Set the derivatives from the second on; ``unequal``, a constant where this is called, as the
-    flag of that name.
-    """
+    """Set the derivatives from the second on; ``unequal`` is a constant where this is called."""
     square = -m[at.ETA] * m[at.ETA]
     drive, drive_next = harmonic_drive(m, at.OSCILLATOR_1, m[at.COSINE], m[at.SINE])
     c0, c1, c2, c3 = 0.0, 0.0, 0.0, 0.0
@@ -106,9 +100,7 @@ def set_terms(m, order, unequal):  # inline
 
 
 def set_derivatives(m, k, drive):
-    """Set the derivatives of order k from the two before and that of the forcing, of order k -
-    2.
-    """
+    """Set the derivatives of order k from the two before and the forcing's of order k - 2."""
     one, two = at.OSCILLATOR_1, at.OSCILLATOR_2
     i = 2 * k
     x, v = m[at.SERIES_X + i - 4], m[at.SERIES_X + i - 2]
@@ -120,16 +112,7 @@ def set_derivatives(m, k, drive):
 
 
 def short_flight_duration(m, order):
-    """Return the duration of a short flight, where it is certain: its gap is concave throughout, so
-    it has one root; else 0.
-
-    Parameters
-    ----------
-    m : flat memory
-        With the series.
-    order : int
-        Of the series.
-    """
+    """Return a short flight's duration if it is certain (a concave gap has one root), else 0."""
     g = at.SERIES_GAP
     c1, c2, c3, c4 = m[g + 2], m[g + 4] * 0.5, m[g + 6] * (1.0 / 6.0), m[g + 8] * (1.0 / 24.0)
     part = 1.0 / c2
@@ -173,7 +156,6 @@ def series_tail(m, first, tau):
 
 
 def taylor_value(m, first, tau):
-    """Return the value of a series with the derivatives in every second slot from ``first`` on."""
     t2 = tau * tau
     t4 = t2 * t2
     value = (m[first] + tau * m[first + 2]) + t2 * (
@@ -197,7 +179,6 @@ def taylor_value(m, first, tau):
 
 
 def gap_derivatives(m, tau):
-    """Return the gap and its first four derivatives at ``tau``."""
     h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
     power = 1.0  # tau^k/k!
     for k in range(int(m[at.SERIES]) + 1):

@@ -46,13 +46,7 @@ WORK_MOST = 1e7  # and at the very most: a second or two, compiled; EVALUATION_L
 
 
 def initialize(m, time):
-    """Begin at ``time`` (s) from the parameters, start values and inputs in ``m``.
-
-    Returns
-    -------
-    int
-        OK, or one of the codes of :mod:`.memory`.
-    """
+    """Begin at ``time`` (s) from parameters, start values and inputs; return a code of memory."""
     m[at.SIDE] = 1.0
     derive(m)
     m[at.START_TIME] = time
@@ -96,7 +90,6 @@ def initialize(m, time):
 
 
 def check_start(m, gap):
-    """Return OK, or the code of what is wrong with the start, whose gap is given."""
     if gap < 0.0:
         m[at.REPORT] = m[at.X1_START] - m[at.GAP_OFFSET]
         return at.START_OVERLAP if m[at.GAP_OFFSET] <= 0.0 else at.START_BEYOND_CLEARANCE
@@ -119,7 +112,7 @@ def start_rounding(m):
 
 
 def begin_first_state(m, x1, x2, gap):
-    """Begin the first state; mirrored where the masses are at the outer end of their play."""
+    """Begin the first state, mirrored at the outer end of the play."""
     v1, v2 = m[at.V1_START] / m[at.OMEGA], m[at.V2_START] / m[at.OMEGA]
     if gap + start_rounding(m) >= m[at.LIMIT]:  # rarely
         mirror(m)
@@ -129,14 +122,7 @@ def begin_first_state(m, x1, x2, gap):
 
 
 def restore(m, time):
-    """Recompute what parameters and inputs decide in a saved memory that began at ``time`` (s):
-    then every step of it ends, whatever its other numbers are.
-
-    Returns
-    -------
-    int
-        OK, or TOO_FAST or BEYOND of a forged one.
-    """
+    """Recompute what parameters and inputs decide in a saved memory: then every step of it ends."""
     m[at.START_TIME] = time
     m[at.SIDE] = 1.0 if m[at.SIDE] >= 0.0 else -1.0
     derive(m)
@@ -156,7 +142,6 @@ def restore(m, time):
 
 
 def clear_peaks(m):
-    """Forget the peaks of the step before."""
     for i in range(at.X1_MAX, at.A2_MAX + 1):
         m[i] = 0.0
 
@@ -167,12 +152,7 @@ def sum_of_peaks(m):
 
 
 def starting_point(m):
-    """Return the displacements at the start as :func:`.motion.begin_state` takes them, and the gap;
-    below zero where the masses overlap.
-
-    Start positions count from the position at rest: with a preload that is where the masses rest
-    together. With a clearance, a gap that is only rounding counts as zero.
-    """
+    """Return the displacements from the position at rest, and the gap; below 0: overlap."""
     x1, x2, clearance = m[at.X1_START], m[at.X2_START], m[at.GAP_OFFSET]
     gap = x2 - x1
     if clearance > 0.0:  # rarely
@@ -185,22 +165,12 @@ def starting_point(m):
 
 
 def local_time(m, time):
-    """Return the time since the present state's start, in units of tau (4)."""
     tau = (m[at.OMEGA] * (time - m[at.START_TIME]) - m[at.ORIGIN]) - m[at.ORIGIN_LOW]
     return tau if tau > 0.0 else 0.0
 
 
 def advance(m, time):
-    """Advance to the communication point ``time`` (s) with the inputs in ``m``.
-
-    Or to the first impact where STOP_AT_IMPACT is set.
-
-    Returns
-    -------
-    int
-        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be
-        thrown away.
-    """
+    """Advance to ``time`` (s), or the first impact if STOP_AT_IMPACT; not OK: memory is lost."""
     before = m[at.TIME]
     h = time - before
     fastest = max(m[at.FASTEST], m[at.BOX_FREQUENCY] / m[at.OMEGA])
@@ -222,11 +192,7 @@ def advance(m, time):
     if not is_countable(m, local_time(m, time)):  # rarely
         m[at.REPORT] = before
         return at.BEYOND
-    left, mode, impacts = (
-        last_written_point(m, now),
-        m[at.MODE],
-        m[at.IMPACT_COUNT],
-    )
+    left, mode, impacts = (last_written_point(m, now), m[at.MODE], m[at.IMPACT_COUNT])
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     if m[at.PEAKS_ON] != 0.0:
         clear_peaks(m)
@@ -245,14 +211,7 @@ def advance(m, time):
 
 
 def coast(m, time):
-    """Advance as :func:`advance` does, where the present state lasts beyond ``time`` and only
-    outputs change.
-
-    Returns
-    -------
-    int
-        OK, or UNFINISHED where there is more to do, or NOT_FINITE: then nothing has changed.
-    """
+    """Advance where the present state lasts; with another code nothing has changed."""
     tau = local_time(m, time)
     plain = m[at.SAMPLE_COUNT] == 0.0 and m[at.PEAKS_ON] == 0.0
     if not lasts_beyond(m, tau) or not plain or inputs_changed(m):
@@ -273,14 +232,11 @@ def coast(m, time):
 
 
 def lasts_beyond(m, tau):
-    """Return whether the present state is known to last beyond an age."""
     return (m[at.CLEAR] if m[at.END_KIND] == at.END_OPEN else m[at.END]) > tau
 
 
 def is_without_summit(m, start, stop):
-    """Return whether a quick test shows that a part of the present state has its largest gap at an
-    end.
-    """
+    """Return whether a quick test shows that a part's largest gap is at an end."""
     if m[at.MODE] != at.FLIGHT:
         return True
     within = m[at.LEFT_AGE] < start and stop < m[at.RIGHT_AGE] and m[at.CLEAR] <= m[at.RIGHT_AGE]
@@ -337,7 +293,6 @@ def write_point(m, time, tau, left, highest, same, plain):  # inline
 
 
 def check_finite(sum_of_outputs):
-    """Return OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
     return at.OK if sum_of_outputs - sum_of_outputs == 0.0 else at.NOT_FINITE
 
 
@@ -368,7 +323,6 @@ def renew_segment(m, now):
 
 
 def gap_drive(m):
-    """Return what drives the gap at the present state's start."""
     drive = 0.0
     if m[at.UNEQUAL] != 0.0:  # rarely
         drive, _ = drive_at(m, at.GAP, m[at.COSINE], m[at.SINE], 0.0)
@@ -376,9 +330,7 @@ def gap_drive(m):
 
 
 def is_inside_state(m, tau):
-    """Return whether the event function has not been crossed: positive, or zero but for
-    rounding.
-    """
+    """Return whether the event function is not crossed: positive, or zero but for rounding."""
     h0, h1, _, _, _, _ = evaluate(m, tau)
     return h0 > 0.0 or value_on_decided_side(m, tau, h0, h1) > 0.0
 
@@ -404,7 +356,6 @@ def run_samples(m, start, time, now):
 
 
 def keep_sample(m, i, tau):
-    """Keep the state at the present state's age ``tau`` as sample ``i``."""
     x1, v1, x2, v2 = state_at(m, tau)
     gap = gap_between(m, tau, x1, x2)
     x1, x2 = from_unloaded(m, x1, x2)
@@ -419,7 +370,6 @@ def keep_sample(m, i, tau):
 
 
 def run_states(m, time, now):
-    """Run through all states that end by ``time``, and return the present state's age there."""
     watching = m[at.X_REL_MAX_ON] != 0.0
     while True:
         tau = local_time(m, time)

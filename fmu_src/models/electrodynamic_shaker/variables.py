@@ -24,7 +24,6 @@ from ...runtime.table import (
 
 
 def cubic(name: str, units: tuple[str, ...], description: str) -> tuple[Variable, ...]:
-    """Return an input and its three time derivatives."""
     limits: dict[str, Any] = {"minimum": -DRIVE_LIMIT, "maximum": DRIVE_LIMIT}
     text = f"{description}: value when it was set; runs on as the cubic with {name}_1, {name}_2"
     value = drive(name, units[0], 0.0, f"{text} and {name}_3", input_derivatives=3, **limits)

@@ -89,13 +89,7 @@ OUTPUTS = (
         nominal=1e-3,
         **MILLIMETRES,
     ),
-    output(
-        "box_velocity",
-        "m/s",
-        "Velocity of the box",
-        ("velocity_start",),
-        nominal=1e-2,
-    ),
+    output("box_velocity", "m/s", "Velocity of the box", ("velocity_start",), nominal=1e-2),
     output(
         "box_acceleration",
         "m/s2",

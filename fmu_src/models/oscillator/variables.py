@@ -68,7 +68,6 @@ COUNT: dict[str, Any] = {"variability": "discrete", "type": INTEGER, "minimum": 
 
 
 def samples(name: str, unit: str, description: str) -> tuple[Variable, ...]:
-    """Return a local variable for each state kept inside a step."""
     return tuple(
         Variable(
             f"{name}[{i + 1}]",
@@ -83,13 +82,11 @@ def samples(name: str, unit: str, description: str) -> tuple[Variable, ...]:
 
 
 def peak(name: str, unit: str, signal: str) -> Variable:
-    """Return the local variable of a largest absolute value over the last step."""
     text = f"Largest absolute {signal} over the last communication step, exact, not sampled"
     return Variable(name, text, "local", unit, initial="calculated", minimum=0.0)
 
 
 def force(half: int) -> tuple[Variable, ...]:
-    """Return the inputs that make the cubic of the force on a mass."""
     name = f"force{half}"
     orders = ("First", "Second", "Third")
     return (
@@ -312,12 +309,7 @@ SCALARS = (
         minimum=0.0,
     ),
     output(  # from rest, what drives the masses first decides; their motion is the same either way
-        "in_contact",
-        "",
-        "Permanent contact",
-        IN_CONTACT,
-        type=BOOLEAN,
-        **DISCRETE,
+        "in_contact", "", "Permanent contact", IN_CONTACT, type=BOOLEAN, **DISCRETE
     ),
     output(
         "phase",

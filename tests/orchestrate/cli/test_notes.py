@@ -99,7 +99,10 @@ SAID = {  # a command; what is printed (or not, after a "!"), and what is warned
     SIMULATE + MASSES + QUIET + "1.5e-3": ("touches at|is linear|no impacts", MOVES),
     SIMULATE + MASSES + "--set clearance=-2e-5 --hz 48 --g 3": ("!is linear|!no impacts", ""),
     "simulate --set wall=true --set f1=12 --set zeta1=1% --set clearance=0.3mm --hz 11 --g 0.1"
-    " --periods 2 --plot none": ("assumed, as in the set paper: m1 = 1 kg, e = 0.7|impacts", ""),
+    " --periods 2 --plot none": (
+        "assumed, as in the set paper: m1 = 1 kg, e = 0.7|impacts|mass 1|!mass 2",
+        "",
+    ),
     "branch --structure beam --over hz --limits 16.5:16.6 --plot none --g 0.02": (
         "--g 0.02: is --amplitude 1.82483e-05 at 16.5 Hz, constant along the branch",
         "",

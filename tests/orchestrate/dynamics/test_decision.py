@@ -91,7 +91,7 @@ class Scripted(MotionDecider):
             free_states=[None],
         )  # fmt: skip
 
-    def converges_to(self, state, motion):
+    def converges_to(self, state, motion, n):
         return self.comes
 
 
@@ -123,7 +123,7 @@ def test_each_threshold_of_a_known_motion(decided, distance, comes, known):
 def test_each_threshold_of_a_response_that_comes_to_an_orbit(monkeypatch, before, after, comes):
     monkeypatch.setattr(decision, "begin", lambda *asked: None)
     decider = Scripted(path=(before, after))
-    assert MotionDecider.converges_to(decider, REST, decider.motion()) == comes
+    assert MotionDecider.converges_to(decider, REST, decider.motion(), 1) == comes
     periods = sum(decider.steps) / decider.point.excitation.period
     assert not decider.steps or periods == pytest.approx(4.0)  # a tenth is left by then
 
@@ -133,24 +133,29 @@ def test_a_response_that_comes_to_another_state_is_on_another_orbit(monkeypatch)
     monkeypatch.setattr(decision, "begin", lambda *asked: None)
     for places in ((1, 1), (1, 2)):
         decider = Scripted(path=(0.05, 0.01), places=places)
-        assert MotionDecider.converges_to(decider, REST, decider.motion()) == (places == (1, 1))
+        assert MotionDecider.converges_to(decider, REST, decider.motion(), 1) == (places == (1, 1))
 
 
 @pytest.mark.parametrize(("left", "comes"), [(0.99e-9, True), (1.01e-9, False)])
 def test_what_rounding_leaves_of_a_deviation_does_not_count(monkeypatch, left, comes):
     monkeypatch.setattr(decision, "begin", lambda *asked: None)
     decider = Scripted(path=(1e-9, left), same=1e-12)
-    assert MotionDecider.converges_to(decider, REST, decider.motion(multiplier=1e-9)) == comes
+    assert MotionDecider.converges_to(decider, REST, decider.motion(multiplier=1e-9), 1) == comes
 
 
 @pytest.mark.parametrize(
-    ("multiplier", "n", "longest", "periods"),
-    [(0.999, 2, 7, 6), (0.9, 1, 99, 22), (1e-9, 1, 99, 1)],  # a tenth is left after 22 of them
+    ("multiplier", "n", "longest", "periods", "own"),
+    [
+        *((0.999, 2, 7, 6, 1), (0.9, 1, 99, 22, 1), (1e-9, 1, 99, 1, 1)),  # of 22 a tenth is left
+        # of what repeats after 2 or 3 periods one state is nearer to another motion than the next
+        *((1e-9, 1, 99, 2, 2), (0.9, 1, 99, 24, 3), (0.9, 2, 99, 44, 4), (1e-9, 6, 99, 6, 3)),
+    ],
 )
-def test_how_long_a_response_is_watched(monkeypatch, multiplier, n, longest, periods):
+def test_how_long_a_response_is_watched(monkeypatch, multiplier, n, longest, periods, own):
     monkeypatch.setattr(decision, "begin", lambda *asked: None)
     turns = Scripted(path=(0.05, 0.0), longest=longest)
-    MotionDecider.converges_to(turns, REST, turns.motion(multiplier=multiplier, multiplicity=n))
+    motion = turns.motion(multiplier=multiplier, multiplicity=n)
+    MotionDecider.converges_to(turns, REST, motion, own)
     assert turns.steps == [pytest.approx(periods * turns.point.excitation.period)]
 
 

@@ -20,7 +20,7 @@ def good(exported):
 
 @pytest.mark.parametrize("kind", REFUSED[:-1])
 def test_an_enemys_archive_is_refused_in_a_line(good, tmp_path, monkeypatch, kind):
-    monkeypatch.setattr("orchestrate.fmu.archive.MAX_BYTES", 1 << 26)
+    monkeypatch.setattr("orchestrate.fmu.description.MAX_BYTES", 1 << 26)
     monkeypatch.setattr(archives, "BOMB", 1 << 27)
     monkeypatch.setattr(archives, "CROWD", 10_001)
     for seed in range(1 if kind in ("bomb", "crowd of files") else 4):

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from orchestrate.errors import FmuError
-from orchestrate.fmu import PLAYED, REST, Player, play
-from orchestrate.fmu import event_loop as loops
+from orchestrate.fmu import PLAYED, REST, Player
+from orchestrate.fmu import events as loops
 from orchestrate.fmu.c_library import loaded_loop
-from orchestrate.fmu.event_loop import EventLoop, PlayerCalls, PlayProgress, PlayTask
+from orchestrate.fmu.events import EventLoop, PlayerCalls, PlayProgress, PlayTask
 from orchestrate.model import Structure
 
 from ...sparing import ordinary
@@ -25,7 +25,7 @@ STRUCTURES = {
 }
 RANDOM = np.random.default_rng(3)
 NODES = np.concatenate([[0.0], np.cumsum(RANDOM.uniform(0.1, 0.9, 400))])
-CUBIC = play.CUBICS[play.BOX]
+CUBIC = loops.CUBICS[loops.BOX]
 CUBICS = RANDOM.normal(size=(400, 4)) * (1.0, 1.0, 1.0, 3.0)
 SAMPLES = np.sort(np.concatenate([RANDOM.uniform(0.0, NODES[-1], 900), NODES, NODES[7:9]]))
 

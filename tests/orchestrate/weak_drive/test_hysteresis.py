@@ -333,7 +333,7 @@ def test_growth_is_seen_from_rounding_errors_on(disturbance, lasts):
             return 1.0
 
     loop = Growing(None)
-    loop.longest = 100.0
+    loop.max_hold = 100.0
     assert bool(loop.lasting(loop.at(1.52), loop.at(1.53), 0.0).lasts) == lasts
 
 
@@ -347,7 +347,7 @@ def test_growth_that_takes_more_than_ten_holds_is_left_out(rate, held):
             return rate
 
     loop = Slow(None)
-    loop.longest = 1e4
+    loop.max_hold = 1e4
     assert np.isfinite(loop.lasting(loop.at(1.52), loop.at(1.53), 0.0).speed) == held
 
 
@@ -414,6 +414,14 @@ def test_the_motion_on_the_way_back_has_to_last(life, outcome):
 
     loop = Leaving(None)
     assert loop.way_back(loop.at(1.5), loop.at(1.5001, 0.1)) == outcome
+
+
+@pytest.mark.parametrize(("asked", "base", "rotor"), [({}, 4000, 200), ({"base_hold": 1}, 1, 200)])
+def test_the_usual_hold_is_longer_for_a_slower_rotor(asked, base, rotor):
+    structure, drive = QUICK
+    expected = (base + rotor / drive.b(structure)) / structure.omega
+    settings = hysteresis.HysteresisSettings(**asked)
+    assert settings.usual_hold(structure, drive) == pytest.approx(expected)
 
 
 def test_a_hold_comes_at_the_rate():
@@ -541,7 +549,7 @@ def test_a_motion_whose_disturbances_grow_slowly_is_held_for_their_growth_time(s
             return -1.0 if point.state["motion"] else steep * (point.voltage - 1.52)
 
     loop = Slow(None)
-    loop.longest = 1e4  # of growths up to 3e-4 something is seen
+    loop.max_hold = 1e4  # of growths up to 3e-4 something is seen
     (jump,) = loop.course()
     assert jump.outcome == LOST and jump.low <= 1.52 < jump.high and jump.high - jump.low > 1e-3
     assert 30.0 / (steep * (jump.high - 1.52)) < 1e5 or jump.high > 1.55
