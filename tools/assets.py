@@ -55,7 +55,6 @@ def variable_table(path: str | PathLike[str]) -> str:
 
 
 def replace_table(page: str, reference: Reference, table: str) -> str:
-    """Return a page's text with a model's variable table replaced."""
     source, end = f"fmu_src/models/{reference.folder}/variables.py", "<!-- end of variables -->"
     begin = f"<!-- variables: generated from {source}, kept so by a test -->"
     head, rest = page.split(begin + "\n")
@@ -83,7 +82,6 @@ def simulate_limits(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.
 def columns_of(
     rows: Sequence[Sequence[float]], names: Sequence[str]
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return the times and the values by name of a run's rows, without the first."""
     times, *values = np.array(rows, dtype=float)[1:].T
     return times, dict(zip(names, values, strict=True))
 
@@ -117,7 +115,6 @@ def draw_documentation(
 
 
 def main() -> None:
-    """Write all generated assets of the FMUs and the documentation."""
     # all FMUs first: what is written below belongs to their sources
     names = "fmi3", "fmi2-python"
     forms = [[find(each.model, name).path for name in names] for each in REFERENCES]

@@ -38,7 +38,6 @@ class Page(HTMLParser):
         self.feed(self.path.read_text(encoding="utf-8"))
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Collect what a tag links to, loads, and names."""
         values = {name: value or "" for name, value in attrs}
         self.places |= {values[name] for name in ("id", "name") if name in values}
         if tag == "a" and "href" in values:
@@ -69,7 +68,6 @@ class Site:
         return [f"{p.name}: {one}" for p, one in every if not self.target_exists(p, one)]
 
     def target_exists(self, path: Path, address: str) -> bool:
-        """Return whether an address of a page exists in the folder, or is elsewhere."""
         if urlsplit(address).scheme or address.startswith("//"):
             return True
         file, anchor = urldefrag(address)
@@ -81,7 +79,6 @@ class Site:
 
 
 def build_site(folder: Path) -> None:
-    """Build manual and explorer into a folder; warnings are errors."""
     kept = folder.parent / "doctrees"  # what Sphinx remembers, which nobody is to be served
     options = ["-q", "-W", "-n", "--keep-going", "-d", kept]
     command = [sys.executable, "-m", "sphinx", *options, DOCS, folder]
@@ -90,7 +87,6 @@ def build_site(folder: Path) -> None:
 
 
 def main() -> None:
-    """Build the site, check it, and print its size."""
     parser = argparse.ArgumentParser(description="Build manual and explorer as one static site.")
     parser.add_argument("folder", nargs="?", type=Path, default=Path("site/html"))
     folder = parser.parse_args().folder

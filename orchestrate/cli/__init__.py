@@ -114,7 +114,6 @@ def make_app() -> cyclopts.App:
 
 
 def epilogue(name: str) -> str:
-    """Return what stands below a help: quantities and examples."""
     program = program_name()
     if name not in COMMANDS:
         return EXAMPLES.format(program=program, sets=list_shipped_sets())
@@ -237,7 +236,6 @@ def describe_progress_kept() -> str:
 
 @contextmanager
 def print_warnings_in_one_line(chosen: Command) -> Iterator[None]:
-    """Print a ``UserWarning`` in the ``with`` block as one line, in words of a command."""
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:

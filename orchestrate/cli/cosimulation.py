@@ -24,7 +24,6 @@ PAIR = "NAME=VALUE"
 
 
 def split_at_commas(texts: Sequence[str] | None) -> tuple[str, ...]:
-    """Return an option's words, split at commas too."""
     return tuple(word for word in ",".join(texts or ()).split(",") if word)
 
 

@@ -148,7 +148,6 @@ what it gives:
         return records, refused
 
     def read_one_record(self, path: Path) -> xr.Dataset:
-        """Read a record from a file; raise if it has no acceleration of either face."""
         record = orchestrate.read_record(path, **self.given(Reading))
         if "acceleration1" not in record and "acceleration2" not in record:
             taken = record.attrs.get("columns", "no columns")

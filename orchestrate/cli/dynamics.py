@@ -336,7 +336,6 @@ The excitation says where a first orbit is looked for; without it that is the lo
         self.g, self.amplitude = None, amplitude
 
     def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Keywords:
-        """Return the excitation at which the first orbit is searched, as keywords."""
         name, amplitude = self.frequency_option(), self.read_amplitude()
         if over == "frequency" and amplitude is None and not begun:
             raise InputError(f"--over {self.over}: expected --amplitude in m with it")

@@ -79,7 +79,6 @@ class OfExcitation(Options):
     )
 
     def read_excitation(self) -> Any:
-        """Return the excitation that the options describe, such as a ``SweptSine``."""
         kind = self.excitation_kind()
         calls, names, argument = EXCITATIONS[kind]
         settings = self.given(OfExcitation)
@@ -101,7 +100,6 @@ class OfExcitation(Options):
         return getattr(orchestrate, calls)(**settings)
 
     def excitation_kind(self) -> str:
-        """Return which kind of excitation is chosen; raise for options of another kind."""
         given = self.given(OfExcitation)
         chosen = [name for name in EXCITATIONS if name in given]
         if len(chosen) != 1:
@@ -218,7 +216,6 @@ def peak_cells(data: xr.Dataset, values: xr.DataArray) -> list[str]:
 
 
 def columns_of_analysis(name: str, data: xr.Dataset) -> printing.Columns:
-    """Return the columns of the table that is printed of an analysis, a row for each channel."""
     if name in ("orders", "harmonics"):  # of the box they are those of the excitation
         data = data.drop_sel(channel="box_acceleration", errors="ignore")
     columns = {"channel": [MASSES[str(channel)] for channel in data.channel.values]}
@@ -341,7 +338,6 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
             )
 
     def settings_by_analysis(self, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-        """Return each analysis's keywords; raise for an option that none of them takes."""
         chosen = self.given(Settings)
         takes = {name: arguments_of(row[0]) for name, row in ANALYSES.items()}
         owners = {one: [name for name in takes if one in takes[name]] for one in chosen}

@@ -43,7 +43,6 @@ class Reading(Options):
     )
 
     def read_record_units(self) -> Units:
-        """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
         own = self.unit if self.unit in FACTORS["acceleration"] else ""
         return self.read_units().with_defaults(Units(acceleration=own))
 
@@ -227,7 +226,6 @@ class Files:
     def from_options(
         cls, arguments: Any, name: str, over: str = "", fresh: bool | None = None
     ) -> Files:
-        """Return the ``Files`` of a result by the options; raise if they cannot be written."""
         formats = parse_endings("--format", arguments.format, FORMATS)
         plots = parse_endings("--plot", arguments.plot, PLOTS)
         store = getattr(arguments, "store", None)
@@ -254,7 +252,6 @@ class Files:
         return files
 
     def beside(self, *endings: str) -> Path:
-        """Return a path next to the result, with further endings of its name."""
         return self.result.with_stem("_".join(filter(None, [self.result.stem, *endings])))
 
     def table_paths(self) -> list[Path]:
@@ -262,7 +259,6 @@ class Files:
         return [table.with_suffix(f".{ending}") for ending in self.formats if ending != "nc"]
 
     def picture_paths(self, *endings: str) -> list[Path]:
-        """Return the paths of a picture: its name has units and overlay."""
         size = self.size.replace(":", "-")
         picture = self.beside(self.units, self.over, *endings, size)
         return [picture.with_suffix(f".{ending}") for ending in self.plots]

@@ -27,7 +27,6 @@ Columns = dict[str, list[str]]  # of a table: cells by title
 
 
 def table(columns: Mapping[str, Iterable[str]], most: int = MOST_ROWS) -> Iterator[str]:
-    """Yield the lines of a table, titles first, at most as many rows."""
     rows = list(zip(*columns.values(), strict=True))
     shown = [tuple(columns), *rows[:most]]
     widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
@@ -68,7 +67,6 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g"
 
 
 def extents(data: xr.Dataset, names: str, rms: bool = False) -> Iterator[str]:
-    """Yield the range of each named variable, in display units, by what it is; and its rms."""
     for array in (data[name] for name in names.split()):
         if array.size:
             unit = str(array.attrs.get("units", "1"))
@@ -180,7 +178,6 @@ def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) 
 
 
 def shares_and_ranges(data: xr.Dataset, name: str, flags: xr.DataArray) -> Iterator[str]:
-    """Yield for each word of a flag along a parameter its share, and where it is."""
     for word in flag_words(flags.attrs).values():
         holds = has_flag(flags, word).values
         where = f" at {format_ranges(data, name, holds)}" if holds.any() else ""

@@ -36,7 +36,6 @@ class Simulate(OfStructure, OfBox, Beside, Asked, Stored, Results):
 
 
 def level_columns(data: xr.Dataset) -> printing.Columns:
-    """Return the largest response at each level, bonded and delaminated, and where it opens."""
     rows = printing.columns_of(data, "level", form=".4g")
     for structure in ("bonded", "delaminated"):
         part = data.x1_max.sel(structure=structure)
@@ -146,7 +145,6 @@ class Spectra(OfBox, Driven, Stored, OfBoth):
         return structure, {**self.keywords(), **excitation}
 
     def ask_motor(self) -> tuple[Structure, Drive, Keywords]:
-        """Return structure, drive and voltage of a motor-driven structure (Figure 3)."""
         structure, motor = self.read_structure_and_drive()
         eta0 = CAPTURED.get(self.drive) if self.eta0 is None else self.eta0
         voltage = self.voltage
@@ -176,7 +174,6 @@ WORDS = {"repeated": "repeat", "irregular": "irregular", "undecided": "undecided
 
 
 def largest_gap_line(data: xr.Dataset) -> str:
-    """Format the largest gap of all responses, and the parameters at which it is."""
     top = data.isel(data.xi_rel_max.argmax(...))
     names = [str(dim) for dim in data.xi_rel_max.dims if dim != "direction"]
     where = ", ".join(printing.format_parameter(data, name, top[name]) for name in names)
@@ -194,7 +191,6 @@ def count_line(data: xr.Dataset) -> str:
 
 
 def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
-    """Yield all variables of a result at one parameter value as a table."""
     where = printing.format_parameter(data, name, data[name][0])
     yield f"one value, {where}: a table and no picture"
     shown, order = as_shown(data.isel({name: 0})), {"structure", "direction"} & {*data.dims}
@@ -229,7 +225,6 @@ def window_lines(data: xr.Dataset, name: str) -> Iterator[str]:
 
 
 def window_marks(data: xr.Dataset) -> list[tuple[str, float]]:
-    """Return what each response does, and its impacts a period where it repeats."""
     words = flag_words(data.multiplicity_decided.attrs)
     names = ("multiplicity_decided", "multiplicity", "impacts_per_period")
     rows = zip(*(data[name].values.tolist() for name in names), strict=True)

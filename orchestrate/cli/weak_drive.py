@@ -142,7 +142,6 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
             files.write_pictures(draw, "jumps")
 
     def write_package(self, path: Path, motor: Drive, job: CoupleJob) -> Path:
-        """Write the coupled system as an SSP file with its FMUs; return its path."""
         from ..fmu import find
 
         own = user_fmus(self.fmu)
@@ -171,7 +170,6 @@ REASONS = {
 
 
 def threshold_cells(data: xr.Dataset) -> dict[str, str]:
-    """Return the cells of one threshold: voltage, counts of starts."""
     passes = int((data.passes.values > 0).sum())
     undecided = int(data.decision.isin(list(REASONS)).sum())
     voltage, low, high = (float(data[f"border{end}"]) for end in ("", "_low", "_high"))

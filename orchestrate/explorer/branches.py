@@ -16,7 +16,6 @@ from .sweep_data import READING
 
 
 def branch_json(found: xr.Dataset | None) -> dict[str, Any]:
-    """Return lines and bifurcations of a branch as JSON data for the page."""
     if found is None:
         return {"branches": [], "bifurcations": []}
     if found.attrs.get("over") != "eta":

@@ -22,7 +22,6 @@ def bundle(sources: Mapping[str, str], entry: str) -> str:
 
 
 def append_with_imports(sources: Mapping[str, str], name: str, order: list[str]) -> None:
-    """Append a module to an order, after the modules that it imports."""
     if name in order:
         return
     for match in IMPORT.finditer(sources[name]):
@@ -31,7 +30,6 @@ def append_with_imports(sources: Mapping[str, str], name: str, order: list[str])
 
 
 def wrap_module(name: str, source: str) -> str:
-    """Return a module as the text of a function that returns what it exports."""
     exported = ", ".join(match[2] for match in EXPORT.finditer(source))
     body = IMPORT.sub(rewrite_import, source)
     body = EXPORT.sub(r"\1 \2", remove_comments(body)).strip()

@@ -52,7 +52,6 @@ def write_report(
     size: Resolution,
     fmu: Any,
 ) -> Path:
-    """Write ``report.html`` with claims, regions and pictures; return its path."""
     loader, strict = jinja2.PackageLoader("orchestrate.paper"), jinja2.StrictUndefined
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=strict)
     environment.filters["typeset"] = typeset

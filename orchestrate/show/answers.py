@@ -39,7 +39,6 @@ def title_of(answer: xr.Dataset) -> str:
 
 
 def answer_section(answer: xr.Dataset) -> Section:
-    """Return a section with a result's picture, if there is one, and its scalar numbers."""
     title = title_of(answer)
     tables = [table for table in (scalar_table(answer), parameter_table(answer)) if table.rows]
     try:
@@ -59,7 +58,6 @@ def scalar_table(answer: xr.Dataset) -> Table:
 
 
 def parameter_table(answer: xr.Dataset) -> Table:
-    """Return a table of structure and excitation, from a result's attributes."""
     rows = []
     for name, quantity in {**STRUCTURE, **EXCITATION}.items():
         if name in answer.attrs and not isinstance(answer.attrs[name], str):
@@ -99,12 +97,10 @@ def signs_section(answer: xr.Dataset) -> Section:
 
 
 def format_sensors(values: Iterable[float]) -> str:
-    """Format one number per sensor for a table's cell."""
     return " · ".join(format_number(float(value)) for value in values)
 
 
 def origin_section(answers: Sequence[xr.Dataset]) -> Section:
-    """Return a section with versions and identities of all results of a page."""
     rows: list[tuple[str, str]] = []
     for number, answer in enumerate(answers, 1):
         begin = f"{number}. " if len(answers) > 1 else ""
@@ -117,7 +113,6 @@ def origin_section(answers: Sequence[xr.Dataset]) -> Section:
 
 
 def describe_origin(answer: xr.Dataset) -> list[tuple[str, str]]:
-    """Return pairs of a name and a text on a result's origin, from its attributes."""
     attributes = {str(name): str(text) for name, text in answer.attrs.items()}
     rows = [(label, attributes[name]) for name, label in ORIGIN.items() if attributes.get(name)]
     if "history" in attributes:
@@ -136,7 +131,6 @@ def describe_origin(answer: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def installed_version(name: str) -> str:
-    """Return a package's installed version; empty if it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:

@@ -60,7 +60,6 @@ def for_slides(figure: Figure, shape: tuple[float, float] | None) -> Figure:
 def save(
     figure: Figure, path: str | Path, formats: Iterable[str] = ("png",), **options: Any
 ) -> list[Path]:
-    """Save a figure in each format atomically; return the paths."""
     written = []
     for ending in formats:
         target = Path(f"{path}.{ending}")

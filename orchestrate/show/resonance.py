@@ -47,7 +47,6 @@ LENGTHS = {"x1_max": "xi1_max", "x2_max": "xi2_max", "x_rel_max": "xi_rel_max"} 
 @draws("resonance", beside=BRANCHES)
 @styled
 def draw_resonance(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
-    """Draw resonance curves with their peaks and jumps; return the figure."""
     figure = Figure(figsize=(9.6, 9.4 if THRESHOLD in data else 7.6), layout="constrained")
     rows = [row for row in LAYOUT if row[0] in data]
     axes = figure.subplot_mosaic(rows, sharex=True)
@@ -134,14 +133,12 @@ def draw_threshold(
 
 
 def display_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
-    """Return the divisor from SI and the display unit of a quantity."""
     if str(values.name).startswith("a"):
         return acceleration_scale(data)
     return length_scale(data, float(values.max()))
 
 
 def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: AxisValues) -> None:
-    """Draw a triangle on each resonance peak, except where responses are irregular."""
     factor, _ = display_unit(data, data[name])
     for i in range(data.sizes.get("peak", 0)):
         peak = data.isel(peak=i)
@@ -155,7 +152,6 @@ def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: AxisV
 
 
 def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: AxisValues) -> None:
-    """Draw a line at each jump of the gap; list their frequencies above the panel."""
     texts = []
     for direction, style in JUMP_LINES.items():
         jumps = data[f"jump_{parameter}"].where(data.jump_direction == direction, drop=True)
@@ -191,7 +187,6 @@ def list_largest(
 @draws("resonance_levels")
 @styled
 def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw acceleration over level, gap and threshold over frequency; return the figure."""
     count = 3 if THRESHOLD in data else 2
     words = title or title_from_attributes(data, ("amplitude", "frequency"))
     figure, axes = make_panels(count, 1, (8.4, 1.2 + 2.5 * count), words, sharex=True)

@@ -101,7 +101,6 @@ def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
 @draws("drive_branch")
 @styled
 def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
-    """Draw branches of stationary motions without runs; return the figure."""
     figure, axes = make_panels(1, 2, (12, 5), title)
     branches = as_shown(branches)
     draw_branches(axes, branches)
@@ -121,7 +120,6 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
 def draw_speed_curves(
     axes: Sequence[Axes], data: xr.Dataset, part: np.ndarray, style: str, **line: Any
 ) -> None:
-    """Draw speed over voltage and amplitude over speed of a part of the motions."""
     voltage, speed, amplitude = (data[of].values for of in ("voltage", "speed", "amplitude"))
     if part.dtype == bool:
         voltage, amplitude = (np.where(part, of, np.nan) for of in (voltage, amplitude))
@@ -164,7 +162,6 @@ def drop_spin_up(data: xr.Dataset) -> xr.Dataset:
 
 
 def format_jumps(name: str, data: xr.Dataset) -> str:
-    """Format a run's jumps in one line after its name."""
     return f"{name}: jump {', '.join(jump_texts(data))}" if jump_texts(data) else f"{name}: no jump"
 
 
@@ -178,12 +175,10 @@ def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
 
 
 def running_mean(values: np.ndarray, count: int) -> np.ndarray:
-    """Return the running mean of an array over ``count`` values."""
     return np.convolve(values, np.full(count, 1.0 / count), "valid")
 
 
 def draw_impacts(axes: Axes, data: xr.Dataset, direction: str) -> None:
-    """Draw the impacts per revolution over the speed in one direction, and their running mean."""
     speed, count = data.speed.values, data.impacts.values
     there = direction == "there"
     colour, style = (STRUCTURES["delaminated"], "-") if there else (ORANGE, "--")

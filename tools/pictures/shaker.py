@@ -37,7 +37,6 @@ def draw_shaker(width: float = 4.2) -> Figure:
 
 @styled
 def draw_run_up(times: np.ndarray, speed: np.ndarray, position: np.ndarray) -> Figure:
-    """Draw rotor speed and box position over time; return the figure."""
     figure, (top, bottom) = make_panels(2, 1, (9, 5), sharex=True)
     top.plot(times, speed, "k", lw=1.0)
     top.set_ylabel(r"$\dot\varphi$ in rad/s")
