@@ -63,7 +63,6 @@ def replace_table(page: str, reference: Reference, table: str) -> str:
 
 
 def simulate_example(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Simulate two settled periods of the paper's Figure 5; return times and values by name."""
     names, eta = ("x1", "x2", "x_rel", "in_contact"), 0.4
     period = 2.0 * math.pi / eta
     times = [0.0, *(500 * period + np.linspace(0.0, 2 * period, 600))]
@@ -72,7 +71,6 @@ def simulate_example(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np
 
 
 def simulate_limits(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Simulate a growing sine of voltage until both limits act; return times and values."""
     names = ("voltage", "current", "box_position", "limited")
     coil = {"coil_inductance": 0.02, "voltage_limit": 5.0, "current_limit": 1.0}
     times = np.linspace(0.0, 1.5, 801).tolist()

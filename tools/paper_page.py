@@ -57,7 +57,6 @@ def claim_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def region_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return Markdown tables, one for each case, of the regions with irregular responses."""
     names = ("region", "count", "chaotic", "neutral", "largest")
     heads = ("from, to", "frequencies", "chaotic", "neutral", "largest exponent")
     lines = []
@@ -86,7 +85,6 @@ def fill_page(text: str, found: Mapping[str, Any]) -> str:
 
 
 def main(folder: str) -> None:
-    """Write results from a folder into the manual's pages on the paper's claims."""
     shutil.copyfile(Path(folder) / "claims.json", CLAIMS)
     results = json.loads(CLAIMS.read_text("utf-8"))
     for path in PAGES:

@@ -57,13 +57,11 @@ class Site:
         return {path: Page(path) for path in sorted(self.folder.resolve().rglob("*.html"))}
 
     def external_resources(self) -> list[str]:
-        """Return what pages load from other hosts, as ``page: address``."""
         every = [(path, address) for path, page in self.pages.items() for address in page.taken]
         begins = ("http:", "https:", "//")
         return [f"{path.name}: {one}" for path, one in every if one.lower().startswith(begins)]
 
     def broken_links(self) -> list[str]:
-        """Return links, pictures and scripts whose targets are missing, as ``page: address``."""
         every = [(p, one) for p, page in self.pages.items() for one in (*page.links, *page.taken)]
         return [f"{p.name}: {one}" for p, one in every if not self.target_exists(p, one)]
 

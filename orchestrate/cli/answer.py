@@ -19,6 +19,7 @@ from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
 from .options import UNITS
 from .output import Files, digest, result_name, write_result
+from .printing import describe, impact_lines
 
 UNIT_OF_OPTION = {name: ALIKE.get(unit, unit) for name, unit in {**UNITS, "eta": "eta"}.items()}
 VARIED = ("eta", "frequency", "level", "values")
@@ -44,15 +45,17 @@ class Asked(Command):
 
     named = ""  # how the names of results begin, if not by the function
     stores = True  # whether the function itself writes the result
+    shows = ""  # variables that are printed of a result
 
     def ask(self) -> tuple[Any, ...]:
-        """Return what the public function takes: the structure, ..., and its keywords."""
         structure = self.read_structure()
         excitation = self.read_excitation(structure, si=True, one=True)
         return structure, {**self.keywords(), **excitation}
 
     def summary(self, data: Any) -> Iterable[str]:
-        return ()
+        yield from describe(data, self.shows)
+        if "impact" in data.dims:
+            yield from impact_lines(data)
 
     def summaries(self, results: Runs) -> Iterator[str]:
         for state, data in results.items():

@@ -287,7 +287,6 @@ def documentation_of(function: str) -> dict[str, tuple[str, str]]:
 
 @functools.cache
 def arguments_read(function: str) -> list[str]:
-    """Return a public function's arguments that the command line can read by their types."""
     if not function:
         return []
     typed = documentation_of(function)
@@ -359,7 +358,6 @@ def explain(error: exceptions.CycloptsError, command: type[Command]) -> str:
 
 
 def suggestion(flag: str, error: exceptions.UnknownOptionError, command: type[Command]) -> str:
-    """Return what is probably meant by an unknown option, as words of a message; or nothing."""
     name = flag.lstrip("-").replace("-", "_")
     if name in STRUCTURE_NAMES and "--set" in command.flags():
         words = " ".join(error.root_input_tokens or []).replace(f"{flag}=", f"{flag} ").split(" ")

@@ -134,6 +134,7 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
     """As in the laboratory: motion and impacts under sines, random, shock or a record."""
 
     calls = "shake"
+    shows = "box_acceleration force1 force2 a1_abs a2_abs x_rel transient_time control_aborted"
     shaker: str | None = option("its electrodynamic shaker, level controlled", value="FILE")
     examples = """
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --sensor 2000
@@ -174,17 +175,6 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
                 written = orchestrate.write_record(record, path.with_suffix(f".{ending}"))
                 print(f"{written}: what the sensors read")
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
-        channels = "box_acceleration", "force1", "force2"
-        driven = [name for name in channels if name in data and data[name].any()]
-        yield from printing.extents(data, f"{' '.join(driven)} a1_abs a2_abs x_rel", rms=True)
-        if "transient_time" in data:
-            yield f"a linear transient decays within {float(data.transient_time):.3g} s"
-        elif data.control_aborted.notnull():
-            end = float(data.control_aborted)
-            yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
-        yield from printing.impact_lines(data)
-
 
 MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 ANALYSES = {  # of --show: the public function, what it shows; whose peaks, what else is printed
@@ -203,7 +193,6 @@ SHOWN = ", ".join(f"{name} ({row[1]})" for name, row in ANALYSES.items())
 
 
 def peak_cells(data: xr.Dataset, values: xr.DataArray) -> list[str]:
-    """Return each channel's largest value with the frequency, and the time, at which it is."""
     cells = []
     for channel in values.channel.values:
         flat = values.sel(channel=channel).stack(every=[d for d in values.dims if d != "channel"])

@@ -143,7 +143,6 @@ def warn_of_other_unit(arguments: Any, structure: Structure, first: float, last:
 
 
 def clearance_notes(structure: Structure, question: Keywords, shown: xr.Dataset) -> Iterator[str]:
-    """Yield a note if the level is below the threshold at which the gap opens or closes."""
     if question.get("over") == "level":
         question = {**question, "level": question["values"]}
     elif question.get("over") is not None or "clearance" in question:

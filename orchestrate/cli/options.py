@@ -318,7 +318,6 @@ class Over(Options):
         return structure, {**self.keywords(), **box, **varied}
 
     def check_over(self, over: str) -> None:
-        """Raise unless a parameter of a structure may vary with these options."""
         if over in FREQUENCIES:
             raise InputError(f"--over {over}: expected --{over} VALUES instead")
         if over in ("amplitude", "g", "level"):

@@ -116,7 +116,6 @@ class HowRun(Options):
     build_folder: Path | None = option("where FMUs are looked for and exported to", value="FOLDER")
 
     def running(self, store: Path | None = None) -> Running:
-        """Return ``jobs``, ``cluster``, ``force``, ``fmu`` and ``store`` as keywords of the API."""
         names = ("jobs", "cluster", "force", "keep_stale", "fmu", "build_folder")
         running: Any = {name: getattr(self, name) for name in names}
         running |= {"fmu": user_fmus(self.fmu)} if isinstance(self.fmu, list) else {}
@@ -146,7 +145,6 @@ def unit_note(attributes: Mapping[Any, Any]) -> str:
 
 
 def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
-    """Return a dict from model name to the user's FMU file; raise for unknown or double ones."""
     from ..fmu import MODELS, describe
 
     fmus: dict[str, Path] = {}
@@ -190,8 +188,6 @@ def result_name(command: str, sources: Sequence[Any], *asked: Any) -> str:
 
 
 def digest(*arguments: Any) -> str:
-    """Return the first hexadecimal digits of a SHA-256 over arguments, for a file name."""
-
     def other(value: Any) -> Any:
         if hasattr(value, "parameters"):  # of a structure, a drive
             return value.parameters()

@@ -15,7 +15,6 @@ EXPORT = re.compile(r"^export ((?:async )?(?:function\*?|class|const|let)) (\w+)
 
 
 def bundle(sources: Mapping[str, str], entry: str) -> str:
-    """Join JavaScript modules into one script that ends with the entry module."""
     order: list[str] = []
     append_with_imports(sources, entry, order)
     return '"use strict";\n' + "".join(wrap_module(name, sources[name]) for name in order)

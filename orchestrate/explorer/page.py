@@ -90,7 +90,6 @@ def first_bytes(path: Path) -> bytes:
 def render_page(
     chosen: SweepData, shown: dict[str, str], drawn: dict[str, Any], kernel: WebKernel
 ) -> str:
-    """Return the page's HTML, made by a template that escapes all text."""
     scripts = read_modules()
     made_by = f"vibroimpact {__version__}, kernel {kernel.guid}"
     style, script = read_source("style.css"), bundle(scripts, "main")

@@ -108,7 +108,6 @@ def whole(minimum: int, maximum: int = MAX_COUNT) -> Check:
 
 @cache
 def checks_of(kind: type) -> dict[str, Check]:
-    """Return the checks of a dataclass's fields by name, from the types of the fields."""
     types = get_type_hints(kind, include_extras=True)
     checks = {field.name: check_of(types[field.name]) for field in fields(kind)}
     return {name: check for name, check in checks.items() if check is not None}

@@ -257,7 +257,6 @@ class Datasets:
         return self.get("attractors", orchestrate.attractors, ELASTIC, eta=etas, **more)
 
     def basin(self) -> xr.Dataset:
-        """Return the basins in gap and gap velocity around the two attractors of a frequency."""
         found = between(self.attractors(), 1.07, 1.37)
         at = found.isel(eta=index_of_most_even_shares(found))
         middle = np.nanmean(at.state.values[np.argsort(-at.share.values, kind="stable")[:2]], 0)
@@ -275,7 +274,6 @@ class Datasets:
         return self.get(f"map_{parameter}", orchestrate.map, ELASTIC, **axes, **more)
 
     def spectra(self) -> xr.Dataset:
-        """Return spectra at the up-sweep's peak and at two other frequencies."""
         etas = float(self.up("elastic").xi_rel_max.idxmax()), 0.4, 1.13
         return self.get("spectra", orchestrate.spectra, ELASTIC, eta=etas)
 

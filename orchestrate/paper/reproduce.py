@@ -48,7 +48,6 @@ def reproduce(
 
 
 def choose_parts(names: Sequence[str] | None) -> list[str]:
-    """Return the names of the parts asked for, in the report's order; raise for unknown ones."""
     known = [CLAIMS, *PARTS]
     asked = known if names is None else [name.strip() for name in names]
     for name in asked:

@@ -48,7 +48,6 @@ def draw(
 
 
 def first_of(results: Results) -> xr.Dataset:
-    """Return the first record's result, whose display units the axes use."""
     return next(iter(results.values()))
 
 
@@ -180,7 +179,6 @@ def draw_frf(results: Results) -> Figure:
 
 
 def draw_psd(results: Results) -> Figure:
-    """Draw power spectral densities, a row per channel; return the figure."""
     names = channels_in(results)
     figure, axes = make_panels(len(names), 1, (9.0, 0.8 + 2.0 * len(names)), sharex=True)
     for channel, plane in zip(names, axes, strict=True):
@@ -199,7 +197,6 @@ def draw_psd(results: Results) -> Figure:
 
 
 def draw_orders(results: Results) -> Figure:
-    """Draw tracked orders' amplitudes over frequency, a row each, and the phase of order 1."""
     first, words = first_of(results), "order {:g}\nin {}"
     unit = typeset_array_unit(first.amplitude)
     orders = map(float, first.order.values)
@@ -225,7 +222,6 @@ def read_order(
 
 
 def draw_spectrograms(results: Results) -> Figure:
-    """Draw spectrograms in decibels: a row per channel, a column per record; return the figure."""
     names, count = channels_in(results), len(results)
     size = (1.2 + 4.2 * count, 0.8 + 2.2 * len(names))
     figure, axes = make_panels(len(names), count, size, sharex=True, sharey=True)
@@ -252,7 +248,6 @@ def draw_spectrograms(results: Results) -> Figure:
 
 
 def draw_shock_spectra(results: Results) -> Figure:
-    """Draw maximax shock response spectra, residual ones as thin lines; return the figure."""
     names = channels_in(results)
     size = (1.0 + 3.6 * len(names), 4.4)
     figure, axes = make_panels(1, len(names), size, sharex=True, sharey=True)

@@ -34,7 +34,6 @@ ORIGIN = {  # attributes, and what a reader calls them
 
 
 def title_of(answer: xr.Dataset) -> str:
-    """Return a result's title as a heading; pictures and tables tell of its structure."""
     return plain_title(str(answer.attrs.get("title") or required_kind(answer)), structure=False)
 
 
@@ -69,7 +68,6 @@ def parameter_table(answer: xr.Dataset) -> Table:
 
 
 def signs_section(answer: xr.Dataset) -> Section:
-    """Return a section on signs: values, noise floors, and other causes of those that stand out."""
     known = [answer.sel(sign=sign) for sign in answer.sign.values]
     known = [one for one in known if bool((one.exceeds >= 0).any())]
     rows = [

@@ -99,7 +99,6 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
 @draws("detect", "fit")
 @styled
 def draw_orders_and_fits(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw a record's orders over frequency with those of the fits, one column per sensor."""
     data = with_hypothesis_dimension(as_shown(data))
     channels = [str(channel) for channel in data.channel.values]
     rows, columns = data.sizes["order"], len(channels)

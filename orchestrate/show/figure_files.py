@@ -29,7 +29,6 @@ def png_bytes(figure: Figure) -> bytes:
 
 
 def png_size(png: bytes) -> dict[str, int]:
-    """Return width and height of a PNG picture in pixels, read from its header."""
     width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))
     return {"width": width, "height": height}
 

@@ -121,7 +121,6 @@ def draw_spectrum(
 @draws("shake", beside=BONDED)
 @styled
 def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
-    """Draw a laboratory record: accelerations, gap and impulses over time; return the figure."""
     words = str(data.attrs.get("excitation_description") or data.attrs["excitation"])
     title = title or f"{labels.in_shown_units(data, words)}; {labels.title_from_attributes(data)}"
     heights: Any = {"sharex": True, "height_ratios": (1.0, 1.6, 1.2, 1.2)}
@@ -145,7 +144,6 @@ def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = No
 @draws("cosimulate")
 @styled
 def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw a coupled run over time, a panel for each quantity of the drive; return the figure."""
     names = [str(name) for name in data.attrs["recorded"].split(",") if name]
     count = (4 if "x1" in data else 1) + len(names)
     title = title or f"{data.attrs['drive']}; {labels.title_from_attributes(data)}"

@@ -89,7 +89,6 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
 
 
 def branch_title(data: xr.Dataset, over: Iterable[str]) -> str:
-    """Return a title with the structure, and what of the box's motion all points share."""
     varied = set(over)
     name = "frequency" if has_frequency_unit(data) else "eta"
     points = {key: data[key] for key in (name, "amplitude") if key in data.coords}

@@ -242,7 +242,6 @@ def draw_exponents(axes: Axes, data: xr.Dataset, lowest: float) -> None:
 @draws("attractors")
 @styled
 def draw_attractors(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw attractors over a parameter: largest gap, share of starts and number."""
     title = title or title_from_attributes(data)
     heights: Any = {"sharex": True, "height_ratios": (3, 2, 1)}
     figure, (top, middle, bottom) = make_panels(3, 1, (9.6, 7.2), title, **heights)
@@ -303,7 +302,6 @@ def draw_attractor(
 
 
 def draw_jumps_over(data: xr.Dataset, over: str, title: str) -> Figure:
-    """Draw the jump voltages at rate 0 over a parameter, one panel per direction."""
     known = data.jumps.notnull().any(["structure", over])
     jumps = [str(jump) for jump in data.jump.values if known.sel(jump=jump)] or ["up"]
     figure, axes = make_panels(1, len(jumps), (6.0 * len(jumps), 4.5), title)
@@ -322,7 +320,6 @@ def draw_jumps_over(data: xr.Dataset, over: str, title: str) -> Figure:
 @draws("jump_voltages")
 @styled
 def draw_jump_voltages(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw jump voltages over the ramp rate, or at rate 0 over a parameter; return the figure."""
     if others := {str(dim) for dim in data.jumps.dims} - {"structure", "jump"}:
         return draw_jumps_over(data, others.pop(), title)
     known = np.isfinite(data.voltage).any(["rate", "structure"])

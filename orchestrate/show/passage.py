@@ -120,7 +120,6 @@ def jump_texts(data: xr.Dataset) -> list[str]:
 
 
 def format_jumps(data: xr.Dataset) -> str:
-    """Format a run's jumps for a title, or whether it passes the resonance."""
     return ", ".join(f"jump {text}" for text in jump_texts(data)) or format_passage(data)
 
 

@@ -210,7 +210,6 @@ def mark_attractors(
 
 
 def label_attractors(plane: Axes, data: xr.Dataset) -> None:
-    """Add a legend with period, impacts and share of each coloured attractor."""
     for index, colour in zip(range(data.sizes["attractor"]), BASINS, strict=False):
         part = data.isel(attractor=index)
         n, impacts = float(part.multiplicity), float(part.impacts_per_period)
@@ -266,7 +265,6 @@ def mark_codimension_two(
 @draws("poincare")
 @styled
 def draw_poincare(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw a Poincaré section at a phase of the box, at impacts or at releases."""
     figure, (plane,) = make_panels(1, 1, (6.4, 5.0), title or title_from_attributes(data))
     count, at = data.sizes["point"], str(data.attrs["at"])
     size = 2.0 if count > 2000 else 4.0 if count > 200 else 7.0
@@ -340,7 +338,6 @@ def relative_motion(data: xr.Dataset, panel: int) -> tuple[np.ndarray, np.ndarra
 
 @styled
 def draw_states(data: xr.Dataset) -> Figure:
-    """Draw one response's phase planes, coloured by state (Figure 5); return the figure."""
     figure, (left, right) = make_panels(1, 2, (8.5, 4.2))
     state = data.state.values
     _, gap, rate = relative_motion(data, 0)
@@ -373,7 +370,6 @@ def draw_by_state(
 
 @styled
 def draw_masses(data: xr.Dataset) -> Figure:
-    """Draw both masses' phase planes, one panel per response on one scale (Figure 12)."""
     count = data.sizes["panel"]
     figure, axes = make_panels(1, count, (3.3 * count, 3.7))
     reach = 1.08 * float(np.abs(data.state).max())

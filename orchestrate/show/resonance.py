@@ -107,7 +107,6 @@ def iterate_curves(values: xr.DataArray) -> Iterator[tuple[str, str, xr.DataArra
 
 
 def draw_level_of_box(axes: Axes, data: xr.Dataset, x: AxisValues) -> None:
-    """Draw the box's acceleration and the threshold at which the gap opens or closes."""
     factor, unit = acceleration_scale(data)
     level = (data.amplitude * data.frequency**2).broadcast_like(data[THRESHOLD]).values / factor
     threshold = draw_threshold(axes, data, factor, "level at which it {}", 1.2)
@@ -172,7 +171,6 @@ def axis_position(value: float, parameter: xr.DataArray, x: AxisValues) -> float
 def list_largest(
     axes: Axes, largest: Mapping[str, tuple[float, float]], unit: str, x: AxisValues
 ) -> None:
-    """Write each structure's largest value and its frequency into a panel's corner."""
     middle = float(np.mean(axes.get_xlim()))
     right = all(at < middle for _, at in largest.values())
     style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}

@@ -49,7 +49,6 @@ def acceleration_spectrum(
 @draws("spectra")
 @styled
 def draw_spectra(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> Figure:
-    """Draw spectra, one row per frequency, bonded left and delaminated right."""
     felt, unit = acceleration_scale(data)
     shown = data.acceleration.sel(mass=mass) / felt
     along, with_unit = str(shown.dims[0]), has_frequency_unit(data)

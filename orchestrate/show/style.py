@@ -78,7 +78,6 @@ def make_panels(
 
 
 def set_title(figure: Figure, title: str) -> None:
-    """Write a title above all panels, broken after commas into lines that fit."""
     if title:
         letters = int(14 * figure.get_figwidth())
         parts = title.replace(" ", NO_BREAK_SPACE).replace(f",{NO_BREAK_SPACE}", ", ")

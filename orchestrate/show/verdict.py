@@ -25,7 +25,6 @@ NAMES_OF_CHANNELS = (
 
 
 def make_verdict(answer: xr.Dataset) -> Verdict:
-    """Return the verdict of a ``detect`` result: its word, and what was seen and fitted."""
     word = str(answer.verdict.values)
     sentences = {
         "delaminated": delaminated_statement,
@@ -92,7 +91,6 @@ def verdict_sections(answer: xr.Dataset) -> list[Section]:
 
 
 def measured_record(answer: xr.Dataset) -> Section | None:
-    """Return a section on the record: sensors, unit, sampling, sweep; None where none is known."""
     words = {str(name): str(text) for name, text in answer.attrs.items()}
     unit = words.get("record_unit", "").replace("m/s2", "m/s²")
     levels = scalar(answer, "level_low"), scalar(answer, "level_high")
@@ -135,7 +133,6 @@ def known_text(answer: xr.Dataset, name: str, unit: str, digits: int) -> str:
 
 
 def sweep_text(answer: xr.Dataset) -> str:
-    """Format the range and direction of the sweep, and the part of it that was compared."""
     low, high = scalar(answer, "sweep_low"), scalar(answer, "sweep_high")
     if not math.isfinite(low + high):
         return ""
@@ -149,7 +146,6 @@ def sweep_text(answer: xr.Dataset) -> str:
 
 
 def frequencies_text(answer: xr.Dataset, low: float, high: float) -> str:
-    """Format a range of frequencies in Hz in the units that were asked for."""
     turn, word = scale_of(answer, "Hz")
     first, last = (format_number(end / turn, digits=4) for end in (low, high))
     return f"{first} to {last} {'Omega/omega' if word == 'eta' else word}"

@@ -60,7 +60,6 @@ def draw_states() -> Figure:
 
 
 def draw_engineer_card() -> Figure:
-    """Draw resonance curves of the tutorial's beam as a small card; return the figure."""
     halves = {"m1": 1.5, "m2": 1.4, "f1": 11.9, "f2": 13.5, "zeta1": 0.005, "zeta2": 0.005}
     structure = orchestrate.Structure.from_halves(**halves, e=0.6)
     turns = 2.0 * np.pi * np.arange(10.0, 15.0, 0.05)
@@ -69,7 +68,6 @@ def draw_engineer_card() -> Figure:
 
 
 def draw_researcher_card() -> Figure:
-    """Draw a part of Figure 6's orbit diagram as a small card; return the figure."""
     eta = np.arange(0.9, 4.0, 0.004)
     return cards.draw_orbits(orchestrate.sweep(PAPER, eta=eta, samples=40, progress=False))
 

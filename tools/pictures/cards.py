@@ -26,7 +26,6 @@ def make_card() -> tuple[Figure, Axes]:
 
 @styled
 def draw_resonance(curves: xr.Dataset) -> Figure:
-    """Draw mass 1's amplitude over rising frequency as a card; return the figure."""
     figure, axes = make_card()
     for name, style in STYLES.items():
         amplitude = curves.x1_max.sel(structure=name, direction="up")

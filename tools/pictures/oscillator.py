@@ -42,7 +42,6 @@ def draw_damper(axes: Axes, x: float, y: float, length: float) -> None:
 
 
 def draw_masses(axes: Axes, gap: float, size: float) -> None:
-    """Draw two masses on springs and dashpots in a box, 10 wide, with names in a font size."""
     axes.add_patch(Rectangle((0, 0), 10, 4, fill=False, lw=2.0))
     left, right = 3.4 - 0.5 * gap, 5.0 + 0.5 * gap
     for side, x, begin in (("1", left, 0.0), ("2", right, right + 1.6)):
@@ -69,7 +68,6 @@ def draw_scheme(width: float = 4.8) -> Figure:
 
 @styled
 def draw_example(times: np.ndarray, values: Mapping[str, np.ndarray]) -> Figure:
-    """Draw displacements, gap and permanent contact over time; return the figure."""
     figure, (top, bottom) = make_panels(2, 1, (9, 5), sharex=True)
     top.plot(times, values["x1"], label=r"$\xi_1$")
     top.plot(times, values["x2"], label=r"$\xi_2$", ls="--")
