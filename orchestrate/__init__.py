@@ -42,5 +42,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """Return the sorted public names of the package."""
     return __all__

@@ -32,7 +32,6 @@ def main() -> int:
 
 
 def raise_terminated(*_: object) -> None:
-    """Handle SIGTERM: raise the ``KeyboardInterrupt`` that says so."""
     from .errors import Terminated
 
     raise Terminated

@@ -127,7 +127,6 @@ def pack(value: Any, arrays: Arrays) -> Any:
 
 
 def write_answer(stream: BinaryIO, header: dict[str, Any], arrays: Arrays) -> None:
-    """Write an answer, its arrays after its text."""
     text = json.dumps(header).encode()
     stream.write(len(text).to_bytes(8, "little") + text)
     for array in arrays:

@@ -93,7 +93,6 @@ def read_in_process(
 
 
 def start_child(path: Path, folder: Path) -> Child:
-    """Start a process that is to read a file in a folder."""
     try:
         return Child(folder)
     except OSError as error:
@@ -139,7 +138,6 @@ class Child:
         return answer
 
     def receive(self, most: int) -> dict[str, Any]:
-        """Read an answer of at most a number of bytes."""
         length = int.from_bytes(self.exactly(8), "little")
         if length > most:
             raise ValueError
@@ -155,7 +153,6 @@ class Child:
         return data
 
     def unpack(self, value: Any, room: list[int]) -> Any:
-        """Return the value of plain data of an answer; its arrays are read, within the room."""
         if isinstance(value, list):
             return [self.unpack(one, room) for one in value]
         if not isinstance(value, dict):

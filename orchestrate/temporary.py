@@ -19,7 +19,6 @@ _folders: dict[int, HeldFolder] = {}  # by process: a forked child makes its own
 
 
 def process_folder() -> Path:
-    """Return the path of this process's temporary folder; create it at the first call."""
     folder = _folders.get(os.getpid())
     if folder is None or not folder.path.is_dir():
         check_path_encoding(tempfile.gettempdir())

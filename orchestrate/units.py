@@ -63,7 +63,6 @@ class Units:
         return tuple(filter(None, (getattr(self, field.name) for field in fields(self))))
 
     def __str__(self) -> str:
-        """Format the chosen units as one text, separated by commas."""
         return ", ".join(self.words)
 
     def with_defaults(self, usual: Units) -> Units:
@@ -80,7 +79,6 @@ def with_units(data: xr.Dataset, units: Units | str) -> xr.Dataset:
 
 
 def units_of(data: xr.Dataset) -> Units:
-    """Return the display units stored in a dataset's attributes, as ``Units``."""
     return Units.from_text(str(data.attrs.get(SHOWN_IN, "")))
 
 

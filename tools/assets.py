@@ -55,7 +55,6 @@ def variable_table(path: str | PathLike[str]) -> str:
 
 
 def replace_table(page: str, reference: Reference, table: str) -> str:
-    """Return a page's text with a model's variable table replaced."""
     source, end = f"fmu_src/models/{reference.folder}/variables.py", "<!-- end of variables -->"
     begin = f"<!-- variables: generated from {source}, kept so by a test -->"
     head, rest = page.split(begin + "\n")
@@ -64,7 +63,6 @@ def replace_table(page: str, reference: Reference, table: str) -> str:
 
 
 def simulate_example(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Simulate two settled periods of the paper's Figure 5; return times and values by name."""
     names, eta = ("x1", "x2", "x_rel", "in_contact"), 0.4
     period = 2.0 * math.pi / eta
     times = [0.0, *(500 * period + np.linspace(0.0, 2 * period, 600))]
@@ -73,7 +71,6 @@ def simulate_example(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np
 
 
 def simulate_limits(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Simulate a growing sine of voltage until both limits act; return times and values."""
     names = ("voltage", "current", "box_position", "limited")
     coil = {"coil_inductance": 0.02, "voltage_limit": 5.0, "current_limit": 1.0}
     times = np.linspace(0.0, 1.5, 801).tolist()
@@ -83,7 +80,6 @@ def simulate_limits(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.
 def columns_of(
     rows: Sequence[Sequence[float]], names: Sequence[str]
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return the times and the values by name of a run's rows, without the first."""
     times, *values = np.array(rows, dtype=float)[1:].T
     return times, dict(zip(names, values, strict=True))
 
@@ -117,7 +113,6 @@ def draw_documentation(
 
 
 def main() -> None:
-    """Write all generated assets of the FMUs and the documentation."""
     # all FMUs first: what is written below belongs to their sources
     names = "fmi3", "fmi2-python"
     forms = [[find(each.model, name).path for name in names] for each in REFERENCES]

@@ -107,7 +107,6 @@ def time_periods(fmu: str | PathLike[str], eta: float, count: int) -> tuple[floa
 
 
 def time_quiet_step(fmu: str | PathLike[str], count: int = 100_000) -> float:
-    """Return the seconds of one doStep call without an impact, through FMPy."""
     with Instance(fmu) as instance:
         instance.initialize(bonded=True, x_rel_max_on=False)
         begin = time.perf_counter()
@@ -223,7 +222,6 @@ def compare_solvers(count: int) -> None:
 
 
 def main() -> None:
-    """Run a comparison, or one measurement in this process, as the options say."""
     parser = argparse.ArgumentParser(prog="python -m tools.benchmark", description=__doc__)
     parser.add_argument("--periods", type=int, default=2000, help="periods a frequency")
     parser.add_argument("--once", nargs=3, metavar=("FMU", "ETA", "PERIODS"), help="seconds of one")

@@ -12,7 +12,6 @@ APART = {"x1_start": -1.0, "x2_start": 1e4, "box_amplitude": 1.0, "box_frequency
 
 
 def time_quiet_step(fmu: Path, watched: bool = False, step: float = 1e-3) -> float:
-    """Return the seconds of an FMI 3.0 step without an impact, called from C."""
     values = {**APART, "x_rel_max_on": float(watched)}
     with tempfile.TemporaryDirectory() as folder:
         program = importers.compile_against(fmu, Path(folder), [SOURCE], ("-O2",))

@@ -19,7 +19,6 @@ LEFT_OUT = ("identity", "history")  # of every source: the stamp tells what deci
 
 
 def main() -> None:
-    """Compute Figure 6's start states and write them to the explorer's folder."""
     etas = np.arange(100, 8001) / 1000
     data = orchestrate.sweep(orchestrate.Structure(), eta=etas, direction="up")
     data = data[KEPT].drop_vars("period")

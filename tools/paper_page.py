@@ -25,7 +25,6 @@ PAGES, CLAIMS = (DOCS / "paper.md", DOCS / "claims.md"), DOCS / "claims.json"
 
 
 def count_verdicts(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return a text on how many claims have which verdict."""
     number = {verdict: sum(row["verdict"] == verdict for row in rows) for verdict in WORDS}
     return [
         f"Of {len(rows)} statements of all sections {number['yes']} are borne out, "
@@ -34,7 +33,6 @@ def count_verdicts(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def section_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return a Markdown table of counts of verdicts by section."""
     words = [word for word in WORDS if any(row["verdict"] == word for row in rows)]
     lines = [f"| section | {' | '.join(WORDS[word] for word in words)} |"]
     lines.append(f"|{'---|' * (1 + len(words))}")
@@ -45,7 +43,6 @@ def section_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def claim_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return Markdown tables, one for each section, of all claims with their verdicts."""
     lines = []
     for section in dict.fromkeys(row["section"] for row in rows):
         lines += [f"Section {section}:", "", "| the paper | its value | computed | |"]
@@ -60,7 +57,6 @@ def claim_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def region_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return Markdown tables, one for each case, of the regions with irregular responses."""
     names = ("region", "count", "chaotic", "neutral", "largest")
     heads = ("from, to", "frequencies", "chaotic", "neutral", "largest exponent")
     lines = []
@@ -74,7 +70,6 @@ def region_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def fill_page(text: str, found: Mapping[str, Any]) -> str:
-    """Return a page's text with the results put into the parts that it has."""
     parts = {
         "counts": lambda: count_verdicts(found["claims"]),
         "sections": lambda: section_table(found["claims"]),
@@ -90,7 +85,6 @@ def fill_page(text: str, found: Mapping[str, Any]) -> str:
 
 
 def main(folder: str) -> None:
-    """Write results from a folder into the manual's pages on the paper's claims."""
     shutil.copyfile(Path(folder) / "claims.json", CLAIMS)
     results = json.loads(CLAIMS.read_text("utf-8"))
     for path in PAGES:

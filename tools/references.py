@@ -96,8 +96,6 @@ def rows_of_run(
 
 
 def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:
-    """Run the reference through an FMU; return rows of time and outputs."""
-
     def inputs(time: float) -> dict[str, float]:
         return dict(zip(reference.inputs, reference.input_at(time), strict=True))
 
@@ -123,7 +121,6 @@ def write_reference(reference: Reference, rows: Sequence[Sequence[float]]) -> No
 
 
 def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[float]]) -> None:
-    """Write a CSV file with numbers to the last bit."""
     with path.open("w", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(header)

@@ -70,7 +70,6 @@ def simulate_from_rest(
     scale: float = 1.0,
     rate: float | None = None,
 ) -> tuple[float, int]:
-    """Integrate the structure from rest; return processor seconds and number of impacts."""
     flight, contact = equations_of_motion(structure, acceleration)
     gap, pressed = event_functions(structure)
     begin = time.process_time()

@@ -38,7 +38,6 @@ class Page(HTMLParser):
         self.feed(self.path.read_text(encoding="utf-8"))
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Collect what a tag links to, loads, and names."""
         values = {name: value or "" for name, value in attrs}
         self.places |= {values[name] for name in ("id", "name") if name in values}
         if tag == "a" and "href" in values:
@@ -58,18 +57,15 @@ class Site:
         return {path: Page(path) for path in sorted(self.folder.resolve().rglob("*.html"))}
 
     def external_resources(self) -> list[str]:
-        """Return what pages load from other hosts, as ``page: address``."""
         every = [(path, address) for path, page in self.pages.items() for address in page.taken]
         begins = ("http:", "https:", "//")
         return [f"{path.name}: {one}" for path, one in every if one.lower().startswith(begins)]
 
     def broken_links(self) -> list[str]:
-        """Return links, pictures and scripts whose targets are missing, as ``page: address``."""
         every = [(p, one) for p, page in self.pages.items() for one in (*page.links, *page.taken)]
         return [f"{p.name}: {one}" for p, one in every if not self.target_exists(p, one)]
 
     def target_exists(self, path: Path, address: str) -> bool:
-        """Return whether an address of a page exists in the folder, or is elsewhere."""
         if urlsplit(address).scheme or address.startswith("//"):
             return True
         file, anchor = urldefrag(address)
@@ -81,7 +77,6 @@ class Site:
 
 
 def build_site(folder: Path) -> None:
-    """Build manual and explorer into a folder; warnings are errors."""
     kept = folder.parent / "doctrees"  # what Sphinx remembers, which nobody is to be served
     options = ["-q", "-W", "-n", "--keep-going", "-d", kept]
     command = [sys.executable, "-m", "sphinx", *options, DOCS, folder]
@@ -90,7 +85,6 @@ def build_site(folder: Path) -> None:
 
 
 def main() -> None:
-    """Build the site, check it, and print its size."""
     parser = argparse.ArgumentParser(description="Build manual and explorer as one static site.")
     parser.add_argument("folder", nargs="?", type=Path, default=Path("site/html"))
     folder = parser.parse_args().folder

@@ -17,8 +17,7 @@ module                idea
 :mod:`.laboratory`    shake, analyse, channels, halves
 :mod:`.diagnosis`     diagnose, plan
 :mod:`.drive`         options that commands on the weak drive share
-:mod:`.weak_drive`    couple, capture, passage, jump-voltages, drive-branch
-:mod:`.cosimulation`  cosimulate
+:mod:`.weak_drive`    couple, cosimulate, capture, passage, jump-voltages, drive-branch
 :mod:`.pages`         build, explore, report, paper
 :mod:`.safe_output`   standard streams that may be closed, full or not read
 ====================  ================================================================
@@ -42,7 +41,7 @@ from cyclopts.exceptions import CycloptsError
 from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable
 from ..model.spelling import closest, did_you_mean
 from ..version import __version__
-from . import cosimulation, diagnosis, dynamics, laboratory, pages, responses, weak_drive
+from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
 from .command import Command, explain
 from .grammar import with_option_names
 from .options import QUANTITIES, list_shipped_sets
@@ -56,7 +55,7 @@ COMMANDS: dict[str, type[Command]] = {
         *(diagnosis.Diagnose, diagnosis.Plan, responses.Resonance, responses.Spectra),
         *(responses.Sweep, responses.Map, dynamics.Lyapunov, dynamics.Poincare),
         *(dynamics.Attractors, dynamics.Basin, dynamics.Orbit, dynamics.Manifold),
-        *(dynamics.Branch, dynamics.Border, cosimulation.Cosimulate, weak_drive.Couple),
+        *(dynamics.Branch, dynamics.Border, weak_drive.Cosimulate, weak_drive.Couple),
         *(weak_drive.Capture, weak_drive.Passage, weak_drive.JumpVoltages),
         *(weak_drive.DriveBranch, pages.Explore, pages.Report, pages.Paper),
     )
@@ -98,7 +97,6 @@ def __getattr__(name: str) -> cyclopts.App:
 
 
 def make_app() -> cyclopts.App:
-    """Return the program as cyclopts knows it, which loads a command when it is run."""
     app = cyclopts.App(
         name=program_name(),
         help="Simulate and analyse a vibro-impacting structure through its FMUs: its responses, "
@@ -114,7 +112,6 @@ def make_app() -> cyclopts.App:
 
 
 def epilogue(name: str) -> str:
-    """Return what stands below a help: quantities and examples."""
     program = program_name()
     if name not in COMMANDS:
         return EXAMPLES.format(program=program, sets=list_shipped_sets())
@@ -237,7 +234,6 @@ def describe_progress_kept() -> str:
 
 @contextmanager
 def print_warnings_in_one_line(chosen: Command) -> Iterator[None]:
-    """Print a ``UserWarning`` in the ``with`` block as one line, in words of a command."""
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:

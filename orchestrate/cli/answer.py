@@ -19,6 +19,7 @@ from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
 from .options import UNITS
 from .output import Files, digest, result_name, write_result
+from .printing import describe, impact_lines
 
 UNIT_OF_OPTION = {name: ALIKE.get(unit, unit) for name, unit in {**UNITS, "eta": "eta"}.items()}
 VARIED = ("eta", "frequency", "level", "values")
@@ -44,16 +45,17 @@ class Asked(Command):
 
     named = ""  # how the names of results begin, if not by the function
     stores = True  # whether the function itself writes the result
+    shows = ""  # variables that are printed of a result
 
     def ask(self) -> tuple[Any, ...]:
-        """Return what the public function takes: the structure, ..., and its keywords."""
         structure = self.read_structure()
         excitation = self.read_excitation(structure, si=True, one=True)
         return structure, {**self.keywords(), **excitation}
 
     def summary(self, data: Any) -> Iterable[str]:
-        """Return the lines that are printed of one result."""
-        return ()
+        yield from describe(data, self.shows)
+        if "impact" in data.dims:
+            yield from impact_lines(data)
 
     def summaries(self, results: Runs) -> Iterator[str]:
         for state, data in results.items():
@@ -64,11 +66,9 @@ class Asked(Command):
         return True
 
     def draw(self, results: Runs, question: Keywords, *over: xr.Dataset) -> Any:
-        """Return the figure of the results, with branches over them."""
         return orchestrate.plot(*[*results.values()][::-1], *over)
 
     def source_names(self) -> list[str]:
-        """Return the names of the files that a drive, and the structure, come from."""
         paths = (getattr(self, name, None) for name in ("drive", "structure", "start"))
         files = [Path(path).stem for path in paths if path and isinstance(path, (str, Path))]
         return list(dict.fromkeys(files))[:2] or ["paper"]
@@ -142,7 +142,6 @@ class Asked(Command):
         """Write what a command has besides results and picture."""
 
     def read_overlay(self, structure: Any, question: Keywords) -> list[xr.Dataset]:
-        """Return the branches of ``--overlay``; raise for one that does not fit the question."""
         paths = [Path(name) for text in getattr(self, "overlay", []) for name in text.split(",")]
         if not paths:
             return []
@@ -183,6 +182,5 @@ class Asked(Command):
 
 
 def is_curve(question: Mapping[str, Any]) -> bool:
-    """Return whether a parameter has several values, so that a curve can be drawn."""
     varied = (question.get(name) for name in VARIED)
     return any(len(values) > 1 for values in varied if isinstance(values, tuple))

@@ -117,7 +117,6 @@ def option_names(names: Iterable[str], joint: str = ", ") -> str:
 
 
 def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, str]:
-    """Return what reads a text of a type, by an option's name and the text; and its name."""
     known, parts = {int: "N", float: "X", Path: "FILE"}, (kind, *typing.get_args(kind))
     called = next((known[one] for one in parts if one in known), "TEXT")
     for one in parts:
@@ -223,7 +222,6 @@ class Command(Debugging, ABC):
         return cyclopts.default_name_transform(cls.__name__)
 
     def given(self, *groups: type[Options]) -> Keywords:
-        """Return the values of those options of groups that are given, by name."""
         names = [name for name, (_, _, of) in self.options().items() if of in groups]
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
@@ -233,7 +231,6 @@ class Command(Debugging, ABC):
         return value
 
     def keywords(self) -> Keywords:
-        """Return the values of options that are arguments of the public function, by name."""
         arguments = arguments_of(self.calls)
         found: Keywords = {}
         for name, (one, kind, of) in self.options().items():
@@ -275,7 +272,6 @@ def arguments_of(function: str) -> dict[str, bool]:
 
 @functools.cache
 def documentation_of(function: str) -> dict[str, tuple[str, str]]:
-    """Return type and description of each argument of a public function, by name."""
     import docstring_parser
 
     found = {}
@@ -291,7 +287,6 @@ def documentation_of(function: str) -> dict[str, tuple[str, str]]:
 
 @functools.cache
 def arguments_read(function: str) -> list[str]:
-    """Return a public function's arguments that the command line can read by their types."""
     if not function:
         return []
     typed = documentation_of(function)
@@ -310,7 +305,6 @@ def arguments_read(function: str) -> list[str]:
 def options_of_functions(
     takes: str, usual_function: str, if_given: bool | None
 ) -> Iterator[tuple[str, Option, Any]]:
-    """Yield name, option and type of arguments of public functions."""
     for part in filter(None, takes.split("; ")):
         function, _, names = part.rpartition(": ")
         function = function or usual_function
@@ -364,7 +358,6 @@ def explain(error: exceptions.CycloptsError, command: type[Command]) -> str:
 
 
 def suggestion(flag: str, error: exceptions.UnknownOptionError, command: type[Command]) -> str:
-    """Return what is probably meant by an unknown option, as words of a message; or nothing."""
     name = flag.lstrip("-").replace("-", "_")
     if name in STRUCTURE_NAMES and "--set" in command.flags():
         words = " ".join(error.root_input_tokens or []).replace(f"{flag}=", f"{flag} ").split(" ")

@@ -126,7 +126,6 @@ what it gives:
         return f"diagnose_{sweep.path.stem}{number}_{digest(checksums, guess, read_as)}"
 
     def read_all_records(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
-        """Read all record files; return a dict of sweeps, and an error line per refused file."""
         from ..diagnosis.fit import checked_data
         from ..diagnosis.order_windows import split_sweeps
 
@@ -148,7 +147,6 @@ what it gives:
         return records, refused
 
     def read_one_record(self, path: Path) -> xr.Dataset:
-        """Read a record from a file; raise if it has no acceleration of either face."""
         record = orchestrate.read_record(path, **self.given(Reading))
         if "acceleration1" not in record and "acceleration2" not in record:
             taken = record.attrs.get("columns", "no columns")
@@ -163,7 +161,6 @@ what it gives:
         guess: Structure | None,
         others: Sequence[xr.Dataset],
     ) -> dict[Sweep, xr.Dataset]:
-        """Compute or load each beam's verdict; store with it where it comes from."""
         factors = dict(
             zip(("acceleration1", "acceleration2"), self.participation or (), strict=False)
         )
@@ -185,7 +182,6 @@ what it gives:
         return described
 
     def origin_attributes(self, path: Path, record: xr.Dataset) -> dict[str, str]:
-        """Return a verdict's attributes on its record, the guess's file and the command."""
         told = ("columns", "unit", "converted", "time_base")
         words = {f"record_{name}": record.attrs.get(name, "") for name in told}
         words |= {"record_file": path.name, "record_sha256": file_checksum(path)}
@@ -195,7 +191,6 @@ what it gives:
         return {name: text for name, text in words.items() if text}
 
     def write_files(self, stem: str, answers: dict[str, xr.Dataset]) -> None:
-        """Write results, pictures and the HTML report of one record; print the files' paths."""
         units = self.read_record_units()
         for ending, answer in answers.items():
             files = Files.from_options(self, f"{stem}{ending}", fresh=True)

@@ -20,7 +20,7 @@ from .answer import Asked, Runs
 from .command import Keywords, Options, option, option_names
 from .grammar import Positive, parse_changes, parse_ends, parse_number_or_ends, parse_rate
 from .notes import warn_of_voltage
-from .options import print_assumptions
+from .options import Over, print_assumptions
 
 if TYPE_CHECKING:
     from ..weak_drive.controllers import Controller
@@ -63,7 +63,6 @@ class OfMotor(Options):
     stall_torque: Positive = option("its torque at rest, N m", value="N.M")
 
     def read_structure_and_drive(self) -> tuple[Structure, Drive]:
-        """Return structure and drive of the options, with the changes of ``--set`` to either."""
         drive = Drive.from_file(self.drive)
         source = self.structure or self.drive
         structure = Structure.from_file(source)
@@ -140,7 +139,6 @@ class OfRamp(Options):
         return first * volts, last * volts
 
     def parse_ramp_ends(self, structure: Structure, drive: Drive) -> tuple[float, ...]:
-        """Return the first and the last voltage of a ramp, V; raise if only one is given."""
         voltages = self.parse_voltages(structure, drive)
         if len(voltages) != 2:
             name = "voltage" if self.voltage else "eta0"
@@ -262,7 +260,6 @@ class Driven(OfMotor, Asked):
     """A command on a structure with its motor, in a picture with a title of its own."""
 
     def picture_title(self, results: Runs) -> str:
-        """Return a picture's title: names of the files, and the structure."""
         from ..show.labels import title_from_attributes
 
         structure = title_from_attributes(list(results.values())[-1])  # delaminated, if it is there
@@ -279,13 +276,21 @@ class Driven(OfMotor, Asked):
             return super().display_units(question)
         return self.read_units().with_defaults(Units("rpm" if self.no_load_rpm else ""))
 
-    def ask_schedule(self) -> tuple[Structure, Drive, Keywords]:
-        """Return structure, drive and keywords of a run under a voltage over time."""
+    def ask(self) -> tuple[Any, ...]:
         structure, drive = self.read_structure_and_drive()
-        control = self.make_controller(structure, drive)
-        schedule = self.make_schedule(structure, drive, control)
-        question = {**self.keywords(), **self.in_seconds(structure, "step", "hold")}
-        return structure, drive, {**question, "voltage": schedule, "control": control}
+        times = [name for name in ("step", "hold") if name in self.options()]
+        question = {**self.keywords(), **self.in_seconds(structure, *times)}
+        if isinstance(self, OfController):
+            question["control"] = self.make_controller(structure, drive)
+        if isinstance(self, OfSchedule):
+            question["voltage"] = self.make_schedule(structure, drive, question["control"])
+        elif isinstance(self, OfRamp):
+            question["voltage"] = self.parse_ramp_ends(structure, drive)
+        return (
+            structure,
+            drive,
+            question | (self.over_arguments() if isinstance(self, Over) else {}),
+        )
 
     def in_seconds(self, structure: Structure, *names: str) -> Keywords:
         """Return options in 1/omega, such as ``--step``, in s; None where they are not given."""

@@ -49,24 +49,14 @@ decided with so few --periods."""
         return structure, question
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
+        spectrum = " exponents:.5g kaplan_yorke_dimension" * ("exponents" in data)
         name = printing.varied_parameter(data)
-        data = data.sortby(name)
-        if data.sizes[name] <= printing.MOST_ROWS:
-            rows = printing.columns_of(data, f"{name} exponent standard_error verdict")
-            if "exponents" in data:
-                every = data.transpose(name, ...)
-                rows |= printing.columns_of(every, "exponents:.5g kaplan_yorke_dimension")
-            yield from printing.table(rows)
-        else:
-            top = data.isel(data.exponent.argmax(...))
-            (largest,) = printing.with_error(top.exponent, top.standard_error, ".5f", ".5f")
-            yield (
-                f"largest exponent {largest} per tau at "
-                f"{printing.format_parameter(data, name, top[name])}; the largest of "
-                f"{data.sizes[name]} is biased by its error: repeat only it, with more --periods "
-                "and another --transient"
-            )
-            yield from printing.shares_and_ranges(data, name, data.verdict)
+        rows = data.sortby("exponent", ascending=False).transpose(name, ...)
+        shown = f"{name} exponent standard_error verdict{spectrum}"
+        yield from printing.table(printing.columns_of(rows, shown))
+        if data.sizes[name] > printing.MOST_ROWS:
+            yield "the largest is biased by its error: repeat it, with another --transient"
+        yield from printing.counts(data, data.verdict)
         neutral = data.isel({name: printing.has_flag(data.verdict, "neutral").values})
         sizes = (abs(neutral.exponent) * neutral.period).values
         wander = math.log(float(data.attrs["wander"]))
@@ -78,25 +68,14 @@ decided with so few --periods."""
             )
 
 
-COORDINATES = {  # that are printed of each section
-    "phase": "x_rel v_rel",
-    "impacts": "impact_velocity phase",
-    "releases": "v1 phase",
-}
-
-
 class Poincare(OfStructure, OfBox, Asked, Stored, Results):
     """A Poincaré section: states at a phase of the box, at impacts or at releases."""
 
-    calls = "poincare"
+    calls, shows = "poincare", "x_rel v_rel phase impact_velocity v1"
     examples = """
   {program} poincare --eta 2.9 --periods 5000
   {program} poincare --eta 0.8 --at impacts
   {program} poincare --structure beam --hz 12.5 --g 0.02 --at releases"""
-
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
-        yield f"{data.sizes['point']} points"
-        yield from printing.extents(data, COORDINATES[str(data.attrs["at"])])
 
 
 def motion_of(data: xr.Dataset, state: xr.DataArray, periods: int) -> xr.Dataset:
@@ -109,18 +88,17 @@ def motion_of(data: xr.Dataset, state: xr.DataArray, periods: int) -> xr.Dataset
     return with_units(motion, units_of(data))
 
 
-def attractor_table(data: xr.Dataset) -> Iterator[str]:
-    """Yield a table of attractors: share, period, impacts, gap, how decided, a state."""
-    data = data.isel(attractor=data.multiplicity.notnull().values)
-    names = "share multiplicity impacts_per_period decided_by"
-    columns = {"number": [str(number) for number in data.attractor.values]}
-    columns |= printing.columns_of(data, names, form=".4g")
-    parts = [data.isel(attractor=i) for i in range(data.sizes["attractor"])]
+def attractor_table(data: xr.Dataset, over: str = "") -> Iterator[str]:
+    """Yield a table of attractors: share, period, impacts, how decided, largest gap, a state."""
+    rows = data.stack(row=(*filter(None, [over]), "attractor"), create_index=False)
+    rows = rows.isel(row=rows.multiplicity.notnull().values).transpose("row", ...)
+    names = f"{over} attractor share multiplicity impacts_per_period decided_by"
+    columns = printing.columns_of(rows, names, form=".4g")
+    parts = [rows.isel(row=i) for i in range(rows.sizes["row"])]
     columns["largest gap"] = [printing.format_largest_gap(part) for part in parts]
-    (columns["state at phase 0" + " (SI)" * (not is_in_ratios(data))],) = printing.columns_of(
-        data, "state"
-    ).values()
-    yield from printing.table(columns)
+    in_si = " (SI)" * (not is_in_ratios(data))
+    (columns[f"state at phase 0{in_si}"],) = printing.columns_of(rows, "state").values()
+    yield from printing.table(columns, len(parts))
 
 
 class Attractors(OfStructure, OfBox, Over, Asked, Stored, Results):
@@ -140,19 +118,12 @@ alone may miss one whose basin is small."""
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         name = printing.varied_parameter(data)
+        yield f"{data.sizes['start']} random starts at each value; attractors found:"
+        yield from printing.counts(data, data.number)
         if data.sizes[name] <= 5:  # values up to which every attractor is printed
-            for at in (data.isel({name: i}) for i in range(data.sizes[name])):
-                count, where = int(at.number), printing.format_parameter(data, name, at[name])
-                word = "attractor" if count == 1 else "attractors"
-                yield f"{count} {word} at {where} ({data.sizes['start']} random starts)"
-                yield from attractor_table(at)
+            yield from attractor_table(data, name)
             yield "few starts overlook small basins: basin, or a range of values, finds them"
             return
-        data = data.sortby(name)
-        for number in sorted({*data.number.values.tolist()}):
-            holds = data.number.values == number
-            share = printing.format_share(int(holds.sum()), holds.size, f"values with {number}")
-            yield f"{share}: {printing.format_ranges(data, name, holds)}"
         shares = data.share.where(data.multiplicity.notnull())
         ends = zip(data.first_found.values, data.last_found.values, strict=True)
         columns = {"range": [printing.format_range(data, name, *pair) for pair in ends]}
@@ -189,11 +160,9 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         labels = data.attractor_of.values
         started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
-        sides = []
-        for axis in (data[name] for name in map(str, data.attractor_of.dims)):
-            unit = str(axis.attrs["units"])
-            ends = axis.min().item(), axis.max().item()
-            sides.append(f"{axis.name} {range_text(data, *ends, unit)}")
+        axes = [data[name] for name in data.attractor_of.dims]
+        ends = [(axis.min().item(), axis.max().item(), str(axis.attrs["units"])) for axis in axes]
+        sides = [f"{a.name} {range_text(data, *end)}" for a, end in zip(axes, ends, strict=True)]
         yield f"{data.sizes['attractor']} found, of {started} starts in {', '.join(sides)}"
         yield from attractor_table(data)
         if overlapping:
@@ -205,13 +174,11 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
                 f"{float(mixed.boundary_basin_entropy):.3g} (above 0.69: fractal)"
             )
             exponent, error = mixed.uncertainty_exponent, mixed.uncertainty_exponent_error
-            if math.isfinite(exponent):
-                (words,) = printing.with_error(exponent, error, ".3g")
-                yield f"uncertainty exponent {words} (1: smooth boundaries)"
+            (words,) = printing.with_error(exponent, error, ".3g")
+            yield f"uncertainty exponent {words} (1: smooth boundaries)"
 
 
 def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
-    """Return the title of an orbit's picture: whether it is stable, structure and excitation."""
     from ..show.labels import title_from_attributes
 
     return f"{flag_word(orbit.stability)} orbit, {title_from_attributes(motion)}"
@@ -245,11 +212,9 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
             if math.isfinite(time):
                 closing = text_of(data, speed, "m/s")
                 yield f"impact at {printing.time_text(data, time, '.8g')}, closing at {closing}"
-        names = "x1, x2, v1, v2" if is_in_ratios(data) else "x1, x2 in m, v1, v2 in m/s"
-        for i, state in enumerate(data.state.values):
-            numbers = ", ".join(f"{value:.8g}" for value in state)
-            yield f"state at phase 0 after {i} periods: {numbers} ({names})"
-        yield f"largest gap: {printing.format_largest_gap(data)}"
+        periods, states = printing.columns_of(data, "sample state", form=".8g").values()
+        yield from printing.table({"period": periods, "state at phase 0": states})
+        yield from printing.describe(data, "xi_rel_max")
 
 
 class Manifold(OfStored, OfBox, Asked, Stored, Results):
@@ -270,20 +235,19 @@ What starts next to a saddle with one multiplier outside the unit circle leaves 
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         yield f"saddle: multiplier {float(data.multiplier):.6f}"
-        yield from printing.extents(data, "x_rel")
-        sides = {"points": data.arclength.count("point")}
-        sides["size"] = data.arclength.max("point") / data.orbit_size
+        yield from printing.describe(data, "x_rel")
         breaks = [int((data.break_side == i).sum()) for i in range(data.sizes["side"])]
-        columns = printing.columns_of(data.assign(sides), "side end points size:.4g")
+        size = data.arclength.max("point") / data.orbit_size
+        sides = {"points": data.arclength.count("point"), "size": size, "breaks": ("side", breaks)}
+        columns = printing.columns_of(data.assign(sides), "side end points breaks size:.4g")
         columns["length over the orbit's size"] = columns.pop("size")
-        yield from printing.table({**columns, "breaks": [*map(str, breaks)]})
+        yield from printing.table(columns)
 
 
 def both_ends(data: xr.Dataset) -> Iterator[str]:
-    """Yield why a branch or a border ends at its first and last point, and what to do."""
     ends = data.attrs["first_end"], data.attrs["last_end"]
     yield "first end: {}; last end: {}".format(*ends)
-    yield from printing.end_lines(ends)
+    yield from printing.hints(dict.fromkeys(ends))
 
 
 class Branch(OfStored, OfBox, Asked, Stored, Results):
@@ -309,17 +273,11 @@ The excitation says where a first orbit is looked for; without it that is the lo
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         name, count = str(data.attrs["over"]), data.sizes.get("bifurcation", 0)
-        undecided = int(printing.has_flag(data.stability, "undecided").sum())
-        unsure = f", {undecided} undecided (runs of the FMU have other impacts)" * bool(undecided)
-        orbits = f"{data.sizes['point']} orbits at {printing.format_reach(data, name)}"
-        yield f"{orbits}, {int(data.stable.sum())} of them stable{unsure}"
-        if count:
-            rows = data.rename(bifurcation_value=f"bifurcation_{name}")
-            rows = rows.assign(bifurcation_number=("bifurcation", range(count)))
-            columns = printing.columns_of(rows, f"number kind {name}:.8f", "bifurcation_")
-            yield from printing.table(columns, count)
-        else:
-            yield "no bifurcation in this range"
+        yield f"{data.sizes['point']} orbits at {printing.format_reach(data, name)}"
+        yield from printing.counts(data, data.stability)
+        rows = data.rename({"bifurcation_value": f"bifurcation_{name}"} if count else {})
+        rows = rows.assign(bifurcation_number=("bifurcation", range(count)))
+        yield from printing.listing(rows, "bifurcation", f"number kind {name}:.8f")
         yield from both_ends(data)
 
     def hold_amplitude(self, structure: Structure, first: float) -> None:
@@ -336,7 +294,6 @@ The excitation says where a first orbit is looked for; without it that is the lo
         self.g, self.amplitude = None, amplitude
 
     def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Keywords:
-        """Return the excitation at which the first orbit is searched, as keywords."""
         name, amplitude = self.frequency_option(), self.read_amplitude()
         if over == "frequency" and amplitude is None and not begun:
             raise InputError(f"--over {self.over}: expected --amplitude in m with it")
@@ -415,12 +372,10 @@ structure and excitation are those of that branch."""
         files.write_pictures(partial(orchestrate.plot, *shown))
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        names, count = [str(name) for name in data.attrs["over"]], data.sizes["codimension_two"]
+        names = [str(name) for name in data.attrs["over"]]
         yield f"{data.attrs['kind']}: {data.sizes['point']} points"
         for name in names:
             both = [printing.format_parameter(data, name, data[name][i]) for i in (0, -1)]
             yield f"from {' to '.join(both)}, within {printing.format_reach(data, name)}"
-        if count:
-            rows = printing.columns_of(data, f"kind {' '.join(names)}", "codimension_two_")
-            yield from printing.table(rows, count)
+        yield from printing.listing(data, "codimension_two", f"kind {' '.join(names)}")
         yield from both_ends(data)

@@ -61,7 +61,6 @@ def number(name: str, text: str) -> float:
 
 
 def option_quantity(option: str) -> str:
-    """Return the name of the quantity that an option is."""
     return option.lstrip("-").replace("-", "_")
 
 
@@ -148,7 +147,6 @@ Orders = Annotated[float | tuple[float, ...] | None, parse_orders]
 
 
 def read_number(option: str, text: str, name: str = "", other: str = "") -> float:
-    """Parse a number with a unit of its quantity, by default that which the option is."""
     try:
         return number(name or option_quantity(option), text)
     except ValueError:
@@ -189,7 +187,6 @@ def read_choice(choices: Collection[Any], option: str, text: str) -> Any:
 
 
 def read_earlier_result(option: str, path: Path) -> xr.Dataset:
-    """Read the NetCDF result of an earlier command; raise naming the option if it is not one."""
     from ..running.store import load_foreign
 
     expected = "expected a result of an earlier command"
@@ -272,7 +269,6 @@ Listed = Annotated[tuple[float, ...] | None, parse_values]
 
 
 def parse_listed(name: str, text: str) -> tuple[float, ...]:
-    """Parse a parameter's values, with units or without."""
     if ":" in text:
         return parse_values("--values", text, zero=True, name=name)
     return tuple(read_number(f"--over {name} --values", one, name) for one in text.split(","))
@@ -318,7 +314,6 @@ def parse_changes(texts: Iterable[str], wall: bool = False) -> dict[str, float |
 
 
 def check_name(name: str) -> None:
-    """Raise unless a name is that of a parameter of the structure or of a drive."""
     from ..model import PARAMETERS
 
     known = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)

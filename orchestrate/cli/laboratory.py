@@ -79,7 +79,6 @@ class OfExcitation(Options):
     )
 
     def read_excitation(self) -> Any:
-        """Return the excitation that the options describe, such as a ``SweptSine``."""
         kind = self.excitation_kind()
         calls, names, argument = EXCITATIONS[kind]
         settings = self.given(OfExcitation)
@@ -101,7 +100,6 @@ class OfExcitation(Options):
         return getattr(orchestrate, calls)(**settings)
 
     def excitation_kind(self) -> str:
-        """Return which kind of excitation is chosen; raise for options of another kind."""
         given = self.given(OfExcitation)
         chosen = [name for name in EXCITATIONS if name in given]
         if len(chosen) != 1:
@@ -136,6 +134,7 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
     """As in the laboratory: motion and impacts under sines, random, shock or a record."""
 
     calls = "shake"
+    shows = "box_acceleration force1 force2 a1_abs a2_abs x_rel transient_time control_aborted"
     shaker: str | None = option("its electrodynamic shaker, level controlled", value="FILE")
     examples = """
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --sensor 2000
@@ -176,17 +175,6 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
                 written = orchestrate.write_record(record, path.with_suffix(f".{ending}"))
                 print(f"{written}: what the sensors read")
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
-        channels = "box_acceleration", "force1", "force2"
-        driven = [name for name in channels if name in data and data[name].any()]
-        yield from printing.extents(data, f"{' '.join(driven)} a1_abs a2_abs x_rel", rms=True)
-        if "transient_time" in data:
-            yield f"a linear transient decays within {float(data.transient_time):.3g} s"
-        elif data.control_aborted.notnull():
-            end = float(data.control_aborted)
-            yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
-        yield from printing.impact_lines(data)
-
 
 MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 ANALYSES = {  # of --show: the public function, what it shows; whose peaks, what else is printed
@@ -205,7 +193,6 @@ SHOWN = ", ".join(f"{name} ({row[1]})" for name, row in ANALYSES.items())
 
 
 def peak_cells(data: xr.Dataset, values: xr.DataArray) -> list[str]:
-    """Return each channel's largest value with the frequency, and the time, at which it is."""
     cells = []
     for channel in values.channel.values:
         flat = values.sel(channel=channel).stack(every=[d for d in values.dims if d != "channel"])
@@ -218,7 +205,6 @@ def peak_cells(data: xr.Dataset, values: xr.DataArray) -> list[str]:
 
 
 def columns_of_analysis(name: str, data: xr.Dataset) -> printing.Columns:
-    """Return the columns of the table that is printed of an analysis, a row for each channel."""
     if name in ("orders", "harmonics"):  # of the box they are those of the excitation
         data = data.drop_sel(channel="box_acceleration", errors="ignore")
     columns = {"channel": [MASSES[str(channel)] for channel in data.channel.values]}
@@ -341,7 +327,6 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
             )
 
     def settings_by_analysis(self, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-        """Return each analysis's keywords; raise for an option that none of them takes."""
         chosen = self.given(Settings)
         takes = {name: arguments_of(row[0]) for name, row in ANALYSES.items()}
         owners = {one: [name for name in takes if one in takes[name]] for one in chosen}

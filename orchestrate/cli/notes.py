@@ -57,7 +57,6 @@ def heavy_mass_note(structure: Structure) -> str:
 
 
 def trivial_notes(structure: Structure, question: Keywords, shown: xr.Dataset) -> Iterator[str]:
-    """Yield notes for the user on arguments that make the result trivial, such as bonded."""
     varied = isinstance(question.get("level"), tuple) or question.get("over") == "level"
     if varied and not structure.has_scale:
         nothing = ", ".join(f"{name} = 0" for name in OF_LENGTH)
@@ -104,7 +103,6 @@ def warn_of_voltage(text: str, voltages: tuple[float, ...], volts: float) -> Non
 
 
 def print_frequency_notes(arguments: Any, structure: Structure, question: Keywords) -> None:
-    """Print which structure is used by default; warn if frequencies are far from its own."""
     if question.get("frequency") is None:
         return
     values = np.ravel(question["frequency"])
@@ -145,7 +143,6 @@ def warn_of_other_unit(arguments: Any, structure: Structure, first: float, last:
 
 
 def clearance_notes(structure: Structure, question: Keywords, shown: xr.Dataset) -> Iterator[str]:
-    """Yield a note if the level is below the threshold at which the gap opens or closes."""
     if question.get("over") == "level":
         question = {**question, "level": question["values"]}
     elif question.get("over") is not None or "clearance" in question:

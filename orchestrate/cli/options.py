@@ -92,7 +92,6 @@ class OfStructure(Options):
     )
 
     def read_structure(self) -> Structure:
-        """Return the ``Structure`` of ``--structure`` with the changes of ``--set``."""
         structure = Structure._read(self.structure, tables=self.tables)
         changes = grammar.parse_changes(self.set, structure.wall)
         structure = structure.replace(**changes)
@@ -104,11 +103,9 @@ class OfStructure(Options):
 
     @cached_property
     def tables(self) -> dict[str, Any]:
-        """Tables of the TOML file of ``--structure``, which is read once."""
         return parse(resolve(self.structure)) if self.structure else {}
 
     def section(self, name: str) -> dict[str, Any]:
-        """Return a section of the TOML file of ``--structure``; empty where there is none."""
         return self.tables.get(name, {})
 
 
@@ -122,7 +119,6 @@ class OfStored(OfStructure):
     )
 
     def read_structure_and_question(self) -> tuple[Structure, Keywords]:
-        """Return structure and keywords of a command that may begin with a stored result."""
         if self.start is None:
             self.structure = self.structure or "paper"
             return self.read_structure(), self.keywords()
@@ -144,7 +140,6 @@ class OfStored(OfStructure):
 
 
 def structure_of(flag: str, path: Any, data: xr.Dataset) -> Structure:
-    """Return the structure in a stored result's attributes; raise ``InputError`` if none is."""
     from ..running.provenance import describe_dataset
 
     try:
@@ -155,7 +150,6 @@ def structure_of(flag: str, path: Any, data: xr.Dataset) -> Structure:
 
 
 def print_difference(flag: str, path: Any, stored: Structure, asked: Structure) -> None:
-    """Print one line if a stored result was computed for another structure than the one asked."""
     names = (*STRUCTURE, "bonded", "wall")
     pairs = {name: (float(getattr(stored, name)), float(getattr(asked, name))) for name in names}
     texts = [
@@ -212,7 +206,6 @@ class OfPushes(Options):
     force2: float | None = option("the same on half 2")
 
     def pushes(self) -> dict[str, float]:
-        """Return the constant acceleration and the forces that are given, by name."""
         return self.given(OfPushes)
 
 
@@ -294,7 +287,6 @@ class OfBox(OfPushes):
 
 
 def apply_to_each(change: Callable[[float], float], values: float | tuple[float, ...]) -> Any:
-    """Return a function's value for one number, or a tuple of values for a tuple."""
     return tuple(map(change, values)) if isinstance(values, tuple) else change(values)
 
 
@@ -310,14 +302,12 @@ class Over(Options):
     values: Any = option("its values, FIRST:LAST:STEP or a list A,B,...", value="VALUES")
 
     def over_arguments(self) -> Keywords:
-        """Return the varied parameter and its values as keywords; none without it."""
         if (self.over is None) != (self.values is None):
             raise InputError("--over and --values: expected both, or none of them")
         values = self.over and grammar.parse_listed(self.over, self.values)
         return {"over": self.over, "values": values} if values else {}
 
     def ask_along_parameter(self, si: bool = False) -> tuple[Structure, Keywords]:
-        """Return structure, keywords, excitation and what varies of it."""
         structure, varied = self.read_structure(), self.over_arguments()
         if varied:
             self.check_over(self.over)
@@ -328,7 +318,6 @@ class Over(Options):
         return structure, {**self.keywords(), **box, **varied}
 
     def check_over(self, over: str) -> None:
-        """Raise unless a parameter of a structure may vary with these options."""
         if over in FREQUENCIES:
             raise InputError(f"--over {over}: expected --{over} VALUES instead")
         if over in ("amplitude", "g", "level"):

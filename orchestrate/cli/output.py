@@ -43,7 +43,6 @@ class Reading(Options):
     )
 
     def read_record_units(self) -> Units:
-        """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
         own = self.unit if self.unit in FACTORS["acceleration"] else ""
         return self.read_units().with_defaults(Units(acceleration=own))
 
@@ -117,7 +116,6 @@ class HowRun(Options):
     build_folder: Path | None = option("where FMUs are looked for and exported to", value="FOLDER")
 
     def running(self, store: Path | None = None) -> Running:
-        """Return ``jobs``, ``cluster``, ``force``, ``fmu`` and ``store`` as keywords of the API."""
         names = ("jobs", "cluster", "force", "keep_stale", "fmu", "build_folder")
         running: Any = {name: getattr(self, name) for name in names}
         running |= {"fmu": user_fmus(self.fmu)} if isinstance(self.fmu, list) else {}
@@ -147,7 +145,6 @@ def unit_note(attributes: Mapping[Any, Any]) -> str:
 
 
 def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
-    """Return a dict from model name to the user's FMU file; raise for unknown or double ones."""
     from ..fmu import MODELS, describe
 
     fmus: dict[str, Path] = {}
@@ -191,8 +188,6 @@ def result_name(command: str, sources: Sequence[Any], *asked: Any) -> str:
 
 
 def digest(*arguments: Any) -> str:
-    """Return the first hexadecimal digits of a SHA-256 over arguments, for a file name."""
-
     def other(value: Any) -> Any:
         if hasattr(value, "parameters"):  # of a structure, a drive
             return value.parameters()
@@ -227,7 +222,6 @@ class Files:
     def from_options(
         cls, arguments: Any, name: str, over: str = "", fresh: bool | None = None
     ) -> Files:
-        """Return the ``Files`` of a result by the options; raise if they cannot be written."""
         formats = parse_endings("--format", arguments.format, FORMATS)
         plots = parse_endings("--plot", arguments.plot, PLOTS)
         store = getattr(arguments, "store", None)
@@ -254,7 +248,6 @@ class Files:
         return files
 
     def beside(self, *endings: str) -> Path:
-        """Return a path next to the result, with further endings of its name."""
         return self.result.with_stem("_".join(filter(None, [self.result.stem, *endings])))
 
     def table_paths(self) -> list[Path]:
@@ -262,7 +255,6 @@ class Files:
         return [table.with_suffix(f".{ending}") for ending in self.formats if ending != "nc"]
 
     def picture_paths(self, *endings: str) -> list[Path]:
-        """Return the paths of a picture: its name has units and overlay."""
         size = self.size.replace(":", "-")
         picture = self.beside(self.units, self.over, *endings, size)
         return [picture.with_suffix(f".{ending}") for ending in self.plots]

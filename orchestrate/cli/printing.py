@@ -1,33 +1,111 @@
-"""Format what commands print: numbers, parameters, ranges, shares, tables of variables.
+"""What commands print of a result: its variables by what their attributes say, and tables.
 
-The sentences around them stand with the commands that print them; here are only those that the
-commands of several modules print.
+Sentences that one command prints stand with it.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from .. import units
-from ..flags import flag_words, runs_of
+from ..flags import flag_word, flag_words, runs_of
 from ..lazy import np, xr
 
 MOST_ROWS = 10  # of a table that is printed
 PARAMETERS = ("eta", "frequency", "level")  # shown in Hz and g unless other units are asked for
-ENDS = {  # of a branch, beyond which there may be more of it: what was tried, and what to do
+SIDES = ("direction", "structure")  # dimensions that are no parameter
+HINTS = {  # words of results, alone or of a variable, and what to do
     "no convergence": "Newton's method found no motion beyond, however short the step, as where an "
     "impact or a flight grazes; a shorter --longest, with a larger --most, looks closer",
     "most points": "a larger --most goes on",
+    "above_fold: yes": "the averaged theory has no motion below the resonance from its fold on",
+    "decision: undecided": "the speed had not settled; give a longer --time",
+    "decision: settled at the resonance": "neither passed nor captured",
+    "multiplicity_decided: undecided": "slow to converge or nearly periodic; --transient 5000 "
+    "decides most",
 }
 Columns = dict[str, list[str]]  # of a table: cells by title
+
+# -- variables ------------------------------------------------------------------------------------
+
+
+def describe(data: xr.Dataset, names: str) -> Iterator[str]:
+    """Yield lines on some variables of a result, those that it has, in display units.
+
+    - of words and whole numbers how often each occurs, and where along a parameter,
+    - of other numbers over parameters the largest, and where it is,
+    - of a motion the range, and over the time the root mean square; none of a mass 2 at a wall.
+    """
+    names = names.replace("x2", "").replace("a2_abs", "") if data.attrs.get("wall") else names
+    parameters = {*data.impacts_per_period.dims} if "impacts_per_period" in data else set()
+    for array in (data[name] for name in names.split() if name in data):
+        if not array.notnull().any():
+            continue
+        if array.ndim and ("flag_meanings" in array.attrs or array.dtype.kind in "iU"):
+            yield from counts(data, array)
+        elif {*array.dims} <= parameters:
+            top = data.isel(array.argmax(...))
+            where = ", ".join(parameter_text(top, str(dim)) for dim in reversed(array.dims))
+            yield f"{meaning(array)}: {value_text(top, array.name)}{where and f' at {where}'}"
+        else:
+            unit, root = str(array.attrs.get("units", "1")), float((array**2).mean()) ** 0.5
+            text = units.range_text(data, float(array.min()), float(array.max()), unit)
+            mean = f", rms {units.text_of(data, root, unit, '.4g')}" * ("time" in array.dims)
+            yield f"{meaning(array)}: {text}{mean}"
+
+
+def meaning(array: xr.DataArray) -> str:
+    if array.name == "xi_rel_max":
+        return "largest gap"
+    return str(array.attrs.get("long_name", array.name)).partition(",")[0]
+
+
+def value_text(data: xr.Dataset, name: Any) -> str:
+    if name == "xi_rel_max":
+        return format_largest_gap(data)
+    unit = str(data[name].attrs.get("units", "1"))
+    return flag_word(data[name]) or units.text_of(data, data[name], unit, ".4g")
+
+
+def parameter_text(data: xr.Dataset, name: str) -> str:
+    value = data[name]
+    return format_parameter(data, name, value) if value.dtype.kind in "if" else str(value.item())
+
+
+def counts(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
+    """Yield how often each word or whole number of a variable occurs, where, and what to do."""
+    sides, others = [str(d) for d in array.dims if d in SIDES], {*map(str, array.dims)} - {*SIDES}
+    along = "".join(others & {*map(str, data.coords)}) if len(others) == 1 else ""
+    if along:
+        data, array = data.sortby(along), array.sortby(along)
+    known = np.unique(array.values[array.notnull().values]).tolist()
+    words = flag_words(array.attrs) if "flag_meanings" in array.attrs else {}
+    for one in known:
+        word = one if isinstance(one, str) else words.get(int(one), f"{array.name} {one:g}")
+        word = {"yes": str(array.name), "no": f"not {array.name}"}.get(word, word)
+        holds = array == one
+        line = f"{word}: {format_share(int(holds.sum()), holds.size)}"
+        for case in itertools.product(*(holds[dim].values.tolist() for dim in sides)):
+            part = holds.sel(dict(zip(sides, case, strict=True)))
+            if along and part.any():
+                which = "".join(f", {side}" for side in case)
+                line += f"{which} at {format_ranges(data, along, part.values)}"
+        yield line
+        yield from hints([f"{array.name}: {word}"])
+
+
+def hints(words: Iterable[str]) -> Iterator[str]:
+    """Yield what to do about words that need not be the last ones."""
+    yield from (f"{word.rpartition(': ')[2]}: {HINTS[word]}" for word in words if word in HINTS)
+
 
 # -- tables ---------------------------------------------------------------------------------------
 
 
 def table(columns: Mapping[str, Iterable[str]], most: int = MOST_ROWS) -> Iterator[str]:
-    """Yield the lines of a table, titles first, at most as many rows."""
     rows = list(zip(*columns.values(), strict=True))
     shown = [tuple(columns), *rows[:most]]
     widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
@@ -36,6 +114,15 @@ def table(columns: Mapping[str, Iterable[str]], most: int = MOST_ROWS) -> Iterat
         yield f"  {'  '.join(cells)}".rstrip()
     if len(rows) > most:
         yield f"  ... and {len(rows) - most} more"
+
+
+def listing(data: xr.Dataset, of: str, names: str, form: str = ".6g") -> Iterator[str]:
+    """Yield the table of what a result lists along a dimension, of variables that begin so."""
+    if data.sizes.get(of):
+        yield f"{of.replace('_', ' ')}s"
+        yield from table(columns_of(data, names, f"{of}_", form))
+    else:
+        yield f"no {of.replace('_', ' ')} in this range"
 
 
 def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g") -> Columns:
@@ -59,24 +146,12 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g"
             words = flag_words(array.attrs)
             columns[title] = [words[int(value)] for value in values]
         elif array.ndim > 1:
-            columns[title] = [", ".join(f"{number:.6g}" for number in row) for row in values]
+            columns[title] = [", ".join(format(x, form_of_it) for x in row) for row in values]
         elif array.dtype.kind == "f":
             columns[title] = [format(value / factor, form_of_it) for value in values]
         else:
             columns[title] = [str(value) for value in values]
     return columns
-
-
-def extents(data: xr.Dataset, names: str, rms: bool = False) -> Iterator[str]:
-    """Yield the range of each named variable, in display units, by what it is; and its rms."""
-    for array in (data[name] for name in names.split()):
-        if array.size:
-            unit = str(array.attrs.get("units", "1"))
-            meaning = str(array.attrs.get("long_name", array.name)).partition(",")[0]
-            text = units.range_text(data, float(array.min()), float(array.max()), unit)
-            mean = units.text_of(data, float((array**2).mean()) ** 0.5, unit, ".4g")
-            ending = f", rms {mean}" if rms else ""
-            yield f"{meaning}: {text}{ending}"
 
 
 def impact_lines(data: xr.Dataset) -> Iterator[str]:
@@ -92,11 +167,6 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
         hardest = f"{float(data.impulse[first]):.4g} N s {hardest}"
     sticks = int(data.sticks.sum())
     yield f"{count} impacts, the fastest at {speed} ({hardest}); {sticks} begin permanent contact"
-
-
-def end_lines(ends: Collection[str]) -> Iterator[str]:
-    """Yield what to do about those ends of branches that need not be one."""
-    yield from (f"{end}: {text}" for end, text in ENDS.items() if end in ends)
 
 
 # -- parameters and ranges ------------------------------------------------------------------------
@@ -150,12 +220,6 @@ def parameter_parts(
     return (name, *units.shown_number(data, value, str(unit), form))
 
 
-def unit_or_nothing(array: xr.DataArray) -> str:
-    """Return a variable's unit, empty for a ratio (``"1"``)."""
-    unit = str(array.attrs.get("units", "1"))
-    return "" if unit == "1" else unit
-
-
 def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
     """Return a Boolean array: where a CF flag variable has the number of a word."""
     number = values.attrs["flag_meanings"].split().index(word)
@@ -177,14 +241,6 @@ def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) 
     left = len(runs) - len(longest)
     words = f"{before} = {text}" if before else text
     return f"{words} {unit}".rstrip() + (f" and {left} shorter ranges" if left else "")
-
-
-def shares_and_ranges(data: xr.Dataset, name: str, flags: xr.DataArray) -> Iterator[str]:
-    """Yield for each word of a flag along a parameter its share, and where it is."""
-    for word in flag_words(flags.attrs).values():
-        holds = has_flag(flags, word).values
-        where = f" at {format_ranges(data, name, holds)}" if holds.any() else ""
-        yield f"{format_share(int(holds.sum()), holds.size, word)}{where}"
 
 
 def format_share(count: int, whole: int, word: str = "") -> str:

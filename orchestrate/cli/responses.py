@@ -7,10 +7,9 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from ..errors import InputError
-from ..flags import flag_word, flag_words
 from ..lazy import xr
 from ..model import Drive, Structure
-from ..units import as_shown, is_in_ratios, text_of
+from ..units import text_of
 from . import printing
 from .answer import Asked, Overlay, is_curve
 from .command import Keywords, option, option_names
@@ -23,22 +22,15 @@ from .output import OfBoth, Results, Stored
 class Simulate(OfStructure, OfBox, Beside, Asked, Stored, Results):
     """A motion in time: both masses, gap, contact force, impacts, phase plane and spectrum."""
 
-    calls = "simulate"
+    calls, shows = "simulate", "x1 x2 x_rel a1_abs a2_abs"
     examples = """
   {program} simulate --eta 0.4 --transient 500 --periods 2      the paper's Figure 5
   {program} simulate --eta 1.047 --beside                       with the undamaged structure
   {program} simulate --structure beam --hz 12.5 --g 0.02
   {program} simulate --eta 1.2 --start 0,0.5,0,0                from a gap of 0.5 m"""
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
-        at_wall = data.attrs.get("wall")  # it is no mass 2
-        names = "x1 x_rel a1_abs" if at_wall else "x1 x2 x_rel a1_abs a2_abs"
-        yield from printing.extents(data, names)
-        yield from printing.impact_lines(data)
-
 
 def level_columns(data: xr.Dataset) -> printing.Columns:
-    """Return the largest response at each level, bonded and delaminated, and where it opens."""
     rows = printing.columns_of(data, "level", form=".4g")
     for structure in ("bonded", "delaminated"):
         part = data.x1_max.sel(structure=structure)
@@ -83,37 +75,24 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
         if "level" in data.dims:
             yield from printing.table(level_columns(data), data.sizes["level"])
         else:
-            name = printing.varied_parameter(data)
-            if data.sizes[name] == 1:
-                yield from table_of_one(data, name)
-                return
-            yield from peak_lines(data, name)
+            if not data.sizes["peak"]:
+                for part in (data.sel(structure=one) for one in data.structure):
+                    yield f"{part.structure.item()}:"
+                    yield from printing.describe(part, "x1_max x2_max a1_max a2_max x_rel_max")
+            of = f"structure direction {printing.varied_parameter(data)}"
+            largest = "x1_max:.4g x2_max:.4g a1_max:.4g a2_max:.4g x_rel_max:.4g irregular"
+            yield from printing.listing(data, "peak", f"{of} {largest}")
+            yield from printing.listing(data, "jump", f"{of} before:.4g after:.4g")
         if "lowest_threshold" in data:
-            at = data.lowest_threshold
-            level = printing.format_parameter(data, "level", at, ".3g")
-            where = data.lowest_threshold_frequency
-            where = printing.format_parameter(data, "frequency", where, ".4g")
-            yield f"in this range it first {at.attrs['event']} at {where}: {level}"
+            level, at = data.lowest_threshold, data.lowest_threshold_frequency
+            where = printing.format_parameter(data, "frequency", at, ".4g")
+            text = printing.format_parameter(data, "level", level, ".3g")
+            yield f"in this range it first {level.attrs['event']} at {where}: {text}"
         if data.attrs.get("clearance", 0.0) < 0.0:
             at_rest = Structure.from_attributes(data.attrs).as_delaminated().at_rest
             ends = " and ".join(text_of(data, abs(x), "m", ".4g") for x in at_rest)
             middle = "x1 and x2 count from the box's middle"
             yield f"{middle}: the preload by itself holds them {ends} from it"
-
-
-def peak_lines(data: xr.Dataset, name: str) -> Iterator[str]:
-    """Yield tables of the peaks of resonance curves, and of jumps of the largest gap."""
-    peaks = data.isel(peak=data.peak_irregular.values == 0)
-    sizes = "x1_max x2_max a1_max a2_max x_rel_max"
-    for of, part, names in (("peak", peaks, sizes), ("jump", data, "before after")):
-        if not part.sizes[of]:
-            yield f"no {of} in this range"
-            continue
-        yield "peaks" if of == "peak" else "jumps of the largest gap"
-        rows = printing.columns_of(part, f"structure direction {name}", f"{of}_")
-        yield from printing.table(rows | printing.columns_of(part, names, f"{of}_", ".4g"))
-    if irregular := data.sizes["peak"] - peaks.sizes["peak"]:
-        yield f"peaks of irregular responses, left out: {irregular}"
 
 
 CAPTURED = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor is captured by the resonance
@@ -148,7 +127,6 @@ class Spectra(OfBox, Driven, Stored, OfBoth):
         return structure, {**self.keywords(), **excitation}
 
     def ask_motor(self) -> tuple[Structure, Drive, Keywords]:
-        """Return structure, drive and voltage of a motor-driven structure (Figure 3)."""
         structure, motor = self.read_structure_and_drive()
         eta0 = CAPTURED.get(self.drive) if self.eta0 is None else self.eta0
         voltage = self.voltage
@@ -173,72 +151,14 @@ class Spectra(OfBox, Driven, Stored, OfBoth):
 
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6
 DIFFERENT = 0.01  # of the largest gap: where up and down differ by more, they are different motions
-UNDECIDED = "; undecided: slow to converge or nearly periodic, --transient 5000 decides most"
-WORDS = {"repeated": "repeat", "irregular": "irregular", "undecided": "undecided"}
 
 
-def largest_gap_line(data: xr.Dataset) -> str:
-    """Format the largest gap of all responses, and the parameters at which it is."""
-    top = data.isel(data.xi_rel_max.argmax(...))
-    names = [str(dim) for dim in data.xi_rel_max.dims if dim != "direction"]
-    where = ", ".join(printing.format_parameter(data, name, top[name]) for name in names)
-    return f"largest gap: {printing.format_largest_gap(top)} at {where}"
-
-
-def count_line(data: xr.Dataset) -> str:
-    """Format how many responses repeat, are irregular, or are undecided, and permanent contact."""
-    decided, size = data.multiplicity_decided, data.multiplicity_decided.size
-    counts = {word: int(printing.has_flag(decided, flag).sum()) for flag, word in WORDS.items()}
-    contact = int(data.permanent_contact.sum()) if "permanent_contact" in data else 0
-    counts |= {"with permanent contact": contact} if contact else {}
-    shares = [printing.format_share(count, size, word) for word, count in counts.items()]
-    return f"{size:,} responses: {', '.join(shares)}"
-
-
-def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
-    """Yield all variables of a result at one parameter value as a table."""
-    where = printing.format_parameter(data, name, data[name][0])
-    yield f"one value, {where}: a table and no picture"
-    shown, order = as_shown(data.isel({name: 0})), {"structure", "direction"} & {*data.dims}
-    arrays = {key: one for key, one in shown.data_vars.items() if {*one.dims} <= order}
-    columns = {"": [str(key) for key in arrays]}
-    for case in itertools.product(*(data[dim].values.tolist() for dim in sorted(order)[::-1])):
-        at = dict(zip(sorted(order)[::-1], case, strict=True))
-        cells = [one.sel({dim: at[str(dim)] for dim in one.dims}) for one in arrays.values()]
-        columns[" ".join(case) or "value"] = [flag_word(one) or f"{one:.6g}" for one in cells]
-    columns["unit"] = [printing.unit_or_nothing(one) for one in arrays.values()]
-    yield from printing.table(columns, len(arrays))
-
-
-def window_lines(data: xr.Dataset, name: str) -> Iterator[str]:
-    """Yield the widest windows of one kind of response: range, multiplicity, impacts a period."""
-    windows: list[tuple[xr.Dataset, list[int], tuple[str, float]]] = []
-    several = "direction" in data.dims
-    for part in [data.isel(direction=i) for i in range(2)] if several else [data]:
-        marks = window_marks(part)
-        runs = itertools.groupby(range(len(marks)), key=marks.__getitem__)
-        windows += [(part, list(run), mark) for mark, run in runs]
-    widest = sorted(windows, key=lambda window: -len(window[1]))[: printing.MOST_ROWS - 1]
-    rows = []
-    for part, run, mark in sorted(widest, key=lambda window: window[1]):
-        where = printing.format_range(data, name, part[name][run[0]], part[name][run[-1]])
-        impacts = part.impacts_per_period[run]
-        counts = dict.fromkeys(f"{float(end):.4g}" for end in (impacts.min(), impacts.max()))
-        direction = f", {part.direction.item()}" if several else ""
-        rows.append((f"{where}{direction}", mark[0], " to ".join(counts)))
-    titles = ("widest windows", "repeats", "impacts per period")
-    yield from printing.table(dict(zip(titles, zip(*rows, strict=True), strict=True)))
-
-
-def window_marks(data: xr.Dataset) -> list[tuple[str, float]]:
-    """Return what each response does, and its impacts a period where it repeats."""
-    words = flag_words(data.multiplicity_decided.attrs)
-    names = ("multiplicity_decided", "multiplicity", "impacts_per_period")
-    rows = zip(*(data[name].values.tolist() for name in names), strict=True)
-    return [
-        (f"after {n} T", round(impacts, 9)) if words[how] == "repeated" else (words[how], 0.0)
-        for how, n, impacts in rows
-    ]
+def response_lines(data: xr.Dataset) -> Iterator[str]:
+    yield from printing.describe(
+        data, "xi_rel_max x1_max x2_max a1_max a2_max multiplicity_decided"
+    )
+    repeated = printing.has_flag(data.multiplicity_decided, "repeated")
+    yield from printing.counts(data, data.multiplicity.where(repeated))
 
 
 class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
@@ -274,16 +194,8 @@ class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         name = printing.varied_parameter(data)
         if data.sizes[name] == 1:
-            yield from table_of_one(data, name)
-            return
-        yield largest_gap_line(data)
-        for mass in (1, 2) if not is_in_ratios(data) else ():
-            displacement = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
-            acceleration = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
-            yield f"mass {mass}: largest displacement {displacement}, acceleration {acceleration}"
-        undecided = printing.has_flag(data.multiplicity_decided, "undecided").any()
-        yield f"{count_line(data)}{UNDECIDED if undecided else ''}"
-        yield from window_lines(data.sortby(name), name)
+            yield "one value: no picture"
+        yield from response_lines(data)
         if "direction" in data.dims:
             up, down = (data.xi_rel_max.sel(direction=word) for word in ("up", "down"))
             differ = abs(up - down) > DIFFERENT * data.xi_rel_max.max("direction")
@@ -331,13 +243,5 @@ Each point starts from rest. The picture has a panel for each quantity."""
         return structure, {**self.keywords(), **excitation}
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        yield count_line(data)
-        repeat = printing.has_flag(data.multiplicity_decided, "repeated").values
-        kinds = data.multiplicity.values[repeat].astype(int).tolist()
-        counts = [(kinds.count(n), f"after {n} T") for n in sorted({*kinds})[:4]]
-        if shares := [printing.format_share(n, len(kinds), words) for n, words in counts]:
-            yield f"they repeat: {', '.join(shares)}"
-        yield largest_gap_line(data)
-        if "exponent" in data:
-            chaotic = int(printing.has_flag(data.verdict, "chaotic").sum())
-            yield printing.format_share(chaotic, data.exponent.size, "chaotic")
+        yield from response_lines(data)
+        yield from printing.describe(data, "verdict")

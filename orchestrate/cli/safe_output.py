@@ -29,7 +29,6 @@ class SafeStream:
         self._call_unless_failed("flush")
 
     def _call_unless_failed(self, name: str, *arguments: object) -> None:
-        """Call a method of the stream below unless it has failed; keep its error."""
         if self.error is None:
             try:
                 getattr(self._stream, name)(*arguments)

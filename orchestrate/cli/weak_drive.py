@@ -1,13 +1,13 @@
-"""Commands on the weak drive: couple, capture, passage, jump-voltages, drive-branch."""
+"""Commands on the weak drive: couple and cosimulate, capture, passage, jumps, branches."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import orchestrate
 
@@ -15,25 +15,24 @@ from ..errors import InputError
 from ..lazy import np, xr
 from ..model import Drive, Structure
 from ..units import range_text, text_of, units_of, with_units
-from . import printing
-from .answer import Only, Runs
-from .command import Keywords, option
+from . import grammar, printing
+from .answer import Asked, Only, Runs
+from .command import Keywords, Options, option
 from .drive import Driven, OfController, OfRamp, OfSchedule, Stepped
-from .grammar import parse_rates
-from .options import Over
-from .output import Files, OfBoth, Stored, digest, user_fmus
+from .options import OfStructure, Over
+from .output import Files, OfBoth, Results, Stored, digest, user_fmus
 
 if TYPE_CHECKING:
     from ..weak_drive.couple import CoupleJob
 
-
+LISTED = ("parameter", "structuralParameter", "input", "output")
+PAIR = "NAME=VALUE"
 ERROR_LIMIT = 1e-6  # of the motor's work: larger errors give a warning
 
 
 def draw_couple(
     title: str, results: Runs, job: CoupleJob, branches: xr.Dataset | None = None
 ) -> Any:
-    """Draw the runs: ramps with averaged theory and branches, others over time."""
     from ..show.passage import draw_over_time
     from ..show.weak_drive import draw_ramps
     from ..weak_drive import averaged, own_resonance
@@ -75,9 +74,6 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         else:
             super().__call__()
 
-    def ask(self) -> tuple[Structure, Drive, Keywords]:
-        return self.ask_schedule()
-
     def make_job(self, structure: Structure, motor: Drive, question: Keywords) -> CoupleJob:
         from ..weak_drive.couple import couple_job, scheme_from_arguments
 
@@ -109,7 +105,6 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         return {state: load(files[state].result) for state in states}
 
     def summaries(self, results: Runs) -> Iterator[str]:
-        """Yield revolutions and speeds of each run, a table of jumps, and the runs' accuracy."""
         if self.stationary is not None:
             yield from drive_branch_lines(with_units(self.stationary, self.display_units({})))
         rows: list[tuple[str, ...]] = []
@@ -142,7 +137,6 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
             files.write_pictures(draw, "jumps")
 
     def write_package(self, path: Path, motor: Drive, job: CoupleJob) -> Path:
-        """Write the coupled system as an SSP file with its FMUs; return its path."""
         from ..fmu import find
 
         own = user_fmus(self.fmu)
@@ -164,25 +158,6 @@ def jump_cells(at: xr.Dataset, volts: float) -> tuple[str, ...]:
     return direction, jump, f"{voltage / volts:.5f}", shown, decided
 
 
-REASONS = {
-    "undecided": "undecided: the speed had not settled; give a longer --time",
-    "settled at the resonance": "neither passed nor captured: the speed settles at the resonance",
-}
-
-
-def threshold_cells(data: xr.Dataset) -> dict[str, str]:
-    """Return the cells of one threshold: voltage, counts of starts."""
-    passes = int((data.passes.values > 0).sum())
-    undecided = int(data.decision.isin(list(REASONS)).sum())
-    voltage, low, high = (float(data[f"border{end}"]) for end in ("", "_low", "_high"))
-    (border,) = printing.with_error(voltage, 0.5 * (high - low), ".5f", ".1g")
-    if high - low > float(data.border.attrs["tolerance"]):
-        border = f"{low:.5f} to {high:.5f}"
-    captured = data.decision.size - passes - undecided
-    titles = ("passes from V", "pass", "captured", "undecided")
-    return dict(zip(titles, (border, *map(str, (passes, captured, undecided))), strict=True))
-
-
 class Capture(Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
     """Voltages switched on from rest: which pass the resonance, which are captured."""
 
@@ -194,36 +169,16 @@ class Capture(Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
   {program} capture --drive beam --set armature_resistance=120 --voltage 7:10 --speed-gradient
 The motor is switched on at once and followed until its speed has settled."""
 
-    def ask(self) -> tuple[Structure, Drive, Keywords]:
-        structure, motor = self.read_structure_and_drive()
-        varied = self.over_arguments()
-        ends = self.parse_ramp_ends(structure, motor)
-        question = {**self.keywords(), **self.in_seconds(structure, "step"), "voltage": ends}
-        control = self.make_controller(structure, motor)
-        return structure, motor, {**question, **varied, "control": control}
-
-    def summaries(self, results: Runs) -> Iterator[str]:
-        rows: list[dict[str, str]] = []
-        notes: list[str] = []
-        for state, data in results.items():
-            (over,) = {str(dim) for dim in data.passes.dims} - {"voltage"} or {""}
-            for i in range(data.sizes[over] if over else 1):
-                part = data.isel({over: i} if over else {})
-                where = {over: f"{float(part[over]):g}"} if over else {}
-                rows.append({"structure": state, **where, **threshold_cells(part)})
-                for decision, reason in REASONS.items():
-                    tried = part.voltage.values[part.decision.values == decision]
-                    if tried.size:
-                        notes.append(f"{state}, {', '.join(f'{v:.5g}' for v in tried)} V {reason}")
-                if float(part.above_fold):
-                    notes.append(
-                        f"warning: {state}, above the fold at {float(part.fold):.5f} V, beyond "
-                        "which the averaged theory has no motion below the resonance"
-                    )
-        yield from printing.table(
-            {title: [row[title] for row in rows] for title in rows[0]}, len(rows)
-        )
-        yield from notes
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        over = [str(dim) for dim in data.passes.dims if dim != "voltage"]
+        rows = data if over else data.expand_dims("row")
+        columns = printing.columns_of(rows, " ".join(over))
+        half = 0.5 * (rows.border_high - rows.border_low)
+        columns["passes from V"] = printing.with_error(rows.border, half, ".5f", ".1g")
+        columns |= printing.columns_of(rows, "above_fold")
+        yield from printing.table(columns, rows.border.size)
+        yield from printing.hints([f"above_fold: {one}" for one in {*columns["above_fold"]}])
+        yield from printing.describe(data, "passes decision")
 
 
 def first_stored_interval(data: xr.Dataset) -> xr.Dataset:
@@ -244,12 +199,12 @@ class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
   {program} passage --drive rig --one-way --around 3
   {program} passage --drive beam --voltage 6.5 --duration 10 --speed-control 110"""
 
-    def ask(self) -> tuple[Structure, Drive, Keywords]:
+    def ask(self) -> tuple[Any, ...]:
         from ..weak_drive.schedule import Constant
 
         if self.revolutions < 1:
             raise InputError(f"--revolutions {self.revolutions}: expected a whole number >= 1")
-        structure, motor, question = self.ask_schedule()
+        structure, motor, question = super().ask()
         if self.around is None and not isinstance(question["voltage"], Constant):
             question["around"] = 300.0 / structure.omega
         return structure, motor, question
@@ -283,17 +238,12 @@ class JumpVoltages(OfRamp, Over, Stepped, Driven, Stored, OfBoth):
   {program} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
   {program} jump-voltages --over clearance --values 0,1e-5,3e-5 --drive beam --one-way"""
 
-    def ask(self) -> tuple[Structure, Drive, Keywords]:
-        structure, motor = self.read_structure_and_drive()
+    def ask(self) -> tuple[Any, ...]:
+        structure, motor, question = super().ask()
         unit = motor.volts(structure) * structure.omega
-        question: Keywords = {
-            "voltage": self.parse_ramp_ends(structure, motor),
-            "rates": [rate * unit for rate in parse_rates("--rate", self.rate)],
-            "back": not self.one_way,
-            **self.in_seconds(structure, "settle", "step"),
-            **self.over_arguments(),
-        }
-        return structure, motor, question
+        rates = [rate * unit for rate in grammar.parse_rates("--rate", self.rate)]
+        more = {"rates": rates, "back": not self.one_way, **self.in_seconds(structure, "settle")}
+        return structure, motor, question | more
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         # a direction in which no ramp went has not been decided
@@ -327,13 +277,10 @@ def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
 
 
 def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
-    if count := data.sizes["bifurcation"]:
-        rows = data.sortby(["bifurcation_structure", "bifurcation_voltage"])
-        columns = printing.columns_of(rows, "structure kind voltage speed", "bifurcation_")
-        yield from printing.table(columns, count)
+    rows = data.sortby(["bifurcation_structure", "bifurcation_voltage"])
+    yield from printing.listing(rows, "bifurcation", "structure kind voltage speed")
+    if rows.sizes["bifurcation"]:
         yield "at which of them a motor that follows its voltage jumps: jump-voltages, or couple"
-    else:
-        yield "no bifurcations"
     legs = [data.sel(structure=name, leg=leg) for name in data.structure for leg in data.leg]
     legs = [leg for leg in legs if leg.voltage.notnull().any()]
     last = [leg.dropna("point", subset=["voltage"]).isel(point=-1) for leg in legs]
@@ -348,7 +295,7 @@ def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     if any(unlocated):
         columns["stability changes near, not located (--period)"] = unlocated
     yield from printing.table(columns, len(legs))
-    yield from printing.end_lines(columns["ends by"])
+    yield from printing.hints(dict.fromkeys(columns["ends by"]))
 
 
 class DriveBranch(Driven, Stored, OfBoth):
@@ -361,5 +308,123 @@ class DriveBranch(Driven, Stored, OfBoth):
 Branches go round their folds."""
     summary = staticmethod(drive_branch_lines)
 
-    def ask(self) -> tuple[Structure, Drive, Keywords]:
-        return *self.read_structure_and_drive(), self.keywords()
+
+# -- any drive ------------------------------------------------------------------------------------
+
+
+def split_at_commas(texts: Sequence[str] | None) -> tuple[str, ...]:
+    return tuple(word for word in ",".join(texts or ()).split(",") if word)
+
+
+def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
+    """Return values by name: numbers, true or false; of inputs also files with time and value."""
+    found: dict[str, Any] = {}
+    for name, text in grammar.read_pairs(option, texts, PAIR).items():
+        try:
+            found[name] = text == "true" if text in ("true", "false") else grammar.plain_float(text)
+        except ValueError:
+            if option != "--input":
+                text = f"{option} {name}={text}: expected a number, true or false"
+                raise InputError(text) from None
+            found[name] = orchestrate.Course.from_csv(text)
+    return found
+
+
+def variable_lines(drive: Path) -> Iterator[str]:
+    from ..fmu.description import describe
+    from ..weak_drive.connection import MOTION, proposals, reason_for
+
+    description = describe(drive)
+    yield f"{description.name}, FMI {description.fmi_version}"
+    listed = [pair for pair in description.variables.items() if pair[1].causality in LISTED]
+    listed.sort(key=lambda pair: LISTED.index(pair[1].causality))
+    columns = {
+        "causality": [one.causality for _, one in listed],
+        "name": [name for name, _ in listed],
+        "start": ["" if one.start is None else str(one.start) for _, one in listed],
+        "unit": [one.unit or "no unit" for _, one in listed],
+        "description": [one.description or "" for _, one in listed],
+    }
+    yield from printing.table(columns, len(listed))
+    if likely := proposals(description):
+        links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
+        yield f"likely: --connect {links}   (a run checks the sign of the force)"
+        for ours, theirs in likely.items():
+            yield f"  {ours:17} {theirs}: {reason_for(description, ours, theirs)}"
+    else:
+        outputs = " ".join(f"{ours}=OUTPUT" for ours in MOTION)
+        text = f"--connect {outputs} box_force=INPUT (one motion is enough, all are more exact)"
+        yield f"units and names do not tell which are the box's: {text}"
+
+
+class OfDrive(Options):
+    """Options of the drive of a co-simulation."""
+
+    heading, rank = "the drive", 1
+    drive: Path = option("FMI 2.0 or 3.0", value="FMU", needed=True)
+    listed: bool = option("show its variables, propose connections, and end", name="--list")
+    connect: list[str] = option(
+        "box_acceleration (or box_velocity, box_position) and box_force, by names of the drive, or "
+        "force1, force2, its forces on the halves; a "
+        "minus before a name turns its sign, a unit after it in brackets states it: pos[mm]",
+        (),
+        "OURS=THEIRS",
+        many=True,
+    )
+    unit: list[str] = option(
+        "units of connected variables that it does not state, or not rightly",
+        (),
+        "NAME=UNIT",
+        many=True,
+    )
+    parameter: list[str] = option("its start values", (), PAIR, many=True)
+    input: list[str] = option(
+        "its other inputs: a number, or a CSV file with time in s and value", (), PAIR, many=True
+    )
+    record: list[str] = option("variables of the drive that are stored", (), "NAME", many=True)
+
+
+class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
+    """Both FMUs together: the oscillator and a drive of anybody's."""
+
+    calls = "cosimulate"
+    shows = "x1 x2 box_acceleration box_velocity box_position coupling_error"
+    renamed: ClassVar = {"units": "unit", "parameters": "parameter", "inputs": "input"}
+    examples = """
+  {program} cosimulate --drive shaker.fmu --list
+  {program} cosimulate --structure beam --drive shaker.fmu --duration 2 --step 1e-3
+      --connect box_acceleration=table_acc box_force=-force --input volts=3 --record amperes
+  {program} cosimulate --structure none --drive shaker.fmu --connect box_acceleration=table_acc
+      --input volts=3 --duration 2 --step 1e-3                the drive alone
+  {program} cosimulate --structure beam --drive shaker.fmu --connect box_velocity=v box_force=f
+      --input volts=volts.csv --duration 2 --step 1e-3"""
+
+    def __call__(self) -> None:
+        if self.listed:
+            print(*variable_lines(self.drive), sep="\n")
+        else:
+            super().__call__()
+
+    def ask(self) -> tuple[Structure | None, Keywords]:
+        alone = self.structure == "none"
+        if alone and self.set:
+            raise InputError("--set: --structure none has no parameters; leave it out")
+        structure = None if alone else self.read_structure()
+        if self.structure == "paper" and not self.set:
+            text = "expected one in SI units, as the drive has them, or none for the drive alone"
+            raise InputError(f"--structure is missing; {text}")
+        return structure, self.keywords() | {
+            "drive": str(self.drive),
+            "connect": grammar.read_pairs("--connect", split_at_commas(self.connect), PAIR),
+            "units": grammar.read_pairs("--unit", split_at_commas(self.unit), "NAME=UNIT"),
+            "parameters": read_values("--parameter", self.parameter),
+            "inputs": read_values("--input", self.input),
+            "record": split_at_commas(self.record),
+        }
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        if self.structure == "none":
+            yield f"no structure: the drive alone for {float(data.time[-1]):.6g} s"
+        yield from super().summary(data)
+        if data.attrs["inputs_at_start"]:
+            yield f"no input was given for {data.attrs['inputs_at_start']}, which stays so"

@@ -16,7 +16,6 @@ from .sweep_data import READING
 
 
 def branch_json(found: xr.Dataset | None) -> dict[str, Any]:
-    """Return lines and bifurcations of a branch as JSON data for the page."""
     if found is None:
         return {"branches": [], "bifurcations": []}
     if found.attrs.get("over") != "eta":
@@ -35,7 +34,6 @@ def branch_json(found: xr.Dataset | None) -> dict[str, Any]:
 
 
 def branch_lines(found: xr.Dataset) -> list[dict[str, Any]]:
-    """Return a branch's stable and unstable parts as lines, one set per sample of an orbit."""
     stable = found.stable.values == 1
     return [
         {"x": along.tolist(), "y": gaps.tolist(), "stable": bool(flag)}
@@ -61,7 +59,6 @@ def split_by_stability(
 
 
 def bifurcation_points(found: xr.Dataset) -> list[dict[str, Any]]:
-    """Return a branch's bifurcations as dicts with eta, largest gap and kind."""
     if not found.sizes.get("bifurcation"):
         return []
     kinds = found.bifurcation_kind

@@ -15,14 +15,12 @@ EXPORT = re.compile(r"^export ((?:async )?(?:function\*?|class|const|let)) (\w+)
 
 
 def bundle(sources: Mapping[str, str], entry: str) -> str:
-    """Join JavaScript modules into one script that ends with the entry module."""
     order: list[str] = []
     append_with_imports(sources, entry, order)
     return '"use strict";\n' + "".join(wrap_module(name, sources[name]) for name in order)
 
 
 def append_with_imports(sources: Mapping[str, str], name: str, order: list[str]) -> None:
-    """Append a module to an order, after the modules that it imports."""
     if name in order:
         return
     for match in IMPORT.finditer(sources[name]):
@@ -31,7 +29,6 @@ def append_with_imports(sources: Mapping[str, str], name: str, order: list[str])
 
 
 def wrap_module(name: str, source: str) -> str:
-    """Return a module as the text of a function that returns what it exports."""
     exported = ", ".join(match[2] for match in EXPORT.finditer(source))
     body = IMPORT.sub(rewrite_import, source)
     body = EXPORT.sub(r"\1 \2", remove_comments(body)).strip()

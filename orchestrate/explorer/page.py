@@ -90,7 +90,6 @@ def first_bytes(path: Path) -> bytes:
 def render_page(
     chosen: SweepData, shown: dict[str, str], drawn: dict[str, Any], kernel: WebKernel
 ) -> str:
-    """Return the page's HTML, made by a template that escapes all text."""
     scripts = read_modules()
     made_by = f"vibroimpact {__version__}, kernel {kernel.guid}"
     style, script = read_source("style.css"), bundle(scripts, "main")
@@ -125,7 +124,6 @@ def render_page(
 
 @functools.cache
 def template_environment() -> jinja2.Environment:
-    """Return a Jinja environment that escapes all text and raises at undefined names."""
     return jinja2.Environment(
         loader=jinja2.PackageLoader("orchestrate.explorer", "page"),
         autoescape=True,
@@ -149,12 +147,10 @@ def content_security_policy(style: str, script: str) -> str:
 
 
 def policy_digest(content: str) -> str:
-    """Return the digest by which the policy names a script or a style sheet."""
     return f"sha256-{base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()}"
 
 
 def page_data(chosen: SweepData) -> dict[str, Any]:
-    """Return the sweep, ranges of parameters and tour as JSON data for the page."""
     return {
         "structure": structure_numbers(chosen.structure) | chosen.pushes,
         "usual": structure_numbers(Structure()),
@@ -204,29 +200,24 @@ def drive_data(step: float = 0.1) -> dict[str, Any]:
 
 
 def voltage_slider(low: float = 0.8, high: float = 2.0, first: float = 0.9) -> dict[str, str]:
-    """Return ends and first value of the voltage slider, V, as texts."""
     unit = Drive.from_file("quick").motor_constant * Structure.from_file("quick").omega
     ends = {"voltage_low": low, "voltage_high": high, "voltage": first}
     return {name: f"{value * unit:.6g}" for name, value in ends.items()}
 
 
 def structure_numbers(structure: Structure) -> dict[str, float]:
-    """Return a structure's parameters by name as floats, and that nothing pushes."""
     numbers = {name: float(value) for name, value in structure.parameters().items()}
     return numbers | dict.fromkeys(PUSHES, 0.0)
 
 
 def compress(content: bytes) -> str:
-    """Return bytes compressed by zlib, as base64 text."""
     return base64.b64encode(zlib.compress(content, 9)).decode()
 
 
 @functools.cache
 def read_source(name: str) -> str:
-    """Return the text of one of the page's source files."""
     return (SOURCES / name).read_text(encoding="utf-8")
 
 
 def read_modules() -> dict[str, str]:
-    """Return a dict from name to text of the page's JavaScript modules."""
     return {path.stem: read_source(path.name) for path in sorted(SOURCES.glob("*.js"))}

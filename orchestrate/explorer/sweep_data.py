@@ -61,7 +61,6 @@ def empty_sweep(structure: Structure, units: Units) -> SweepData:
 
 
 def read_sweep(data: xr.Dataset) -> SweepData:
-    """Return a sweep dataset as ``SweepData``; raise if the page cannot show it."""
     try:
         return read_checked(data, check_sweep(data))
     except InputError:
@@ -73,7 +72,6 @@ def read_sweep(data: xr.Dataset) -> SweepData:
 
 
 def read_checked(data: xr.Dataset, direction: str) -> SweepData:
-    """Return a sweep dataset of a direction as ``SweepData``, after :func:`check_sweep`."""
     structure = Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
     pushes = {name: data.attrs.get(name, 0.0) for name in PUSHES}
     varied = {name: text for name, text in pushes.items() if isinstance(text, str)}
@@ -126,7 +124,6 @@ def check_units(units: Units, level: tuple[str, float]) -> None:
 
 
 def shown_in(units: Units, level: tuple[str, float]) -> dict[str, str]:
-    """Return the units in which the page shows a beam of one's own."""
     if level[0] == "paper":  # ratios have no unit, but of time
         units = Units(time=units.time)
     return asdict(units.with_defaults(OWN))

@@ -58,7 +58,6 @@ class View:
 
     @property
     def structure(self) -> Structure:
-        """Structure whose motion this view shows."""
         return Structure().replace(**self.changes)
 
 
@@ -125,8 +124,6 @@ STEPS = (
 
 
 def in_units(text: str, shown: Mapping[str, str]) -> str:
-    """Return a text of the tour with its numbers in the units of a page."""
-
     def convert(match: re.Match[str]) -> str:
         number, unit = match.groups()
         sizes = FACTORS[KINDS[unit]]
@@ -139,7 +136,6 @@ def in_units(text: str, shown: Mapping[str, str]) -> str:
 
 
 def tour_in(shown: Mapping[str, str]) -> tuple[Step, ...]:
-    """Return the steps of the tour with all their texts in the units of a page."""
     return tuple(
         replace(
             step,

@@ -27,7 +27,6 @@ Check = Callable[[str, Any], Any]  # takes an argument's name and value, returns
 
 
 def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUNT) -> int:
-    """Return ``value`` as int; raise ``InputError`` unless whole and from minimum to maximum."""
     is_integer = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
     if not is_integer or not minimum <= value <= maximum:
         raise InputError(f"{name} = {value!r}: expected a whole number from {minimum} to {maximum}")
@@ -35,7 +34,6 @@ def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUN
 
 
 def checked_word(name: str, value: Any, known: Iterable[str]) -> str:
-    """Return ``value`` as a string; raise ``InputError`` unless it is one of the known words."""
     words = tuple(known)
     if value not in words:
         raise InputError(f"{name} = {value!r}: expected one of {', '.join(words)}")
@@ -57,7 +55,6 @@ def checked_path(name: str, value: Any) -> Path:
 
 
 def unmasked(name: str, value: Any) -> Any:
-    """Return an argument; raise ``InputError`` if it is an array with masked entries."""
     if np.ma.is_masked(value):
         number, count = int(np.ma.getmaskarray(value).sum()), np.size(value)
         raise InputError(
@@ -92,7 +89,6 @@ def checked_numbers(
 
 
 def checked_number(name: str, value: Any, expected: str = "one number") -> float:
-    """Return an argument as finite float; raise ``InputError`` if it is a list or no number."""
     number = checked_numbers(name, value)
     if not isinstance(number, float):
         raise InputError(f"{name} = {value!r}: expected {expected}")
@@ -100,7 +96,6 @@ def checked_number(name: str, value: Any, expected: str = "one number") -> float
 
 
 def checked_positive(name: str, value: Any) -> float:
-    """Return an argument as finite float above zero; raise ``InputError`` otherwise."""
     number = checked_numbers(name, value)
     if not isinstance(number, float) or number <= 0.0:
         raise InputError(f"{name} = {value!r}: expected a number > 0")
@@ -113,7 +108,6 @@ def whole(minimum: int, maximum: int = MAX_COUNT) -> Check:
 
 @cache
 def checks_of(kind: type) -> dict[str, Check]:
-    """Return the checks of a dataclass's fields by name, from the types of the fields."""
     types = get_type_hints(kind, include_extras=True)
     checks = {field.name: check_of(types[field.name]) for field in fields(kind)}
     return {name: check for name, check in checks.items() if check is not None}

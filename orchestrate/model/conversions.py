@@ -35,7 +35,6 @@ def damping_ratio(damper: float, f: float, mass: float) -> float:
 
 
 def checked_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:
-    """Return two layer thicknesses as floats; raise ``InputError`` unless both are > 0."""
     try:
         h1, h2 = (float(h) for h in thicknesses)
         share = h1 / (h1 + h2)

@@ -68,7 +68,6 @@ class Quantity:
         return f"{self.minimum:g} <= {self.name} <= {self.maximum:g}{unit}"
 
     def check(self, value: Any) -> float:
-        """Return ``value`` as a float; raise ``InputError`` if it is no number or out of range."""
         if type(value) is float and self.minimum <= value <= self.maximum:  # usually
             return value + 0.0
         number = as_scalar(value)
@@ -114,7 +113,6 @@ def as_scalar(value: Any) -> Any:
 
 
 def checked_flag(name: str, value: Any) -> bool:
-    """Return ``value`` as True or False; raise ``InputError`` naming it if it is neither."""
     flag = as_scalar(value)
     if not isinstance(flag, bool):
         raise InputError(f"{name} = {value!r}: expected true or false")
@@ -122,7 +120,6 @@ def checked_flag(name: str, value: Any) -> bool:
 
 
 def quantities_of(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Quantity]:
-    """Return a dict of quantities for the named variables of an FMU's variable table."""
     known = {variable.name: variable for variable in variables}
     return {
         v.name: Quantity(v.name, v.unit, v.description, v.minimum, v.maximum, v.start)
@@ -185,12 +182,10 @@ COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 
 
 def positive_quantity(name: str, description: str) -> Quantity:
-    """Return a dimensionless quantity with this name and the range above zero."""
     return Quantity(name, "1", description, SMALLEST, LARGEST)
 
 
 def non_negative_quantity(name: str, description: str) -> Quantity:
-    """Return a dimensionless quantity with this name and the range from zero up."""
     return Quantity(name, "1", description, 0.0, LARGEST / 2.0)
 
 

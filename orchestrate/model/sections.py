@@ -87,7 +87,6 @@ class Section:
     values: dict[str, Any]
 
     def error(self, key: str, text: str) -> InputError:
-        """Return an ``InputError`` that names file, section, key and value before a text."""
         value = f" = {self.values[key]!r}" if key in self.values else ""
         return InputError(f"{self.path}: {self.name}.{key}{value}: {text}")
 
@@ -98,7 +97,6 @@ class Section:
                 raise self.error(key, f"no key of [{self.name}]; {expected_one_of(key, known)}")
 
     def present(self, keys: Collection[str]) -> list[str]:
-        """Return which of the given keys the section has, as a list."""
         return [key for key in keys if key in self.values]
 
     def uses_second_form(self, first: Collection[str], second: Collection[str]) -> bool:
@@ -112,7 +110,6 @@ class Section:
         return bool(second_keys)
 
     def at_most_one(self, keys: Collection[str]) -> str | None:
-        """Return which one of the keys the section has, or None; raise if it has several."""
         present = self.present(keys)
         if len(present) > 1:
             expected = f"expected one of {', '.join(keys)}"
@@ -120,14 +117,12 @@ class Section:
         return present[0] if present else None
 
     def exactly_one(self, keys: Collection[str]) -> str:
-        """Return which one of the keys the section has; raise if it has none or several."""
         key = self.at_most_one(keys)
         if key is None:
             raise InputError(f"{self.path}: [{self.name}]: expected one of {', '.join(keys)}")
         return key
 
     def need(self, keys: Collection[str]) -> None:
-        """Raise ``InputError`` if the section lacks one of the given keys."""
         for key in keys:
             if key not in self.values:
                 raise self.error(key, f"missing; expected all of {', '.join(keys)}")
@@ -140,14 +135,12 @@ class Section:
             raise InputError(f"{self.path}: {self.name}.{error}") from None
 
     def flag(self, key: str) -> bool:
-        """Return a key's value as True or False; raise ``InputError`` if it is neither."""
         try:
             return checked_flag(key, self.values[key])
         except InputError as error:
             raise InputError(f"{self.path}: {self.name}.{error}") from None
 
     def numbers(self, keys: Collection[str]) -> dict[str, float]:
-        """Return a dict of checked floats for those of the given keys that the section has."""
         return {key: self.number(key) for key in self.present(keys)}
 
     def rad_s(self, key: str) -> float:
@@ -164,7 +157,6 @@ class Section:
 
 
 def read_structure(section: Section) -> Structure:
-    """Return the ``Structure`` that a section ``[structure]`` describes, SI or non-dimensional."""
     if section.values.get("wall") is True:  # one mass, as Structure.one_mass calls its numbers
         own = {OF_ONE_MASS.get(key, key): value for key, value in section.values.items()}
         section = dataclasses.replace(section, values=own)
@@ -196,7 +188,6 @@ def read_structure(section: Section) -> Structure:
 
 
 def read_excitation(section: Section, structure: Structure | None) -> Excitation:
-    """Return the ``Excitation`` that a section ``[excitation]`` describes."""
     section.allow(*FREQUENCIES, *AMPLITUDES, "phase", *PUSHES)
     key = section.exactly_one(FREQUENCIES)
     amplitude_key = section.at_most_one(AMPLITUDES)
@@ -217,7 +208,6 @@ def read_excitation(section: Section, structure: Structure | None) -> Excitation
 
 
 def read_drive(motor: Section, box: Section, structure: Structure | None) -> Drive:
-    """Return the ``Drive`` that the sections ``[motor]`` and ``[box]`` describe."""
     motor.allow(*SI_MOTOR, *DATASHEET_KEYS, *MOTOR_NUMBERS)
     box.allow(*SI_BOX, *BOX_NUMBERS)
     by_numbers = motor.uses_second_form((*SI_MOTOR, *DATASHEET_KEYS), MOTOR_NUMBERS)
@@ -237,7 +227,6 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
 
 
 def read_shaker(section: Section) -> Shaker:
-    """Return the ``Shaker`` that a section ``[shaker]`` describes, in SI or by its data sheet."""
     section.allow(*SHAKER_SI, *SHAKER_COMMON, "current_control", *DATASHEET)
     values: dict[str, Any] = section.numbers((*SHAKER_SI, *SHAKER_COMMON, *DATASHEET))
     if "current_control" in section.values:
@@ -264,7 +253,6 @@ def check_masses(structure: Section, motor: Section) -> None:
 
 
 def si_drive(motor: Section, box: dict[str, float]) -> Drive:
-    """Return the ``Drive`` of a motor given in SI, by its constants or its datasheet's values."""
     values = {**motor.numbers(SI_MOTOR), **box}
     if not motor.uses_second_form(TORQUE_LINE_KEYS, DATASHEET_KEYS):
         motor.need([name for name in SI_MOTOR if name != "armature_inductance"])

@@ -13,7 +13,6 @@ def expected_one_of(name: str, known: Iterable[str]) -> str:
 
 
 def did_you_mean(*names: str) -> str:
-    """Return the words that ask for what is probably meant; nothing without a name."""
     near = " or ".join(filter(None, names))
     return f"; did you mean {near}?" if near else ""
 

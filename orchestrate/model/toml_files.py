@@ -127,7 +127,6 @@ def read_section(
     structure: Structure | None = None,
     tables: Mapping[str, Any] | None = None,
 ) -> Described:
-    """Return a TOML file's structure, excitation, drive or shaker; raise if missing."""
     contents = read(source, structure, tables)
     if name not in contents:
         expected = "[motor] and [box]" if name == "drive" else f"[{name}]"

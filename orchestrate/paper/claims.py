@@ -56,7 +56,6 @@ class Claim:
 
 
 def read_table() -> list[Claim]:
-    """Return the paper's claims, in its order."""
     text = resources.files("orchestrate.paper").joinpath("claims.csv").read_text("utf-8")
     return [Claim(**row) for row in csv.DictReader(text.splitlines())]
 

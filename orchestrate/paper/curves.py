@@ -60,7 +60,6 @@ def chatters(time: np.ndarray, impacts: np.ndarray, sticks: np.ndarray) -> np.nd
 
 
 def curves_dataset(panels: Sequence[Panel], curves: Sequence[Mapping[str, Any]]) -> xr.Dataset:
-    """Return all curves' points, one curve after the other, with the numbers of their panels."""
     joined = {name: np.concatenate([curve[name] for curve in curves]) for name in curves[0]}
     of = np.repeat(np.arange(len(curves)), [len(curve["tau"]) for curve in curves])
     time = "non-dimensional time from the first period shown"

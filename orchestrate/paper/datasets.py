@@ -37,7 +37,6 @@ class Datasets:
         self.known: dict[str, Any] = {}
 
     def get(self, name: str, function: Answer, *what: Any, **keywords: Any) -> xr.Dataset:
-        """Return a function's answer, stored under a name."""
         if name not in self.known:
             store = self.folder / f"{name}.nc"
             self.known[name] = function(*what, **keywords, **self.running, store=store)
@@ -46,7 +45,6 @@ class Datasets:
     # -- sweeps and what follows from their responses ----------------------------------------------
 
     def sweep(self, case: str, direction: str) -> xr.Dataset:
-        """Return a case's sweep by the paper's protocol."""
         name, eta = f"orbit_{CASES[case].label()}_{direction}", self.size.etas()
         more = {"direction": direction, **self.protocol()}
         return self.get(name, orchestrate.sweep, CASES[case], eta=eta, **more)
@@ -56,15 +54,12 @@ class Datasets:
         return {"transient": self.size.transient - 1, "samples": self.size.samples + 1}
 
     def up(self, case: str) -> xr.Dataset:
-        """Return a case's sweep upwards."""
         return self.sweep(case, "up")
 
     def down(self, case: str) -> xr.Dataset:
-        """Return a case's sweep downwards."""
         return self.sweep(case, "down")
 
     def impacts(self, case: str) -> xr.Dataset:
-        """Return a case's up-sweep impact by impact."""
         name, eta = f"steady_{CASES[case].label()}_up", self.size.etas()
         more = {"start": self.up(case), "transient": 0, "periods": self.size.steady}
         return self.get(name, orchestrate.impact_statistics, CASES[case], eta=eta, **more)
@@ -104,7 +99,6 @@ class Datasets:
         return self.known[name]
 
     def exponent(self, case: str) -> xr.Dataset:
-        """Return the largest Lyapunov exponents of the settled responses."""
         name, settled = f"exponent_{CASES[case].label()}", self.settled(case)
         more = {"start": settled, "transient": 0, "periods": self.size.long_run}
         return self.get(name, orchestrate.lyapunov, CASES[case], eta=settled.eta.values, **more)
@@ -133,7 +127,6 @@ class Datasets:
         return sorted(stable_windows(branch))
 
     def window(self, case: str, orbit: str, inside: float) -> StableWindow:
-        """Return the stable window of an orbit around a frequency, or nearest to it."""
         windows = self.windows(case, orbit)
         return min(windows, key=lambda one: max(one.low - inside, inside - one.high, 0.0))
 
@@ -231,7 +224,6 @@ class Datasets:
         return self.known[name]
 
     def panels(self, number: str, case: str, etas: tuple[float, ...]) -> list[Panel]:
-        """Return the settled responses of a case that a figure shows."""
         swept = self.up(case) if number != "7" else self.beyond()
         if number == "7":
             etas = tuple(eta for n in range(1, 5) if (eta := relative_peak(swept, n)))
@@ -260,13 +252,11 @@ class Datasets:
         return {"transient": self.size.settle, "settings": settings}
 
     def attractors(self) -> xr.Dataset:
-        """Return coexisting attractors from random starts."""
         etas = self.size.attractor_etas()
         more = {"starts": self.size.starts, "seed": 2026, **self.settling()}
         return self.get("attractors", orchestrate.attractors, ELASTIC, eta=etas, **more)
 
     def basin(self) -> xr.Dataset:
-        """Return the basins in gap and gap velocity around the two attractors of a frequency."""
         found = between(self.attractors(), 1.07, 1.37)
         at = found.isel(eta=index_of_most_even_shares(found))
         middle = np.nanmean(at.state.values[np.argsort(-at.share.values, kind="stable")[:2]], 0)
@@ -277,7 +267,6 @@ class Datasets:
         return self.get("basin", orchestrate.basin, ELASTIC, eta=eta, **more)
 
     def map(self, parameter: str) -> xr.Dataset:
-        """Return the map over eta and e, D or kappa."""
         size, etas = self.size, np.linspace(*cases.MAP_ETAS, self.size.map_etas)
         spaced = np.geomspace if parameter == "D" else np.linspace
         axes = {"eta": etas, parameter: spaced(*cases.MAPS[parameter], size.map_rows)}
@@ -285,7 +274,6 @@ class Datasets:
         return self.get(f"map_{parameter}", orchestrate.map, ELASTIC, **axes, **more)
 
     def spectra(self) -> xr.Dataset:
-        """Return spectra at the up-sweep's peak and at two other frequencies."""
         etas = float(self.up("elastic").xi_rel_max.idxmax()), 0.4, 1.13
         return self.get("spectra", orchestrate.spectra, ELASTIC, eta=etas)
 

@@ -57,7 +57,6 @@ def curves_section(number: str, text: str, method: str, draw: Callable[..., Figu
 
 
 def draw_basin(data: Any) -> Figure:
-    """Draw the basin, in the paper's coordinates."""
     return planes.draw_basin(data, "", (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
 
 

@@ -52,7 +52,6 @@ def write_report(
     size: Resolution,
     fmu: Any,
 ) -> Path:
-    """Write ``report.html`` with claims, regions and pictures; return its path."""
     loader, strict = jinja2.PackageLoader("orchestrate.paper"), jinja2.StrictUndefined
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=strict)
     environment.filters["typeset"] = typeset
@@ -78,7 +77,6 @@ def write_report(
 
 
 def picture_entry(name: str, picture: Path) -> dict[str, Any]:
-    """Return texts, picture and data files of a part, for the page's template."""
     part, content = PARTS[name], picture.read_bytes()
     data = base64.b64encode(content).decode()
     return {"file": picture.stem, "part": part, "picture": data, **png_size(content)}

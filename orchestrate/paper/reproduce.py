@@ -48,7 +48,6 @@ def reproduce(
 
 
 def choose_parts(names: Sequence[str] | None) -> list[str]:
-    """Return the names of the parts asked for, in the report's order; raise for unknown ones."""
     known = [CLAIMS, *PARTS]
     asked = known if names is None else [name.strip() for name in names]
     for name in asked:
@@ -58,7 +57,6 @@ def choose_parts(names: Sequence[str] | None) -> list[str]:
 
 
 def write_claims(data: Datasets) -> dict[str, Any]:
-    """Check the claims; write them with regions as JSON, and return them."""
     checked = {"claims": check_claims(read_table(), data), "regions": region_rows(data)}
     text = json.dumps(checked, indent=1, ensure_ascii=False) + "\n"
     write_whole(data.folder / "claims.json", lambda path: path.write_text(text, encoding="utf-8"))
@@ -66,7 +64,6 @@ def write_claims(data: Datasets) -> dict[str, Any]:
 
 
 def draw_all(results: Mapping[str, Sequence[Any]], output: Path) -> dict[str, Path]:
-    """Draw parts from their results; return the paths of the PNG files."""
     paths = {}
     for name, data in results.items():
         figure = PARTS[name].draw(*data)

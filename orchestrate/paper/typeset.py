@@ -46,7 +46,6 @@ def mathml(latex: str) -> Markup:
 
 
 def typeset(text: str) -> Markup:
-    r"""Return a sentence as HTML with its formulas as MathML."""
     parts, end, text = [], 0, in_words(text)
     for match in FORMULA.finditer(text):
         latex = match.expand(LATEX[int(str(match.lastgroup).removeprefix("word"))])

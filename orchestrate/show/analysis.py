@@ -33,7 +33,6 @@ def draw(
     others: Mapping[str, xr.Dataset] | None = None,
     title: str = "",
 ) -> Figure:
-    """Draw an analysis' result, with those of further records for comparison; return the figure."""
     results = {label: data, **(others or {})}
     kind = data.attrs["analysis"]
     other = [name for name, result in results.items() if result.attrs["analysis"] != kind]
@@ -49,23 +48,19 @@ def draw(
 
 
 def first_of(results: Results) -> xr.Dataset:
-    """Return the first record's result, whose display units the axes use."""
     return next(iter(results.values()))
 
 
 def frequency_label(results: Results, words: str = "frequency") -> str:
-    """Return a frequency axis' label with the display unit."""
     return label_with_unit(words, first_of(results).frequency)
 
 
 def channels_in(results: Results) -> list[str]:
-    """Return the names of the channels that any of the records has, the base first."""
     known = {str(name) for data in results.values() for name in data.channel.values}
     return [name for name in CHANNEL_TITLES if name in known]
 
 
 def iterate_records(results: Results, channel: str) -> Iterator[tuple[str, xr.Dataset, str]]:
-    """Yield label, part of the result and colour of each record that has a channel."""
     colours = colours_by_label(results)
     for label, data in results.items():
         if channel in data.channel.values:
@@ -82,7 +77,6 @@ def colours_by_label(results: Results) -> dict[str, str]:
 
 
 def add_legend(figure: Figure, axes: Axes, results: Results) -> None:
-    """Add a legend with the records' labels below all panels, if they have labels."""
     if any(results):
         colours = colours_by_label(results)
         handles = [axes.plot([], [], color=colours[label])[0] for label in results]
@@ -90,7 +84,6 @@ def add_legend(figure: Figure, axes: Axes, results: Results) -> None:
 
 
 def limit_log_axis(axes: Axes, values: list[np.ndarray], decades: int = 6) -> None:
-    """Set a logarithmic y axis that ends at most some decades below the largest value."""
     every = np.concatenate([np.ravel(array) for array in values])
     every = every[np.isfinite(every) & (every > 0.0)]
     axes.set_yscale("log")
@@ -186,7 +179,6 @@ def draw_frf(results: Results) -> Figure:
 
 
 def draw_psd(results: Results) -> Figure:
-    """Draw power spectral densities, a row per channel; return the figure."""
     names = channels_in(results)
     figure, axes = make_panels(len(names), 1, (9.0, 0.8 + 2.0 * len(names)), sharex=True)
     for channel, plane in zip(names, axes, strict=True):
@@ -205,7 +197,6 @@ def draw_psd(results: Results) -> Figure:
 
 
 def draw_orders(results: Results) -> Figure:
-    """Draw tracked orders' amplitudes over frequency, a row each, and the phase of order 1."""
     first, words = first_of(results), "order {:g}\nin {}"
     unit = typeset_array_unit(first.amplitude)
     orders = map(float, first.order.values)
@@ -217,7 +208,6 @@ def draw_orders(results: Results) -> Figure:
 
 
 def draw_harmonics(results: Results) -> Figure:
-    """Draw total harmonic distortion and the lowest harmonics over frequency; return the figure."""
     words, orders = "order {:g}\nover order 1 in %", map(float, first_of(results).order.values[:2])
     rows = [Row("distortion\n(THD) in %", 1.3, lambda data: 100.0 * data.distortion)]
     rows += [Row(words.format(n), 1.0, read_order(n, "ratio", 100.0)) for n in orders]
@@ -232,7 +222,6 @@ def read_order(
 
 
 def draw_spectrograms(results: Results) -> Figure:
-    """Draw spectrograms in decibels: a row per channel, a column per record; return the figure."""
     names, count = channels_in(results), len(results)
     size = (1.2 + 4.2 * count, 0.8 + 2.2 * len(names))
     figure, axes = make_panels(len(names), count, size, sharex=True, sharey=True)
@@ -259,7 +248,6 @@ def draw_spectrograms(results: Results) -> Figure:
 
 
 def draw_shock_spectra(results: Results) -> Figure:
-    """Draw maximax shock response spectra, residual ones as thin lines; return the figure."""
     names = channels_in(results)
     size = (1.0 + 3.6 * len(names), 4.4)
     figure, axes = make_panels(1, len(names), size, sharex=True, sharey=True)
@@ -280,7 +268,6 @@ def draw_shock_spectra(results: Results) -> Figure:
 
 
 def draw_densities(results: Results) -> Figure:
-    """Draw probability densities over standard deviations, with the Gaussian one."""
     names = channels_in(results)
     figure, axes = make_panels(1, len(names), (1.0 + 3.8 * len(names), 4.2), sharey=True)
     gauss = np.linspace(-4.5, 4.5, 181)

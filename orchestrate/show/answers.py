@@ -34,12 +34,10 @@ ORIGIN = {  # attributes, and what a reader calls them
 
 
 def title_of(answer: xr.Dataset) -> str:
-    """Return a result's title as a heading; pictures and tables tell of its structure."""
     return plain_title(str(answer.attrs.get("title") or required_kind(answer)), structure=False)
 
 
 def answer_section(answer: xr.Dataset) -> Section:
-    """Return a section with a result's picture, if there is one, and its scalar numbers."""
     title = title_of(answer)
     tables = [table for table in (scalar_table(answer), parameter_table(answer)) if table.rows]
     try:
@@ -59,7 +57,6 @@ def scalar_table(answer: xr.Dataset) -> Table:
 
 
 def parameter_table(answer: xr.Dataset) -> Table:
-    """Return a table of structure and excitation, from a result's attributes."""
     rows = []
     for name, quantity in {**STRUCTURE, **EXCITATION}.items():
         if name in answer.attrs and not isinstance(answer.attrs[name], str):
@@ -71,7 +68,6 @@ def parameter_table(answer: xr.Dataset) -> Table:
 
 
 def signs_section(answer: xr.Dataset) -> Section:
-    """Return a section on signs: values, noise floors, and other causes of those that stand out."""
     known = [answer.sel(sign=sign) for sign in answer.sign.values]
     known = [one for one in known if bool((one.exceeds >= 0).any())]
     rows = [
@@ -99,12 +95,10 @@ def signs_section(answer: xr.Dataset) -> Section:
 
 
 def format_sensors(values: Iterable[float]) -> str:
-    """Format one number per sensor for a table's cell."""
     return " · ".join(format_number(float(value)) for value in values)
 
 
 def origin_section(answers: Sequence[xr.Dataset]) -> Section:
-    """Return a section with versions and identities of all results of a page."""
     rows: list[tuple[str, str]] = []
     for number, answer in enumerate(answers, 1):
         begin = f"{number}. " if len(answers) > 1 else ""
@@ -117,7 +111,6 @@ def origin_section(answers: Sequence[xr.Dataset]) -> Section:
 
 
 def describe_origin(answer: xr.Dataset) -> list[tuple[str, str]]:
-    """Return pairs of a name and a text on a result's origin, from its attributes."""
     attributes = {str(name): str(text) for name, text in answer.attrs.items()}
     rows = [(label, attributes[name]) for name, label in ORIGIN.items() if attributes.get(name)]
     if "history" in attributes:
@@ -136,7 +129,6 @@ def describe_origin(answer: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def installed_version(name: str) -> str:
-    """Return a package's installed version; empty if it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:

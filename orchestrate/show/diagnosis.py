@@ -73,7 +73,6 @@ def write_values(
 @draws("plan_test")
 @styled
 def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw what was heard in the rehearsals over the level; return the figure."""
     title = title or plain_title(str(data.attrs["title"]))
     figure, (axes,) = make_panels(1, 1, (8.0, 3.8), title)
     data = as_shown(data)
@@ -100,7 +99,6 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
 @draws("detect", "fit")
 @styled
 def draw_orders_and_fits(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw a record's orders over frequency with those of the fits, one column per sensor."""
     data = with_hypothesis_dimension(as_shown(data))
     channels = [str(channel) for channel in data.channel.values]
     rows, columns = data.sizes["order"], len(channels)
@@ -143,7 +141,6 @@ def with_hypothesis_dimension(data: xr.Dataset) -> xr.Dataset:
 
 
 def best_fits(data: xr.Dataset) -> list[str]:
-    """Return the names of the fits to draw: best delaminated, best sound, and bonded."""
     order = np.argsort(data.misfit.values, kind="stable")
     ordered = [str(name) for name in data.hypothesis.values[order]]
     parted = [name for name in ordered if name.startswith(PARTED)][:1]
@@ -153,7 +150,6 @@ def best_fits(data: xr.Dataset) -> list[str]:
 
 @styled
 def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw each fit's misfit to the record over frequency; return the figure."""
     figure, (axes,) = make_panels(1, 1, (8.0, 3.4), title or str(data.attrs.get("title", "")))
     data = as_shown(data)
     for number, name in enumerate(best_fits(data)):

@@ -29,7 +29,6 @@ def png_bytes(figure: Figure) -> bytes:
 
 
 def png_size(png: bytes) -> dict[str, int]:
-    """Return width and height of a PNG picture in pixels, read from its header."""
     width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))
     return {"width": width, "height": height}
 
@@ -60,7 +59,6 @@ def for_slides(figure: Figure, shape: tuple[float, float] | None) -> Figure:
 def save(
     figure: Figure, path: str | Path, formats: Iterable[str] = ("png",), **options: Any
 ) -> list[Path]:
-    """Save a figure in each format atomically; return the paths."""
     written = []
     for ending in formats:
         target = Path(f"{path}.{ending}")

@@ -36,7 +36,6 @@ COLUMNS = 400  # of an envelope
 @draws("simulate", beside=BONDED)
 @styled
 def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
-    """Draw a simulated motion: histories, phase planes and spectrum; return the figure."""
     figure = Figure(figsize=(10.4, 6.8), layout="constrained")
     axes = figure.subplot_mosaic(LAYOUT, width_ratios=(2.2, 1))
     set_title(figure, title or labels.title_from_attributes(data))
@@ -122,7 +121,6 @@ def draw_spectrum(
 @draws("shake", beside=BONDED)
 @styled
 def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
-    """Draw a laboratory record: accelerations, gap and impulses over time; return the figure."""
     words = str(data.attrs.get("excitation_description") or data.attrs["excitation"])
     title = title or f"{labels.in_shown_units(data, words)}; {labels.title_from_attributes(data)}"
     heights: Any = {"sharex": True, "height_ratios": (1.0, 1.6, 1.2, 1.2)}
@@ -146,7 +144,6 @@ def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = No
 @draws("cosimulate")
 @styled
 def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw a coupled run over time, a panel for each quantity of the drive; return the figure."""
     names = [str(name) for name in data.attrs["recorded"].split(",") if name]
     count = (4 if "x1" in data else 1) + len(names)
     title = title or f"{data.attrs['drive']}; {labels.title_from_attributes(data)}"
@@ -168,7 +165,6 @@ def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_what_drives(data: xr.Dataset, box: Axes) -> None:
-    """Draw the box's acceleration, or the force on a mass."""
     if force := next((name for name in ("force1", "force2") if name in data), ""):
         draw_signal(box, data, force, 1.0, color=BLACK)
         box.set_ylabel(f"force on\nmass {force[-1]} in N")
@@ -179,7 +175,6 @@ def draw_what_drives(data: xr.Dataset, box: Axes) -> None:
 
 
 def draw_gap_impacts(data: xr.Dataset, gap: Axes, impacts: Axes) -> None:
-    """Draw the gap and each impact's impulse, in a panel each."""
     factor, unit = length_scale(data, float(data.x_rel.max()))
     draw_signal(gap, data, "x_rel", factor, color=BLACK)
     gap.set_ylabel(in_unit("gap", unit))
@@ -193,7 +188,6 @@ def draw_gap_impacts(data: xr.Dataset, gap: Axes, impacts: Axes) -> None:
 
 
 def draw_signal(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
-    """Draw a signal as a line, or as the band between its extremes if it is long."""
     time, values = data[data[name].dims[0]].values, data[name].values / factor
     if len(time) <= 5000:
         axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})

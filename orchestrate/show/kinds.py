@@ -37,7 +37,6 @@ def kind_of(answer: Any) -> str:
 
 
 def required_kind(answer: Any) -> str:
-    """Return the kind of a result; raise ``InputError`` if it does not say."""
     kind = kind_of(answer)
     if not kind:
         what = type(answer).__name__

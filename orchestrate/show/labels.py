@@ -89,7 +89,6 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
 
 
 def branch_title(data: xr.Dataset, over: Iterable[str]) -> str:
-    """Return a title with the structure, and what of the box's motion all points share."""
     varied = set(over)
     name = "frequency" if has_frequency_unit(data) else "eta"
     points = {key: data[key] for key in (name, "amplitude") if key in data.coords}
@@ -104,14 +103,12 @@ def branch_title(data: xr.Dataset, over: Iterable[str]) -> str:
 
 
 def has_frequency_unit(data: xr.Dataset) -> bool:
-    """Return whether frequencies are shown with a unit, not as ratios eta."""
     if units_of(data).frequency:
         return units_of(data).frequency != "eta"
     return has_own_frequency(data) or "frequency" in data.dims
 
 
 def is_constant(values: xr.DataArray) -> bool:
-    """Return whether values along a curve are all the same."""
     return values.ndim == 1 and bool(np.allclose(values, values[0], rtol=1e-9, atol=0.0))
 
 
@@ -152,7 +149,6 @@ def format_frequency(data: xr.Dataset, frequency: float) -> str:
 
 
 def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
-    """Return texts of the excitation's frequency and amplitude, where each is one number."""
     units, texts = units_of(data), {}
     if "eta" in known:
         omega = omega_of(data)
@@ -190,7 +186,6 @@ def format_level(data: xr.Dataset, level: float) -> str:
 
 
 def format_voltage(voltage: float, error: float) -> str:
-    """Format a voltage and its error, of which two digits are shown."""
     if not (math.isfinite(error) and error > 0.0):
         return f"{voltage:.4f} V"
     places = max(0, 1 - math.floor(math.log10(error)))
@@ -240,7 +235,6 @@ def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
 
 
 def in_shown_units(data: xr.Dataset, text: str) -> str:
-    """Return a text with its accelerations in m/s2 in the unit that an answer is shown in."""
     factor, word = scale_of(data, "m/s2")
     unit = typeset_unit(word)
     return ACCELERATION.sub(lambda match: f"{float(match[1]) / factor:.4g} {unit}", text)

@@ -183,7 +183,6 @@ def set_impact_scale(axes: Axes, impacts: np.ndarray) -> None:
 @draws("branch", beside=MORE)
 @styled
 def draw_branch(*branches: xr.Dataset, title: str = "") -> Figure:
-    """Draw branches of periodic orbits over their parameter; return the figure."""
     name = str(branches[0].attrs["over"])
     figure, (plane,) = make_panels(1, 1, (9.6, 5.8), title or branch_title(branches[0], [name]))
     factor, gap = gap_scale(branches[0], branches[0].xi_rel)
@@ -209,7 +208,6 @@ def draw_branch(*branches: xr.Dataset, title: str = "") -> Figure:
 @draws("lyapunov", beside=MORE)
 @styled
 def draw_lyapunov(*cases: xr.Dataset, title: str = "") -> Figure:
-    """Draw exponents with standard errors, one panel per dataset; return the figure."""
     size = (9.6, 0.6 + 2.2 * len(cases))
     figure, axes = make_panels(len(cases), 1, size, sharex=True, sharey=True)
     minimum = min(float(data.exponent.min()) for data in cases)
@@ -226,7 +224,6 @@ def draw_lyapunov(*cases: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_exponents(axes: Axes, data: xr.Dataset, lowest: float) -> None:
-    """Draw one dataset's exponents by verdict, each verdict in the legend."""
     names, parameter = flag_words(data.verdict.attrs), varied_dimension(data.exponent)
     x = axis_values(data, parameter).values
     size = float(np.clip(1000.0 / len(x), 2.0, 4.0))
@@ -245,7 +242,6 @@ def draw_exponents(axes: Axes, data: xr.Dataset, lowest: float) -> None:
 @draws("attractors")
 @styled
 def draw_attractors(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw attractors over a parameter: largest gap, share of starts and number."""
     title = title or title_from_attributes(data)
     heights: Any = {"sharex": True, "height_ratios": (3, 2, 1)}
     figure, (top, middle, bottom) = make_panels(3, 1, (9.6, 7.2), title, **heights)
@@ -280,7 +276,6 @@ def draw_attractors(data: xr.Dataset, title: str = "") -> Figure:
 
 
 def colours_by_kind(data: xr.Dataset) -> tuple[dict[str, str], np.ndarray]:
-    """Return a dict of colours by kind, most frequent first, and each attractor's kind."""
     n, rate = data.multiplicity.values, data.impacts_per_period.values
     words = np.full(n.shape, "", dtype=object)
     for index in zip(*np.nonzero(np.isfinite(n)), strict=True):
@@ -295,7 +290,6 @@ def colours_by_kind(data: xr.Dataset) -> tuple[dict[str, str], np.ndarray]:
 def draw_attractor(
     panel: Axes, x: np.ndarray, values: np.ndarray, words: np.ndarray, colours: dict[str, str]
 ) -> None:
-    """Draw one attractor's values over the parameter, coloured by its kind at each value."""
     panel.plot(x, values, "-", color="#c8c8c8", linewidth=0.8, zorder=1.5)
     for word in dict.fromkeys(words[words != ""]):
         of_kind = np.where(words == word, values, np.nan)
@@ -308,7 +302,6 @@ def draw_attractor(
 
 
 def draw_jumps_over(data: xr.Dataset, over: str, title: str) -> Figure:
-    """Draw the jump voltages at rate 0 over a parameter, one panel per direction."""
     known = data.jumps.notnull().any(["structure", over])
     jumps = [str(jump) for jump in data.jump.values if known.sel(jump=jump)] or ["up"]
     figure, axes = make_panels(1, len(jumps), (6.0 * len(jumps), 4.5), title)
@@ -327,7 +320,6 @@ def draw_jumps_over(data: xr.Dataset, over: str, title: str) -> Figure:
 @draws("jump_voltages")
 @styled
 def draw_jump_voltages(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw jump voltages over the ramp rate, or at rate 0 over a parameter; return the figure."""
     if others := {str(dim) for dim in data.jumps.dims} - {"structure", "jump"}:
         return draw_jumps_over(data, others.pop(), title)
     known = np.isfinite(data.voltage).any(["rate", "structure"])

@@ -191,7 +191,6 @@ def draw_orbits(
 def draw_bifurcations(
     plane: Axes, branch: xr.Dataset, x: np.ndarray, name: str, scale: np.ndarray
 ) -> None:
-    """Draw a marker of the bifurcation's kind at a length of each bifurcation's orbit."""
     names = flag_words(branch.bifurcation_kind.attrs)
     there = np.interp(branch.bifurcation_place.values, np.arange(len(scale)), scale)
     values = branch[f"bifurcation_{name}"].transpose("bifurcation", ...).values

@@ -71,7 +71,6 @@ class Page:
 
     @property
     def parts(self) -> list[tuple[str, list[Section]]]:
-        """The sections by their place on paper."""
         parts = [(place, [s for s in self.sections if s.place == place]) for place in PLACES]
         return [(place, sections) for place, sections in parts if sections]
 
@@ -110,7 +109,6 @@ def format_number(value: float, unit: str = "", digits: int = 3) -> str:
 
 
 def format_with_error(value: float, error: float, unit: str = "") -> str:
-    """Format a number with its standard error, rounded to two digits of the error."""
     if not (math.isfinite(error) and error > 0.0):
         return format_number(value, unit, 4)
     factor, shown = display_scale(max(abs(value), error), unit)

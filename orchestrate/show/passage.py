@@ -29,7 +29,6 @@ FLOOR = 1e-4  # of the largest line: the lower end of the colours
 
 @styled
 def draw_over_time(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> Figure:
-    """Draw coupled runs over time, one column per structure; return the figure."""
     count, rows = len(runs), len(ROWS) + 1
     size = (6.5 * count, 2.6 * rows)
     figure, axes = make_panels(rows, count, size, title, sharex=True, sharey="row")
@@ -59,7 +58,6 @@ def draw_over_time(runs: Mapping[str, xr.Dataset], resonance: float, title: str 
 def draw_passage(
     runs: Mapping[str, xr.Dataset], spectra: Mapping[str, xr.Dataset], title: str = ""
 ) -> Figure:
-    """Draw passages, one column per structure; return the figure."""
     count = len(runs)
     size = (6.5 * count + 1.0, 14)
     figure, axes = make_panels(5, count, size, title, sharex="col", sharey="row")
@@ -116,19 +114,16 @@ def undecided_directions(data: xr.Dataset) -> list[str]:
 
 
 def jump_texts(data: xr.Dataset) -> list[str]:
-    """Return a text for each jump of a run, and for each undecided direction."""
     known = [way for way in map(str, data.jump.values) if has_jump(data, way)]
     jumps = [f"{way} at {float(data.jumps.sel(jump=way)):.4f} V" for way in known]
     return jumps + [f"{way} undecided" for way in undecided_directions(data)]
 
 
 def format_jumps(data: xr.Dataset) -> str:
-    """Format a run's jumps for a title, or whether it passes the resonance."""
     return ", ".join(f"jump {text}" for text in jump_texts(data)) or format_passage(data)
 
 
 def format_passage(data: xr.Dataset) -> str:
-    """Format whether, and from what time on, a run is beyond the resonance."""
     passed = float(data.passage_time)
     if np.isfinite(passed):
         return f"beyond the resonance from {passed:.4g} s on"
@@ -157,7 +152,6 @@ def draw_powers(axes: Axes, along: np.ndarray, powers: Mapping[str, np.ndarray])
 
 
 def mean_powers(revolutions: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return mean powers, W, by account, each over ``POWER_REVOLUTIONS`` revolutions."""
     time = revolutions.time.values
     span = time[POWER_REVOLUTIONS:] - time[:-POWER_REVOLUTIONS]
     energies = {account: revolutions[account].values for account in ACCOUNTS}

@@ -50,7 +50,6 @@ STATES = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent co
 @draws("map", beside=MORE)
 @styled
 def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
-    """Draw maps over two parameters, one row per dataset, under borders; return the figure."""
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
     rows = -(-len(columns) // 3) if len(maps) == 1 else 1  # of each: so that it fits a slide
     across, down = -(-len(columns) // rows), rows * len(maps)
@@ -131,7 +130,6 @@ def colour_scale(name: str, values: np.ndarray) -> tuple[np.ndarray, dict[str, A
 
 
 def is_geometric(values: np.ndarray) -> bool:
-    """Return whether values grow by a constant factor from one to the next."""
     if len(values) < 3 or values[0] <= 0.0 or values[-1] <= values[0]:
         return False
     return bool(np.allclose(values, np.geomspace(values[0], values[-1], len(values))))
@@ -140,7 +138,6 @@ def is_geometric(values: np.ndarray) -> bool:
 @draws("basin")
 @styled
 def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -> Figure:
-    """Draw basins: each start in the colour of the attractor it leads to; return the figure."""
     y, x = map(str, data.attractor_of.dims)
     by_ratio = "eta" in data.coords and not units_of(data).frequency  # else the title has it
     eta = rf"$\eta$ = {float(data.eta):.4g}" if by_ratio else ""
@@ -162,7 +159,6 @@ def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", 
 
 @styled
 def draw_motions(data: xr.Dataset, motions: Sequence[xr.Dataset], title: str = "") -> Figure:
-    """Draw the motion on each attractor in the plane of gap and its velocity."""
     figure, (plane,) = make_panels(1, 1, (6.4, 5.6), title or title_from_attributes(motions[0]))
     (right, x_label), (up, y_label) = (coordinate_scale(motions[0], n) for n in ("x_rel", "v_rel"))
     label_attractors(plane, data)
@@ -199,7 +195,6 @@ def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
 def mark_attractors(
     plane: Axes, data: xr.Dataset, across: tuple[str, float], up: tuple[str, float]
 ) -> None:
-    """Mark a state of each attractor by a cross, projected on the plane; axes: name and unit."""
     columns = dict(zip(("x1", "x2", "v1", "v2"), data.state.values.T, strict=True))
     clearance = 0.0 if data.attrs.get("bonded") else float(data.attrs.get("clearance", 0.0))
     columns["x_rel"] = columns["x2"] - columns["x1"] + clearance
@@ -215,7 +210,6 @@ def mark_attractors(
 
 
 def label_attractors(plane: Axes, data: xr.Dataset) -> None:
-    """Add a legend with period, impacts and share of each coloured attractor."""
     for index, colour in zip(range(data.sizes["attractor"]), BASINS, strict=False):
         part = data.isel(attractor=index)
         n, impacts = float(part.multiplicity), float(part.impacts_per_period)
@@ -243,7 +237,6 @@ def gap_text(data: xr.Dataset, gap: float) -> str:
 @draws("border", beside=MORE)
 @styled
 def draw_border(*curves: xr.Dataset, title: str = "") -> Figure:
-    """Draw bifurcation curves over two parameters, with codimension-two points."""
     over = [str(name) for name in curves[0].attrs["over"]]
     figure, (plane,) = make_panels(1, 1, (9.6, 4.4), title or branch_title(curves[0], over))
     (x_unit, x_label), (y_unit, y_label) = (parameter_scale(curves[0], name) for name in over)
@@ -260,7 +253,6 @@ def draw_border(*curves: xr.Dataset, title: str = "") -> Figure:
 def mark_codimension_two(
     plane: Axes, curve: xr.Dataset, over: Sequence[str], units: Sequence[float]
 ) -> None:
-    """Mark the codimension-two points of a bifurcation curve, a marker for each kind."""
     if not curve.sizes.get("codimension_two"):
         return
     words = flag_words(curve.codimension_two_kind.attrs)
@@ -273,7 +265,6 @@ def mark_codimension_two(
 @draws("poincare")
 @styled
 def draw_poincare(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw a Poincaré section at a phase of the box, at impacts or at releases."""
     figure, (plane,) = make_panels(1, 1, (6.4, 5.0), title or title_from_attributes(data))
     count, at = data.sizes["point"], str(data.attrs["at"])
     size = 2.0 if count > 2000 else 4.0 if count > 200 else 7.0
@@ -321,7 +312,6 @@ def widen_narrow_limits(plane: Axes) -> None:
 @draws("manifold")
 @styled
 def draw_manifold(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw both sides of a manifold, broken where it is discontinuous; return the figure."""
     figure, (plane,) = make_panels(1, 1, (7.4, 5.6), title or title_from_attributes(data))
     (gap, x_label), (rate, y_label) = gap_and_rate(data)
     sides = {"+": (BLUE, "where the gap grows from the saddle on"), "-": (RED, "where it falls")}
@@ -348,7 +338,6 @@ def relative_motion(data: xr.Dataset, panel: int) -> tuple[np.ndarray, np.ndarra
 
 @styled
 def draw_states(data: xr.Dataset) -> Figure:
-    """Draw one response's phase planes, coloured by state (Figure 5); return the figure."""
     figure, (left, right) = make_panels(1, 2, (8.5, 4.2))
     state = data.state.values
     _, gap, rate = relative_motion(data, 0)
@@ -381,7 +370,6 @@ def draw_by_state(
 
 @styled
 def draw_masses(data: xr.Dataset) -> Figure:
-    """Draw both masses' phase planes, one panel per response on one scale (Figure 12)."""
     count = data.sizes["panel"]
     figure, axes = make_panels(1, count, (3.3 * count, 3.7))
     reach = 1.08 * float(np.abs(data.state).max())
@@ -400,7 +388,6 @@ def draw_masses(data: xr.Dataset) -> Figure:
 
 @styled
 def draw_phase_grid(data: xr.Dataset, columns: int = 4) -> Figure:
-    """Draw a grid of relative phase planes, each on its own scales (Figures 8 and 9)."""
     count = data.sizes["panel"]
     rows = -(-count // columns)
     figure, axes = make_panels(rows, columns, (2.7 * columns, 2.6 * rows))

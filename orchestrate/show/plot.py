@@ -96,7 +96,6 @@ def plot(
 
 
 def choose_picture(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] | None:
-    """Return what draws these results in one picture, with the results; None if there is none."""
     kind, *more = sorted(shown, key=lambda kind: kind in OVER_OTHERS) or [""]
     if kind not in DRAW:
         return None
@@ -121,6 +120,5 @@ def choose_picture(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] 
 
 
 def by_structure(answers: Sequence[xr.Dataset]) -> dict[str, xr.Dataset]:
-    """Return results by the structure that they are of, delaminated or bonded (undamaged)."""
     names = ["bonded" if answer.attrs.get("bonded", False) else "delaminated" for answer in answers]
     return dict(zip(names, answers, strict=True))

@@ -47,7 +47,6 @@ LENGTHS = {"x1_max": "xi1_max", "x2_max": "xi2_max", "x_rel_max": "xi_rel_max"} 
 @draws("resonance", beside=BRANCHES)
 @styled
 def draw_resonance(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
-    """Draw resonance curves with their peaks and jumps; return the figure."""
     figure = Figure(figsize=(9.6, 9.4 if THRESHOLD in data else 7.6), layout="constrained")
     rows = [row for row in LAYOUT if row[0] in data]
     axes = figure.subplot_mosaic(rows, sharex=True)
@@ -108,7 +107,6 @@ def iterate_curves(values: xr.DataArray) -> Iterator[tuple[str, str, xr.DataArra
 
 
 def draw_level_of_box(axes: Axes, data: xr.Dataset, x: AxisValues) -> None:
-    """Draw the box's acceleration and the threshold at which the gap opens or closes."""
     factor, unit = acceleration_scale(data)
     level = (data.amplitude * data.frequency**2).broadcast_like(data[THRESHOLD]).values / factor
     threshold = draw_threshold(axes, data, factor, "level at which it {}", 1.2)
@@ -134,14 +132,12 @@ def draw_threshold(
 
 
 def display_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
-    """Return the divisor from SI and the display unit of a quantity."""
     if str(values.name).startswith("a"):
         return acceleration_scale(data)
     return length_scale(data, float(values.max()))
 
 
 def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: AxisValues) -> None:
-    """Draw a triangle on each resonance peak, except where responses are irregular."""
     factor, _ = display_unit(data, data[name])
     for i in range(data.sizes.get("peak", 0)):
         peak = data.isel(peak=i)
@@ -155,7 +151,6 @@ def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: AxisV
 
 
 def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: AxisValues) -> None:
-    """Draw a line at each jump of the gap; list their frequencies above the panel."""
     texts = []
     for direction, style in JUMP_LINES.items():
         jumps = data[f"jump_{parameter}"].where(data.jump_direction == direction, drop=True)
@@ -176,7 +171,6 @@ def axis_position(value: float, parameter: xr.DataArray, x: AxisValues) -> float
 def list_largest(
     axes: Axes, largest: Mapping[str, tuple[float, float]], unit: str, x: AxisValues
 ) -> None:
-    """Write each structure's largest value and its frequency into a panel's corner."""
     middle = float(np.mean(axes.get_xlim()))
     right = all(at < middle for _, at in largest.values())
     style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}
@@ -191,7 +185,6 @@ def list_largest(
 @draws("resonance_levels")
 @styled
 def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw acceleration over level, gap and threshold over frequency; return the figure."""
     count = 3 if THRESHOLD in data else 2
     words = title or title_from_attributes(data, ("amplitude", "frequency"))
     figure, axes = make_panels(count, 1, (8.4, 1.2 + 2.5 * count), words, sharex=True)

@@ -33,7 +33,6 @@ class AxisValues(NamedTuple):
     label: str
 
     def text(self, *values: float) -> str:
-        """Format values with the unit of the axis once, or after its letter where it has none."""
         words, _, unit = self.label.rpartition(" in ")
         letter = f"{unit} = " if not words and unit.startswith("$") else ""
         left = len(values) - MAX_LISTED
@@ -54,7 +53,6 @@ def varied_dimensions(data: xr.DataArray, count: int) -> list[str]:
 
 
 def varied_dimension(data: xr.DataArray) -> str:
-    """Return the name of an array's dimension besides direction and structure."""
     return varied_dimensions(data, 1)[0]
 
 
@@ -85,7 +83,6 @@ def lengths(
 
 
 def in_unit(words: str, unit: str, space: str = " ") -> str:
-    """Return an axis label with its unit, if there is one."""
     return f"{words}{space}in {unit}" if unit else words
 
 
@@ -99,7 +96,6 @@ def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, st
 
 
 def label_with_unit(words: str, array: xr.DataArray) -> str:
-    """Return an axis label with the array's unit; "over omega" for ratios."""
     if array.attrs.get("units") == OVER_OMEGA:
         return rf"{words} over $\omega$"
     return f"{words} in {typeset_array_unit(array)}" if "units" in array.attrs else words
@@ -111,7 +107,6 @@ def typeset_array_unit(array: xr.DataArray) -> str:
 
 
 def axis_values(data: xr.Dataset, parameter: str) -> AxisValues:
-    """Return a parameter's values in display units, and the axis label."""
     if parameter in ("eta", "frequency"):
         factor, word = frequency_scale(data)
         if word == "eta" and "eta" in data.coords:

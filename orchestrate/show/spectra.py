@@ -49,7 +49,6 @@ def acceleration_spectrum(
 @draws("spectra")
 @styled
 def draw_spectra(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> Figure:
-    """Draw spectra, one row per frequency, bonded left and delaminated right."""
     felt, unit = acceleration_scale(data)
     shown = data.acceleration.sel(mass=mass) / felt
     along, with_unit = str(shown.dims[0]), has_frequency_unit(data)
@@ -79,7 +78,6 @@ def draw_side(
     kinds: dict[str, tuple[str, float, str]],
     floor: float,
 ) -> None:
-    """Draw the spectra of one or both structures at one frequency."""
     with_unit, (turn, unit) = has_frequency_unit(data), frequency_scale(data)
     at = float(amplitudes.frequency) / turn
     words = f"{at:.4g} {unit}" if with_unit else rf"$\eta$ = {float(amplitudes.eta):.4g}"
@@ -95,7 +93,6 @@ def draw_side(
 @draws("drive_spectra")
 @styled
 def draw_motor_spectra(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
-    """Draw a mass' acceleration spectra on a motor, one structure below the other (Figure 3)."""
     count = data.sizes["kind"]
     figure, axes = make_panels(count, 1, (10, 3.5 * count), title, sharex=True, sharey=True)
     turning = data if units_of(data).frequency else with_units(data, "rad/s")

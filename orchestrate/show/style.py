@@ -71,7 +71,6 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
 def make_panels(
     rows: int, columns: int, size: tuple[float, float], title: str = "", **more: Any
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure with a title and a grid of axes, and the axes row by row."""
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, **more)
     set_title(figure, title)
@@ -79,7 +78,6 @@ def make_panels(
 
 
 def set_title(figure: Figure, title: str) -> None:
-    """Write a title above all panels, broken after commas into lines that fit."""
     if title:
         letters = int(14 * figure.get_figwidth())
         parts = title.replace(" ", NO_BREAK_SPACE).replace(f",{NO_BREAK_SPACE}", ", ")
@@ -90,12 +88,10 @@ def set_title(figure: Figure, title: str) -> None:
 def draw_line(
     axes: Axes, x: Any, y: Any, line: str, colour: str, width: float, label: str | None = None
 ) -> None:
-    """Draw one curve; without a label it is not in the legend."""
     axes.plot(x, y, line, color=colour, linewidth=width, label=label)
 
 
 def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:
-    """Draw one legend for several panels below the figure; each label once."""
     words: dict[str, Any] = {}
     for plane in axes:
         handles, labels = plane.get_legend_handles_labels()
@@ -106,20 +102,17 @@ def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more:
 
 
 def legend_under(axes: Axes, columns: int = 3) -> None:
-    """Draw one panel's legend below the panel."""
     if axes.get_legend_handles_labels()[0]:
         below: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.16), "frameon": False}
         axes.legend(ncols=columns, **below)
 
 
 def legend_above(axes: Axes, columns: int = 1) -> None:
-    """Draw one panel's legend above its right end."""
     place: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
     axes.legend(ncols=columns, **place)
 
 
 def write_in_panel(axes: Axes, words: str) -> None:
-    """Write a text in the middle of a panel that has nothing to show."""
     axes.set_yticks([])
     middle: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
     axes.text(0.5, 0.5, words, color=GREY, fontsize=11, **middle)

@@ -25,7 +25,6 @@ NAMES_OF_CHANNELS = (
 
 
 def make_verdict(answer: xr.Dataset) -> Verdict:
-    """Return the verdict of a ``detect`` result: its word, and what was seen and fitted."""
     word = str(answer.verdict.values)
     sentences = {
         "delaminated": delaminated_statement,
@@ -92,7 +91,6 @@ def verdict_sections(answer: xr.Dataset) -> list[Section]:
 
 
 def measured_record(answer: xr.Dataset) -> Section | None:
-    """Return a section on the record: sensors, unit, sampling, sweep; None where none is known."""
     words = {str(name): str(text) for name, text in answer.attrs.items()}
     unit = words.get("record_unit", "").replace("m/s2", "m/s²")
     levels = scalar(answer, "level_low"), scalar(answer, "level_high")
@@ -130,13 +128,11 @@ def participation_text(answer: xr.Dataset) -> str:
 
 
 def known_text(answer: xr.Dataset, name: str, unit: str, digits: int) -> str:
-    """Format a scalar variable in its own unit; empty if the answer has none of that name."""
     value = scalar(answer, name)
     return format_number(value, unit, digits) if math.isfinite(value) else ""
 
 
 def sweep_text(answer: xr.Dataset) -> str:
-    """Format the range and direction of the sweep, and the part of it that was compared."""
     low, high = scalar(answer, "sweep_low"), scalar(answer, "sweep_high")
     if not math.isfinite(low + high):
         return ""
@@ -150,7 +146,6 @@ def sweep_text(answer: xr.Dataset) -> str:
 
 
 def frequencies_text(answer: xr.Dataset, low: float, high: float) -> str:
-    """Format a range of frequencies in Hz in the units that were asked for."""
     turn, word = scale_of(answer, "Hz")
     first, last = (format_number(end / turn, digits=4) for end in (low, high))
     return f"{first} to {last} {'Omega/omega' if word == 'eta' else word}"
@@ -164,7 +159,6 @@ def format_level(answer: xr.Dataset, *levels: float) -> str:
 
 
 def decision_section(answer: xr.Dataset) -> Section:
-    """Return a section on what decided the verdict and what would change it."""
     reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
     points = [f"What decided: {make_sentence(reason)}"] if reason else []
     if settle:
@@ -173,12 +167,10 @@ def decision_section(answer: xr.Dataset) -> Section:
 
 
 def make_sentence(words: str) -> str:
-    """Return words as a sentence, with a capital at the beginning and a full stop."""
     return f"{words[:1].upper()}{words[1:].rstrip('.')}."
 
 
 def fits_section(answer: xr.Dataset) -> Section | None:
-    """Return a section with the measurement over the fits; None without fits."""
     if "measured" not in answer or "fitted" not in answer:
         return None
     picture = draw_orders_and_fits(answer.assign_attrs(title=""))
@@ -188,7 +180,6 @@ def fits_section(answer: xr.Dataset) -> Section | None:
 
 
 def misfit_section(answer: xr.Dataset) -> Section | None:
-    """Return a section with all structures, and the misfit over frequency; None without it."""
     if "misfit_at" not in answer:
         return None
     text = (
@@ -220,7 +211,6 @@ def hypothesis_table(answer: xr.Dataset) -> Table:
 
 
 def parameter_section(answer: xr.Dataset) -> Section | None:
-    """Return a section with the parameters and errors that are stated; None without any."""
     if not (shown := stated_fits(answer)[:3]):
         return None
     names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
@@ -240,14 +230,12 @@ def parameter_section(answer: xr.Dataset) -> Section | None:
 
 
 def stated_fits(answer: xr.Dataset) -> list[xr.Dataset]:
-    """Return the hypotheses whose numbers are stated, the best fit first."""
     if "value" not in answer or "parameter" not in answer.dims:
         return []
     return [one for one in sort_by_misfit(answer) if np.isfinite(one.value).any()]
 
 
 def sort_by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
-    """Return the hypotheses of a result one by one, the best fit first."""
     if "hypothesis" not in answer.dims:
         return [answer]
     ordered = answer.sortby("misfit")
@@ -255,7 +243,6 @@ def sort_by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
 
 
 def format_parameter(at: xr.Dataset, unit: str) -> str:
-    """Format a parameter of one hypothesis with its error; a dash if it has none."""
     factor, word = scale_of(at, unit)
     if word == "eta":  # a half's own frequency is no ratio to itself
         factor, word = 1.0, unit

@@ -45,7 +45,6 @@ def draw_ramps(
     branches: xr.Dataset | None = None,
     title: str = "",
 ) -> Figure:
-    """Draw voltage ramps: speed, amplitude, impacts and power; return the figure."""
     shown = {name: drop_spin_up(as_shown(data)) for name, data in runs.items()}
     figure, axes = make_panels(2, 2, (11, 9.4), title)
     for name, data in shown.items():
@@ -74,7 +73,6 @@ def draw_ramps(
 
 @styled
 def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
-    """Draw speed and amplitude over time around jumps, one row per direction."""
     shown = {name: as_shown(data) for name, data in runs.items()}
     jumps = [way for way in ("up", "down") if any(has_jump(data, way) for data in shown.values())]
     rows = max(len(jumps), 1)
@@ -101,7 +99,6 @@ def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
 @draws("drive_branch")
 @styled
 def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
-    """Draw branches of stationary motions without runs; return the figure."""
     figure, axes = make_panels(1, 2, (12, 5), title)
     branches = as_shown(branches)
     draw_branches(axes, branches)
@@ -121,7 +118,6 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
 def draw_speed_curves(
     axes: Sequence[Axes], data: xr.Dataset, part: np.ndarray, style: str, **line: Any
 ) -> None:
-    """Draw speed over voltage and amplitude over speed of a part of the motions."""
     voltage, speed, amplitude = (data[of].values for of in ("voltage", "speed", "amplitude"))
     if part.dtype == bool:
         voltage, amplitude = (np.where(part, of, np.nan) for of in (voltage, amplitude))
@@ -132,7 +128,6 @@ def draw_speed_curves(
 
 
 def draw_theory(axes: Sequence[Axes], theory: xr.Dataset) -> None:
-    """Draw the averaged theory: dash-dotted where stable, dotted where unstable."""
     stable, line = theory.stable.values, {"color": BLACK, "linewidth": 1.0}
     draw_speed_curves(axes, theory, stable, "-.", **line, label=f"{THEORY}, stable")
     draw_speed_curves(axes, theory, ~stable, ":", **line, label=f"{THEORY}, unstable")
@@ -164,7 +159,6 @@ def drop_spin_up(data: xr.Dataset) -> xr.Dataset:
 
 
 def format_jumps(name: str, data: xr.Dataset) -> str:
-    """Format a run's jumps in one line after its name."""
     return f"{name}: jump {', '.join(jump_texts(data))}" if jump_texts(data) else f"{name}: no jump"
 
 
@@ -178,12 +172,10 @@ def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
 
 
 def running_mean(values: np.ndarray, count: int) -> np.ndarray:
-    """Return the running mean of an array over ``count`` values."""
     return np.convolve(values, np.full(count, 1.0 / count), "valid")
 
 
 def draw_impacts(axes: Axes, data: xr.Dataset, direction: str) -> None:
-    """Draw the impacts per revolution over the speed in one direction, and their running mean."""
     speed, count = data.speed.values, data.impacts.values
     there = direction == "there"
     colour, style = (STRUCTURES["delaminated"], "-") if there else (ORANGE, "--")
@@ -197,7 +189,6 @@ def draw_impacts(axes: Axes, data: xr.Dataset, direction: str) -> None:
 
 
 def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
-    """Mark the voltages of jumps by lines, undecided ones by a band."""
     for value in data.jumps.values[np.isfinite(data.jumps.values)]:
         axes.axvline(value, color=STRUCTURES[name], linewidth=0.6, alpha=0.6)
     for direction in undecided_directions(data):
@@ -209,7 +200,6 @@ def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
 
 
 def draw_outward_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
-    """Draw the motor's mean power and where it goes over speed, until the voltage returns."""
     outward = split_directions(data)[0][0]
     if len(outward) < 3 * POWER_REVOLUTIONS:
         return
@@ -223,7 +213,6 @@ def draw_outward_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
 
 
 def label_axes(axes: Sequence[Axes], data: xr.Dataset) -> None:
-    """Label the panels of speed over voltage and of amplitude over speed."""
     speed, amplitude = (label_with_unit(HISTORIES[name], data[name]) for name in HISTORIES)
     axes[0].set(xlabel="voltage in V", ylabel=speed)
     axes[1].set(xlabel=speed, ylabel=amplitude)
@@ -247,7 +236,6 @@ def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:
 @draws("capture", beside=OTHER)
 @styled
 def draw_capture(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
-    """Draw outcomes of starts from rest over voltage and parameter, or times; return the figure."""
     size = (5.5 * len(maps), 4.5)
     figure, axes = make_panels(1, len(maps), size, title, sharex=True, sharey=True)
     for panel, (name, data) in zip(axes, maps.items(), strict=True):
@@ -281,7 +269,6 @@ def is_threshold_uncertain(data: xr.Dataset) -> bool:
 
 
 def draw_capture_map(axes: Axes, data: xr.Dataset, over: str) -> None:
-    """Draw passed, captured and undecided starts over voltage and parameter, with the threshold."""
     data = data.transpose(over, "voltage")
     volts, values = np.meshgrid(data.voltage.values, data[over].values)
     for name, (chosen, mark) in split_by_outcome(data).items():
@@ -297,7 +284,6 @@ def draw_capture_map(axes: Axes, data: xr.Dataset, over: str) -> None:
 
 
 def draw_passage_times(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the time at which the resonance is passed over the starting voltage."""
     volts = data.voltage.values
     low: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False}
     for name, (chosen, mark) in split_by_outcome(data).items():

@@ -46,7 +46,6 @@ KEPT = ("figure6", "figure12", "lyapunov", "diagnosis")  # by other tools
 
 
 def draw_verdict() -> Figure:
-    """Draw two beams' records of the tutorial with the verdict on each; return the figure."""
     guess = orchestrate.Structure.from_file(DOCS / "records" / "beam.toml")
     records = {}
     for name in ("b", "a"):
@@ -56,13 +55,11 @@ def draw_verdict() -> Figure:
 
 
 def draw_states() -> Figure:
-    """Draw a period of the paper's Figure 5 with its states; return the figure."""
     motion = orchestrate.simulate(PAPER, eta=0.4, transient=100, periods=1, points=1200)
     return theory.draw_states(motion)
 
 
 def draw_engineer_card() -> Figure:
-    """Draw resonance curves of the tutorial's beam as a small card; return the figure."""
     halves = {"m1": 1.5, "m2": 1.4, "f1": 11.9, "f2": 13.5, "zeta1": 0.005, "zeta2": 0.005}
     structure = orchestrate.Structure.from_halves(**halves, e=0.6)
     turns = 2.0 * np.pi * np.arange(10.0, 15.0, 0.05)
@@ -71,13 +68,11 @@ def draw_engineer_card() -> Figure:
 
 
 def draw_researcher_card() -> Figure:
-    """Draw a part of Figure 6's orbit diagram as a small card; return the figure."""
     eta = np.arange(0.9, 4.0, 0.004)
     return cards.draw_orbits(orchestrate.sweep(PAPER, eta=eta, samples=40, progress=False))
 
 
 def follow_branches() -> dict[str, xr.Dataset]:
-    """Return the branches of the orbits of Figure 6, each by a name."""
     found = {}
     for label, (eta, period, limits) in BRANCHES.items():
         start = orchestrate.orbit(PAPER, eta=eta, period=period)
@@ -86,7 +81,6 @@ def follow_branches() -> dict[str, xr.Dataset]:
 
 
 def draw_branches() -> Figure:
-    """Draw Figure 6 with its branches; return the figure."""
     responses = orchestrate.sweep(PAPER, eta=np.arange(100, 8001, 2) / 1000.0)
     return orchestrate.plot(responses, *follow_branches().values())
 
@@ -103,7 +97,6 @@ def draw_borders() -> Figure:
 
 
 def draw_spectra() -> Figure:
-    """Draw spectra of the set ``quick`` with the motor at resonance; return the figure."""
     structure = orchestrate.Structure.from_file("quick")
     drive = orchestrate.Drive.from_file("quick")
     return orchestrate.plot(ask_drive_spectra(structure, drive, progress=False), title="quick")
@@ -125,7 +118,6 @@ PICTURES: dict[str, Callable[[], Figure]] = {
 
 
 def draw_by_command(line: str, ending: str) -> bytes:
-    """Run a command in a temporary folder; return the bytes of the picture that it draws."""
     with TemporaryDirectory() as folder:
         if cli.main([*line.split(), "--output", folder]):
             raise SystemExit(f"{line}: failed")
@@ -135,7 +127,6 @@ def draw_by_command(line: str, ending: str) -> bytes:
 
 
 def main(names: list[str]) -> None:
-    """Draw the named pictures, by default all that no other tool writes."""
     for name in names or [*PICTURES, *COMMANDS]:
         path = DOCS / f"{name}.png"
         if name in PICTURES:

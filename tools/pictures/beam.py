@@ -31,7 +31,6 @@ def half_outline(opening: float, side: int) -> np.ndarray:
 
 
 def draw_beam(axes: Axes, opening: float, colour: str) -> None:
-    """Draw a beam on a shaker, its halves apart by an opening."""
     for side in (1, -1) if opening else ():
         axes.add_patch(
             Polygon(half_outline(opening, side), facecolor="0.85", edgecolor="k", lw=1.0)
@@ -49,7 +48,6 @@ def draw_beam(axes: Axes, opening: float, colour: str) -> None:
 
 @styled
 def draw_two_masses() -> Figure:
-    """Draw an open beam and the two masses that model its halves; return the figure."""
     figure = Figure(figsize=(9.0, 2.7), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     draw_beam(left, 0.55, RED)
@@ -68,7 +66,6 @@ def draw_two_masses() -> Figure:
 def draw_verdicts(
     records: Mapping[str, xr.Dataset], begin: float = 12.0, span: float = 0.15
 ) -> Figure:
-    """Draw sensor signals of beams with the verdict on each record; return the figure."""
     figure = Figure(figsize=(10.0, 4.2), layout="constrained")
     planes = figure.subplots(len(records), 3, width_ratios=(1.2, 2.4, 0.9), squeeze=False)
     for (beam, trace, word), (verdict, data) in zip(planes, records.items(), strict=True):

@@ -20,14 +20,12 @@ STYLES: dict[str, dict[str, Any]] = {
 
 
 def make_card() -> tuple[Figure, Axes]:
-    """Make a small figure with one panel; return both."""
     figure, (axes,) = make_panels(1, 1, SIZE)
     return figure, axes
 
 
 @styled
 def draw_resonance(curves: xr.Dataset) -> Figure:
-    """Draw mass 1's amplitude over rising frequency as a card; return the figure."""
     figure, axes = make_card()
     for name, style in STYLES.items():
         amplitude = curves.x1_max.sel(structure=name, direction="up")
@@ -39,7 +37,6 @@ def draw_resonance(curves: xr.Dataset) -> Figure:
 
 @styled
 def draw_orbits(diagram: xr.Dataset) -> Figure:
-    """Draw an orbit diagram without its impacts as a card; return the figure."""
     figure, axes = make_card()
     eta = np.repeat(diagram.eta.values, diagram.sizes["sample"])
     dots: Any = {"color": BLACK, "markersize": 1.2, "alpha": 0.35, "markeredgewidth": 0.0}

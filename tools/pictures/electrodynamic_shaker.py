@@ -18,7 +18,6 @@ TEXTS = (
 
 @styled
 def draw_shaker(width: float = 4.2) -> Figure:
-    """Draw a table on spring and damper with its coil, magnet and amplifier; return the figure."""
     figure, axes = make_sketch(width)
     axes.plot([0, 0], [0, 4], "k", lw=2.5)
     draw_spring(axes, 0.0, 2.9, 3.0)

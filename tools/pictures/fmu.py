@@ -16,7 +16,6 @@ OUTPUTS = ("x1, x2, v1, v2", "x_rel: gap", "contact_force", "box_force")
 
 @styled
 def draw_block() -> Figure:
-    """Draw the FMU as a block with its most used variables; return the figure."""
     figure = Figure(figsize=(3.8, 2.9), layout="constrained")
     axes = figure.subplots()
     style: Any = {"boxstyle": "round,pad=0.1", "facecolor": "0.93", "edgecolor": "k", "lw": 1.6}

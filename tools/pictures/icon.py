@@ -17,7 +17,6 @@ ORANGE, BLUE = "#d98b3a", "#5b8db8"
 
 
 def draw_masses() -> Figure:
-    """Draw two masses that touch between springs; return the figure."""
     figure, axes = make_icon((0.5, 9.5))
     for left, color in ((2.6, ORANGE), (5.0, BLUE)):
         axes.add_patch(Rectangle((left, 2.6), 2.4, 4.8, facecolor=color, **EDGE))
@@ -25,7 +24,6 @@ def draw_masses() -> Figure:
 
 
 def draw_motor() -> Figure:
-    """Draw a box on a spring, with a disc and its unbalance; return the figure."""
     figure, axes = make_icon((0.5,))
     axes.add_patch(Rectangle((2.6, 2.6), 6.4, 4.8, facecolor=ORANGE, **EDGE))
     axes.add_patch(Circle((5.8, 5.0), 1.7, facecolor="white", **EDGE))
@@ -34,7 +32,6 @@ def draw_motor() -> Figure:
 
 
 def draw_coil() -> Figure:
-    """Draw a table on a spring, with a coil between poles; return the figure."""
     figure, axes = make_icon((0.5,))
     axes.add_patch(Rectangle((2.6, 2.6), 2.4, 4.8, facecolor=ORANGE, **EDGE))
     for low in (1.4, 7.0):
@@ -45,7 +42,6 @@ def draw_coil() -> Figure:
 
 
 def make_icon(walls: tuple[float, ...]) -> tuple[Figure, Axes]:
-    """Make an icon, recognizable at 64 pixels, with a spring at each wall."""
     figure = Figure(figsize=(1.0, 1.0))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0.0, 10.0), ylim=(0.0, 10.0))
     axes.axis("off")

@@ -18,7 +18,6 @@ HALVES = {"m1": 0.10, "m2": 0.08, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2
 
 
 def controlled_sweeps() -> dict[str, tuple[xr.Dataset, xr.Dataset]]:
-    """Return order amplitudes of table and current by structure, with the records."""
     beam = orchestrate.Structure.from_halves(**HALVES)
     shaker = orchestrate.Shaker.from_file("shaker_100N").replace(table_mass=0.4)
     sweep = orchestrate.SweptSine(first=35.0, last=60.0, duration=60.0, acceleration=LEVEL)

@@ -19,14 +19,12 @@ def make_sketch(width: float) -> tuple[Figure, Axes]:
 
 
 def hide_frame(axes: Axes, xlim: tuple[float, float], ylim: tuple[float, float]) -> None:
-    """Set equal scales and limits, and hide the frame of the axes."""
     axes.set(xlim=xlim, ylim=ylim)
     axes.set_aspect("equal")
     axes.axis("off")
 
 
 def draw_spring(axes: Axes, x: float, y: float, length: float) -> None:
-    """Draw a spring as a zigzag from (x, y) to the right."""
     n = 9
     zigzag = [x + length * (0.15 + 0.7 * (i + 0.5) / n) for i in range(n)]
     xs = [x, x + 0.15 * length, *zigzag, x + 0.85 * length, x + length]
@@ -35,7 +33,6 @@ def draw_spring(axes: Axes, x: float, y: float, length: float) -> None:
 
 
 def draw_damper(axes: Axes, x: float, y: float, length: float) -> None:
-    """Draw a dashpot from (x, y) to the right."""
     middle = x + 0.5 * length
     left, right = middle - 0.18, middle + 0.18
     axes.plot([x, left], [y, y], "k", lw=1.4)
@@ -45,7 +42,6 @@ def draw_damper(axes: Axes, x: float, y: float, length: float) -> None:
 
 
 def draw_masses(axes: Axes, gap: float, size: float) -> None:
-    """Draw two masses on springs and dashpots in a box, 10 wide, with names in a font size."""
     axes.add_patch(Rectangle((0, 0), 10, 4, fill=False, lw=2.0))
     left, right = 3.4 - 0.5 * gap, 5.0 + 0.5 * gap
     for side, x, begin in (("1", left, 0.0), ("2", right, right + 1.6)):
@@ -59,7 +55,6 @@ def draw_masses(axes: Axes, gap: float, size: float) -> None:
 
 @styled
 def draw_scheme(width: float = 4.8) -> Figure:
-    """Draw two masses in a shaken box (Figure 4); return the figure."""
     figure, axes = make_sketch(width)
     draw_masses(axes, 0.0, 12)
     for x, name in ((3.5, "$x_1$"), (5.1, "$x_2$")):
@@ -73,7 +68,6 @@ def draw_scheme(width: float = 4.8) -> Figure:
 
 @styled
 def draw_example(times: np.ndarray, values: Mapping[str, np.ndarray]) -> Figure:
-    """Draw displacements, gap and permanent contact over time; return the figure."""
     figure, (top, bottom) = make_panels(2, 1, (9, 5), sharex=True)
     top.plot(times, values["x1"], label=r"$\xi_1$")
     top.plot(times, values["x2"], label=r"$\xi_2$", ls="--")

@@ -18,7 +18,6 @@ TEXTS = (
 
 @styled
 def draw_shaker(width: float = 4.2) -> Figure:
-    """Draw a box on spring and damper with a motor and unbalance; return the figure."""
     figure, axes = make_sketch(width)
     axes.plot([0, 0], [0, 4], "k", lw=2.5)
     draw_spring(axes, 0.0, 2.9, 3.0)
@@ -37,7 +36,6 @@ def draw_shaker(width: float = 4.2) -> Figure:
 
 @styled
 def draw_run_up(times: np.ndarray, speed: np.ndarray, position: np.ndarray) -> Figure:
-    """Draw rotor speed and box position over time; return the figure."""
     figure, (top, bottom) = make_panels(2, 1, (9, 5), sharex=True)
     top.plot(times, speed, "k", lw=1.0)
     top.set_ylabel(r"$\dot\varphi$ in rad/s")

@@ -15,12 +15,10 @@ COLOURS = 128  # more are not seen in lines and letters
 
 
 def save_small(figure: Figure, path: Path) -> None:
-    """Save a figure as a PNG file with a palette of few colours."""
     write_small(png_bytes(figure), path)
 
 
 def write_small(png: bytes, path: Path) -> None:
-    """Write PNG bytes to a file, reduced to a palette of few colours, atomically."""
     with Image.open(io.BytesIO(png)) as picture:
         few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
 

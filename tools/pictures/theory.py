@@ -23,7 +23,6 @@ STEPS = 5  # towards the root that are drawn
 
 @styled
 def draw_states(data: xr.Dataset) -> Figure:
-    """Draw gap and contact force over a period with the names of the states."""
     figure, (gap, force) = make_panels(2, 1, (9.0, 4.6), sharex=True, height_ratios=(2, 1))
     turns = data.periods_done.values - float(data.periods_done[0])
     gap.plot(turns, data.x_rel, color=BLACK, linewidth=1.3)
@@ -60,7 +59,6 @@ def wave_derivative(time: float | np.ndarray, order: int) -> Any:
 
 @styled
 def draw_certificate() -> Figure:
-    """Draw why sampling misses an impact and certified steps do not; return the figure."""
     figure, (sampled, certified) = make_panels(1, 2, (9.6, 3.4), sharey=True)
     time = np.linspace(0.0, 3.4, 800)
     for panel in (sampled, certified):
@@ -79,7 +77,6 @@ def draw_certificate() -> Figure:
 
 
 def draw_steps(axes: Axes) -> None:
-    """Draw the certified steps from bound to bound, up to the root."""
     now = 0.0
     for step in range(STEPS):
         largest = sum(a * k**2 for a, k, _ in WAVES)

@@ -62,7 +62,7 @@ ASKED = {  # command: options, a unit and what is printed in it, what is printed
     ),
     "map": (
         (*BEAM, "--hz", "12,13", "--g", "0.02", "--over", "e", "--values", "0.3,0.7", *SHORT),
-        *("rpm", r"7[28]0 rpm", ("4 responses: ", "largest gap"), {"samples": 4}),
+        *("rpm", r"7[28]0 rpm", ("multiplicity 1: ", "largest gap"), {"samples": 4}),
     ),
     "lyapunov": (
         ("--eta", "0.8,1.047", "--transient", "100", "--periods", "300"),
@@ -75,7 +75,7 @@ ASKED = {  # command: options, a unit and what is printed in it, what is printed
     ),
     "attractors": (
         ("--eta", "1.3,1.4", "--starts", "5", *LONGER, "--settle", "20"),
-        *("Hz", r"at 0\.222817 Hz", ("(5 random starts)", "multiplicity", "state at phase 0")),
+        *("Hz", r"at 0\.222817 Hz", ("5 random starts", "multiplicity", "state at phase 0")),
         {"starts": 5, "eta": (1.3, 1.4)},
     ),
     "basin": (
@@ -108,7 +108,12 @@ ASKED = {  # command: options, a unit and what is printed in it, what is printed
     "capture": (
         ("--voltage", "1.45:1.6", "--count", "2", "--tolerance", "0.05", "--only", "bonded")
         + ("--over", "rotor_inertia", "--values", "800,1400", *DRIVEN),
-        *("", "bonded +1400 ", ("1.54375",), {"voltage": (1.45, 1.6), "values": (800.0, 1400.0)}),
+        *(
+            "",
+            r"\n +1400 +1\.54375",
+            ("passes: 2 (50 %)",),
+            {"voltage": (1.45, 1.6), "values": (800.0, 1400.0)},
+        ),
     ),
     "passage": (
         ("--eta0", "1.55:1.65", "--around", "60", "--revolutions", "4", "--only", "delaminated")
@@ -236,35 +241,20 @@ def made_sweep(kinds, impacts):
     return data.assign(multiplicity_decided=("eta", kinds, words)).assign_attrs(k1=1.0, m1=1.0)
 
 
-def test_a_sweep_is_summed_up_in_a_table_of_ten_lines():
-    """Made-up: twelve windows of which the shortest are left out; impacts divide windows too."""
+def test_a_sweep_is_summed_up_by_where_responses_repeat():
+    """Made-up: how often, and the eight widest ranges of each kind."""
     kinds = np.repeat([1, 0, 1, 2, 1, 0, 1, 0, 1, 0, 1, 0], [9, 2, 20, 6, 8, 3, 7, 1, 5, 1, 4, 1])
-    impacts = np.where(np.arange(len(kinds)) < 21, 1.0, 2.0)
-    lines = list(cli.responses.Sweep().summary(made_sweep(kinds, impacts)))
-    counts = "67 responses: 53 repeat (79 %), 8 irregular (12 %), 6 undecided (9 %)"
-    assert any(line.startswith(counts) and "--transient 5000" in line for line in lines)
-    first = next(i for i, line in enumerate(lines) if "widest windows" in line)
-    rows = [line for line in lines[first:] if line.startswith("  ")]
-    assert len(rows) == 10 and rows[1].split() == [
-        "eta",
-        "=",
-        "1",
-        "to",
-        "1.08",
-        "after",
-        "1",
-        "T",
-        "1",
-    ]
-    assert (
-        rows[3].split() == ["eta", "=", "1.21", "to", "1.3", "after", "1", "T", "2"]
-        and "undecided" in rows[4]
-    )
+    lines = list(cli.responses.Sweep().summary(made_sweep(kinds, np.ones(len(kinds)))))
+    assert "largest gap: xi_Rel = 2 at eta = 1.66" in lines
+    assert "undecided: 6 (9 %) at eta = 1.31 to 1.36" in lines
+    assert any(line.startswith("undecided: ") and "--transient 5000" in line for line in lines)
+    ranges = "1 to 1.08, 1.11 to 1.3, 1.37 to 1.44, 1.48 to 1.54, 1.56 to 1.6, 1.62 to 1.65"
+    assert f"multiplicity 1: 53 (79 %) at eta = {ranges}" in lines
 
 
 TRIVIAL = {  # options, and what is said of what is trivial
     "simulate --eta 1 --set kappa=1": "both oscillators are alike",
-    "sweep --eta 1.2 --transient 60 --samples 16": "one value, eta = 1.2: a table and no picture",
+    "sweep --eta 1.2 --transient 60 --samples 16": "one value: no picture",
     "sweep --eta 2:2.1:0.05 --direction both --samples 8": "gap nowhere",
     "resonance --eta 0.3:0.4:0.05 --transient 60 --samples 16": "no peak in this range",
     "lyapunov --eta 2.9 --periods 50 --spectrum": "kaplan_yorke_dimension",
@@ -274,7 +264,8 @@ TRIVIAL = {  # options, and what is said of what is trivial
         "the voltage falls first"
     ),
     "capture --eta0 1.5:1.6 --count 2 --time 100 --step 0.2 --only bonded": (
-        "1.5, 1.6 V undecided: the speed had not settled; give a longer --time"
+        "undecided: 2 (100 %) at voltage = 1.5 to 1.6 V\n"
+        "undecided: the speed had not settled; give a longer --time"
     ),
 }
 

@@ -16,7 +16,7 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
 from orchestrate.cli.output import result_name
-from orchestrate.cli.printing import end_lines, format_ranges, table
+from orchestrate.cli.printing import format_ranges, hints, table
 from orchestrate.errors import InputError
 from orchestrate.model.structure import Structure
 from orchestrate.units import with_units
@@ -200,7 +200,7 @@ def test_ranges_tables_and_ends():
     rows = list(table({"a": [str(10**i) for i in range(12)], "b": ["x"] * 12}))
     assert rows[0] == "  a           b" and rows[10] == "  1000000000  x"
     assert rows[11:] == ["  ... and 2 more"]
-    (line,) = end_lines(["limit", "no convergence"])
+    (line,) = hints(["limit", "no convergence"])
     assert "Newton's method" in line and "--longest" in line and "--most" in line
 
 
