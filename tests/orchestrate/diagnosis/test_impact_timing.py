@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from orchestrate.constants import TURN
 from orchestrate.diagnosis import impact_timing
 from orchestrate.diagnosis.impact_timing import (
     TIMING,
     Strikes,
+    amplitudes,
     stiffnesses,
     strikes,
     strikes_at,
@@ -97,17 +99,27 @@ def test_a_window_in_which_noise_peaks_is_no_base_that_strikes(monkeypatch):
         assert strikes_at(None, [0], 40.0, TIMING).base == expected
 
 
-@pytest.mark.parametrize(("tail", "expected"), [(TIMING.tail, 0.84), (0.05, 1.13)])
-def test_noise_alone_is_far_below_a_strike(tail, expected):
-    """White noise in 10 periods: the loudest of 32 bins over the limit of noise."""
-    rng, phase = np.random.default_rng(3), np.linspace(0.0, 20.0 * math.pi, 1024)
-    settings = replace(TIMING, tail=tail)
-    rises = [timed_power([rng.standard_normal(1024)], phase, settings)[0] for _ in range(500)]
-    assert np.median(rises) == pytest.approx(expected, abs=0.02)
-    assert max(rises) < 0.7 * TIMING.faint
-    turns = TURN / 6.0 * np.arange(60)  # too slow to judge: most bins are empty
-    slow = [timed_power([rng.standard_normal(60)], turns, settings)[0] for _ in range(500)]
-    assert max(slow) < TIMING.heard
+@pytest.mark.parametrize(("samples", "bins"), [(96, 32), (64, 16)])
+def test_the_loudest_bin_is_compared_with_the_quietest_third(samples, bins):
+    """Over what noise makes of it once in 10,000 windows; with three samples in a bin or more."""
+    number, each = np.arange(bins), samples // bins
+    power, middle = 1.0 + 7 * number % bins, TURN * (number + 0.5) / bins  # 1 to 32, in disorder
+    both = [np.sqrt(power).repeat(each), -1.0 * (np.arange(samples) % each > 0)]
+    found = timed_power(both, TURN * (5.0 + (np.arange(samples) + 0.5) / samples), TIMING)
+    floor, limit = np.sort(power)[: bins // 3].mean(), chi2.isf(1e-4 / bins, each) / each
+    above, place = np.maximum(power - floor, 0.0), middle[power.argmax()]
+    moment = abs(above @ np.exp(1j * middle)) / above.sum()
+    rise, opposite = bins / floor / limit, -math.sqrt(1.0 - 1.0 / each)
+    assert found == pytest.approx((rise, bins - floor, place, moment, opposite))
+
+
+def test_noise_alone_is_far_below_a_strike():
+    """White noise in 10 periods: the loudest of 32 bins, and of records too slow to judge."""
+    rng = np.random.default_rng(3)
+    for count, most in ((1024, 0.7 * TIMING.faint), (60, TIMING.heard)):
+        phase = 10.0 * TURN * np.arange(count) / count
+        rises = [timed_power([rng.standard_normal(count)], phase, TIMING)[0] for _ in range(500)]
+        assert max(rises) < most
 
 
 def swept_channels(face, samples):
@@ -165,6 +177,13 @@ def test_each_quantity_has_its_word(word):
         assert replace(FACES, **changes).word() == word, changes
 
 
+def test_an_offset_is_in_no_order_of_a_sweep():
+    phase = 20.0 * np.pi * np.linspace(0.0, 1.0, 900) ** 1.2
+    waves, face = np.exp(-1j * np.outer([1, 2], phase)), np.sin(phase)
+    assert amplitudes(face + 9.8, waves) == pytest.approx(amplitudes(face, waves), abs=1e-12)
+    assert abs(amplitudes(face, waves)) == pytest.approx([1.0, 0.0], abs=0.01)
+
+
 def timed(kind, seed, sensors=1):
     """Draw a record of a kind; return what strikes in it, shut faces' frequency 3 % uncertain."""
     rng = np.random.default_rng([seed, 17])
@@ -183,16 +202,32 @@ def windows(part=0.5, growth=0.2, count=60):
 
 
 @pytest.mark.parametrize("quiet", [0, 7, 8, 50])
-def test_a_stiffness_that_grows_is_told_from_a_participation(quiet):
-    """From where nothing strikes, or where little moves."""
+@pytest.mark.parametrize("loudest", [True, False])
+def test_a_participation_is_told_by_the_windows_in_which_nothing_strikes(quiet, loudest):
+    """If these are eight; else by those that move less than half of the loud ones, or a third."""
     motion, loud = windows()
-    still = np.flatnonzero(~loud)[:quiet] if quiet < 50 else ~loud
-    mask = np.zeros(60, bool)
-    mask[still] = True
-    rest, squares = stiffnesses(motion, loud, mask)
-    assert rest == pytest.approx(0.5 / math.pi, rel=0.015)
+    size = abs(motion[2])
+    struck = size == size.max() if loudest else loud
+    mask = ~struck & (np.cumsum(~struck) <= quiet)
+    rest, squares = stiffnesses(motion, struck, mask)
+    used = np.zeros(60, bool)
+    for k in range(60):
+        off = np.array(motion)
+        off[0, k] *= 1.1
+        used[k] = abs(stiffnesses(off, struck, mask)[0] / rest - 1.0) > 1e-6
+    least = size <= max(0.5 * size[struck].min(), np.sort(size)[20])
+    assert used.tolist() == (mask if quiet > 7 else least).tolist()
     growth = (TURN * np.sqrt(squares)) ** 2 - 1.0
-    assert growth[loud] == pytest.approx(0.2, abs=0.03) and abs(growth[~loud]).max() < 0.03
+    assert loudest or rest == pytest.approx(0.5 / math.pi, rel=0.015)
+    assert loudest or growth == pytest.approx(np.where(loud, 0.2, 0.0), abs=0.03)
+
+
+def test_at_one_frequency_a_participation_is_1():
+    """There the windows do not tell it from the stiffness."""
+    motion = windows()[0][:, :1] * np.linspace(1.0, 2.0, 60)
+    rest, _ = stiffnesses(motion, np.zeros(60, bool), np.ones(60, bool))
+    moved, base, stroke = motion[:, 0]
+    assert TURN * rest == pytest.approx(math.sqrt(-((moved + base) / stroke).real), rel=1e-4)
 
 
 @pytest.mark.parametrize(
