@@ -220,8 +220,6 @@ def timed_windows(
     for begin, end in zip(edges[:-1], edges[1:], strict=True):
         samples = (end - begin) / settings.periods  # of a period
         order = max(4, round(settings.memory * samples))
-        if end - begin < 6 * order:
-            continue
         here, base, part = phase[begin:end], channels.box[begin:end], slice(begin, end)
         waves = np.cumprod(np.tile(np.exp(-1j * here), (len(ORDERS), 1)), axis=0)
         size = amplitudes(moved[part], waves)
