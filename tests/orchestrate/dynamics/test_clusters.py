@@ -117,7 +117,10 @@ def test_short_periods_take_more_of_them():
     assert [transient_periods(400, 300.0, eta) for eta in (0.5, 1.5, 8.0)] == [400, 450, 2400]
 
 
-@pytest.mark.parametrize("wrong", [{"alike": 0.0}, {"longest": -1}, {"near": float("nan")}])
+@pytest.mark.parametrize(
+    "wrong", [{"alike": 0.0}, {"longest": -1}, {"near": float("nan")}, {"samples": 3}]
+)
 def test_settings_out_of_range_are_refused(wrong):
     with pytest.raises(InputError, match=next(iter(wrong))):
-        AttractorSettings(**wrong)
+        settling_run(**wrong)
+    assert settling_run(samples=4, longest=0).samples == 4

@@ -262,6 +262,7 @@ def test_a_gap_below_a_millionth_of_the_motion_is_as_large(gap, counts):
     m[repetition.HEAD : repetition.HEAD + 4] = 1.0, 1.0, 0.0, 0.0
     repetition.scale(m, 0)
     assert m[repetition.SIZE_OF_GAP] == (gap if counts else 2.0**-20)
+    assert m[repetition.AWAY] == len(m) - 2  # deviations are the last row
 
 
 @given(st.floats(0.0, 1.0), st.floats(0.05, 0.45))
@@ -371,12 +372,17 @@ def test_none_where_there_must_be_some_are_too_few():
 
 
 @pytest.mark.parametrize(
-    ("halving", "expected"), [(55.0, UNDECIDED), (132.0, UNDECIDED), (140.0, IRREGULAR)]
+    ("halving", "turn", "expected"),
+    [
+        *((55.0, 1, UNDECIDED), (132.0, 1, UNDECIDED), (140.0, 1, IRREGULAR)),
+        *((90.0, 5, UNDECIDED), (90.0, 6, IRREGULAR)),  # of 100 samples seen five times a quarter
+    ],
 )
-def test_a_spiral_that_shrinks_is_not_irregular(halving, expected):
+def test_a_spiral_that_shrinks_is_not_irregular(halving, turn, expected):
     n = np.arange(200)
     size, turns = 0.5 ** (n / halving), 2.0 * np.pi * GOLDEN * n
-    assert decide(four(size * np.cos(turns), size * np.sin(turns))).decided == expected
+    states = four(size * np.cos(turns) + n % turn, size * np.sin(turns))
+    assert decide(states) == (turn if expected == UNDECIDED else 0, expected)
 
 
 @pytest.mark.parametrize(("found", "expected"), [(0, (1, UNDECIDED)), (1, (0, IRREGULAR))])
