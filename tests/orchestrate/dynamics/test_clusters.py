@@ -40,14 +40,6 @@ def test_labels_are_in_the_order_in_which_clusters_are_met():
     assert single_linkage(np.empty((0, 2)), 1.0).tolist() == []
 
 
-def test_irregular_responses_are_grouped_by_their_means():
-    chain = [[0, 1.4 + 0.02 * k, 2.0 + 0.1 * k, 0.5, 0.3] for k in range(5)]
-    rows = [*chain[:2], [0, 1.4, 0.5, 0.1, 0.1], *chain[2:]]
-    assert irregular_clusters(rows, AttractorSettings()).tolist() == [0, 0, 1, 0, 0, 0]
-    assert irregular_clusters(rows, AttractorSettings(alike_irregular=0.01)).max() == 5
-    assert irregular_clusters(np.empty((0, 5)), AttractorSettings()).tolist() == []
-
-
 @pytest.mark.parametrize(
     ("other", "alike"),
     [

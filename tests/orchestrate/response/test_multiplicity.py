@@ -101,11 +101,6 @@ def states_of(deviation, count=200, of_velocity=np.zeros_like):
     return samples
 
 
-def doubling(multiplier, count=200, width=0.0):
-    """Next to a period doubling: a deviation that changes sides dies, beside one that stays."""
-    return states_of(lambda n: (-1.0) ** n * (0.05 * multiplier**n + width), count)
-
-
 @given(orbits(), st.integers(0, 60), st.floats(0.5, 0.9))
 def test_what_has_died_or_dies_fast_has_repeated(orbit, more, multiplier):
     samples = repeat(orbit, 8 * len(orbit) + more + 40)
@@ -113,13 +108,6 @@ def test_what_has_died_or_dies_fast_has_repeated(orbit, more, multiplier):
     n, decided = decide(samples + rest[:, None], gap=2.0 * np.abs(samples).max())
     assert n == len(orbit)
     assert decided == REPEATED
-
-
-@pytest.mark.parametrize("width", [1e-7, 1e-5, 1e-3, 0.1])
-def test_the_tolerance_does_not_hide_a_narrow_period_doubling(width):
-    states = doubling(0.8, width=width)
-    assert find_repetition(states, 1.0, 1.0, TOLERANCE).multiplicity == (1 if width < 0.01 else 2)
-    assert decide(states) == (2, REPEATED)
 
 
 def scaled(run):
