@@ -389,6 +389,8 @@ def test_a_motion_is_held_for_a_time_unless_it_is_left(later, pieces):
     point = loop.hold(None, 1.5, 1.5, least=1500.0)  # of pieces of 50/omega
     assert point.speed == pytest.approx(later) and len([rows for rows in told if rows]) == pieces
     assert point.time == 50.0 * pieces
+    loop.step = 200.0  # longer than a piece
+    assert loop.hold(None, 1.5, 1.5).time in 200.0 * np.arange(1, 9)
 
 
 def test_where_a_speed_between_is_sought(monkeypatch):
