@@ -361,6 +361,9 @@ def test_the_motion_on_the_way_back_has_to_last(life, outcome):
 
     loop = Leaving(None)
     assert loop.way_back(loop.at(1.5), loop.at(1.5001, 0.1)) == outcome
+    for time, expected in ((2.0, 2.05), (2.1, 2.1)):  # since when the other one was lost
+        high = loop.at(1.5)._replace(time=time)
+        assert loop.lasting(loop.at(1.5, 0.1), high, 9.0).time == pytest.approx(expected)
 
 
 def test_a_hold_comes_at_the_rate():
