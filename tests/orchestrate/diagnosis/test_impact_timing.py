@@ -68,6 +68,14 @@ WORDS = {  # on both sides of each threshold
 }
 
 
+def strikes_of(monkeypatch, windows):
+    """What is said of made-up windows: how far the base's bin rises, power, peak and stroke."""
+    rest = 0.9, 0.5, 0.1, math.nan, 1.0, 1.0
+    rows = [(9.0, base, power, peak, *rest, stroke) for base, power, peak, stroke in windows]
+    monkeypatch.setattr(impact_timing, "timed_windows", lambda *given: iter(rows))
+    return strikes_at(None, [0], 40.0, TIMING)
+
+
 @pytest.mark.parametrize(
     ("power", "stroke", "locked"),
     [
@@ -83,20 +91,15 @@ def test_windows_count_that_are_loud_and_move(monkeypatch, power, stroke, locked
 
     At a sweep's ends, where the base stops, noise alone made 22 in sound beams, at 5 and 10 kHz.
     """
-    rest = 0.9, 0.5, 0.1, math.nan, 1.0, 1.0
-    both = (1.0, 0.0, -1.0), (power, math.pi, -stroke)
-    rows = [(9.0, 1.0, size, at, *rest, moved) for size, at, moved in both]
-    monkeypatch.setattr(impact_timing, "timed_windows", lambda *given: iter(rows))
-    assert strikes_at(None, [0], 40.0, TIMING).locked == pytest.approx(locked, abs=0.01)
+    both = (1.0, 1.0, 0.0, -1.0), (1.0, power, math.pi, -stroke)
+    assert strikes_of(monkeypatch, both).locked == pytest.approx(locked, abs=0.01)
 
 
 def test_a_window_in_which_noise_peaks_is_no_base_that_strikes(monkeypatch):
     """A rubbing sound beam, 14 samples in a period: the base's noise made 3.9 in one of many."""
-    rest = 1.0, 0.0, 0.9, 0.5, 0.1, math.nan, 1.0, 1.0, -1.0
     for base, expected in (((1.2, 3.9, 1.1), 1.2), ((3.9, 3.8, 1.1), 3.8)):
-        rows = [(3.7, one, *rest) for one in base]
-        monkeypatch.setattr(impact_timing, "timed_windows", lambda *given, rows=rows: iter(rows))
-        assert strikes_at(None, [0], 40.0, TIMING).base == expected
+        made = [(one, 1.0, 0.0, -1.0) for one in base]
+        assert strikes_of(monkeypatch, made).base == expected
 
 
 @pytest.mark.parametrize(("samples", "bins"), [(96, 32), (64, 16)])
@@ -163,12 +166,10 @@ def test_lengths_are_parts_of_the_period(monkeypatch, samples, memory):
 
 def test_one_window_by_itself_does_not_move_the_place(monkeypatch):
     """A stop at the end of the stroke was taken for faces: one window of ten had its peak off."""
-    rest = 0.9, 0.5, 0.1, math.nan, 1.0, 1.0, -1.0
     for off, expected in ((1, 0.0), (3, 1.5)):
         peaks = [2.0 * math.pi / 3.0] * off + [0.0] * (10 - off)
-        rows = [(9.0, 1.0, 1.0, peak, *rest) for peak in peaks]
-        monkeypatch.setattr(impact_timing, "timed_windows", lambda *given, rows=rows: iter(rows))
-        assert strikes_at(None, [0], 40.0, TIMING).spread == pytest.approx(expected)
+        made = [(1.0, 1.0, peak, -1.0) for peak in peaks]
+        assert strikes_of(monkeypatch, made).spread == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("word", WORDS)

@@ -29,11 +29,6 @@ TOLERANCE = 1e-2
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
-def multiplicity(samples, tolerance, frequency=1.0, gap=None):
-    gap = 2.0 * np.abs(samples).max() if gap is None else gap  # no smaller than any difference
-    return find_repetition(samples, frequency, gap, tolerance).multiplicity
-
-
 def decide(samples, frequency=1.0, gap=1.0):
     """What the rule decides, compiled and in Python."""
     count = len(samples)
@@ -68,16 +63,6 @@ def four(*columns):
 
 def repeat(orbit, length):
     return np.tile(orbit, (length // len(orbit) + 1, 1))[:length]
-
-
-@pytest.mark.parametrize(("deviation", "expected"), [(0.9, 1), (1.1, 2)])
-@pytest.mark.parametrize("coordinate", range(4))
-def test_a_gap_much_smaller_than_the_motion_has_a_size_of_its_own(coordinate, deviation, expected):
-    frequency, gap = 3.0, 1.0
-    samples = np.tile([100.0, 100.5, 50.0, 50.0], (40, 1))
-    samples[::2, coordinate] += deviation * TOLERANCE * gap * (frequency if coordinate > 1 else 1.0)
-    assert multiplicity(samples, TOLERANCE, frequency) == 1
-    assert multiplicity(samples, TOLERANCE, frequency, gap) == expected
 
 
 @given(st.integers(0, 1000), st.integers(-200, 200))
