@@ -25,7 +25,7 @@ from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, integrated, meas
 from ..laboratory.pieces import Floats
 
 ORDERS = np.arange(1, 13)  # of what a window is projected on
-HIGH = slice(5, 12)  # orders 6 to 12
+HIGH = slice(5, None)  # orders 6 to 12
 MIN_QUIET = 8  # windows in which nothing strikes: of fewer those that move least are taken
 PRIOR = 1e-6  # weight of a participation of 1, over that of the windows
 

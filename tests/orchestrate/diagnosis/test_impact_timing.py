@@ -69,40 +69,39 @@ WORDS = {  # on both sides of each threshold
 
 
 def strikes_of(monkeypatch, windows):
-    """What is said of made-up windows: how far the base's bin rises, power, peak and stroke."""
+    """What is said of made-up windows: how far the bins rise, power, peak and stroke."""
     rest = 0.9, 0.5, 0.1, math.nan, 1.0, 1.0
-    rows = [(9.0, base, power, peak, *rest, stroke) for base, power, peak, stroke in windows]
+    rows = [(*bins, power, peak, *rest, stroke) for *bins, power, peak, stroke in windows]
     monkeypatch.setattr(impact_timing, "timed_windows", lambda *given: iter(rows))
     return strikes_at(None, [0], 40.0, TIMING)
 
 
 @pytest.mark.parametrize(
-    ("power", "stroke", "locked"),
+    ("power", "stroke", "heard", "locked"),
     [
-        (0.29, 1.0, 1.0),
-        (0.31, 1.0, 0.53),
-        (0.31, 0.051, 0.53),
-        (0.31, 0.049, 1.0),
-        (3.0, 0.049, 1.0),
+        *((0.29, 1.0, 9.0, 1.0), (0.31, 1.0, 9.0, 0.53), (0.31, 0.051, 9.0, 0.53)),
+        *((0.31, 0.049, 9.0, 1.0), (3.0, 0.049, 9.0, 1.0)),
+        *((0.31, 1.0, 1.01, 0.53), (0.31, 1.0, 0.99, 1.0)),
     ],
 )
-def test_windows_count_that_are_loud_and_move(monkeypatch, power, stroke, locked):
-    """Two windows whose peaks are opposite: the second one counts from `loud` and `moves` on.
+def test_windows_count_that_are_loud_and_move(monkeypatch, power, stroke, heard, locked):
+    """Two windows whose peaks are opposite: the second one counts from `loud` and `moves` on, and
+    where its bin rises over the limit of noise.
 
     At a sweep's ends, where the base stops, noise alone made 22 in sound beams, at 5 and 10 kHz.
     """
-    both = (1.0, 1.0, 0.0, -1.0), (1.0, power, math.pi, -stroke)
+    both = (9.0, 1.0, 1.0, 0.0, -1.0), (heard, 1.0, power, math.pi, -stroke)
     assert strikes_of(monkeypatch, both).locked == pytest.approx(locked, abs=0.01)
 
 
 def test_a_window_in_which_noise_peaks_is_no_base_that_strikes(monkeypatch):
     """A rubbing sound beam, 14 samples in a period: the base's noise made 3.9 in one of many."""
     for base, expected in (((1.2, 3.9, 1.1), 1.2), ((3.9, 3.8, 1.1), 3.8)):
-        made = [(one, 1.0, 0.0, -1.0) for one in base]
+        made = [(9.0, one, 1.0, 0.0, -1.0) for one in base]
         assert strikes_of(monkeypatch, made).base == expected
 
 
-@pytest.mark.parametrize(("samples", "bins"), [(96, 32), (64, 16)])
+@pytest.mark.parametrize(("samples", "bins"), [(96, 32), (64, 16), (16, 16)])
 def test_the_loudest_bin_is_compared_with_the_quietest_third(samples, bins):
     """Over what noise makes of it once in 10,000 windows; with three samples in a bin or more."""
     number, each = np.arange(bins), samples // bins
@@ -149,26 +148,39 @@ def test_lengths_are_parts_of_the_period(monkeypatch, samples, memory):
     """Of 100 samples a period, blows are predicted from 27, in windows of ten periods, 32 bins."""
     face = 2.0 * np.sin(TURN * np.arange(62 * samples) / samples)
     face[int(0.31 * samples) :: samples] += 1.0
-    lengths, predicted = [], impact_timing.prediction_error
+    lengths, predicted, cuts = [], impact_timing.prediction_error, []
+    integrated = impact_timing.integrated
 
     def prediction(signal, order):
         lengths.append((len(signal), order))
         return predicted(signal, order)
 
     monkeypatch.setattr(impact_timing, "prediction_error", prediction)
+    monkeypatch.setattr(
+        impact_timing, "integrated", lambda *all: cuts.append(all[2:]) or integrated(*all)
+    )
     found = strikes_at(swept_channels(face, samples), [1], 45.0, TIMING)
     assert {order for _, order in lengths} == {memory}
     assert [length for length, _ in lengths] == pytest.approx([10 * samples] * 2 * 5, abs=2)
     own = (0.31 - 0.75) % 1.0  # of a period after the top of the stroke
     expected = math.cos((math.floor(32 * own) + 0.5) / 32 * TURN)
     assert samples < 100 or found.place == pytest.approx(expected, abs=0.005)
+    assert cuts == [(pytest.approx(0.5 * TURN * 45.0, rel=0.02), 2)]  # twice, from half an order on
+
+
+def test_the_sensor_that_hears_most_is_asked(monkeypatch):
+    heard = lambda channels, rows, *rest: replace(FACES, heard=(9.0, 3.0, 5.0)[rows[0]])  # noqa: E731
+    monkeypatch.setattr(impact_timing, "strikes_at", heard)
+    names = ("box_acceleration", "acceleration1", "acceleration2")
+    channels = Channels(np.zeros(1), 1.0, names, np.zeros((3, 1)), "")
+    assert strikes(channels).heard == 5.0
 
 
 def test_one_window_by_itself_does_not_move_the_place(monkeypatch):
     """A stop at the end of the stroke was taken for faces: one window of ten had its peak off."""
-    for off, expected in ((1, 0.0), (3, 1.5)):
+    for off, expected in ((1, 0.0), (2, 0.3), (3, 1.5), (8, 0.3), (9, 0.0)):
         peaks = [2.0 * math.pi / 3.0] * off + [0.0] * (10 - off)
-        made = [(1.0, 1.0, peak, -1.0) for peak in peaks]
+        made = [(9.0, 1.0, 1.0, peak, -1.0) for peak in peaks]
         assert strikes_of(monkeypatch, made).spread == pytest.approx(expected)
 
 
