@@ -238,7 +238,9 @@ def test_a_guess_begins_in_the_middle_of_the_longest_pause(monkeypatch, times, b
     decider.eventful = SimpleNamespace(impacts=lambda *span: spans.append(span) or found)
     monkeypatch.setattr(decision, "begin", lambda *asked: None)
     monkeypatch.setattr(decision, "guess_from_impacts", lambda *given: given[0])
-    assert decider.guess_from(np.array(REST), 1)[1] == pytest.approx(TURN / 6.0 * begun)
+    guess, phase = decider.guess_from(np.array(REST), 1)
+    assert phase == pytest.approx(TURN / 6.0 * begun)
+    assert times or (guess[0].periods, guess[0].kinds, guess[1].shape) == (1, (), (0, 4))
     ends = [(0.0, 6.0), (0.0, begun), (begun, 6.0 + begun)]
     assert spans == [pytest.approx(each) for each in ends[: 3 if times else 1]]
 
