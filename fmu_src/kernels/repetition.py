@@ -10,9 +10,9 @@ COUNT, FREQUENCY, GAP, TOLERANCE, MULTIPLICITY, DECIDED, DEVIATION, LATER, AWAY 
 # of :func:`confirm`: impacts over the samples, over as many periods as it repeats after, and
 # whether no motion without impacts exists
 IMPACTS, OWN_IMPACTS, MUST = range(9, 12)
-SIZE, SIZE_OF_GAP, SIZE_OF_RATE = 12, 13, 14  # of displacements, of the gap and of its rate
+SIZE, SIZE_OF_GAP, SIZE_OF_RATE = range(12, 15)  # of displacements, of the gap and of its rate
 # of :func:`nearest`: the number of the state, its distance, and the state whose neighbour it is
-NEAREST, DISTANCE, GIVEN = 15, 16, 17
+NEAREST, DISTANCE, GIVEN = range(15, 18)
 HEAD = 21
 STATE, COLUMNS = 4, 6  # numbers of a state, and of a scaled one: the gap and its rate come last
 IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
@@ -65,8 +65,7 @@ def decide(m, time):
         if spread > ROUNDING:
             left = remaining_change(m, n, spread)
             minimum = tolerance
-        if minimum < 4.0 * left:
-            minimum = 4.0 * left
+        minimum = max(minimum, 4.0 * left)
         if left <= tolerance and has_persistent_difference(m, n, minimum):
             return conclude(m, n, REPEATED)
         if spread > tolerance and not changes(growth):
@@ -248,8 +247,6 @@ def largest_between(m, first, last):
 def growth_ratio(m, length):
     """Return the maximum of the later half of deviations over that of the earlier half."""
     half = int(length / 2)
-    if half < 1:
-        half = 1
     early, late = largest_between(m, 0, half), largest_between(m, length - half, length)
     if early == 0.0 or late == 0.0:
         return 1.0

@@ -25,7 +25,7 @@ from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, integrated, meas
 from ..laboratory.pieces import Floats
 
 ORDERS = np.arange(1, 13)  # of what a window is projected on
-HIGH = slice(5, 12)  # orders 6 to 12
+HIGH = slice(5, None)  # orders 6 to 12
 MIN_QUIET = 8  # windows in which nothing strikes: of fewer those that move least are taken
 PRIOR = 1e-6  # weight of a participation of 1, over that of the windows
 
@@ -220,8 +220,6 @@ def timed_windows(
     for begin, end in zip(edges[:-1], edges[1:], strict=True):
         samples = (end - begin) / settings.periods  # of a period
         order = max(4, round(settings.memory * samples))
-        if end - begin < 6 * order:
-            continue
         here, base, part = phase[begin:end], channels.box[begin:end], slice(begin, end)
         waves = np.cumprod(np.tile(np.exp(-1j * here), (len(ORDERS), 1)), axis=0)
         size = amplitudes(moved[part], waves)

@@ -41,7 +41,7 @@ from .hypotheses import Hypothesis
 from .linear import LinearModel, misfit, soft_squares
 from .multistart import Search, difference_step
 from .order_windows import ORDERS, RecordOrders
-from .settings import SETTINGS, Settings
+from .settings import Settings
 
 SEED = 20_241
 # Of errors, measured; the halves are alike, so that a number of both has one factor. The errors of
@@ -135,9 +135,7 @@ def estimate_with_covariances(
     return Estimate(values, by_noise + by_blocks + hidden, noise, blocks, rest)
 
 
-def contact_covariance(
-    values: Mapping[str, float], beyond: float, settings: Settings = SETTINGS
-) -> Floats:
+def contact_covariance(values: Mapping[str, float], beyond: float, settings: Settings) -> Floats:
     """Return the covariance of damping, split and restitution that is due to real contacts."""
     size = min(1.0, math.sqrt(beyond) / settings.contact_misfit)
     damping = {
@@ -148,9 +146,7 @@ def contact_covariance(
     return np.diag([(size * doubt.get(name, 0.0)) ** 2 for name in values])
 
 
-def squares_beyond_noise(
-    residuals: Floats, changes: list[Floats], factor: float = SETTINGS.noise_squares
-) -> float:
+def squares_beyond_noise(residuals: Floats, changes: list[Floats], factor: float) -> float:
     """Return the sum of squared residuals (soft loss) beyond what noise explains."""
     by_noise = float(np.mean([soft_squares(change).sum() for change in changes]))
     return max(float(soft_squares(residuals).sum()) - factor * by_noise, 0.0)

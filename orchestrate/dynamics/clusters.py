@@ -182,7 +182,7 @@ def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[
 def single_linkage(points: Floats, radius: float) -> NDArray[np.intp]:
     """Cluster points (n, d) by single linkage with a radius; return a label per point."""
     # memory grows with the number of points, not its square as in scipy.cluster.hierarchy.linkage
-    labels = np.full(len(points), -1, dtype=np.intp)
+    labels = np.zeros(len(points), dtype=np.intp)
     left = np.arange(len(points))
     count = 0
     while len(left):

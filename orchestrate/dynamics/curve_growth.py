@@ -162,6 +162,6 @@ class CurveGrower:
             return POINTS
         window = 2.0 * max(1.0, settings.max_step)
         before = bisect_left(curve.points, last.s - window, key=lambda point: point.s)
-        gained = curve.arclength[-1] - curve.arclength[max(before - 1, 0)]
+        gained = curve.arclength[-1] - curve.arclength[before - 1]
         grown = curve.arclength[-1] > settings.spacing
         return CONVERGED if grown and before and gained < 1e-7 * settings.size else ""

@@ -301,9 +301,10 @@ def count_impacts_from_pause(
     each = np.diff([0, *counts])
     middle = middle_of_longest_run(each == 0)
     begin(instance, *point, state)
-    instance.step(0.0, (middle + 0.5) * width)
+    begun = (middle + 0.5) * width
+    instance.step(0.0, begun)
     (before,) = instance.get("impact_count")
-    instance.step((middle + 0.5) * width, (middle + 0.5 + periods * PIECES) * width)
+    instance.step(begun, begun + periods * PIECES * width)
     (after,) = instance.get("impact_count")
     return int(after - before)
 

@@ -174,7 +174,7 @@ def continue_to_neighbours(values: Sequence[AttractorsAtValue]) -> Links:
 
 
 def number_attractors(
-    values: Sequence[AttractorsAtValue], links: Links, distance: float = AttractorSettings.neighbour
+    values: Sequence[AttractorsAtValue], links: Links, distance: float
 ) -> list[list[int]]:
     """Return the attractors' numbers at each value: equal if matched, new ones by their rank."""
     numbers: list[list[int]] = []
@@ -193,7 +193,7 @@ def match_neighbours(
     value: AttractorsAtValue,
     i: int,
     links: Links,
-    distance: float = AttractorSettings.neighbour,
+    distance: float,
 ) -> list[tuple[int, int]]:
     j = i + 1
     forth = [links[i, a, j] for a in range(len(before.motions))]

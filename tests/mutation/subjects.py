@@ -34,6 +34,8 @@ SUBJECTS = {
         for name in ("clusters", "decision", "global_continuation")
     ),
     "orchestrate/dynamics/curve_growth.py": ("tests/orchestrate/dynamics/test_manifolds.py",),
+    "orchestrate/laboratory/analysis/knocks.py": ("tests/orchestrate/laboratory/test_hammer.py",),
+    "orchestrate/cli/notes.py": ("tests/orchestrate/cli/test_notes.py",),
     "orchestrate/diagnosis/decision_rule.py": (
         f"{DIAGNOSIS}/test_thresholds.py",
         f"{DIAGNOSIS}/test_verdicts.py",

@@ -11,7 +11,7 @@ import pytest
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import motion, stepper
-from fmu_src.kernels.oscillator.event_function import event_rounding
+from fmu_src.kernels.oscillator.event_function import evaluate, event_rounding
 from tests import exact_motion as truth
 from tests.fmu.event_driven import CONTACT, Motion
 from tests.fmu.test_forces import KINDS, drawn
@@ -190,6 +190,42 @@ def test_a_stroke_of_a_million_roundings_of_the_gap_is_wide_enough(part, narrow)
     m[at.LIMIT] = 1e6 * event_rounding(m, 0.0) * part
     motion.open_flight(m, *STATE, 0.7)
     assert m[at.NARROW] == narrow
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.3])
+def test_a_flight_begins_with_the_second_derivative_of_its_gap(monkeypatch, clearance):
+    """Its first certified step hangs on it: as the closed form has it."""
+    told = []
+    monkeypatch.setattr(motion, "skip_clear_start", lambda m, *slopes: told.append(slopes) or True)
+    monkeypatch.setattr(motion, "required_order", lambda *given: 0)
+    m = started(**STARTS, clearance=clearance, d1=0.3, d2=0.7)
+    motion.begin_flight(m, *STATE, 0.7 + clearance)
+    assert m[at.LEFT_VALUES + 2] == pytest.approx(evaluate(m, 0.0)[2], rel=1e-12)
+    motion.begin_after_impact(m, 0.1, -0.1, 0.4)
+    assert told == [pytest.approx(evaluate(m, 0.0)[1:3], rel=1e-12)]
+    m[at.SERIES] = 8.0  # of a short flight the phase is its own too
+    angle = 2.0 * math.pi * (m[at.TURN] + m[at.ETA_TURNS] * 0.3)
+    phase = motion.state_and_phase_at(m, 0.3)[4:]
+    assert phase == pytest.approx((math.cos(angle), math.sin(angle)))
+
+
+@pytest.mark.parametrize(
+    ("values", "size", "dead"),
+    [
+        *(({}, 1.9e-292, True), ({}, 2.1e-292, False), ({at.SHAKEN: 1.0}, 0.0, False)),
+        *(({at.CUBIC_PRESENT: 1.0}, 0.0, False), ({at.MODE: at.CONTACT}, 0.0, True)),
+        *(({at.GAP_OFFSET: 0.3}, 0.0, True), ({at.GAP_OFFSET: -0.3}, 0.0, True)),
+        ({at.GAP_OFFSET: 0.3, at.MODE: at.CONTACT}, 0.0, False),  # together, not at rest
+    ],
+)
+def test_what_is_too_small_for_its_digits_and_not_driven_has_died_away(values, size, dead):
+    m = started(**STARTS, box_amplitude=0.0)
+    for slot, value in values.items():
+        m[slot] = value
+    for place in range(4):
+        state = [0.0] * 4
+        state[place] = -size
+        assert motion.has_died_away(m, *state) == dead
 
 
 def power_terms(step, order, value, bound):

@@ -5,6 +5,7 @@ import json
 import logging
 import re
 import warnings
+from contextlib import nullcontext
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,6 +15,8 @@ import xarray as xr
 import orchestrate
 from orchestrate import Structure
 from orchestrate.cli import notes
+from orchestrate.cli.options import print_assumptions
+from orchestrate.errors import InputError
 
 TURN = 2.0 * np.pi
 HALVES = Structure.from_halves(m1=1.5, m2=1.2, f1=40.0, f2=50.0, zeta1=0.01, zeta2=0.01, e=0.5)
@@ -72,6 +75,10 @@ def test_voltages_and_masses_that_are_hardly_meant(caplog):
     assert notes.heavy_mass_note(HALVES.replace(m2=20.1)) and not notes.heavy_mass_note(
         HALVES.replace(m2=19.9)
     )
+    for ratio, unlike in ((2.9, False), (3.1, True), (1.0 / 2.9, False), (1.0 / 3.1, True)):
+        beam = Structure.from_halves(m1=1.0, m2=1.0, f1=40.0, f2=ratio * 40.0, zeta1=0.01)
+        with pytest.raises(InputError, match="f2 would be") if unlike else nullcontext():
+            print_assumptions(beam, "paper", {"f1": 40.0})
 
 
 SIMULATE = "simulate --periods 2 --plot none --set f1=42 --set f2=55 "

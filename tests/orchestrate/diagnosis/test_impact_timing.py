@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from orchestrate.constants import TURN
 from orchestrate.diagnosis import impact_timing
 from orchestrate.diagnosis.impact_timing import (
     TIMING,
     Strikes,
+    amplitudes,
     stiffnesses,
     strikes,
     strikes_at,
@@ -66,48 +68,60 @@ WORDS = {  # on both sides of each threshold
 }
 
 
+def strikes_of(monkeypatch, windows):
+    """What is said of made-up windows: how far the bins rise, power, peak and stroke."""
+    rest = 0.9, 0.5, 0.1, math.nan, 1.0, 1.0
+    rows = [(*bins, power, peak, *rest, stroke) for *bins, power, peak, stroke in windows]
+    monkeypatch.setattr(impact_timing, "timed_windows", lambda *given: iter(rows))
+    return strikes_at(None, [0], 40.0, TIMING)
+
+
 @pytest.mark.parametrize(
-    ("power", "stroke", "locked"),
+    ("power", "stroke", "heard", "locked"),
     [
-        (0.29, 1.0, 1.0),
-        (0.31, 1.0, 0.53),
-        (0.31, 0.051, 0.53),
-        (0.31, 0.049, 1.0),
-        (3.0, 0.049, 1.0),
+        *((0.29, 1.0, 9.0, 1.0), (0.31, 1.0, 9.0, 0.53), (0.31, 0.051, 9.0, 0.53)),
+        *((0.31, 0.049, 9.0, 1.0), (3.0, 0.049, 9.0, 1.0)),
+        *((0.31, 1.0, 1.01, 0.53), (0.31, 1.0, 0.99, 1.0)),
     ],
 )
-def test_windows_count_that_are_loud_and_move(monkeypatch, power, stroke, locked):
-    """Two windows whose peaks are opposite: the second one counts from `loud` and `moves` on.
+def test_windows_count_that_are_loud_and_move(monkeypatch, power, stroke, heard, locked):
+    """Two windows whose peaks are opposite: the second one counts from `loud` and `moves` on, and
+    where its bin rises over the limit of noise.
 
     At a sweep's ends, where the base stops, noise alone made 22 in sound beams, at 5 and 10 kHz.
     """
-    rest = 0.9, 0.5, 0.1, math.nan, 1.0, 1.0
-    both = (1.0, 0.0, -1.0), (power, math.pi, -stroke)
-    rows = [(9.0, 1.0, size, at, *rest, moved) for size, at, moved in both]
-    monkeypatch.setattr(impact_timing, "timed_windows", lambda *given: iter(rows))
-    assert strikes_at(None, [0], 40.0, TIMING).locked == pytest.approx(locked, abs=0.01)
+    both = (9.0, 1.0, 1.0, 0.0, -1.0), (heard, 1.0, power, math.pi, -stroke)
+    assert strikes_of(monkeypatch, both).locked == pytest.approx(locked, abs=0.01)
 
 
 def test_a_window_in_which_noise_peaks_is_no_base_that_strikes(monkeypatch):
     """A rubbing sound beam, 14 samples in a period: the base's noise made 3.9 in one of many."""
-    rest = 1.0, 0.0, 0.9, 0.5, 0.1, math.nan, 1.0, 1.0, -1.0
     for base, expected in (((1.2, 3.9, 1.1), 1.2), ((3.9, 3.8, 1.1), 3.8)):
-        rows = [(3.7, one, *rest) for one in base]
-        monkeypatch.setattr(impact_timing, "timed_windows", lambda *given, rows=rows: iter(rows))
-        assert strikes_at(None, [0], 40.0, TIMING).base == expected
+        made = [(9.0, one, 1.0, 0.0, -1.0) for one in base]
+        assert strikes_of(monkeypatch, made).base == expected
 
 
-@pytest.mark.parametrize(("tail", "expected"), [(TIMING.tail, 0.84), (0.05, 1.13)])
-def test_noise_alone_is_far_below_a_strike(tail, expected):
-    """White noise in 10 periods: the loudest of 32 bins over the limit of noise."""
-    rng, phase = np.random.default_rng(3), np.linspace(0.0, 20.0 * math.pi, 1024)
-    settings = replace(TIMING, tail=tail)
-    rises = [timed_power([rng.standard_normal(1024)], phase, settings)[0] for _ in range(500)]
-    assert np.median(rises) == pytest.approx(expected, abs=0.02)
-    assert max(rises) < 0.7 * TIMING.faint
-    turns = TURN / 6.0 * np.arange(60)  # too slow to judge: most bins are empty
-    slow = [timed_power([rng.standard_normal(60)], turns, settings)[0] for _ in range(500)]
-    assert max(slow) < TIMING.heard
+@pytest.mark.parametrize(("samples", "bins"), [(96, 32), (64, 16), (16, 16)])
+def test_the_loudest_bin_is_compared_with_the_quietest_third(samples, bins):
+    """Over what noise makes of it once in 10,000 windows; with three samples in a bin or more."""
+    number, each = np.arange(bins), samples // bins
+    power, middle = 1.0 + 7 * number % bins, TURN * (number + 0.5) / bins  # 1 to 32, in disorder
+    both = [np.sqrt(power).repeat(each), -1.0 * (np.arange(samples) % each > 0)]
+    found = timed_power(both, TURN * (5.0 + (np.arange(samples) + 0.5) / samples), TIMING)
+    floor, limit = np.sort(power)[: bins // 3].mean(), chi2.isf(1e-4 / bins, each) / each
+    above, place = np.maximum(power - floor, 0.0), middle[power.argmax()]
+    moment = abs(above @ np.exp(1j * middle)) / above.sum()
+    rise, opposite = bins / floor / limit, -math.sqrt(1.0 - 1.0 / each)
+    assert found == pytest.approx((rise, bins - floor, place, moment, opposite))
+
+
+def test_noise_alone_is_far_below_a_strike():
+    """White noise in 10 periods: the loudest of 32 bins, and of records too slow to judge."""
+    rng = np.random.default_rng(3)
+    for count, most in ((1024, 0.7 * TIMING.faint), (60, TIMING.heard)):
+        phase = 10.0 * TURN * np.arange(count) / count
+        rises = [timed_power([rng.standard_normal(count)], phase, TIMING)[0] for _ in range(500)]
+        assert max(rises) < most
 
 
 def swept_channels(face, samples):
@@ -134,35 +148,53 @@ def test_lengths_are_parts_of_the_period(monkeypatch, samples, memory):
     """Of 100 samples a period, blows are predicted from 27, in windows of ten periods, 32 bins."""
     face = 2.0 * np.sin(TURN * np.arange(62 * samples) / samples)
     face[int(0.31 * samples) :: samples] += 1.0
-    lengths, predicted = [], impact_timing.prediction_error
+    lengths, predicted, cuts = [], impact_timing.prediction_error, []
+    integrated = impact_timing.integrated
 
     def prediction(signal, order):
         lengths.append((len(signal), order))
         return predicted(signal, order)
 
     monkeypatch.setattr(impact_timing, "prediction_error", prediction)
+    monkeypatch.setattr(
+        impact_timing, "integrated", lambda *all: cuts.append(all[2:]) or integrated(*all)
+    )
     found = strikes_at(swept_channels(face, samples), [1], 45.0, TIMING)
     assert {order for _, order in lengths} == {memory}
     assert [length for length, _ in lengths] == pytest.approx([10 * samples] * 2 * 5, abs=2)
     own = (0.31 - 0.75) % 1.0  # of a period after the top of the stroke
     expected = math.cos((math.floor(32 * own) + 0.5) / 32 * TURN)
     assert samples < 100 or found.place == pytest.approx(expected, abs=0.005)
+    assert cuts == [(pytest.approx(0.5 * TURN * 45.0, rel=0.02), 2)]  # twice, from half an order on
+
+
+def test_the_sensor_that_hears_most_is_asked(monkeypatch):
+    heard = lambda channels, rows, *rest: replace(FACES, heard=(9.0, 3.0, 5.0)[rows[0]])  # noqa: E731
+    monkeypatch.setattr(impact_timing, "strikes_at", heard)
+    names = ("box_acceleration", "acceleration1", "acceleration2")
+    channels = Channels(np.zeros(1), 1.0, names, np.zeros((3, 1)), "")
+    assert strikes(channels).heard == 5.0
 
 
 def test_one_window_by_itself_does_not_move_the_place(monkeypatch):
     """A stop at the end of the stroke was taken for faces: one window of ten had its peak off."""
-    rest = 0.9, 0.5, 0.1, math.nan, 1.0, 1.0, -1.0
-    for off, expected in ((1, 0.0), (3, 1.5)):
+    for off, expected in ((1, 0.0), (2, 0.3), (3, 1.5), (8, 0.3), (9, 0.0)):
         peaks = [2.0 * math.pi / 3.0] * off + [0.0] * (10 - off)
-        rows = [(9.0, 1.0, 1.0, peak, *rest) for peak in peaks]
-        monkeypatch.setattr(impact_timing, "timed_windows", lambda *given, rows=rows: iter(rows))
-        assert strikes_at(None, [0], 40.0, TIMING).spread == pytest.approx(expected)
+        made = [(9.0, 1.0, 1.0, peak, -1.0) for peak in peaks]
+        assert strikes_of(monkeypatch, made).spread == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("word", WORDS)
 def test_each_quantity_has_its_word(word):
     for changes in WORDS[word]:
         assert replace(FACES, **changes).word() == word, changes
+
+
+def test_an_offset_is_in_no_order_of_a_sweep():
+    phase = 20.0 * np.pi * np.linspace(0.0, 1.0, 900) ** 1.2
+    waves, face = np.exp(-1j * np.outer([1, 2], phase)), np.sin(phase)
+    assert amplitudes(face + 9.8, waves) == pytest.approx(amplitudes(face, waves), abs=1e-12)
+    assert abs(amplitudes(face, waves)) == pytest.approx([1.0, 0.0], abs=0.01)
 
 
 def timed(kind, seed, sensors=1):
@@ -183,16 +215,32 @@ def windows(part=0.5, growth=0.2, count=60):
 
 
 @pytest.mark.parametrize("quiet", [0, 7, 8, 50])
-def test_a_stiffness_that_grows_is_told_from_a_participation(quiet):
-    """From where nothing strikes, or where little moves."""
+@pytest.mark.parametrize("loudest", [True, False])
+def test_a_participation_is_told_by_the_windows_in_which_nothing_strikes(quiet, loudest):
+    """If these are eight; else by those that move less than half of the loud ones, or a third."""
     motion, loud = windows()
-    still = np.flatnonzero(~loud)[:quiet] if quiet < 50 else ~loud
-    mask = np.zeros(60, bool)
-    mask[still] = True
-    rest, squares = stiffnesses(motion, loud, mask)
-    assert rest == pytest.approx(0.5 / math.pi, rel=0.015)
+    size = abs(motion[2])
+    struck = size == size.max() if loudest else loud
+    mask = ~struck & (np.cumsum(~struck) <= quiet)
+    rest, squares = stiffnesses(motion, struck, mask)
+    used = np.zeros(60, bool)
+    for k in range(60):
+        off = np.array(motion)
+        off[0, k] *= 1.1
+        used[k] = abs(stiffnesses(off, struck, mask)[0] / rest - 1.0) > 1e-6
+    least = size <= max(0.5 * size[struck].min(), np.sort(size)[20])
+    assert used.tolist() == (mask if quiet > 7 else least).tolist()
     growth = (TURN * np.sqrt(squares)) ** 2 - 1.0
-    assert growth[loud] == pytest.approx(0.2, abs=0.03) and abs(growth[~loud]).max() < 0.03
+    assert loudest or rest == pytest.approx(0.5 / math.pi, rel=0.015)
+    assert loudest or growth == pytest.approx(np.where(loud, 0.2, 0.0), abs=0.03)
+
+
+def test_at_one_frequency_a_participation_is_1():
+    """There the windows do not tell it from the stiffness."""
+    motion = windows()[0][:, :1] * np.linspace(1.0, 2.0, 60)
+    rest, _ = stiffnesses(motion, np.zeros(60, bool), np.ones(60, bool))
+    moved, base, stroke = motion[:, 0]
+    assert TURN * rest == pytest.approx(math.sqrt(-((moved + base) / stroke).real), rel=1e-4)
 
 
 @pytest.mark.parametrize(

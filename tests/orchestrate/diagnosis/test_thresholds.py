@@ -7,12 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from orchestrate.diagnosis import search_job
 from orchestrate.diagnosis.decision_rule import DELAMINATED, NOT_SEEN, UNDECIDED, Beam
 from orchestrate.diagnosis.detect import stated_hypotheses
 from orchestrate.diagnosis.even_orders import even_orders, thresholds
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import Results
-from orchestrate.diagnosis.hypotheses import Delaminated
+from orchestrate.diagnosis.hypotheses import Delaminated, DryFriction
 from orchestrate.diagnosis.multistart import Solution
 from orchestrate.diagnosis.search_job import SearchJob
 from orchestrate.diagnosis.settings import SETTINGS
@@ -240,11 +241,37 @@ def test_a_damping_ratio_of_which_half_is_error_is_not_determined(error, found):
 def test_doubt_about_real_contacts_grows_with_what_the_contact_misses():
     values = {"e": 0.5, "split": 0.1}
     for beyond, part in ((0.0225, 0.5), (0.09, 1.0), (1.0, 1.0)):  # of 0.3, squared
-        found = np.sqrt(np.diag(contact_covariance(values, beyond)))
+        found = np.sqrt(np.diag(contact_covariance(values, beyond, SETTINGS)))
         assert found == pytest.approx([part * 0.12, part * 0.02])
     noise = 1e-3 * np.random.default_rng(1).standard_normal((2, 4, 60))
     for squares, seen in ((1.29, False), (1.31, True)):  # over those of noise
-        assert (squares_beyond_noise(math.sqrt(squares) * noise, [noise]) > 0.0) == seen
+        residuals = math.sqrt(squares) * noise
+        assert (squares_beyond_noise(residuals, [noise], SETTINGS.noise_squares) > 0.0) == seen
+
+
+def test_dry_friction_is_viscous_below_a_hundredth_of_the_largest_speed():
+    made = SimpleNamespace(settings=SETTINGS, resonance=34.0, displacement=2e-3, level=[3.0, 5.0])
+    mass = DryFriction().single_mass({"f": 34.0, "log_zeta": -4.0, "friction": 0.2}, made)
+    assert (mass.slow, mass.friction) == pytest.approx((0.01 * 2.0 * math.pi * 34.0 * 2e-3, 0.8))
+
+
+@pytest.mark.parametrize(("misfit", "tried"), [(1.29, ["best", "other"]), (1.31, ["best"])])
+def test_the_second_best_minimum_goes_on_too_if_it_is_close(monkeypatch, misfit, tried):
+    """Up to 1.3 times the best one's misfit; a third one never does."""
+    found = [Solution("best", {"split": 0.0}, 1.0), Solution("other", {"split": 0.2}, misfit)]
+    found.append(Solution("third", {"split": 0.4}, misfit))
+    polished = []
+    coarse = SimpleNamespace(evaluations=0, rank_starts=lambda starts: found)
+    coarse.polish = lambda one: polished.append(one.name) or one
+    monkeypatch.setattr(search_job, "Search", lambda *given: coarse)
+    monkeypatch.setattr(search_job, "cached_coarse_evidence", lambda data: None)
+    hypothesis = SimpleNamespace(is_rugged=True, bounds=lambda evidence: {})
+    search = SimpleNamespace(hypothesis=hypothesis, player=None, evaluations=0)
+    search.rank_starts, search.polish = lambda starts: found[:1], lambda one: one
+    job = SimpleNamespace(data=SimpleNamespace(settings=SETTINGS), evidence=None)
+    job.sort_by_misfit_and_guess = lambda search, ends: ends
+    SearchJob.improved(job, search, [], [], True)
+    assert polished == tried
 
 
 @pytest.mark.parametrize(

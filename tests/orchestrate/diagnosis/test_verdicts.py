@@ -42,20 +42,12 @@ it stiffens with the stroke: stiffens=0.8 -> undecided
 the resonance is not known: stiffness=nan -> undecided
 the base strikes: base=30 -> not described
 dry friction: locked=0.3 -> not described
-a channel is saturated: clipped=0.01 -> undecided
-the sweep does not pass the resonance: end_response=0.98 -> undecided
 the times are in ms: resonance=0.046 -> undecided
-a resonance within 1.3 times the guess's: resonance=67 -> delaminated
-one beyond: resonance=68.2 -> undecided
-one below: resonance=32.2 -> undecided
-seven samples in a period: samples=7 -> undecided
-noise: heard=1.5 excess=0.3 hidden=0.19 -> undecided
 opens from the higher level on: heard=1.5 excess=0.3 | high=8 -> delaminated
 the higher level contradicts: | high=8 heard=1.5 excess=0.3 -> undecided
 it stiffens at the higher level: | high=8 stiffens=0.8 -> undecided
 two levels in place of a frequency: stiffness=nan | high=8 stiffness=nan -> delaminated
 two levels, and a frequency that is another: stiffness=1.2 | high=8 stiffness=1.2 -> undecided
-less than twice the level says nothing: stiffness=nan | high=5 stiffness=nan -> undecided
 one record is saturated: clipped=0.01 | -> delaminated
 nothing at both levels: heard=1.5 excess=0.3 | heard=1.5 excess=0.3 high=8 -> no opening seen
 what knows no frequency does not contradict: | stiffness=nan -> delaminated

@@ -107,15 +107,6 @@ def test_a_clean_record_has_no_note(participation):
     assert notes({BASE: tone, FACE: 3.0 * tone}) == []
 
 
-@pytest.mark.parametrize("off", [-3.0, -2.0, 2.0, 3.0])
-def test_a_line_of_the_mains_stands_alone(off):
-    """One as high 2 or 3 Hz beside it is of a modulation; one further off is another's."""
-    both = with_hum(with_hum(sweep(), FACE), FACE, 50.0 + off)
-    assert notes(both) == []
-    (note,) = notes(with_hum(with_hum(sweep(), FACE), FACE, 50.0 + off + np.sign(off) * 2.5))
-    assert note.kind == "hum"
-
-
 def test_noise_and_a_whole_turn_are_no_lost_samples():
     """The phase of a base in noise jumps by chance; a turn more or less is how it is counted."""
     for seed in range(4):

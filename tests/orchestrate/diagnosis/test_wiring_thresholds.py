@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from orchestrate.constants import TURN
 from orchestrate.diagnosis import wiring
 from orchestrate.diagnosis.wiring import WIRING, LowResponse
 from orchestrate.laboratory.analysis.channels import Channels
@@ -29,6 +30,16 @@ def test_a_fit_knows_delays_of_many_milliseconds(delay):
     fits = [LowResponse.fitted(hertz, response, np.full(36, level), WIRING) for level in (1.0, 9.0)]
     assert fits[0].delay == pytest.approx(delay, abs=1e-3)
     assert [fit.misfit for fit in fits] == pytest.approx([0.05, 0.05], rel=0.1)
+
+
+@pytest.mark.parametrize("mode", [0.12, 1.75])
+def test_a_fit_knows_modes_of_any_size(mode):
+    """Up to seven tenths of the peak at 40 Hz, to a third of a percent."""
+    hertz = np.linspace(5.0, 40.0, 36)
+    square = (hertz / 40.01) ** 2
+    response = np.where(hertz < 30.0, -2.0 * (1.0 + mode * square / (1.0 - square)), 99.0 + 0j)
+    fit = LowResponse.fitted(hertz, response, np.ones(36), WIRING)
+    assert fit.factor == pytest.approx(-2.0, rel=0.005) and fit.misfit < 0.003
 
 
 @pytest.mark.parametrize(
@@ -65,14 +76,16 @@ def record(values, hertz):
     return SimpleNamespace(channels=channels, windows=windows, level=np.ones(len(hertz)))
 
 
-def mains(seconds=30.0, hertz=44.0, other=0.0, turn=0.0):
-    """Whether a line at 50 Hz is named, with another one 2 Hz beside it, and that turns to and fro
-    from one window of 2 s to the next.
+def mains(seconds=30.0, hertz=44.0, other=0.0, off=2.0, turn=0.0, until=None):
+    """Whether a line at 50 Hz is named, with another one beside it, and that turns to and fro from
+    one window of 2 s to the next; the order comes near it at some time, if any.
     """
     time = np.arange(int(seconds * RATE)) / RATE
     sides = np.where(time // 2.0 % 2, turn, 0.0)
-    line = np.sin(100.0 * np.pi * time + sides) + other * np.sin(104.0 * np.pi * time)
-    orders = record(line, np.full(int(seconds), hertz))
+    line = np.sin(100.0 * np.pi * time + sides) + other * np.sin(TURN * (50.0 + off) * time)
+    seconds = np.arange(int(seconds)) + 0.5
+    swept = hertz + 0.0 * seconds if until is None else 45.0 + 0.1 * (seconds - until)
+    orders = record(line, swept)
     return bool(list(wiring.hum_notes(orders, 0, WIRING)))
 
 
@@ -81,7 +94,11 @@ def mains(seconds=30.0, hertz=44.0, other=0.0, turn=0.0):
     [
         ({"seconds": 10.1}, {"seconds": 9.9}),  # five windows of 2 s
         ({"hertz": 44.9}, {"hertz": 45.1}),  # away from the order by 5 Hz
-        ({"other": 1.0 / 6.3}, {"other": 1.0 / 5.7}),  # six times a line beside it
+        *(  # six times a line beside it
+            ({"other": 1.0 / 6.3, "off": off}, {"other": 1.0 / 5.7, "off": off})
+            for off in (-3.0, -2.0, 2.0, 3.0)
+        ),
+        ({"until": 9.3}, {"until": 8.8}),  # in the middle of the fifth window, 9 s
         ({"turn": np.arccos(0.81)}, {"turn": np.arccos(0.79)}),
     ],
 )

@@ -40,14 +40,6 @@ def test_labels_are_in_the_order_in_which_clusters_are_met():
     assert single_linkage(np.empty((0, 2)), 1.0).tolist() == []
 
 
-def test_irregular_responses_are_grouped_by_their_means():
-    chain = [[0, 1.4 + 0.02 * k, 2.0 + 0.1 * k, 0.5, 0.3] for k in range(5)]
-    rows = [*chain[:2], [0, 1.4, 0.5, 0.1, 0.1], *chain[2:]]
-    assert irregular_clusters(rows, AttractorSettings()).tolist() == [0, 0, 1, 0, 0, 0]
-    assert irregular_clusters(rows, AttractorSettings(alike_irregular=0.01)).max() == 5
-    assert irregular_clusters(np.empty((0, 5)), AttractorSettings()).tolist() == []
-
-
 @pytest.mark.parametrize(
     ("other", "alike"),
     [
@@ -117,7 +109,10 @@ def test_short_periods_take_more_of_them():
     assert [transient_periods(400, 300.0, eta) for eta in (0.5, 1.5, 8.0)] == [400, 450, 2400]
 
 
-@pytest.mark.parametrize("wrong", [{"alike": 0.0}, {"longest": -1}, {"near": float("nan")}])
+@pytest.mark.parametrize(
+    "wrong", [{"alike": 0.0}, {"longest": -1}, {"near": float("nan")}, {"samples": 3}]
+)
 def test_settings_out_of_range_are_refused(wrong):
     with pytest.raises(InputError, match=next(iter(wrong))):
-        AttractorSettings(**wrong)
+        settling_run(**wrong)
+    assert settling_run(samples=4, longest=0).samples == 4

@@ -204,6 +204,53 @@ def test_an_orbit_is_one_to_which_the_fmu_returns(monkeypatch, away, impacts, pe
 
 
 @pytest.mark.parametrize(
+    ("changes", "continued"),
+    [
+        *(({}, True), ({"own": 1.01e-5}, False), ({"own": None}, False)),  # `same`
+        *(({"stable": False}, False), ({"stays": False}, False)),
+        *(({"orbit": None}, False), ({"eventful": None}, False)),
+    ],
+)
+def test_an_orbit_goes_on_at_a_neighbour_if_it_is_stable_and_the_fmu_has_it(changes, continued):
+    orbit = SimpleNamespace(sequence=None, nodes=None)
+    given = {
+        "own": 0.99e-5,
+        "stable": True,
+        "stays": True,
+        "orbit": orbit,
+        "eventful": "",
+        **changes,
+    }
+    decider, own = Scripted(), given["own"] and Scripted().motion(given["own"])
+    motion = decider.motion()
+    motion.states, motion.orbit, decider.eventful = [REST], given["orbit"], given["eventful"]
+    decider.solve = lambda guess: None
+    decider.stable_motion = lambda *orbit: motion if given["stable"] else None
+    decider.stays_on = lambda motion: given["stays"]
+    decider.stable_orbit_at = lambda *asked: own
+    assert decider.continue_orbit(motion) is (own if continued else None)
+
+
+@pytest.mark.parametrize(
+    ("times", "begun"), [([], 0.0), ([0.5, 3.5], 2.0), ([4.0, 5.0], 1.5), ([1.0, 2.5], 4.75)]
+)
+def test_a_guess_begins_in_the_middle_of_the_longest_pause(monkeypatch, times, begun):
+    """Of a period of 6, also across its end."""
+    decider, spans = Scripted(), []
+    decider.point = Point(PAPER, Excitation(frequency=TURN / 6.0, amplitude=1.0))
+    decider.system = SimpleNamespace(form=lambda values: None)
+    found = SimpleNamespace(time=np.array(times))
+    decider.eventful = SimpleNamespace(impacts=lambda *span: spans.append(span) or found)
+    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    monkeypatch.setattr(decision, "guess_from_impacts", lambda *given: given[0])
+    guess, phase = decider.guess_from(np.array(REST), 1)
+    assert phase == pytest.approx(TURN / 6.0 * begun)
+    assert times or (guess[0].periods, guess[0].kinds, guess[1].shape) == (1, (), (0, 4))
+    ends = [(0.0, 6.0), (0.0, begun), (begun, 6.0 + begun)]
+    assert spans == [pytest.approx(each) for each in ends[: 3 if times else 1]]
+
+
+@pytest.mark.parametrize(
     ("nodes", "residual", "found"),
     [(400, 0.99e-9, True), (401, 0.99e-9, False), (400, 1.01e-9, False)],
 )

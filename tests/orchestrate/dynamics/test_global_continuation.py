@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.attractors import attractors
+from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.global_continuation import BY_NEWTON, BY_SIMULATION, match_neighbours
 from orchestrate.dynamics.settled_motion import SettledMotion
 from orchestrate.model import Excitation, Structure
@@ -83,7 +84,7 @@ def test_which_attractors_of_neighbours_are_one(before, after, forth, back, expe
     for i, leads in ((0, forth), (1, back)):
         for k, to in enumerate(leads):
             links[i, k, 1 - i] = to if isinstance(to, tuple) else (to, BY_SIMULATION)
-    found = match_neighbours(value(*before), value(*after), 0, links)
+    found = match_neighbours(value(*before), value(*after), 0, links, 0.0)
     assert sorted(found) == expected
 
 
@@ -92,4 +93,5 @@ def test_neighbours_that_one_leads_to_are_one_if_they_are_near(apart, expected):
     leads = {(0, 0, 1): 0, (0, 1, 1): 1, (1, 0, 0): 1, (1, 1, 0): 1}
     links = {key: (to, BY_SIMULATION) for key, to in leads.items()}
     near = value(T, T, apart=apart)
-    assert sorted(match_neighbours(near, near, 0, links)) == expected
+    distance = AttractorSettings().neighbour
+    assert sorted(match_neighbours(near, near, 0, links, distance)) == expected

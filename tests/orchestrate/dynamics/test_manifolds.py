@@ -2,6 +2,7 @@
 
 import functools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,14 @@ from scipy.linalg import expm
 import orchestrate
 from orchestrate import Structure
 from orchestrate.dynamics import manifolds
-from orchestrate.dynamics.curve_growth import CurveGrower, CurvePoint, GrowthSettings
+from orchestrate.dynamics.curve_growth import (
+    CurveGrower,
+    CurvePoint,
+    GrownCurve,
+    GrowthSettings,
+    ItineraryChange,
+    shrinking_power,
+)
 from orchestrate.fmu import OSCILLATOR, Instance, begin
 from orchestrate.model.ranges import PUSHES
 from orchestrate.response.questions import make_point
@@ -76,11 +84,139 @@ def test_a_jump_breaks_the_curve_and_a_root_does_not(height, power):
     assert curve.arclength[number] == curve.arclength[number - 1]
 
 
-def test_a_curve_that_converges_ends():
-    """2 x/(1 + x) leads from 0 to 1."""
-    map_of = images(lambda z: np.array([2.0 * z[0] / (1.0 + z[0]), 0.5 * z[1]]), 2.0)
-    curve = CurveGrower(map_of, SETTINGS).grow()
-    assert curve.end == "converges" and curve.arclength[-1] == pytest.approx(1.0, abs=1e-4)
+def grown(image, spacing=1.0, first=0.0, **more):
+    """The numbers of a curve's points, of states along an axis or in a plane."""
+    settings = GrowthSettings(
+        **{"length": 1e9, "angle": 0.2, "max_points": 5} | more, spacing=spacing
+    )
+    point = lambda s: CurvePoint(s, *image(s))  # noqa: E731
+    return [each.s for each in CurveGrower(point, settings).grow(first).points]
+
+
+def line(s):
+    return np.array([s, 0.0]), (0,)
+
+
+def bent(angle):
+    """A line that turns at 0.05."""
+    beyond = lambda s: max(s - 0.05, 0.0)  # noqa: E731
+    turn = np.array([math.cos(angle) - 1.0, math.sin(angle)])
+    return lambda s: (line(s)[0] + beyond(s) * turn, (0,))
+
+
+def jump(at):
+    return lambda s: (np.array([s + 9.0 * (s > at), 0.0]), (0,))
+
+
+GAP_LEFT = 0.05 / 2**20  # by halves
+
+
+@pytest.mark.parametrize(
+    ("image", "asked", "expected"),
+    [
+        (line, {"max_points": 7}, [0.0, 0.05, 0.125, 0.2375, 0.40625, 0.65625, 0.90625]),
+        (line, {"spacing": 0.05 / 0.49}, [0.0, 0.05, 0.125, 0.2, 0.275]),  # easy: below a half
+        (line, {"spacing": 0.05 / 0.51}, [0.0, 0.05, 0.1, 0.15, 0.2]),
+        (line, {"spacing": 0.049}, [0.0, 0.025, 0.05, 0.075, 0.1]),
+        (bent(0.099), {}, [0.0, 0.05, 0.125, 0.2375, 0.40625]),
+        (bent(-0.101), {}, [0.0, 0.05, 0.125, 0.2, 0.3125]),
+        (bent(0.199), {}, [0.0, 0.05, 0.125, 0.2, 0.3125]),
+        (bent(0.201), {"max_points": 3}, [0.0, 0.05, 0.059375]),  # a hundredth may bend at will
+        (bent(3.1), {"max_points": 3, "spacing": 0.93}, [0.0, 0.05, 0.0546875]),
+        (  # of impacts that change, and steps of a thousandth behind
+            lambda s: (line(s)[0], (int(s > 0.06),)),
+            {"max_points": 6},
+            [0.0, 0.05, 0.06, 0.06, 0.061, 0.0625],
+        ),
+        *(
+            (
+                jump(first),
+                {"first": first, "max_points": 2, "resolution": GAP_LEFT / part / max(first, 1.0)},
+                [first, first + GAP_LEFT * (1.0 if part > 0.5 else 2.0)],
+            )
+            for first in (0.0, 3.0)
+            for part in (0.7, 0.45)
+        ),
+    ],
+)
+def test_steps_adapt_to_distance_and_bend(image, asked, expected):
+    assert grown(image, **asked) == pytest.approx(expected, rel=1e-12)
+
+
+GROWER = CurveGrower(None, GrowthSettings(length=3.0, spacing=0.02, angle=0.2, max_points=7))
+
+
+@pytest.mark.parametrize("low", [0.0, 3.0])
+def test_a_change_is_bisected_to_rounding(low):
+    """To 1e-14, of larger numbers to that part: here 20 times."""
+    asked = []
+
+    def image(s):
+        asked.append(s)
+        return CurvePoint(s, np.zeros(2), (int(s > low),))
+
+    start, width = CurvePoint(low, np.zeros(2), (0,)), 0.7e-14 * max(low, 1.0)
+    found = CurveGrower(image, GROWER.settings).bisect_change(start, image(low + 2**20 * width))
+    assert len(asked) == 21 and found.high.s - low == pytest.approx(width, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("distance", "power", "size", "broken"),
+    [
+        *((1.01e-12, 0.24, 1.0, True), (0.99e-12, 0.0, 1.0, False), (1.0, 0.26, 1.0, False)),
+        *((1.99e-12, 0.0, 2.0, False), (2.01e-12, 0.0, 2.0, True)),
+    ],
+)
+def test_a_break_is_no_root_and_more_than_rounding(distance, power, size, broken):
+    settings = GROWER.settings if size == 1.0 else replace(GROWER.settings, size=size)
+    grower, here = CurveGrower(None, settings), CurvePoint(0.0, np.zeros(2), ())
+    curve = GrownCurve([here], [0.0])
+    grower.cross_change(curve, ItineraryChange(here, here, distance, power))
+    assert (list(curve.breaks), curve.arclength) == ([1] * broken, [0.0, distance * (not broken)])
+    grower.direction = np.array([1.0, 0.0])
+    up = CurvePoint(0.0, np.array([0.0, distance]), ())
+    assert grower.angle_to(here, up) == (0.5 * math.pi if distance > 1e-12 * size else 0.0)
+
+
+def test_the_angle_of_chords_in_one_line_is_none():
+    """Whatever rounding makes of their cosine."""
+    grower, here = CurveGrower(None, GROWER.settings), CurvePoint(0.0, np.zeros(4), ())
+    for chord in np.random.default_rng(1).normal(size=(200, 4)):
+        grower.direction = chord / np.linalg.norm(chord)
+        angles = [grower.angle_to(here, CurvePoint(0.0, one, ())) for one in (chord, -chord)]
+        assert angles == pytest.approx([0.0, math.pi], abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("count", "far", "near", "power"),
+    [
+        *((9, (4.0, 8.0), (1.0, 1.0), 1.5), (7, (4.0, 2.0), (1.0, 1.0), 0.5)),
+        *((7, (1.0, 2.0), (1.0, 1.0), 0.0), (7, (1.0, 2.0), (1.0, 0.0), 1.0)),
+        *((7, (4.0, 0.0), (1.0, 1.0), 0.0), (7, (4.0, 1.0), (1.0, 0.0), 1.0)),
+    ],
+)
+def test_the_power_is_that_of_the_last_quarter_of_a_bisection(count, far, near, power):
+    history = [(math.nan, math.nan)] * count
+    history[-1 - count // 4], history[-1] = far, near
+    assert shrinking_power(history) == pytest.approx(power)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "more", "end"),
+    [
+        *(([0, 1, 2, 2.5, 2.9, 2.99], {}, ""), ([0, 1, 2, 2.5, 2.9, 3.01], {}, "length")),
+        ([0, 1, 2, 2.5, 2.9, 2.95, 2.99], {}, "most points"),
+        ([0, 0.5, 1, 1, 1, 1 + 0.99e-7], {}, "converges"),
+        ([0, 0.5, 1, 1, 1, 1 + 1.01e-7], {}, ""),
+        *(([0, 0.5, 0.9, 1, 1, 1], {}, ""), ([0, 0.019, 0.019, 0.019, 0.019, 0.019], {}, "")),
+        *(([0, 0.5, 1, 1, 1, 1], {"max_step": 1.4}, "converges"), ([1, 1], {}, "")),
+        ([0, 0.5, 1, 1, 1, 1], {"max_step": 1.6}, ""),
+    ],
+)
+def test_why_a_curve_ends(lengths, more, end):
+    """It converges where the last two pieces, or steps, gain less than 1e-7."""
+    curve = GrownCurve([CurvePoint(float(s), None, ()) for s in range(len(lengths))], lengths)
+    assert CurveGrower(None, replace(GROWER.settings, **more)).end_reason(curve) == end
 
 
 @functools.cache

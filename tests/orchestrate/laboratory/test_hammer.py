@@ -21,7 +21,7 @@ from orchestrate import (
     shake,
 )
 from orchestrate.laboratory.analysis.channels import Channels
-from orchestrate.laboratory.analysis.knocks import KNOCKS, Knocks
+from orchestrate.laboratory.analysis.knocks import Knocks
 
 from ...fmu.event_driven import Motion
 from ...sparing import ordinary
@@ -152,8 +152,8 @@ def test_each_threshold_of_a_knock(beats, count):
     channels = Channels(np.arange(1000) / 1e3, 1e3, ("force1",), force[np.newaxis], "x")
     found = Knocks.from_force(force, channels, None)
     assert (len(found.starts) if found else 0) == count
-    if found:  # what is left at the end of a segment
-        assert np.exp(-found.decay * found.length / found.rate) == pytest.approx(KNOCKS.left)
+    if found:  # a hundredth is left at the end of a segment
+        assert np.exp(-found.decay * found.length / found.rate) == pytest.approx(0.01)
 
 
 def test_a_continuous_force_is_averaged_as_the_box_is():

@@ -29,11 +29,6 @@ TOLERANCE = 1e-2
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
-def multiplicity(samples, tolerance, frequency=1.0, gap=None):
-    gap = 2.0 * np.abs(samples).max() if gap is None else gap  # no smaller than any difference
-    return find_repetition(samples, frequency, gap, tolerance).multiplicity
-
-
 def decide(samples, frequency=1.0, gap=1.0):
     """What the rule decides, compiled and in Python."""
     count = len(samples)
@@ -70,16 +65,6 @@ def repeat(orbit, length):
     return np.tile(orbit, (length // len(orbit) + 1, 1))[:length]
 
 
-@pytest.mark.parametrize(("deviation", "expected"), [(0.9, 1), (1.1, 2)])
-@pytest.mark.parametrize("coordinate", range(4))
-def test_a_gap_much_smaller_than_the_motion_has_a_size_of_its_own(coordinate, deviation, expected):
-    frequency, gap = 3.0, 1.0
-    samples = np.tile([100.0, 100.5, 50.0, 50.0], (40, 1))
-    samples[::2, coordinate] += deviation * TOLERANCE * gap * (frequency if coordinate > 1 else 1.0)
-    assert multiplicity(samples, TOLERANCE, frequency) == 1
-    assert multiplicity(samples, TOLERANCE, frequency, gap) == expected
-
-
 @given(st.integers(0, 1000), st.integers(-200, 200))
 def test_nothing_depends_on_the_amplitude(seed, power):
     samples = np.random.default_rng(seed).normal(size=(40, 4))
@@ -101,11 +86,6 @@ def states_of(deviation, count=200, of_velocity=np.zeros_like):
     return samples
 
 
-def doubling(multiplier, count=200, width=0.0):
-    """Next to a period doubling: a deviation that changes sides dies, beside one that stays."""
-    return states_of(lambda n: (-1.0) ** n * (0.05 * multiplier**n + width), count)
-
-
 @given(orbits(), st.integers(0, 60), st.floats(0.5, 0.9))
 def test_what_has_died_or_dies_fast_has_repeated(orbit, more, multiplier):
     samples = repeat(orbit, 8 * len(orbit) + more + 40)
@@ -113,13 +93,6 @@ def test_what_has_died_or_dies_fast_has_repeated(orbit, more, multiplier):
     n, decided = decide(samples + rest[:, None], gap=2.0 * np.abs(samples).max())
     assert n == len(orbit)
     assert decided == REPEATED
-
-
-@pytest.mark.parametrize("width", [1e-7, 1e-5, 1e-3, 0.1])
-def test_the_tolerance_does_not_hide_a_narrow_period_doubling(width):
-    states = doubling(0.8, width=width)
-    assert find_repetition(states, 1.0, 1.0, TOLERANCE).multiplicity == (1 if width < 0.01 else 2)
-    assert decide(states) == (2, REPEATED)
 
 
 def scaled(run):
@@ -262,6 +235,7 @@ def test_a_gap_below_a_millionth_of_the_motion_is_as_large(gap, counts):
     m[repetition.HEAD : repetition.HEAD + 4] = 1.0, 1.0, 0.0, 0.0
     repetition.scale(m, 0)
     assert m[repetition.SIZE_OF_GAP] == (gap if counts else 2.0**-20)
+    assert m[repetition.AWAY] == len(m) - 2  # deviations are the last row
 
 
 @given(st.floats(0.0, 1.0), st.floats(0.05, 0.45))
@@ -371,12 +345,17 @@ def test_none_where_there_must_be_some_are_too_few():
 
 
 @pytest.mark.parametrize(
-    ("halving", "expected"), [(55.0, UNDECIDED), (132.0, UNDECIDED), (140.0, IRREGULAR)]
+    ("halving", "turn", "expected"),
+    [
+        *((55.0, 1, UNDECIDED), (132.0, 1, UNDECIDED), (140.0, 1, IRREGULAR)),
+        *((90.0, 5, UNDECIDED), (90.0, 6, IRREGULAR)),  # of 100 samples seen five times a quarter
+    ],
 )
-def test_a_spiral_that_shrinks_is_not_irregular(halving, expected):
+def test_a_spiral_that_shrinks_is_not_irregular(halving, turn, expected):
     n = np.arange(200)
     size, turns = 0.5 ** (n / halving), 2.0 * np.pi * GOLDEN * n
-    assert decide(four(size * np.cos(turns), size * np.sin(turns))).decided == expected
+    states = four(size * np.cos(turns) + n % turn, size * np.sin(turns))
+    assert decide(states) == (turn if expected == UNDECIDED else 0, expected)
 
 
 @pytest.mark.parametrize(("found", "expected"), [(0, (1, UNDECIDED)), (1, (0, IRREGULAR))])

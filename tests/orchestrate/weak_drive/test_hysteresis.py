@@ -50,17 +50,17 @@ class Rotor:
         self.speed = float(table["speed"][0])
 
 
-def decided(slope, up=True, start=1.1, ends=(1.4, 1.6), longest=2e4, stiff=STIFF, at=0.3):
-    """The jumps of a course that begins at a part of a ramp."""
-    first, last = ends if up else ends[::-1]
+def decided(slope, up=True, start=1.1, longest=2e4):
+    """The jumps of a course that begins at three tenths of a ramp."""
+    first, last = (1.4, 1.6) if up else (1.6, 1.4)
     ramp = Ramp(first, last, 1e-4, back=False)
-    loop = HysteresisLoop(lambda it: Rotor(it, slope, start, stiff), ramp, H, 1.0, 1.0, longest)
-    return loop.jumps(loop.hold_step(round(at * ramp.duration / H)), last)
+    loop = HysteresisLoop(lambda it: Rotor(it, slope, start), ramp, H, 1.0, 1.0, longest)
+    return loop.jumps(loop.hold_step(round(0.3 * ramp.duration / H)), last)
 
 
-def fold_of(slope, up=True, stiff=STIFF):
+def fold_of(slope, up=True):
     """Where the derivative is 0: 1.5 plus or minus 2/3 |slope| x there."""
-    x = (-slope / 3.0 / stiff) ** 0.5
+    x = (-slope / 3.0 / STIFF) ** 0.5
     return 1.5 - (1 if up else -1) * 2.0 / 3.0 * slope * x
 
 
@@ -69,45 +69,6 @@ def assert_at(jump, fold):
     low, high = sorted((jump.low, jump.high))
     assert jump.outcome == LOST
     assert low - 5e-6 <= fold <= high + 5e-6 and high - low < 2.1e-4
-
-
-@pytest.mark.parametrize(("up", "start"), [(True, 1.1), (False, 1.5)])
-@pytest.mark.parametrize("slope", [-0.2, -0.05, -0.02])
-def test_a_fold(slope, up, start):
-    """It is bracketed; -0.02: the other one is 5e-4 away."""
-    (jump,) = decided(slope, up=up, start=start)
-    assert_at(jump, fold_of(slope, up))
-
-
-NARROW = {"ends": (1.47, 1.53), "stiff": 2500.0}  # speeds change little between its folds
-
-
-@pytest.mark.parametrize("slope", [-0.05, -0.03, -0.01, 0.01, 0.03])
-def test_no_two_courses_contradict_each_other(slope):
-    """What lies between a jump and none is undecided."""
-    outcomes = {
-        tuple(jump.outcome for jump in decided(slope, start=1.27, at=at, **NARROW))
-        for at in (0.1, 0.25)
-    }
-    assert outcomes <= {(LOST,), (UNDECIDED,)} or outcomes <= {(), (UNDECIDED,)}
-    assert outcomes == {(LOST,)} or slope > -0.035
-    assert outcomes == {()} or slope < 0.005
-
-
-@pytest.mark.parametrize("slope", [0.01, 0.1])
-def test_a_steep_branch(slope):
-    """Up to 100 times as steep as the voltage, but the speed comes back with it."""
-    assert decided(slope, longest=2e5) == []
-
-
-@pytest.mark.parametrize("slope", [-0.02, 0.0])
-@pytest.mark.parametrize("longest", [1500.0, 5000.0])
-def test_a_short_hold_is_never_wrong(slope, longest):
-    """Near the edge of a fold speeds settle slowly."""
-    outcomes = {jump.outcome for jump in decided(slope, longest=longest)}
-    lost = slope < 0.0 and fold_of(slope) - fold_of(slope, up=False) > 1e-4
-    assert outcomes <= {LOST, UNDECIDED} if lost else outcomes <= {UNDECIDED}
-    assert outcomes or not lost
 
 
 class Scripted(HysteresisLoop):
@@ -131,20 +92,6 @@ class Scripted(HysteresisLoop):
     def course(self):
         """The jumps between 1.5 and 1.56."""
         return self.jumps(self.at(1.5), 1.56)
-
-
-def test_two_motions_in_turn_are_two_jumps():
-    """At 1.52 and 1.54; on the way back each lasts to 1.51."""
-
-    def higher(motion, before, voltage):
-        if voltage > 1.54 or (motion == 0.1 and voltage > 1.51):
-            return 0.1
-        return 0.03 if voltage > 1.52 or (motion and voltage > 1.51) else 0.0
-
-    jumps = Scripted(higher).course()
-    assert [jump.outcome for jump in jumps] == [LOST, LOST]
-    for jump, place in zip(jumps, (1.52, 1.54), strict=True):
-        assert jump.low - 1e-9 <= place <= jump.high + 1e-9
 
 
 @pytest.mark.parametrize(
@@ -414,6 +361,9 @@ def test_the_motion_on_the_way_back_has_to_last(life, outcome):
 
     loop = Leaving(None)
     assert loop.way_back(loop.at(1.5), loop.at(1.5001, 0.1)) == outcome
+    for time, expected in ((2.0, 2.05), (2.1, 2.1)):  # since when the other one was lost
+        high = loop.at(1.5)._replace(time=time)
+        assert loop.lasting(loop.at(1.5, 0.1), high, 9.0).time == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(("asked", "base", "rotor"), [({}, 4000, 200), ({"base_hold": 1}, 1, 200)])
@@ -450,6 +400,8 @@ def test_a_motion_is_held_for_a_time_unless_it_is_left(later, pieces):
     point = loop.hold(None, 1.5, 1.5, least=1500.0)  # of pieces of 50/omega
     assert point.speed == pytest.approx(later) and len([rows for rows in told if rows]) == pieces
     assert point.time == 50.0 * pieces
+    loop.step = 200.0  # longer than a piece
+    assert loop.hold(None, 1.5, 1.5).time in 200.0 * np.arange(1, 9)
 
 
 def test_where_a_speed_between_is_sought(monkeypatch):
@@ -553,6 +505,28 @@ def test_a_motion_whose_disturbances_grow_slowly_is_held_for_their_growth_time(s
     (jump,) = loop.course()
     assert jump.outcome == LOST and jump.low <= 1.52 < jump.high and jump.high - jump.low > 1e-3
     assert 30.0 / (steep * (jump.high - 1.52)) < 1e5 or jump.high > 1.55
+
+
+@pytest.mark.parametrize(("slope", "up", "start"), [(-0.05, True, 1.1), (-0.02, False, 1.5)])
+def test_a_fold(slope, up, start):
+    """It is bracketed; -0.02: the other one is 5e-4 away."""
+    (jump,) = decided(slope, up=up, start=start)
+    assert_at(jump, fold_of(slope, up))
+
+
+def test_a_steep_branch():
+    """100 times as steep as the voltage, but the speed comes back with it."""
+    assert decided(0.01, longest=2e5) == []
+
+
+@pytest.mark.parametrize("slope", [-0.02, 0.0])
+@pytest.mark.parametrize("longest", [1500.0, 5000.0])
+def test_a_short_hold_is_never_wrong(slope, longest):
+    """Near the edge of a fold speeds settle slowly."""
+    outcomes = {jump.outcome for jump in decided(slope, longest=longest)}
+    lost = slope < 0.0 and fold_of(slope) - fold_of(slope, up=False) > 1e-4
+    assert outcomes <= {LOST, UNDECIDED} if lost else outcomes <= {UNDECIDED}
+    assert outcomes or not lost
 
 
 def record_of(slips):
