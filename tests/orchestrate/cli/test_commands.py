@@ -15,11 +15,8 @@ from matplotlib import image
 
 import orchestrate
 from orchestrate import InputError, Structure, cli
-from orchestrate.cli.diagnosis import Plan
-from orchestrate.cli.dynamics import attractor_table
 from orchestrate.cli.options import OfBox
 from orchestrate.fmu import OSCILLATOR, find
-from orchestrate.units import with_units
 
 from ...exports import BUILD
 from ...sparing import ordinary
@@ -184,82 +181,6 @@ def test_a_command_asks_its_function_and_shows_the_answer(ask, tmp_path, monkeyp
     }
     told = re.findall(r"^/.*?(?=: complete already$|$)", f"{plain}{shown}", re.MULTILINE)
     assert set(told) == {str(path) for path in folder.iterdir()}
-
-
-FOREIGN = r"\bHz\b|rad/s|\d m\b|\d mm\b| m\b|m/s2|\beta\b"
-WORDS = {  # an option that asks, and the words of the answer
-    **{"--hz 11:13:1": "Hz", "--rpm 660:780:60": "rpm", "--frequency 70:80:5": "rad/s"},
-    **{"--eta 0.9:1.1:0.1": "eta = ", "--hz 11:13:1 --units rpm,um,g": "rpm"},
-}
-
-
-@pytest.mark.parametrize("asked", WORDS)
-def test_a_question_is_answered_as_it_is_asked(ask, asked):
-    """Or in the units that are wanted and in no other."""
-    pressed = (*BEAM, "--set", "clearance=-2e-5", *SHORT, "--direction", "up", "--plot", "none")
-    done = ask("sweep", *pressed, *asked.split(), "--amplitude", "1e-5").success()
-    text = "\n".join(line for line in done.out.splitlines() if not line.startswith("/"))
-    assert f"at {WORDS[asked]}" in text or re.search(rf"\d {WORDS[asked]}\b", text)
-    assert "units" not in asked or not re.search(FOREIGN, text.replace("mm/s", "")), text
-
-
-@pytest.mark.parametrize("kind", ["map", "basin"])
-def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(kind):
-    """1.5 times a Omega^2/omega^2, which is 0.2/100 m."""
-    one = {"xi_rel_max": 1.5, "multiplicity": 1.0, "impacts_per_period": 1.0}
-    over = "e" if kind == "map" else "attractor"
-    data = xr.Dataset({name: (over, [value]) for name, value in one.items()}, {over: [0.5]})
-    data = with_units(data.assign_attrs(k1=100.0, m1=1.0, level=0.2), "mm")
-    if kind == "map":
-        words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
-        data = data.assign(multiplicity_decided=("e", [1], words))
-        lines = cli.responses.Map().summary(data)
-    else:
-        words = {"flag_values": [0, 1], "flag_meanings": "absent orbit"}
-        more = {"share": ("attractor", [1.0]), "decided_by": ("attractor", [1], words)}
-        more["state"] = (("attractor", "coordinate"), [[0.0] * 4])
-        lines = attractor_table(data.assign(more))
-    assert "xi_Rel = 1.5, 3 mm" in " ".join(lines)
-
-
-def made_sweep(kinds, impacts):
-    """A made-up sweep of responses: their kinds, as ``multiplicity_decided`` has them."""
-    words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
-    count = len(kinds)
-    numbers = {"xi_rel_max": np.linspace(1.0, 2.0, count), "impacts_per_period": impacts}
-    numbers |= {name: np.full(count, 0.5) for name in ("x1_max", "x2_max", "a1_max", "a2_max")}
-    numbers |= {"multiplicity": np.ones(count, dtype=int), "permanent_contact": np.zeros(count)}
-    data = xr.Dataset({name: ("eta", values) for name, values in numbers.items()})
-    data = data.assign_coords(eta=1.0 + 0.01 * np.arange(count))
-    for name in ("x1_max", "x2_max"):
-        data[name].attrs["units"] = "m"
-    return data.assign(multiplicity_decided=("eta", kinds, words)).assign_attrs(k1=1.0, m1=1.0)
-
-
-def test_a_sweep_is_summed_up_in_a_table_of_ten_lines():
-    """Made-up: twelve windows of which the shortest are left out; impacts divide windows too."""
-    kinds = np.repeat([1, 0, 1, 2, 1, 0, 1, 0, 1, 0, 1, 0], [9, 2, 20, 6, 8, 3, 7, 1, 5, 1, 4, 1])
-    impacts = np.where(np.arange(len(kinds)) < 21, 1.0, 2.0)
-    lines = list(cli.responses.Sweep().summary(made_sweep(kinds, impacts)))
-    counts = "67 responses: 53 repeat (79 %), 8 irregular (12 %), 6 undecided (9 %)"
-    assert any(line.startswith(counts) and "--transient 5000" in line for line in lines)
-    first = next(i for i, line in enumerate(lines) if "widest windows" in line)
-    rows = [line for line in lines[first:] if line.startswith("  ")]
-    assert len(rows) == 10 and rows[1].split() == [
-        "eta",
-        "=",
-        "1",
-        "to",
-        "1.08",
-        "after",
-        "1",
-        "T",
-        "1",
-    ]
-    assert (
-        rows[3].split() == ["eta", "=", "1.21", "to", "1.3", "after", "1", "T", "2"]
-        and "undecided" in rows[4]
-    )
 
 
 TRIVIAL = {  # options, and what is said of what is trivial
@@ -431,20 +352,6 @@ def test_a_plan(ask, tmp_path, monkeypatch):
     ask("plan", *BEAM, "--faces", "2", "--noise", "1", "--g", "0.1,0.2")
     assert list(asked["sensor"]) == ["acceleration2"] and tuple(asked["g"]) == (0.1, 0.2)
     assert asked["sensor"]["acceleration2"].noise == 1
-
-
-@pytest.mark.parametrize(("decides", "said"), [([1, 0], "lower levels only"), ([0, 0], "raise")])
-def test_a_plan_of_which_the_higher_levels_do_not_decide(decides, said):
-    """It said that no verdict was right, and to raise the level."""
-    names = ("recommended_level", "second_level", "recommended_first", "recommended_last")
-    numbers = dict.fromkeys((*names, "recommended_duration", "recommended_rate"), ((), 40.0))
-    rows = dict.fromkeys(("verdict", "sound_verdict"), ("level", ["undecided"] * 2))
-    made = {**numbers, **rows, "decides": ("level", decides), "overload": ("level", [0, 0])}
-    made |= {"counts": ((), 0), "opening_level": ((), 0.0)}
-    made |= {"opening": ("level", [0.0, 0.0], {"units": "m", "long_name": "opening"})}
-    level = ("level", [20.0, 40.0], {"units": "m/s2", "long_name": "level"})
-    data = xr.Dataset(made, {"level": level}, {"clearance": 1.0})
-    assert any(said in line for line in Plan().summary(data))
 
 
 def test_exponents_along_a_sweep_and_an_orbit_from_a_stored_one(ask, tmp_path):

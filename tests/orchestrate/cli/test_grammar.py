@@ -16,10 +16,8 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
 from orchestrate.cli.output import result_name
-from orchestrate.cli.printing import end_lines, format_ranges, table
 from orchestrate.errors import InputError
 from orchestrate.model.structure import Structure
-from orchestrate.units import with_units
 
 from .commands import ROOT
 
@@ -187,21 +185,6 @@ def test_another_question_or_structure_has_another_name():
     names = {result_name("sweep", ["own/my beam.toml"], *one) for one in asked}
     assert len(names) == len(asked)
     assert all(name.startswith("sweep_my beam_") and len(name) == 20 for name in names)
-
-
-def test_ranges_tables_and_ends():
-    from xarray import Dataset
-
-    data = Dataset(coords={"frequency": [6.283185307179586 * number for number in range(10)]})
-    flags = [number in (1, 2, 3, 7) for number in range(10)]
-    assert format_ranges(data, "frequency", flags) == "1 to 3, 7 Hz"
-    short = format_ranges(with_units(data, "rpm"), "frequency", flags, max_ranges=1)
-    assert short == "60 to 180 rpm and 1 shorter ranges"
-    rows = list(table({"a": [str(10**i) for i in range(12)], "b": ["x"] * 12}))
-    assert rows[0] == "  a           b" and rows[10] == "  1000000000  x"
-    assert rows[11:] == ["  ... and 2 more"]
-    (line,) = end_lines(["limit", "no convergence"])
-    assert "Newton's method" in line and "--longest" in line and "--most" in line
 
 
 def test_build(capsys, tmp_path, monkeypatch):

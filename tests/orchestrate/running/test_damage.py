@@ -14,7 +14,7 @@ from orchestrate.errors import InputError, StoreError
 from orchestrate.running.checksum import ATTRIBUTE, checksum
 from orchestrate.running.journal import Journal, journal_path
 from orchestrate.running.runner import answer
-from tests.faults import FILE_DAMAGE, ROW_DAMAGE, a_shorter_row, rows, too_many_rows
+from tests.faults import FILE_DAMAGE, ROW_DAMAGE
 from tests.sparing import ordinary
 
 from .sums import Squares
@@ -75,22 +75,6 @@ def query(journal: Path, text: str, *values: object) -> None:
     opened.close()
 
 
-@pytest.mark.parametrize(
-    ("damage", "text"),
-    [(a_shorter_row, "not of 3 items"), (too_many_rows, "none of the 10 of this job")],
-)
-def test_sealed_rows_of_another_job_are_computed_anew(journal, path, find, caplog, damage, text):
-    """Even where whoever changed them knew how rows are sealed."""
-    damage(journal, random.Random(1))
-    opened = Journal(journal, {}, "")
-    seals = [(opened._row_checksum(index, data), index) for index, data in rows(journal)]
-    opened.close()
-    for seal in seals:
-        query(journal, "UPDATE chunks SET sha256 = ? WHERE i = ?", *seal)
-    assert numbers(find, path) == SQUARES
-    assert text in caplog.text
-
-
 def test_a_row_damaged_while_the_job_runs_makes_no_shorter_result(journal, path, find, monkeypatch):
     """What was sound when the job went on may be damaged when it is put together."""
     work = Squares.work
@@ -127,13 +111,6 @@ def test_killed_while_it_is_finished_it_leaves_nothing_behind(
     assert journal.exists() == (stop == 0)
     assert numbers(find, path) == SQUARES
     assert {file.name for file in tmp_path.iterdir()} == {path.name, "model.fmu"}
-
-
-@pytest.mark.parametrize("ending", ["", ".journal", ".lock"])
-def test_a_folder_in_the_place_of_a_file(find, path, ending):
-    Path(f"{path}{ending}").mkdir()
-    with pytest.raises((StoreError, InputError), match=rf"{ending}.*expected.*remove"):
-        answer(JOB, {"store": path}, find)
 
 
 @pytest.mark.parametrize("damage", FILE_DAMAGE)
