@@ -8,8 +8,6 @@ import textwrap
 from importlib import util
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
@@ -17,8 +15,6 @@ from fmu_src.export.sources import load_model
 from fmu_src.export.translation.kernel import translate
 
 from ..sparing import ordinary
-from . import kernel_like
-from . import kernel_like_slots as at
 
 CC = shutil.which("gcc") or shutil.which("cc") or shutil.which("clang")
 EXPORT = """
@@ -39,32 +35,6 @@ def library(folder, text, *flags):
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return ctypes.CDLL(str(target))
-
-
-@pytest.fixture(scope="module")
-def compiled(tmp_path_factory):
-    if CC is None:
-        pytest.skip("no C compiler on this machine")
-    outside = "".join(EXPORT.format(name=name) for name in kernel_like.ENTRIES)
-    shown = f"#pragma GCC visibility pop\n{outside}"  # the kernel's own names are hidden
-    return library(tmp_path_factory.mktemp("c"), translate(kernel_like.ENTRIES) + shown)
-
-
-numbers = st.floats(-50.0, 50.0).map(lambda x: round(x * 64) / 64) | st.floats(-2.0, 2.0)
-
-
-@pytest.mark.parametrize("name", kernel_like.ENTRIES)
-@settings(max_examples=100, deadline=None)
-@given(x=numbers, begin=st.lists(numbers, min_size=at.SIZE, max_size=at.SIZE))
-def test_memory_is_the_same_after_both(compiled, name, x, begin):
-    """All slots to the last bit: order of evaluation, loops, tuples, conversions, choices."""
-    memory = (ctypes.c_double * at.SIZE)(*begin)
-    entry = getattr(compiled, f"outside_{name}")
-    entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
-    assert entry(memory, x) == 0
-    expected = list(begin)
-    kernel_like.ENTRIES[name](expected, x)
-    assert [v.hex() for v in memory] == [float(v).hex() for v in expected]
 
 
 def module_of(folder, body):
