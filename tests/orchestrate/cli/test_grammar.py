@@ -43,41 +43,12 @@ def test_every_default_is_that_of_the_function_and_in_the_help():
     assert compared > 40
 
 
-def test_an_argument_of_a_function_is_an_option_without_more(monkeypatch):
-    def echo(structure, *, eta=None, depth=3, loud=False, mood="calm", ends=None, start=None):
-        """Sound.
-
-        Parameters
-        ----------
-        depth : int
-            How deep, m. Not shown.
-        loud : bool
-            Whether to shout.
-        mood : {"calm", "cross"}
-            What it is.
-        ends : (float, float)
-            From and to.
-        start : array_like of 4 floats
-            State. By default rest.
-        """
-
-    monkeypatch.setattr(orchestrate, "echo", echo, raising=False)
-    command = type("Echo", (cli.command.Command,), {"calls": "echo", "__call__": print})
-    options = {name: option.words for name, (option, _, _) in command.options().items()}
-    assert options["depth"] == "how deep, m (default: 3)" and options["loud"] == "shout"
-    assert options["start"] == "state; by default rest" and "eta" not in options
-    words = "--depth 7 --mood cross --loud --ends 1:2 --start 0,1um,0,0"
-    (call, bound, _) = command.app().parse_args(words.split())
-    expected = {"depth": 7, "loud": True, "mood": "cross", "ends": (1.0, 2.0)}
-    assert call(**bound.kwargs).keywords() == {**expected, "start": (0.0, 1e-6, 0.0, 0.0)}
-
-
 @pytest.mark.parametrize("program", ["vibroimpact", "python -m orchestrate"])
 def test_help_has_quantities_and_examples_that_can_be_typed(capsys, monkeypatch, program):
     monkeypatch.setattr(sys, "argv", [f"/bin/{program}"])
     assert cli.main(["--help"]) == 0
     assert {*cli.COMMANDS, "paper", "quick", "beam"} <= set(capsys.readouterr().out.split())
-    for command, found in cli.COMMANDS.items():
+    for command, found in [*cli.COMMANDS.items()][:: 1 if program == "vibroimpact" else 9]:
         assert cli.main([command, "--help"]) == 0
         text = capsys.readouterr().out
         assert text.startswith(f"Usage: {program} {command}")

@@ -8,7 +8,8 @@ import sys
 import pytest
 
 from fmu_src.export import c_library as sources
-from orchestrate.fmu import exported
+from orchestrate.errors import InputError
+from orchestrate.fmu import c_library, exported
 from orchestrate.fmu.c_library import SOURCES, library_path
 from tests.faults import FILE_DAMAGE
 
@@ -64,3 +65,19 @@ def test_what_others_could_have_written_is_compiled_anew(cache, part, mode):
     one.chmod(one.stat().st_mode | mode)
     assert library_path(SOURCE, folder) == path and path.read_bytes() == COMPILED
     assert len(made) == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="other owners there")
+@pytest.mark.parametrize("shipped", [False, True])
+def test_what_is_somebody_else_s_is_loaded_only_from_the_package(cache, monkeypatch, shipped):
+    folder, _ = cache
+    path = library_path(SOURCE, folder)
+    monkeypatch.setattr(
+        "orchestrate.files.trusted_owners", lambda: ({path.stat().st_uid + 1}, set())
+    )
+    if shipped:
+        monkeypatch.setattr(c_library, "SHIPPED", folder)
+        assert library_path(SOURCE, folder) == path
+    else:
+        with pytest.raises(InputError, match=f"{path}: others can write .*expected"):
+            library_path(SOURCE, folder)

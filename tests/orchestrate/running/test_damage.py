@@ -14,7 +14,7 @@ from orchestrate.errors import InputError, StoreError
 from orchestrate.running.checksum import ATTRIBUTE, checksum
 from orchestrate.running.journal import Journal, journal_path
 from orchestrate.running.runner import answer
-from tests.faults import FILE_DAMAGE, ROW_DAMAGE
+from tests.faults import FILE_DAMAGE, ROW_DAMAGE, a_shorter_row, rows, too_many_rows
 from tests.sparing import ordinary
 
 from .sums import Squares
@@ -73,6 +73,22 @@ def query(journal: Path, text: str, *values: object) -> None:
     opened = Journal(journal, {}, "")
     opened._query(text, *values)
     opened.close()
+
+
+@pytest.mark.parametrize(
+    ("damage", "text"),
+    [(a_shorter_row, "not of 3 items"), (too_many_rows, "none of the 10 of this job")],
+)
+def test_sealed_rows_of_another_job_are_computed_anew(journal, path, find, caplog, damage, text):
+    """Even where whoever changed them knew how rows are sealed."""
+    damage(journal, random.Random(1))
+    opened = Journal(journal, {}, "")
+    seals = [(opened._row_checksum(index, data), index) for index, data in rows(journal)]
+    opened.close()
+    for seal in seals:
+        query(journal, "UPDATE chunks SET sha256 = ? WHERE i = ?", *seal)
+    assert numbers(find, path) == SQUARES
+    assert text in caplog.text
 
 
 def test_a_row_damaged_while_the_job_runs_makes_no_shorter_result(journal, path, find, monkeypatch):
