@@ -21,7 +21,6 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Li
 SLOW, MEMORY = 30.0, 4 << 30  # s, bytes
 LONG = 2000  # letters of a line that a person reads
 SIMULATE = ("simulate", "--eta", "1", "--periods", "2", "--plot", "none")
-COUPLE = ("couple", "--only", "delaminated", "--one-way", "--plot", "none")
 READERS = (
     "sweep --eta 1 --store {}",
     "explore {} --no-open",
@@ -71,14 +70,6 @@ def attack_reader(
         kind = archives.KINDS[number // 2 % len(archives.KINDS)]
         archives.write(kind, fmu, place, chance)
         command = [*SIMULATE, "--fmu", place]
-    elif number % 8 == 1:
-        kind = "CSV"
-        documents.write_course(place, chance)
-        command = [*COUPLE, "--course", place]
-    elif number % 8 == 5:
-        kind = "TOML"
-        documents.write_toml(place, chance)
-        command = [*SIMULATE, "--structure", place]
     else:
         reader = chance.choice(READERS)
         kind = f"NetCDF for {reader.split()[0]}"
@@ -92,7 +83,7 @@ def attack_reader(
 @pytest.mark.slow
 @pytest.mark.budget(16)  # inputs
 def test_malicious_input_is_refused_in_one_line_or_does_no_harm(fmu, seed, budget, tmp_path):
-    """FMU archives, TOML, CSV, NetCDF: refused within 30 s and 4 GiB without a traceback, and
+    """FMU archives and NetCDF: refused within 30 s and 4 GiB without a traceback, and
     nothing is written elsewhere.
     """
     chance, findings, counts = random.Random(seed), [], Counter[str]()

@@ -224,26 +224,3 @@ def test_jump_verdicts_of_random_drives(exported, seed, budget):
             except VibroimpactError as error:
                 findings.append(f"drive {number}, {name}: {error}")
     expect_none(findings, counts)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (lambda jump: [jump._replace(low=jump.low + 3e-3, high=jump.high + 3e-3)], "speed"),
-        (lambda jump: [], "two motions last"),
-        (lambda jump: [jump, jump._replace(low=jump.low - 0.1, high=jump.high - 0.1)], "speed"),
-    ],
-)
-def test_a_wrong_answer_is_found(exported, monkeypatch, change, words):
-    """Of both judges of the bonded structure: a jump that is misplaced, denied, or one too many."""
-    system, right = draw_with_folds(np.random.default_rng(1)), reported_jumps
-
-    def wrong(*asked):
-        return {way: change(*jumps) for way, jumps in right(*asked).items()}
-
-    monkeypatch.setitem(globals(), "reported_jumps", wrong)
-    problems = [problem for _, problem in judge(system, "bonded", RATES[:1]) if problem]
-    for way in WAYS:
-        own = [problem for problem in problems if f"bonded, {way}, " in problem]
-        assert any(words in problem for problem in own) and any("theory" in each for each in own)

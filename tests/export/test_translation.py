@@ -8,8 +8,6 @@ import textwrap
 from importlib import util
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
@@ -17,8 +15,6 @@ from fmu_src.export.sources import load_model
 from fmu_src.export.translation.kernel import translate
 
 from ..sparing import ordinary
-from . import kernel_like
-from . import kernel_like_slots as at
 
 CC = shutil.which("gcc") or shutil.which("cc") or shutil.which("clang")
 EXPORT = """
@@ -39,32 +35,6 @@ def library(folder, text, *flags):
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return ctypes.CDLL(str(target))
-
-
-@pytest.fixture(scope="module")
-def compiled(tmp_path_factory):
-    if CC is None:
-        pytest.skip("no C compiler on this machine")
-    outside = "".join(EXPORT.format(name=name) for name in kernel_like.ENTRIES)
-    shown = f"#pragma GCC visibility pop\n{outside}"  # the kernel's own names are hidden
-    return library(tmp_path_factory.mktemp("c"), translate(kernel_like.ENTRIES) + shown)
-
-
-numbers = st.floats(-50.0, 50.0).map(lambda x: round(x * 64) / 64) | st.floats(-2.0, 2.0)
-
-
-@pytest.mark.parametrize("name", kernel_like.ENTRIES)
-@settings(max_examples=100, deadline=None)
-@given(x=numbers, begin=st.lists(numbers, min_size=at.SIZE, max_size=at.SIZE))
-def test_memory_is_the_same_after_both(compiled, name, x, begin):
-    """All slots to the last bit: order of evaluation, loops, tuples, conversions, choices."""
-    memory = (ctypes.c_double * at.SIZE)(*begin)
-    entry = getattr(compiled, f"outside_{name}")
-    entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
-    assert entry(memory, x) == 0
-    expected = list(begin)
-    kernel_like.ENTRIES[name](expected, x)
-    assert [v.hex() for v in memory] == [float(v).hex() for v in expected]
 
 
 def module_of(folder, body):
@@ -111,22 +81,40 @@ def test_what_is_outside_the_subset_is_refused(tmp_path, body, line, text):
     assert f"outside.py, line {line}: " in told and text in told and "\n" not in told
 
 
-def test_floor_is_exact(tmp_path):
-    """Beside ties, zeros, and numbers from which on all are whole."""
+def both(folder, body):
+    """An entry point in Python and in C."""
     if CC is None:
         pytest.skip("no C compiler on this machine")
+    module, outside = module_of(folder, body), EXPORT.format(name="entry")
+    text = translate({"entry": module.entry}) + f"#pragma GCC visibility pop\n{outside}"
+    entry = library(folder, text, "-O2").outside_entry
+    entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
+    return module.entry, entry
+
+
+def test_calls_that_change_the_memory_are_made_in_their_order(tmp_path):
+    """Compilers of C like to begin with the last argument."""
+    body = "m[1] = helper(m, time) - 3.0 * helper(m, 2.0) + m[0]\n"
+    body += "m[2] = math.sqrt(max(helper(m, time) * 0.5, helper(m, 1.0) - time))\n"
+    body += "m[3], m[4] = helper(m, 1.5), m[0]\nreturn 0"
+    for value in (0.3, 7.0):
+        memories = [0.25, *[0.0] * 4], (ctypes.c_double * 5)(0.25)
+        for function, memory in zip(both(tmp_path, body), memories, strict=True):
+            assert function(memory, value) == 0
+        assert list(memories[1]) == memories[0]
+
+
+def test_floor_is_exact(tmp_path):
+    """Beside ties, zeros, and numbers from which on all are whole."""
     body = "m[0] = math.floor(time) * 1.0\n"
     body += "if abs(time) < 9e18:\n    m[1] = (math.floor(time) & 3) * 1.0\nreturn 0"
-    outside = "#pragma GCC visibility pop\n" + EXPORT.format(name="entry")
-    module = module_of(tmp_path, body)
-    entry = library(tmp_path, translate({"entry": module.entry}) + outside, "-O2").outside_entry
-    entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
+    own, entry = both(tmp_path, body)
     ends = [0.0, 0.25, 0.5, 1.0, 1.5, 2.5, 3.75, 7.0, 1e-300, 1e9 + 0.5, 2.0**62]
     ends += [2.0**63, 7.5e27, 1e300]  # beyond the longest whole number of C
     ends += [2.0**k + part for k in (50, 51, 52) for part in (-1.25, -0.5, 0.0, 0.5, 1.0)]
     for value in [sign * end for end in ends for sign in (1.0, -1.0)]:
         memory, expected = (ctypes.c_double * 2)(), [0.0, 0.0]
-        assert entry(memory, value) == module.entry(expected, value) == 0
+        assert entry(memory, value) == own(expected, value) == 0
         assert [x.hex() for x in memory] == [x.hex() for x in expected], value
 
 

@@ -50,21 +50,6 @@ def test_it_does_not_matter_which_half_is_number_one(fmu):
     assert min(ratios) < 0.1 < 10.0 < max(ratios)
 
 
-@pytest.mark.parametrize("e_slope", [0.0, 0.05])
-def test_nothing_sticks_out_of_motion_at_e_1(fmu, e_slope):
-    """Whatever gamma is; the same structures stick with a smaller coefficient."""
-    f, counts = open_fmu(fmu), {1.0: [0, 0.0], 0.5: [0, 0.0]}
-    for seed in range(20):
-        for e, found in counts.items():
-            values = {**random_structure(seed), "e": e, "e_slope": e_slope, "gamma": 0.5}
-            f.reset().start(**values).step(20.0)
-            found[0] += f.one("contact_count")
-            found[1] += f.one("sticking_energy") + (f.one("impact_energy") if not e_slope else 0.0)
-    assert counts[1.0] == [0, 0.0]
-    assert counts[0.5][0] > 10
-    assert counts[0.5][1] > 0.0
-
-
 @pytest.mark.parametrize(
     "more",
     [

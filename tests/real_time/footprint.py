@@ -82,13 +82,3 @@ def call_graph(sources: Path, compiler: str, *flags: str) -> CallGraph:
         for source, target in EDGE.findall(text):
             called.setdefault(source, set()).add(target)
     return CallGraph(sizes, called)
-
-
-def stack_table(sources: Path, *flags: str) -> dict[str, dict[str, int]]:
-    """Return stack bytes of FMU calls, by machine and purpose."""
-    table = {}
-    for machine, (compiler, *own) in MACHINES.items():
-        graph = call_graph(sources, compiler, *own, *flags)
-        table[machine] = {what: graph.stack_bytes(name, MESSAGES) for what, name in CALLS.items()}
-        table[machine]["a refusal"] = graph.stack_bytes(CALLS["a step"])
-    return table

@@ -42,11 +42,6 @@ def run_command(
     return done.stdout
 
 
-def compiler_version(compiler: str) -> str:
-    """Return a compiler's name and version, as it prints them."""
-    return run_command(compiler, "--version").splitlines()[0]
-
-
 def compile_program(
     sources: Path, programs: Sequence[str], target: Path, compiler: str, *flags: str
 ) -> Path:

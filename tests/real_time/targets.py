@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .sources import BITS, CORTEX_M7, HERE, compile_program, missing_programs, run_command
+from .sources import BITS, CORTEX_M7, HERE, compile_program, run_command
 
 PROGRAM = "trajectory.c"
 TOOLS = {  # what each target needs
@@ -48,12 +48,3 @@ def run_on_riscv64(
         sources, [PROGRAM], folder / "riscv64", "riscv64-linux-gnu-gcc", *options
     )
     return parse_output(run_command("qemu-riscv64", program))
-
-
-RUNS = {"desktop": run_on_desktop, "Cortex-M7": run_on_cortex_m7, "RISC-V 64": run_on_riscv64}
-
-
-def run_on_all_targets(sources: Path, folder: Path) -> dict[str, dict[str, str]]:
-    """Run the trajectory on each target whose tools are installed; return values by target."""
-    known = [name for name in RUNS if not missing_programs(*TOOLS[name])]
-    return {name: RUNS[name](sources, folder) for name in known}

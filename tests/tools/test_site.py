@@ -18,12 +18,6 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_a_whole_site(folder):
-    site = Site(folder)
-    assert len(site.pages) == 2
-    assert site.broken_links() == [] and site.external_resources() == []
-
-
 @pytest.mark.parametrize(
     ("old", "new"),
     [
@@ -36,12 +30,3 @@ def test_a_whole_site(folder):
 def test_what_points_nowhere_is_named(folder, old, new):
     (folder / "one.html").write_text(WHOLE.replace(old, new))
     assert Site(folder).broken_links() == [f"one.html: {new.strip(chr(34))}"]
-
-
-@pytest.mark.parametrize("address", ["https://cdn.example.org/a.js", "//cdn.example.org/a.js"])
-def test_what_comes_from_another_host_is_named(folder, address):
-    (folder / "one.html").write_text(
-        WHOLE.replace("<body>", f'<body><script src="{address}"></script>')
-    )
-    assert Site(folder).external_resources() == [f"one.html: {address}"]
-    assert Site(folder).broken_links() == []

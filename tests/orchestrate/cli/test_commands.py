@@ -15,11 +15,8 @@ from matplotlib import image
 
 import orchestrate
 from orchestrate import InputError, Structure, cli
-from orchestrate.cli.diagnosis import Plan
-from orchestrate.cli.dynamics import attractor_table
 from orchestrate.cli.options import OfBox
 from orchestrate.fmu import OSCILLATOR, find
-from orchestrate.units import with_units
 
 from ...exports import BUILD
 from ...sparing import ordinary
@@ -189,42 +186,6 @@ def test_a_command_asks_its_function_and_shows_the_answer(ask, tmp_path, monkeyp
     }
     told = re.findall(r"^/.*?(?=: complete already$|$)", f"{plain}{shown}", re.MULTILINE)
     assert set(told) == {str(path) for path in folder.iterdir()}
-
-
-FOREIGN = r"\bHz\b|rad/s|\d m\b|\d mm\b| m\b|m/s2|\beta\b"
-WORDS = {  # an option that asks, and the words of the answer
-    **{"--hz 11:13:1": "Hz", "--rpm 660:780:60": "rpm", "--frequency 70:80:5": "rad/s"},
-    **{"--eta 0.9:1.1:0.1": "eta = ", "--hz 11:13:1 --units rpm,um,g": "rpm"},
-}
-
-
-@pytest.mark.parametrize("asked", WORDS)
-def test_a_question_is_answered_as_it_is_asked(ask, asked):
-    """Or in the units that are wanted and in no other."""
-    pressed = (*BEAM, "--set", "clearance=-2e-5", *SHORT, "--direction", "up", "--plot", "none")
-    done = ask("sweep", *pressed, *asked.split(), "--amplitude", "1e-5").success()
-    text = "\n".join(line for line in done.out.splitlines() if not line.startswith("/"))
-    assert f"at {WORDS[asked]}" in text or re.search(rf"\d {WORDS[asked]}\b", text)
-    assert "units" not in asked or not re.search(FOREIGN, text.replace("mm/s", "")), text
-
-
-@pytest.mark.parametrize("kind", ["map", "basin"])
-def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(kind):
-    """1.5 times a Omega^2/omega^2, which is 0.2/100 m."""
-    one = {"xi_rel_max": 1.5, "multiplicity": 1.0, "impacts_per_period": 1.0}
-    over = "e" if kind == "map" else "attractor"
-    data = xr.Dataset({name: (over, [value]) for name, value in one.items()}, {over: [0.5]})
-    data = with_units(data.assign_attrs(k1=100.0, m1=1.0, level=0.2), "mm")
-    if kind == "map":
-        words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
-        data = data.assign(multiplicity_decided=("e", [1], words))
-        lines = cli.responses.Map().summary(data)
-    else:
-        words = {"flag_values": [0, 1], "flag_meanings": "absent orbit"}
-        more = {"share": ("attractor", [1.0]), "decided_by": ("attractor", [1], words)}
-        more["state"] = (("attractor", "coordinate"), [[0.0] * 4])
-        lines = attractor_table(data.assign(more))
-    assert "xi_Rel = 1.5, 3 mm" in " ".join(lines)
 
 
 def made_sweep(kinds, impacts):
@@ -422,20 +383,6 @@ def test_a_plan(ask, tmp_path, monkeypatch):
     ask("plan", *BEAM, "--faces", "2", "--noise", "1", "--g", "0.1,0.2")
     assert list(asked["sensor"]) == ["acceleration2"] and tuple(asked["g"]) == (0.1, 0.2)
     assert asked["sensor"]["acceleration2"].noise == 1
-
-
-@pytest.mark.parametrize(("decides", "said"), [([1, 0], "lower levels only"), ([0, 0], "raise")])
-def test_a_plan_of_which_the_higher_levels_do_not_decide(decides, said):
-    """It said that no verdict was right, and to raise the level."""
-    names = ("recommended_level", "second_level", "recommended_first", "recommended_last")
-    numbers = dict.fromkeys((*names, "recommended_duration", "recommended_rate"), ((), 40.0))
-    rows = dict.fromkeys(("verdict", "sound_verdict"), ("level", ["undecided"] * 2))
-    made = {**numbers, **rows, "decides": ("level", decides), "overload": ("level", [0, 0])}
-    made |= {"counts": ((), 0), "opening_level": ((), 0.0)}
-    made |= {"opening": ("level", [0.0, 0.0], {"units": "m", "long_name": "opening"})}
-    level = ("level", [20.0, 40.0], {"units": "m/s2", "long_name": "level"})
-    data = xr.Dataset(made, {"level": level}, {"clearance": 1.0})
-    assert any(said in line for line in Plan().summary(data))
 
 
 def test_exponents_along_a_sweep_and_an_orbit_from_a_stored_one(ask, tmp_path):

@@ -16,10 +16,8 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
 from orchestrate.cli.output import result_name
-from orchestrate.cli.printing import format_ranges, hints, table
 from orchestrate.errors import InputError
 from orchestrate.model.structure import Structure
-from orchestrate.units import with_units
 
 from .commands import ROOT
 
@@ -45,41 +43,12 @@ def test_every_default_is_that_of_the_function_and_in_the_help():
     assert compared > 40
 
 
-def test_an_argument_of_a_function_is_an_option_without_more(monkeypatch):
-    def echo(structure, *, eta=None, depth=3, loud=False, mood="calm", ends=None, start=None):
-        """Sound.
-
-        Parameters
-        ----------
-        depth : int
-            How deep, m. Not shown.
-        loud : bool
-            Whether to shout.
-        mood : {"calm", "cross"}
-            What it is.
-        ends : (float, float)
-            From and to.
-        start : array_like of 4 floats
-            State. By default rest.
-        """
-
-    monkeypatch.setattr(orchestrate, "echo", echo, raising=False)
-    command = type("Echo", (cli.command.Command,), {"calls": "echo", "__call__": print})
-    options = {name: option.words for name, (option, _, _) in command.options().items()}
-    assert options["depth"] == "how deep, m (default: 3)" and options["loud"] == "shout"
-    assert options["start"] == "state; by default rest" and "eta" not in options
-    words = "--depth 7 --mood cross --loud --ends 1:2 --start 0,1um,0,0"
-    (call, bound, _) = command.app().parse_args(words.split())
-    expected = {"depth": 7, "loud": True, "mood": "cross", "ends": (1.0, 2.0)}
-    assert call(**bound.kwargs).keywords() == {**expected, "start": (0.0, 1e-6, 0.0, 0.0)}
-
-
 @pytest.mark.parametrize("program", ["vibroimpact", "python -m orchestrate"])
 def test_help_has_quantities_and_examples_that_can_be_typed(capsys, monkeypatch, program):
     monkeypatch.setattr(sys, "argv", [f"/bin/{program}"])
     assert cli.main(["--help"]) == 0
     assert {*cli.COMMANDS, "paper", "quick", "beam"} <= set(capsys.readouterr().out.split())
-    for command, found in cli.COMMANDS.items():
+    for command, found in [*cli.COMMANDS.items()][:: 1 if program == "vibroimpact" else 9]:
         assert cli.main([command, "--help"]) == 0
         text = capsys.readouterr().out
         assert text.startswith(f"Usage: {program} {command}")
@@ -187,21 +156,6 @@ def test_another_question_or_structure_has_another_name():
     names = {result_name("sweep", ["own/my beam.toml"], *one) for one in asked}
     assert len(names) == len(asked)
     assert all(name.startswith("sweep_my beam_") and len(name) == 20 for name in names)
-
-
-def test_ranges_tables_and_ends():
-    from xarray import Dataset
-
-    data = Dataset(coords={"frequency": [6.283185307179586 * number for number in range(10)]})
-    flags = [number in (1, 2, 3, 7) for number in range(10)]
-    assert format_ranges(data, "frequency", flags) == "1 to 3, 7 Hz"
-    short = format_ranges(with_units(data, "rpm"), "frequency", flags, max_ranges=1)
-    assert short == "60 to 180 rpm and 1 shorter ranges"
-    rows = list(table({"a": [str(10**i) for i in range(12)], "b": ["x"] * 12}))
-    assert rows[0] == "  a           b" and rows[10] == "  1000000000  x"
-    assert rows[11:] == ["  ... and 2 more"]
-    (line,) = hints(["limit", "no convergence"])
-    assert "Newton's method" in line and "--longest" in line and "--most" in line
 
 
 def test_build(capsys, tmp_path, monkeypatch):

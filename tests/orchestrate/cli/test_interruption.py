@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import sys
 import time
@@ -23,37 +22,7 @@ RESUME = "repeat the command (without --force) to resume"
 INTERRUPTED = f"interrupted: what was stored is kept; {RESUME}"
 BEGINS_ANEW = "interrupted: nothing was stored; repeat the command to start again"
 NO_PLOT = ("--plot", "none")
-GRID = ("--eta", "1.1:1.4:0.005", "--over", "e", "--values", "0.3:0.9:0.005")
-MAP = ("map", *GRID, "--jobs", "2", "--transient", "20000")
-RECORD = ("docs/records/beam_a.csv", "--structure", "docs/records/beam.toml")
-ALONE = ("sweep", "--eta", "1.1:1.2:0.001", "--transient", "1000000", "--jobs", "1")  # in one chunk
 SWEEP = ("sweep", "--eta", "1,1.1", "--transient", "5", "--samples", "3", *NO_PLOT)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("number", "command", "processes"),
-    [
-        (signal.SIGINT, MAP, 4),
-        (signal.SIGTERM, MAP, 4),
-        (signal.SIGINT, ALONE, 0),
-        (signal.SIGINT, ("diagnose", *RECORD), 0),
-    ],
-)
-def test_a_signal_ends_a_command_whatever_computes(commands, number, command, processes):
-    process = commands.start(*command, *NO_PLOT)
-    wait_for(lambda: commands.files(), process, "it computed", pause=0.05)
-    wait_for(lambda: len(list(below(process.pid))) >= processes, process, "workers were there")
-    time.sleep(1.0)
-    started = list(below(process.pid))
-    begun = time.monotonic()
-    os.killpg(process.pid, number)
-    done = end(process)
-    assert done.code == 128 + number and "Traceback" not in done.err, done.err
-    word = "interrupted" if number == signal.SIGINT else "terminated"
-    assert done.err.splitlines()[-1].startswith(f"{word}: ")
-    assert time.monotonic() - begun < 10.0
-    assert all_end(started) and list(commands.temporary.iterdir()) == []
 
 
 def interrupt(*_, **__):

@@ -21,55 +21,36 @@ QUICK = ("--transient", "5", "--samples", "8")
 MISTAKES = {  # options of each command, then what its line says
     "sweep": """
         --eta -1 : --eta -1: | 0 < FIRST
-        --eta 1e7 : --eta 10000000.0 | <= eta <= 1e+06
-        --eta abc : --eta abc: | not numbers | FIRST:LAST:STEP
         --eta 2:1:0.1 : --eta 2:1:0.1: | FIRST <= LAST
-        --eta 1:2:1e-9999999 : --eta 1:2:1e-9999999: | STEP > 0
-        --over e --eta 1 : --over and --values | both
         --over e --values 0.1,0.2 : frequency: nothing given | --eta
-        --over eta --values 1,2 : --over eta | --eta VALUES
         --over amplitude --values 1,2 --hz 1 : --over amplitude | --g VALUES
         --over k1 --values 1,2 --eta 1 --g 1 : --over k1 | --hz
-        --over e --values 0.1,true --eta 1 : --over e --values true | a number
         --set e : --set e | NAME=VALUE
-        --set e=abc : --set e=abc | a number
         --set gap=1mm : --set gap: no parameter | did you mean clearance?
-        --set m=1 : --set m: no parameter | did you mean m1?
         --set zeta=1% --set zeta2=0.1 : zeta2 is set already
-        --set preload=-20um : preload=-20um: expected a length above 0
-        --set e=0.1 --set e=0.2 : --set e=0.2 | each name once
         --set e=1.2 : e = 1.2 | 0 <= e <= 1
         --structure nowhere.toml : nowhere.toml | no such file | paper
         --structure README.md : README.md: not readable as TOML | looks like a record
-        --samples 0 : --samples 0 | from 1
         --fmu nowhere.fmu : nowhere.fmu | no such file
     """,
     "simulate": """
         : frequency: nothing given | --eta | --hz | --rpm | --frequency
         --eta 1,2 : --eta 1,2 | 2 values | with a decimal point, 1.2
-        --hz 1 --g 0,5 : --g 0,5: expected a number > 0 | with a decimal point, 0.5
-        --set f1=46,5 --eta 1 : --set f1=46,5 | a number | with a decimal point, 46.5
         --eta 1 --frequency 2 : --eta and --frequency | one of them
         --frequency 2 : --frequency 2 | --amplitude | --g
         --structure beam --eta 1 : --eta 1 | 75 rad/s | --amplitude | --g
-        --eta 1 --beside --store a.nc : --beside | --store
         --eta 1 --store mine.dat : --store mine.dat | .nc
         --eta 1 --start 0,1 : --start 0,1 | four numbers
     """,
     "shake": """
         : nothing given | --swept-sine, --stepped-sine, --random, --shock, --hammer, --record
         --hammer 20:0.004 --half 3 : --half 3 | 1 to 2
-        --hammer 20:0.004 --length 1 : --length | only with --shock
         --swept-sine 8:20 --g 1 --shock trapezoid : --swept-sine and --shock given | one of
         --swept-sine 8:20 --g 1 : nothing given | one of --duration and --rate
         --swept-sine 8,20 --g 1 --duration 2 : --swept-sine 8,20 | in Hz, such as 8:20
         --swept-sine 8:20 --duration 2 : level | --g and --acceleration
-        --swept-sine 8:20 --g 1 --duration 2 --seed 1 : --seed | only with --random
         --stepped-sine 8:20 --g 1 : --stepped-sine 8:20 | FIRST:LAST:STEP
-        --stepped-sine 8,9 --g 1 --duration 2 : --duration: expected only with --swept-sine
         --random 5:1,9:nan --duration 2 : --random 5:1,9:nan | HZ:VALUE
-        --random 5:1,9:1 : --random | --duration
-        --record a.csv --g 1 : --g: expected only with --swept-sine | --random
         --swept-sine 8:20 --g 1 --unit g : --unit | only with --record
     """,
     "analyse": """
@@ -82,7 +63,6 @@ MISTAKES = {  # options of each command, then what its line says
     "plan": """
         --sensor 9:8:7 : --sensor 9:8:7: expected HZ or HZ:RATE
         --noise 3um : --noise 3um: expected a number
-        --range 0 : --range 0: expected a number > 0
     """,
     "halves": """
         : RECORDS is missing
@@ -91,36 +71,27 @@ MISTAKES = {  # options of each command, then what its line says
     """,
     "map": """
         --eta 1 --over e --values 0.3,0.7 : map | two parameters
-        --eta 1,2 --over e --values 0.3,0.7 --over D --values 0.1,0.2 : --eta 1,2 | 2 values
         --eta 1,2 --over e : --over and --values | exactly one --values for each --over
-        --hz 1,2 --g 1 --amplitude 1 --over e --values 0.3,0.7 : --g | --amplitude
     """,
     "attractors": """
         --structure beam --eta 1.32 : --eta 1.32 | --amplitude in m or --g
     """,
     "basin": """
         --eta 1 --x x_rel,0,1 : --x x_rel,0,1 | NAME,FIRST,LAST,COUNT
-        --eta 1 --x v1,0,1um,3 : --x v1,0,1um,3 | x_rel,0,20um,60
-    """,
-    "orbit": """
-        --eta 1 --guess 1,2 : --guess 1,2 | four numbers
     """,
     "branch": """
         : --limits | FIRST:LAST
-        --eta 2.5 --limits 2.6:2.4 : --limits | the lower one first
         --eta 3 --limits 2.4:2.6 : eta = 3.0 at the start | inside
         --over hz --g 1 --limits 2:3 --set clearance=1e-4 : --amplitude 0.0621013 at 2 Hz
         --over frequency --eta 1 --limits 2.4:2.6 : --over frequency | --amplitude
     """,
     "border": """
-        --start lost.nc : --limits is missing
         --start lost.nc --limits 1:2,0.1:0.9 : --start lost.nc | no such file
         --start README.md --limits 1:2,0.1:0.9 : --start README.md | not readable
     """,
     "spectra": """
         --eta abc : --eta abc | not numbers
         --eta 1 --eta0 1.3 : --eta | --eta0
-        --eta0 1 --voltage 1 : --eta0 and --voltage
         --drive paper : paper | no drive | [motor] and [box]
     """,
     "paper": """
@@ -129,15 +100,10 @@ MISTAKES = {  # options of each command, then what its line says
     "couple": """
         --structure beam : --drive is missing | too slow for 75 rad/s
         --rated-voltage 12 : --rated-voltage 12 | without --no-load-rpm | --stall-torque together
-        --rated-voltage 9 --no-load-rpm 9 --stall-torque 0 : --stall-torque 0 | a number > 0
         --rated-voltage 9 --no-load-rpm 9 --stall-torque 1 --set motor_constant=2 : given with --r
         --eta0 1:2 --voltage 1:2 : --eta0 and --voltage | one of them
-        --step -0.1 : --step -0.1 s | 0.0001 <= step <= 1
         --eta0 1.2 : voltage 1.2 V | --duration
-        --eta0 1:2 --duration 3 : --duration | one voltage
         --rate 1e-4,5e-5 : --rate 1e-4,5e-5 | expected one | jump-voltages
-        --rate 1e-4 --volt-rate 1 : --rate and --volt-rate
-        --course a.csv --eta0 1:2 : --course and --eta0
         --speed-control 1.5 --speed-gradient : --speed-control and --speed-gradient
         --gain 2 : --gain | --speed-control
     """,

@@ -133,27 +133,6 @@ def test_what_is_assumed_or_implausible_is_said_in_one_line(ask, command):
     assert [warned in line for line in done.complaints] == [True] * bool(warned), done.complaints
 
 
-FILES = {  # of a structure; a command, and what its line says ("": nothing is assumed)
-    "m1 = 1.0\nm2 = 1.0\nf1_hz = 4\nf2_hz = 5\nzeta1 = 0\nzeta2 = 0": ("simulate --set e=0.5", ""),
-    "wall = true\nf_hz = 12\nzeta = 0.01": ("simulate --set zeta=2% --set e=0.5", ""),
-    "f1_hz = 42\nf2_hz = 55\nzeta1 = 0\nzeta2 = 0": ("simulate", "structure.m1|missing|m1, m2"),
-    "m1 = 1\nm2 = 1\nf1 = 42\nf2_hz = 55": ("simulate", "structure.f1|did you mean f1_hz"),
-}
-
-
-@pytest.mark.parametrize("text", FILES)
-def test_files_of_structures(ask, tmp_path, text):
-    command, words = FILES[text]
-    path = tmp_path / "beam.toml"
-    path.write_text(f"[structure]\n{text}\n")
-    more = ("--structure", path, "--hz", "5", "--g", "1", "--periods", "2", "--plot", "none")
-    done = ask(*command.split(), *more)
-    if words:
-        done.complaint(*words.split("|"))
-    else:
-        assert done.code == 0 and "assumed" not in done.out, done.err
-
-
 # -- the structure of a stored result --------------------------------------------------------------
 
 BEAM = Structure.from_file("beam")

@@ -103,30 +103,3 @@ def test_a_motor_by_its_datasheet(ask, tmp_path):
     drive, structure = Drive.from_file("quick").replace(**line), Structure.from_file("quick")
     expected = couple(structure.as_bonded(), drive, voltage=2.0, duration=60.0, progress=False)
     assert np.array_equal(data.speed, expected.speed) and data.sizes["revolution"] > 10
-
-
-def test_made_up_tables_of_jumps_and_bifurcations():
-    """A jump up of one of two structures, an undecided one down; points by structure and volts."""
-    each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
-    decided = [["by held voltages", "undecided"], ["by held voltages"] * 2]
-    jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[1e-4, np.nan], [np.nan] * 2]
-    made = {"jumps": jumps, "standard_error": errors, "decided": decided}
-    data = xr.Dataset({name: (tuple(each), values) for name, values in made.items()}, each)
-    _, up, down, hint = weak_drive.JumpVoltages().summary(data)
-    assert up.split() == ["up", "1.50000", "+-", "0.00010", "none"]
-    assert down.split() == ["down", "undecided", "none"] and "drive-branch" in hint
-    names = ["delaminated", "bonded", "bonded"]
-    made = {
-        "structure": names,
-        "kind": ["fold"] * 3,
-        "voltage": [1.5, 1.7, 1.6],
-        "speed": [1.0] * 3,
-    }
-    data = xr.Dataset({f"bifurcation_{name}": ("bifurcation", v) for name, v in made.items()})
-    legs = {"voltage": [[[1.0]]], "speed": [[[1.0]]], "stable": [[[True]]]}
-    data = data.assign({name: (("structure", "leg", "point"), v) for name, v in legs.items()})
-    data["end"] = ("structure", "leg"), [["limit"]]
-    data = data.assign_coords(structure=["bonded"], leg=["lowest speed"])
-    listed = [line.split() for line in weak_drive.DriveBranch().summaries({"": data})][2:5]
-    expected = [["bonded", "1.6"], ["bonded", "1.7"], ["delaminated", "1.5"]]
-    assert [row[:1] + row[2:3] for row in listed] == expected

@@ -115,28 +115,3 @@ def test_a_border_begins_where_an_open_structure_touches():
     )
     assert curve.sizes["point"] > 3
     assert curve.clearance.values / curve.amplitude.values == pytest.approx(touching, rel=1e-8)
-
-
-@pytest.mark.slow
-def test_a_border_follows_the_opening_of_a_pressed_structure():
-    """The earlier release of the motion that is held together for good is the threshold; over
-    frequency and amplitude it is the closed form's curve, which has a resonance between the limits.
-    """
-    pressed = DAMPED.replace(clearance=-0.2)
-    level = orchestrate.contact_threshold(pressed, frequency=1.2)
-    opening = float(level.threshold_amplitude[0])
-    held = orchestrate.orbit(pressed, frequency=1.2, amplitude=0.5 * opening)
-    assert bool(held.permanent_contact) and float(held.impacts_per_period) == 0.0
-    limits = (0.4 * opening, 1.3 * opening)
-    found = orchestrate.branch(pressed, start=held, over="amplitude", limits=limits)
-    assert found.bifurcation_value.values == pytest.approx([opening], rel=1e-9)
-    names = ("amplitude", "frequency")
-    box = [(0.01, 5.0), (0.7, 1.6)]
-    curve = orchestrate.border(
-        pressed, start=found, bifurcation=0, over=names, limits=box, longest=0.3
-    )
-    assert curve.attrs["kind"] == found.attrs["last_end"] == "earlier release"
-    assert curve.frequency.values[[0, -1]].tolist() == [0.7, 1.6]
-    expected = orchestrate.contact_threshold(pressed, frequency=curve.frequency.values)
-    assert curve.amplitude.values == pytest.approx(expected.threshold_amplitude.values, rel=1e-9)
-    assert curve.sizes["point"] > 5 and 0 < curve.amplitude.values.argmin() < len(curve.point) - 1

@@ -9,7 +9,6 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate import cli
 from orchestrate.errors import InputError
 from orchestrate.explorer import sweep_data
 from orchestrate.explorer.page import explore
@@ -124,18 +123,6 @@ def test_a_file_with_a_wrong_attribute_is_refused_in_one_line(swept, tmp_path, n
     with pytest.raises(InputError, match="expected"):
         explore(swept.assign_attrs({name: value}), output=tmp_path / "page.html")
     assert not list(tmp_path.iterdir())
-
-
-def test_the_command_writes_a_page(tmp_path, capsys, swept):
-    swept.to_netcdf(tmp_path / "sweep.nc")
-    page = tmp_path / "page.html"
-    asked = ["explore", str(tmp_path / "sweep.nc"), "--no-open", "--output", str(page)]
-    assert cli.main(asked) == 0
-    assert capsys.readouterr().out.startswith(f"{page}  ")
-    (tmp_path / "none.nc").write_text("none")
-    for arguments in ([str(tmp_path / "none.nc")], [*asked[1:2], "--set", "e=0.3"]):
-        assert cli.main(["explore", *arguments, "--no-open", "--output", str(page)]) == 2
-        assert "expected" in capsys.readouterr().err
 
 
 ANEW = "the kernel has changed: make Figure 6 of the explorer anew, python -m tools.figure6_states"

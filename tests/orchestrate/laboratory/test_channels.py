@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from orchestrate import InputError, channels, read_record
-from orchestrate.laboratory.columns import split_heading
 
 TIME = np.arange(400) / 1000.0
 WAVES = [np.sin(250.0 * TIME + i) * (i + 1.0) for i in range(4)]
@@ -112,26 +111,6 @@ def test_what_is_left_is_said_with_the_arguments_that_read_it(tmp_path):
     record = read_record(path, columns, unit="face=g")  # of both
     assert np.array_equal(record[FACE2].values, 9.80665 * WAVES[2])
     assert np.array_equal(read_record(path, columns, unit="face=g,face2=m/s2")[FACE2], WAVES[2])
-
-
-@pytest.mark.parametrize(
-    ("heading", "expected"),
-    [
-        ("LDV mm/s", ("LDV", "mm/s")),
-        ("acc_base_g", ("acc_base", "g")),
-        ("time_ms", ("time", "ms")),
-        ("Tip m/s^2", ("Tip", "m/s^2")),
-        ("ch2_V", ("ch2", "V")),
-        ("Channel V", ("Channel V", "")),  # five
-        ("acc_G", ("acc_G", "")),
-        ("Input 1 (shaker head)", ("Input 1 (shaker head)", "")),
-        ("Force (N)", ("Force", "N")),
-        ("Kraft, N", ("Kraft", "N")),
-        ("a [m/s2/V]", ("a", "m/s2/V")),
-    ],
-)
-def test_a_heading_is_a_name_and_a_unit(heading, expected):
-    assert split_heading(heading) == expected
 
 
 def test_a_list_of_columns_says_what_is_missing_and_writes_what_completes_it(tmp_path):

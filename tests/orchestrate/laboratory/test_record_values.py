@@ -92,11 +92,6 @@ def test_what_is_hardly_right_warns_once_and_what_is_right_does_not(recwarn, nam
     assert len(recwarn) == len(said)
 
 
-def test_a_half_next_to_the_one_that_is_struck_may_hardly_move(recwarn):
-    record(sample_rate=1e3, force1=SWEPT, acceleration1=SWEPT[::-1], acceleration2=1e-3 * SWEPT)
-    assert not recwarn.list
-
-
 def test_repeated_extreme_values_are_those_of_a_saturated_channel():
     """Digits, tones of few samples a period, pulses from rest and noise are no saturation."""
     time, rng = np.arange(20_000) / 1000.0, np.random.default_rng(2)
@@ -187,13 +182,6 @@ def test_mistaken_options_are_one_line(tmp_path, heading, options, words):
     with pytest.raises(InputError) as error:
         read_record(path, **options)
     assert words in str(error.value) and "\n" not in str(error.value)
-
-
-def test_a_sensitivity_of_all_columns_asks_for_the_units_that_are_missing(tmp_path):
-    path = table_file(tmp_path / "a.csv", "t [s],base,tip", *swept(50)[:3])
-    with pytest.raises(InputError, match='column "tip" .face 1.: no unit.* unit="base=V,face1=...'):
-        read_record(path, unit="base=V", sensitivity="100 mV/g")
-    read_record(path, unit="base=V,face1=V", sensitivity="100 mV/g")
 
 
 def test_uneven_times_are_resampled_on_request_but_not_over_gaps():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import sys
 import time
 
 import numpy as np
@@ -14,8 +13,6 @@ from scipy.io import wavfile
 
 from orchestrate import InputError, Sampled, read_record, reader_process, record, write_record
 from orchestrate.laboratory import record_files
-from orchestrate.laboratory.record_labview import read_lvm
-from orchestrate.laboratory.record_uff import read_uff
 
 from ...sparing import ordinary
 from .files import CHANNELS, LVM, RATE, G, drawn, same, swept, write_tdms
@@ -87,14 +84,6 @@ def test_other_datasets_of_universal_files_are_skipped_with_a_line(tmp_path, cap
     assert (back.box_acceleration.values == G * data.acceleration1.values).all()
     assert back.attrs["sample_rate"] == RATE
     assert "dataset 164, number 0" in caplog.text and "dataset 58, number 1" in caplog.text
-
-
-@pytest.mark.parametrize(("package", "reader"), [("pyuff", read_uff), ("lvm_read", read_lvm)])
-def test_a_package_that_is_not_there_is_named(tmp_path, monkeypatch, package, reader):
-    monkeypatch.setitem(sys.modules, package, None)
-    (tmp_path / "a").write_text("    -1\n    58\n    -1\n")
-    with pytest.raises(InputError, match=f"pip install {package}"):
-        reader(tmp_path / "a")
 
 
 TEXTS = {
@@ -234,26 +223,6 @@ def test_a_mat_file_that_ends_its_reader_is_one_line(tmp_path, seed):
         damaged[int(draw.integers(0, len(damaged)))] = int(draw.integers(256))
     path.write_bytes(damaged)
     refused(path, "expected a MAT file that is whole")
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="limits of Linux")
-@pytest.mark.parametrize("ending", ["mat", "nc"])
-def test_a_small_file_that_unpacks_to_much_is_one_line(tmp_path, monkeypatch, ending):
-    path, count = tmp_path / f"a.{ending}", 20 << 20
-    if ending == "mat":
-        scipy.io.savemat(path, {"base": np.zeros(count)}, do_compression=True)
-    else:
-        import netCDF4
-
-        with netCDF4.Dataset(path, "w") as file:  # of a vector that was never written
-            file.createDimension("time", count)
-            for name in ("time", "box_acceleration"):
-                file.createVariable(name, "f8", ("time",), zlib=True, chunksizes=(1 << 20,))
-    monkeypatch.setattr(reader_process, "MEMORY", 128 << 20)
-    assert path.stat().st_size < 200_000
-    with pytest.raises(InputError, match="unpacks to 335544320 bytes|llocate|memory") as error:
-        read_record(path, unit="m/s2")
-    assert str(error.value).isprintable() and len(str(error.value)) < 300
 
 
 def test_what_is_no_file_of_a_record_is_refused(tmp_path, monkeypatch):

@@ -39,24 +39,6 @@ def test_a_phase_lags_whatever_its_sign(given):
     assert found.attrs["phase_sign"] == words[given is RATIO]
 
 
-@pytest.mark.parametrize(
-    ("changes", "text"),
-    [
-        ({"amplitude1": RATIO.real}, "amplitude1, row 11: -19.*expected a number >= 0"),
-        ({"frequency": HERTZ // 2}, "frequency, row 1: 20 Hz after 20 Hz; expected ascending"),
-        ({"frequency": HERTZ[:9], "amplitude1": abs(RATIO[:9])}, "9 points; expected 10 to"),
-        ({"amplitude1": abs(RATIO[:9])}, "amplitude1: 9 values; expected 20"),
-        ({"level": 0.0}, "level, row 0: 0; expected a number > 0"),
-        ({"unit": "V"}, "unit = 'V'; expected one such as m/s2"),
-        ({"direction": "left"}, "direction = 'left': expected up or down"),
-        ({"amplitude1": None}, "no amplitude; expected amplitude1"),
-    ],
-)
-def test_what_is_wrong_is_named(changes, text):
-    with pytest.raises(orchestrate.InputError, match=text):
-        curve(**changes)
-
-
 def test_rows_without_numbers_are_dropped_with_a_word():
     level = np.where(HERTZ == 45.0, np.nan, 4.0)
     with pytest.warns(UserWarning, match="row 5 dropped: not a number"):

@@ -52,22 +52,6 @@ def test_replacing_a_number_changes_that_number_alone(numbers, name, value):
         assert near(after.get(other), expected), other
 
 
-@pytest.mark.parametrize(
-    ("structure", "label"),
-    [
-        (Structure(), "e0.7_D0.005"),
-        (Structure(bonded=True), "e0.7_D0.005_bonded"),
-        (Structure.nondimensional(e=0.3, D=0.05), "e0.3_D0.05"),
-        (Structure.nondimensional(mu=0.5, kappa=2.0), "e0.7_D0.005_mu0.5_kappa2"),
-        (Structure(gamma=1e-6), "e0.7_D0.005_gamma1e-06"),
-        (Structure.nondimensional(D1=0.1, D2=0.2, e=1.0), "e1_D0.1-0.2"),
-        (Structure.from_file("beam"), "e0.7_m1.5-1.5_k8437.5-10125_d1.125-1.125"),
-    ],
-)
-def test_labels(structure, label):
-    assert structure.label() == label
-
-
 @given(STRUCTURES, STRUCTURES)
 def test_labels_of_different_structures_differ(one, other):
     assert (one.label() == other.label()) == (one == other)
@@ -153,13 +137,6 @@ def test_refusals_are_one_line(call, words):
     with pytest.raises(InputError, match=words) as error:
         call()
     assert "\n" not in str(error.value)
-
-
-def test_a_structure_is_a_line_and_in_notebooks_a_table():
-    beam = Structure.from_halves(m1=1.5, m2=1.4, f1=11.9, f2=13.5, zeta1=0.005, zeta2=0.007, e=0.6)
-    for part in ("1.5 and 1.4 kg", "11.9 and 13.5 Hz", "0.5 and 0.7 %", "clearance -2e-05 m"):
-        assert part in str(beam.replace(clearance=-2e-5))
-    assert "<td>bonded</td>" in beam.as_bonded()._repr_html_()
 
 
 def test_preload_and_place_at_rest():

@@ -13,13 +13,11 @@ from orchestrate.paper.claims import (
     UNDECIDED,
     YES,
     Claim,
-    in_words,
     judge,
     read_table,
 )
 from orchestrate.paper.curves import CONTACT, FLIGHT
-from orchestrate.paper.measures import check_claims, find_measure, limits
-from orchestrate.paper.resolution import QUICK
+from orchestrate.paper.measures import find_measure, limits
 
 from .known import along_eta, known, responses, verdict
 
@@ -55,26 +53,6 @@ def test_the_rule(parts, expected):
     assert judge(parts, decides=False) == UNDECIDED
 
 
-def test_what_takes_the_full_resolution_is_not_decided_at_another():
-    assert in_words("none: True; width nan +- 0.1") == "none: yes; width not found ± 0.1"
-    numbers = {
-        "section": "3",
-        "text": "",
-        "printed": "1.095",
-        "how": "",
-        "tolerance": "",
-        "why": "so",
-    }
-    claims = [
-        Claim(measure="detuning", arguments="", full=full, **numbers) for full in ("", "full")
-    ]
-    data = known()
-    data.size = QUICK
-    rows = check_claims(claims, data)
-    assert [row["verdict"] for row in rows] == [YES, UNDECIDED]
-    assert rows[0]["found"] == rows[1]["found"] == "1.0954, 9.5 % apart"
-
-
 @pytest.mark.parametrize(
     ("edges", "exact", "printed", "expected", "agrees"),
     [
@@ -94,15 +72,6 @@ def test_a_limit_is_read_twice(edges, exact, printed, expected, agrees):
     found, parts = limits.limit(data, claim, "elastic", "T/2", "upper", low)
     assert judge(parts) == expected and agrees in found
     assert f"exact: {exact:.8f} (fold of T/2)" in found
-
-
-def test_one_printed_digit_does_not_make_a_limit_vacuous():
-    """1.1 is the end of a window from 1.08 on; the next one begins at 1.11."""
-    (row,) = (number for number, claim in enumerate(read_table()) if claim.printed == "1.1")
-    etas = np.round(np.arange(1.05, 1.15, 0.001), 3)
-    for end, expected in ((1.1004, YES), (1.1174, NO), (1.0884, NO)):
-        swept = responses(etas, np.where((etas > 1.079) & (etas < end), 1, 2), 1)
-        assert verdict(row, known({"T/1": (1.079, end)}, sweep=swept)) == expected
 
 
 # -- no check that cannot fail ---------------------------------------------------------------------

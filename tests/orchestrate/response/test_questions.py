@@ -13,16 +13,6 @@ def along(structure=OWN, **asked):
     return SweepJob(name="", structure=structure, **rest, **asked).series
 
 
-def test_eta_is_a_frequency_and_an_amplitude():
-    found = along(eta=[0.5, 2.0])
-    assert (found.name, found.values, [*found.etas]) == ("eta", (0.5, 2.0), [0.5, 2.0])
-    for point, eta in zip(found.points, found.etas, strict=True):
-        assert point.excitation.frequency == eta * OWN.omega
-        assert point.excitation.amplitude == 1.0 / (eta * eta)
-        assert point.length == 1.0
-        assert point.speed == OWN.omega
-
-
 @pytest.mark.parametrize(
     ("asked", "name", "count"),
     [
@@ -45,13 +35,6 @@ def test_what_is_a_list_is_the_dimension(asked, name, count):
         assert dims == name
         assert len(values) == count
         assert attributes["units"] and attributes["long_name"]
-
-
-def test_a_parameter_of_the_structure_is_replaced_and_eta_stays():
-    found = along(eta=1.5, over="omega", values=[1.0, 10.0])
-    assert [point.structure.omega for point in found.points] == [1.0, 10.0]
-    assert [point.excitation.frequency for point in found.points] == [1.5, 15.0]
-    assert [*found.etas] == [1.5, 1.5]
 
 
 def test_the_call_is_one_that_can_be_made_again(exported):

@@ -110,11 +110,6 @@ def test_ripples_are_no_peaks_and_zeros_do_no_harm():
     assert len(prominent_maxima(np.zeros(5), 0.1)) == 0
 
 
-@pytest.mark.parametrize("size", [1, 2, 3])
-def test_curves_of_few_values(size):
-    assert len(prominent_maxima(np.ones(size), 0.1)) == len(jump_indices(np.ones(size), 0.1)) == 0
-
-
 def test_a_jump_and_what_is_none():
     steep, jumping = np.exp(6.0 * GRID), np.where(GRID > 1.2, 0.6, 1.0) * GRID
     assert len(jump_indices(steep, 0.01)) == 0

@@ -129,13 +129,6 @@ def test_killed_while_it_is_finished_it_leaves_nothing_behind(
     assert {file.name for file in tmp_path.iterdir()} == {path.name, "model.fmu"}
 
 
-@pytest.mark.parametrize("ending", ["", ".journal", ".lock"])
-def test_a_folder_in_the_place_of_a_file(find, path, ending):
-    Path(f"{path}{ending}").mkdir()
-    with pytest.raises((StoreError, InputError), match=rf"{ending}.*expected.*remove"):
-        answer(JOB, {"store": path}, find)
-
-
 @pytest.mark.parametrize("damage", FILE_DAMAGE)
 @pytest.mark.parametrize("seed", ordinary(range(4)))
 def test_a_damaged_result(find, path, damage, seed):

@@ -33,6 +33,7 @@ CONTROL = orchestrate.LevelControl(
     start=0.1,
     limit=30.0,
 )
+SPEED_CONTROL = orchestrate.SpeedControl(speed=1.4, gain=3.0, reset_time=20.0)
 Ask = Callable[..., xr.Dataset]
 
 
@@ -106,7 +107,10 @@ QUESTIONS: Mapping[str, tuple[int, Ask]] = {  # with the items of a chunk
             **{"inputs": {"command": CONTROL}, "duration": 0.3, "step": 2e-3},
         ),
     ),
-    "CoupleJob": (60, asked(orchestrate.couple, *MOTOR, voltage=1.5, duration=30.0)),
+    "CoupleJob": (
+        60,
+        asked(orchestrate.couple, *MOTOR, voltage=1.5, duration=30.0, control=SPEED_CONTROL),
+    ),
     "PassageJob": (100, asked(orchestrate.passage, *MOTOR, voltage=1.5, duration=50.0)),
     "JumpVoltagesJob": (1, asked(orchestrate.jump_voltages, *MOTOR, voltage=(1.5, 1.6), **RAMP)),
     "DriveBranchJob": (1, asked(orchestrate.drive_branch, *MOTOR, speed=(1.29, 1.32), longest=0.2)),

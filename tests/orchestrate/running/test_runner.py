@@ -1,7 +1,5 @@
 """Results are stored, resumed and read; they are never taken for another question's."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -56,15 +54,6 @@ def test_an_interrupted_job_goes_on_and_is_read_when_it_is_finished(find, tmp_pa
     assert broken.read_bytes() == whole.read_bytes()
     assert first.identical(xr.load_dataset(whole).drop_attrs().assign_attrs(first.attrs))
     assert not journal_path(broken).exists()
-
-
-def test_a_journal_that_a_killed_process_left_beside_its_result_goes(find, tmp_path):
-    path = tmp_path / "squares.nc"
-    answer(JOB, {"store": path}, find)
-    for ending in ("", "-wal", "-shm"):
-        Path(f"{journal_path(path)}{ending}").write_bytes(b"left")
-    answer(JOB, {"store": path}, find)
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
 
 
 def test_another_question_is_refused_and_nothing_is_lost(find, tmp_path):

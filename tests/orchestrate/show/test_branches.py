@@ -4,16 +4,16 @@ import functools
 
 import numpy as np
 import pytest
-import xarray as xr
 
+from orchestrate.constants import GRAVITY
 from orchestrate.dynamics.branches import branch
 from orchestrate.model import Structure
+from orchestrate.response.sweep import sweep
 from orchestrate.show.lines import draw_branch
-from orchestrate.show.planes import draw_border, draw_map
-
-from .made import mapped
+from orchestrate.show.plot import plot
 
 PAPER = Structure.nondimensional()
+BEAM = PAPER.replace(omega=75.0)
 
 
 @functools.cache
@@ -33,22 +33,15 @@ def test_stable_is_solid_and_unstable_dashed():
     assert dashed.get_xdata()[np.isfinite(dashed.get_ydata())].max() == pytest.approx(2.8)
 
 
-def test_a_border_is_a_line_over_both_parameters_with_its_points():
-    sides = {"eta": ("point", [2.7, 2.8, 2.9]), "e": ("point", [0.69, 0.7, 0.71])}
-    kinds = {"flag_values": [0, 1], "flag_meanings": "cusp fold_flip"}
-    made = {"codimension_two_kind": ("codimension_two", [1], kinds)}
-    made |= {"codimension_two_eta": ("codimension_two", [2.8])}
-    made |= {"codimension_two_e": ("codimension_two", [0.7])}
-    attributes = {**PAPER.parameters(), "over": ["eta", "e"], "kind": "period doubling"}
-    curve = xr.Dataset(made, sides, attributes)
-    figure = draw_border(curve)
-    line, point = figure.axes[0].get_lines()
-    assert line.get_xdata() == pytest.approx([2.7, 2.8, 2.9])
-    assert line.get_ydata() == pytest.approx([0.69, 0.7, 0.71])
-    assert (point.get_xdata()[0], point.get_ydata()[0]) == (2.8, 0.7)
-    words = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert words == ["period doubling", "fold flip"]
-    figure = draw_map(mapped(False), overlay=[curve])
-    marks = [plane.get_lines()[2] for plane in figure.axes if plane.get_lines()]
-    assert len(marks) == 4 and len({round(plane.get_position().y0, 2) for plane in figure.axes}) > 1
-    assert all(mark.get_xdata()[0] == 2.8 and mark.get_ydata()[0] == 0.7 for mark in marks)
+def test_a_branch_is_in_hertz_and_metres_where_the_responses_are():
+    """A settled response lies on its branch, whatever level the box is held at."""
+    turns = 75.0 * np.linspace(2.45, 2.55, 21)
+    level = {"amplitude": 0.02 * GRAVITY / turns**2}
+    branches = branch(BEAM, eta=2.5, limits=(2.4, 2.8), progress=False)
+    responses = sweep(BEAM, frequency=turns, **level, transient=3000, samples=1, progress=False)
+    top, _ = plot(responses, branches).axes
+    metres = (responses.xi_rel[:, 0] * responses.amplitude * responses.eta**2).values
+    line = next(one for one in top.get_lines() if one.get_label() == "stable")
+    unit = {"nm": 1e-9, "µm": 1e-6}[top.get_ylabel().split()[5].strip(",")]
+    there = np.interp(turns / (2.0 * np.pi), line.get_xdata(), line.get_ydata()) * unit
+    assert there == pytest.approx(metres, rel=2e-3)

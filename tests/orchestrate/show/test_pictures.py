@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from orchestrate.errors import StoreError
 from orchestrate.show import lines, scales
@@ -12,7 +11,6 @@ from orchestrate.show.figure_files import save
 from orchestrate.show.style import XI_REL, make_panels
 
 from . import made
-from .made import legend_texts
 
 # -- files ----------------------------------------------------------------------------------------
 
@@ -68,29 +66,6 @@ def test_a_structure_in_si_is_told_in_hertz_and_metres():
     assert drawn == pytest.approx(expected)
     axis = lines.draw_sweep(data).axes[1].lines[0].get_xdata()
     assert axis[-1] == pytest.approx(1.3 * 75.0 / (2.0 * np.pi))
-
-
-def test_an_attractor_is_drawn_as_far_as_it_exists():
-    """One attractor, T and then 2T, that ends; another one that appears beside it."""
-    nan = np.nan
-    over = ("eta", "attractor")
-    n = np.array([[1.0, nan], [2.0, nan], [2.0, 0.0], [nan, 0.0]])
-    data = xr.Dataset(
-        {
-            "number": ("eta", np.array([1, 1, 2, 1])),
-            "multiplicity": (over, n),
-            "impacts_per_period": (over, np.where(n == 2.0, 1.5, np.where(n > 0, 1.0, n + 1.3))),
-            "xi_rel_max": (over, np.where(np.isnan(n), nan, [0.4, 2.0])),
-            "share": (over, np.array([[1.0, 0.0], [1.0, 0.0], [0.3, 0.7], [0.0, 1.0]])),
-        },
-        {"eta": [1.0, 1.1, 1.2, 1.3]},
-    )
-    figure = lines.draw_attractors(data)
-    assert legend_texts(figure) == ["T, 1 impact", "2T, 3 impacts", "irregular"]
-    _, middle, _ = figure.axes
-    shares = [line.get_ydata() for line in middle.lines if line.get_color() == "#c8c8c8"]
-    np.testing.assert_array_equal(shares[0], [1.0, 1.0, 0.3, nan])  # not 0 where it is not there
-    np.testing.assert_array_equal(shares[1], [nan, nan, 0.7, 1.0])
 
 
 # -- time histories and spectra -------------------------------------------------------------------

@@ -45,12 +45,6 @@ def drawn(monkeypatch):
     return calls
 
 
-def test_one_answer(simulated):
-    figure = plot(simulated[1], title="mine")
-    assert figure.get_suptitle() == "mine"
-    assert figure.axes[0].get_ylabel() == "displacement"
-
-
 def test_a_slide_and_what_is_not_whole(simulated, continued):
     width, height = plot(simulated[1], size="16:9").get_size_inches()
     assert width / height == pytest.approx(16.0 / 9.0)

@@ -11,7 +11,6 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.show.page import format_number, format_with_error
-from orchestrate.show.verdict import make_verdict, verdict_sections
 
 EVIL = "<script>alert(\"1\")</script> & 'others'"
 RATE = 1000.0
@@ -85,37 +84,3 @@ def test_numbers_have_the_digits_of_their_errors():
     assert format_with_error(42.0, np.nan, "Hz") == "42 Hz"
     assert format_with_error(-3.4e-7, 4.4e-7, "m") == "-0.34 ± 0.44 µm"
     assert (format_number(np.inf, "Hz"), format_number(2e-6, "m")) == ("–", "2 µm")
-
-
-@pytest.fixture(scope="module")
-def verdict():
-    return xr.Dataset(
-        {
-            "verdict": ((), "delaminated"),
-            "misfit": ("hypothesis", [2.0, 0.5]),
-            "value": (("hypothesis", "parameter"), [[0.3, np.nan], [np.nan, 42.0]]),
-            "standard_error": (("hypothesis", "parameter"), [[0.1, np.nan], [np.nan, 0.5]]),
-        },
-        {
-            "hypothesis": ["bonded, with a stop in the positive direction", "delaminated"],
-            "parameter": ["stop", "f1"],
-            "unit": ("parameter", ["1", "Hz"]),
-            "meaning": ("parameter", ["stiffness of a stop", "frequency of half 1"]),
-        },
-        {"m1": 1.5, "m2": 0.75, "k1": 1.5 * (2 * np.pi * 42.0) ** 2, "k2": 0.75e5},
-    )
-
-
-def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is(verdict):
-    sections = {section.heading: section for section in verdict_sections(verdict)}
-    assert any("1.5 kg and 0.75 kg" in words for words in sections["What was assumed"].points)
-    assert any("42 Hz and 50.3 Hz" in words for words in sections["What was assumed"].points)
-    rows = dict(row[:1] + row[1:2] for row in sections["Parameters"].tables[0].rows)
-    assert rows["f1, frequency of half 1"] == "42.00 ± 0.50 Hz"
-    assert "stop, stiffness of a stop" in rows
-    assert make_verdict(verdict).sentence.endswith("frequencies fitted: f1 = 42.00 ± 0.50 Hz.")
-    doubted = make_verdict(verdict.assign_attrs(wiring="face 1: polarity?")).sentence
-    assert doubted.startswith("The wiring is doubtful: face 1: polarity?.")
-    without = verdict.assign_attrs(m1=float("nan"))
-    sections = {section.heading: section for section in verdict_sections(without)}
-    assert not any("kg" in words for words in sections["What was assumed"].points)

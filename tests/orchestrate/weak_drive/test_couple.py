@@ -3,12 +3,8 @@
 import numpy as np
 import pytest
 
-from orchestrate import SpeedControl, couple, couple_all
-from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, find
+from orchestrate import couple, couple_all
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.couple import couple_job
-from orchestrate.weak_drive.master import Scheme
-from orchestrate.weak_drive.schedule import Ramp
 
 from .coupled import BEAM, QUICK
 
@@ -41,6 +37,20 @@ def test_a_jump_on_a_ramp_is_late_by_the_rate_to_two_thirds():
     assert ramps[0].Omega[beyond].min() > divides > ramps[0].Omega[~beyond][:-1].max()
 
 
+def test_a_run_up_begins_below_the_resonance():
+    """So the same voltages show the jump; late, as the rate has it."""
+    found = run(QUICK.as_bonded(), (1.45, 1.65), 1e-4, back=False)
+    up = found.sel(jump="up")
+    assert up.jumps == pytest.approx(1.58310, abs=1.5e-4)
+    assert up.ramp_voltage == pytest.approx(1.606, abs=1e-3)
+    assert up.jump_lag == pytest.approx(float(up.ramp_voltage - up.jumps), abs=1e-9)
+    assert up.jump_rate == pytest.approx(1e-4, rel=1e-2)
+    assert up.jump_speed_before == pytest.approx(1.335, abs=1e-2)
+    assert up.jump_speed_after == pytest.approx(1.58, abs=1e-2)
+    assert up.jump_amplitude_before > 17.0 > 6.0 > up.jump_amplitude_after
+    assert up.no_jump == ""
+
+
 def test_energy_balance_of_a_whole_run():
     """Up and down through both jumps: nothing is missing, and nothing is counted twice."""
     more = {"settle": 200.0, "speed_start": 1.26, "step": 0.1, "hold": 0.0}
@@ -69,33 +79,6 @@ def test_units_follow_the_system():
     units |= {"box_acceleration": 0.1, "eta0": 1.0, "Omega": 1.0}
     for name, unit in units.items():
         assert found[name].values / unit == pytest.approx(expected[name].values, rel=1e-6), name
-
-
-def test_it_goes_on_with_the_same_bits():
-    """In one go, and from chunk to chunk with the states of both FMUs and of the controller."""
-    control = SpeedControl(speed=1.4, gain=3.0, reset_time=20.0)
-    ramp, scheme = Ramp(1.4, 1.41, 2e-4, 50.0), Scheme(0.4, tolerance=1e-8)
-    job = couple_job(*QUICK, ramp, scheme, 1.25, control)
-    fmus = {model: find(model).path for model in (OSCILLATOR, MOTOR_SHAKER)}
-    steps = job.items()
-    expected, parts, carry = job.work(fmus, steps, None), [], None
-    for begin, end in ((0, 1), (1, 70), (70, 71), (71, len(steps))):
-        carry = job.work(fmus, steps[begin:end], carry)
-        parts.append(carry)
-    for name, values in expected.items():
-        if values.shape[0] != 1:
-            assert np.array_equal(np.concatenate([table[name] for table in parts]), values), name
-    for name in ("master_memory", "control_memory", "oscillator_state"):
-        assert carry[name].tobytes() == expected[name].tobytes(), name
-
-
-def test_a_finished_result_is_read(tmp_path):
-    """With a store the same call reads the file."""
-    question = {"voltage": 1.4, "duration": 60.0, "store": tmp_path / "run.nc", "progress": False}
-    first = couple(*QUICK, **question)
-    stamp = (tmp_path / "run.nc").stat().st_mtime_ns
-    assert couple(*QUICK, **question).identical(first)
-    assert (tmp_path / "run.nc").stat().st_mtime_ns == stamp
 
 
 def test_each_of_many_runs_is_that_of_couple():

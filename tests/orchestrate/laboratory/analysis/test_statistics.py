@@ -4,14 +4,12 @@ import math
 
 import numpy as np
 import pytest
-import xarray as xr
 from scipy.integrate import solve_ivp
 
-import orchestrate
-from orchestrate import InputError, probability_density, shock_spectrum
+from orchestrate import probability_density, shock_spectrum
 
 from ....sparing import ordinary
-from .records import ANALYSES, DAMPED, SWEEP, analyses, make, swept_record
+from .records import make
 
 # -- shock spectra --------------------------------------------------------------------------------
 
@@ -89,75 +87,3 @@ def test_density_of_a_sine_has_its_closed_form():
 
 
 # -- all analyses ---------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", ANALYSES)
-def test_answers_can_be_written_and_read(tmp_path, name):
-    data = analyses()[name]
-    data.to_netcdf(tmp_path / "answer.nc")
-    assert xr.load_dataset(tmp_path / "answer.nc").equals(data)
-    assert data.attrs["analysis"] in name and data.attrs["title"].endswith(": record")
-
-
-@pytest.mark.parametrize("name", ["frf", "track_orders", "harmonics"])
-def test_the_box_is_needed_to_compare_with_it(name):
-    record = swept_record(DAMPED)
-    with pytest.raises(InputError, match="no box_acceleration; expected box_acceleration over"):
-        getattr(orchestrate, name)(record.drop_vars("box_acceleration"))
-    with pytest.raises(InputError, match="no acceleration1, m/s2; frf needs it"):
-        orchestrate.frf(record[["box_acceleration"]])
-    known = orchestrate.track_orders(record.drop_vars("box_acceleration"), phase=SWEEP)
-    assert "box_acceleration" not in known.channel.values
-
-
-def damaged(**changes):
-    time = np.arange(200) / 100.0
-    record = make(100.0, np.sin(time), np.cos(time))
-    for name, value in changes.items():
-        record[name] = ("time", value)
-    return record
-
-
-WITH_NAN = np.where(np.arange(200) == 42, np.nan, 1.0)
-UNEVEN = np.arange(200) / 100.0 + 0.004 * (np.arange(200) == 70)
-REPEATED = np.arange(200) / 100.0 - 0.02 * (np.arange(200) == 70)
-
-
-@pytest.mark.parametrize(
-    ("record", "words"),
-    [
-        (3.0, "record: float, without time; expected an xarray.Dataset"),
-        (damaged().drop_vars(["acceleration1", "box_acceleration"]), "record: no box_acceleration"),
-        (damaged().isel(time=slice(5)), "record: 5 samples; expected at least 16"),
-        (damaged(acceleration1=WITH_NAN), "acceleration1[42] = nan at 0.42 s: expected finite"),
-        (damaged(time=UNEVEN), "time[69] = 0.69 s: a step of 0.014 s after it"),
-        (damaged(time=REPEATED), "expected ascending numbers"),
-        (damaged().assign_attrs(sample_rate=50.0), "attribute sample_rate = 50.0 Hz: the time has"),
-        (damaged().assign_attrs(sample_rate="fast"), "attribute sample_rate = 'fast' Hz"),
-    ],
-)
-def test_records_that_cannot_be_analysed_are_one_line(record, words):
-    with pytest.raises(InputError) as error:
-        orchestrate.psd(record)
-    assert words in str(error.value) and "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize(
-    ("name", "given", "words"),
-    [
-        ("frf", {"resolution": 0.01}, "resolution = 0.01 Hz: expected 0.5 <="),
-        ("frf", {"resolution": 0.5}, "expected at least 2"),
-        ("frf", {"resolution": "fine"}, "resolution = 'fine' Hz: expected"),
-        ("psd", {"window": "round"}, "window = 'round': expected one of hann"),
-        ("psd", {"overlap": -0.1}, "overlap = -0.1: expected 0 <= overlap <= 0.95"),
-        ("spectrogram", {"spectra": 0}, "spectra = 0: expected"),
-        ("shock_spectrum", {"damping": 1.0}, "damping = 1.0: expected 0 <= damping < 1"),
-        ("shock_spectrum", {"frequencies": [-1.0]}, "frequencies = [-1.0]: expected numbers > 0"),
-        ("shock_spectrum", {"frequencies": [60.0]}, "<= 50 Hz, half the sampling rate"),
-        ("probability_density", {"bins": 1}, "bins = 1: expected 4 <= bins"),
-    ],
-)
-def test_mistakes_are_one_line(name, given, words):
-    with pytest.raises(InputError) as error:
-        getattr(orchestrate, name)(damaged(), **given)
-    assert words in str(error.value) and "\n" not in str(error.value)
