@@ -18,7 +18,7 @@ module                   idea
 :mod:`.single_mass`      a sound structure's motion: one mass on a spring that is not linear
 :mod:`.hypotheses`       what the structure may be: sound in several ways, or delaminated
 :mod:`.multistart`       the search for a hypothesis's numbers, from many starts
-:mod:`.linear`           the soft misfit of residuals, and a linear model of these around a minimum
+:mod:`.misfit`           the soft misfit of residuals, and a linear model of these around a minimum
 :mod:`.standard_errors`  standard errors from simulated noise and from blocks of windows
 :mod:`.even_orders`      whether faces open: order 2 above its floor, two faces that move apart
 :mod:`.impact_timing`    when in the period something strikes, and by that what does

@@ -17,7 +17,7 @@ from ..laboratory.analysis.order_tracking import decimated, integrated
 from ..laboratory.pieces import Floats, Pieces
 from ..laboratory.sampled import Sampled
 from ..laboratory.sensors import PARTICIPATION
-from .linear import clipped
+from .misfit import clipped
 from .order_windows import (
     MIN_WINDOWS,
     ORDERS,

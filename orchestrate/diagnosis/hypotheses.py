@@ -49,12 +49,11 @@ class Hypothesis(ABC):
 
     name: ClassVar[str]  # in messages and results
     is_rugged: ClassVar[bool] = False  # whether single impacts make the misfit uneven
-    parts: ClassVar[int] = 1  # of the starts, each searched by itself
     alike: ClassVar[str] = ""  # what describes a delaminated record, where this is the best
 
     @abstractmethod
-    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
-        """Return the values at which a part of the search starts."""
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+        """Return the values at which the search starts."""
 
     @abstractmethod
     def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
@@ -96,7 +95,7 @@ class Sound(Hypothesis):
         low, high = (math.log(zeta) for zeta in DAMPING_RANGE)
         return {"f": (0.5 * f, 2.0 * f), "log_zeta": (low, high), **self.extra}
 
-    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """Return starts around the resonance with several damping ratios."""
         f, rest = evidence.resonance, dict.fromkeys(self.extra, 0.0)
         return [
@@ -134,7 +133,7 @@ class NonlinearSpring(Sound):
     alike = "a spring that is not linear describes it"
     extra = {"square": (-1.0, 1.0), "cube": (-0.9, 20.0)}
 
-    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """Return starts with several cubic stiffnesses that keep the measured resonance."""
         found = []
         for cube in (-0.3, -0.1, 0.0, 0.1, 0.3, 0.7, 1.5):
@@ -157,7 +156,7 @@ class DryFriction(Sound):
     name = "bonded, with dry friction"
     extra = {"friction": (0.0, 5.0)}  # above 1 it locks
 
-    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """Return starts with little and much friction, and one that nearly locks the mass."""
         linear = super().starts(evidence)
         some = [{**one, "friction": size} for one in linear for size in (0.02, 0.2)]
@@ -178,7 +177,7 @@ class PositiveStop(Sound):
     extra = {"stop": (-0.8, 5.0), "position": (-1.0, 1.0)}
     side: ClassVar[float] = 1.0
 
-    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """Return starts with weak and stiff stops that the mass reaches early or late."""
         found = []
         for stop in (-0.3, 0.1, 0.5):
@@ -208,7 +207,7 @@ class TwoModes(Sound):
     alike = "two modes of a sound beam describe it"
     extra = {"apart": (-0.35, 0.35)}
 
-    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """Return starts with a second mode above and below."""
         every = super().starts(evidence)
         return [{**one, "apart": apart} for one in every for apart in (-0.12, -0.05, 0.05, 0.12)]
@@ -264,7 +263,6 @@ class Delaminated(Hypothesis):
     free: tuple[str, ...] = ("f1", "f2", "zeta1", "zeta2", "e")  # names of a structure's parameters
     name: ClassVar[str] = "delaminated"
     is_rugged: ClassVar[bool] = True
-    parts: ClassVar[int] = len(STARTING_SPLITS)
 
     def values_from_structure(self, structure: Structure, evidence: Evidence) -> dict[str, float]:
         """Convert a structure to the numbers that are fitted."""
@@ -306,12 +304,12 @@ class Delaminated(Hypothesis):
         }
         return {name: ends for name, (ends, of) in every.items() if of & set(self.free)}
 
-    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
-        """Return starts of one split, over common frequency and restitution."""
-        guess, split = self.values_from_structure(self.guess, evidence), STARTING_SPLITS[part]
-        common = evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+        """Return starts over split, common frequency and restitution."""
+        guess = self.values_from_structure(self.guess, evidence)
         return [
-            {**guess, "common": shift * common, "split": split, "e": e}
+            {**guess, "common": shift * common_at(split, evidence), "split": split, "e": e}
+            for split in STARTING_SPLITS
             for shift in (0.96, 1.0, 1.04)
             for e in (0.35, 0.7)
         ]
@@ -351,24 +349,26 @@ class DelaminatedWithClearance(Delaminated):
         """Convert a structure to the numbers that are fitted, without friction."""
         return {**super().values_from_structure(structure, evidence), "friction": 0.0}
 
-    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
-        """Return starts of one split: pressed faces, gaps, and halves that move alone up to one."""
-        guess, split = self.values_from_structure(self.guess, evidence), STARTING_SPLITS[part]
-        common, gaps = evidence.resonance * math.sqrt(1.0 + 0.25 * split**2), []
-        for gap in (0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.4):
-            gaps.append({"common": common, "split": split, "clearance": gap})
-            gaps += [{**one, "clearance": gap} for one in self.moving_alone(evidence, split)]
-        pressed = self.pressed(evidence, {**guess, "split": split}) if self.onset else []
-        return [*({**guess, **one} for one in gaps), *pressed]
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+        """Return starts with pressed faces, gaps, and halves that move alone up to one."""
+        guess, alone = self.values_from_structure(self.guess, evidence), self.moving_alone(evidence)
+        moved = [{"common": common_at(one, evidence), "split": one} for one in STARTING_SPLITS]
+        gaps = (0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.4)
+        found = [{**guess, **one, "clearance": gap} for gap in gaps for one in (*moved, *alone)]
+        if self.onset:
+            for split in STARTING_SPLITS:
+                found += self.pressed(evidence, {**guess, "split": split})
+        return found
 
-    def moving_alone(self, evidence: Evidence, split: float) -> list[dict[str, float]]:
+    def moving_alone(self, evidence: Evidence) -> list[dict[str, float]]:
         """Return starts at which a sensor's resonance is that of the half it is on."""
-        m1, m2, peaks = self.guess.m1, self.guess.m2, evidence.peaks
-        if len(peaks) == 2:
-            split = math.log(peaks[1] / peaks[0])
-        f1 = peaks[0] if evidence.masses[0] == 0 else peaks[0] * math.exp(-split)
-        common = f1 * math.sqrt((m1 + m2 * math.exp(2.0 * split)) / (m1 + m2))
-        return [{"common": part * common, "split": split} for part in (1.0, 0.96, 0.92)]
+        m1, m2, peaks, found = self.guess.m1, self.guess.m2, evidence.peaks, []
+        both = len(peaks) == 2
+        for split in [math.log(peaks[1] / peaks[0])] if both else STARTING_SPLITS:
+            f1 = peaks[0] if evidence.masses[0] == 0 else peaks[0] * math.exp(-split)
+            common = f1 * math.sqrt((m1 + m2 * math.exp(2.0 * split)) / (m1 + m2))
+            found += [{"common": part * common, "split": split} for part in (1.0, 0.96, 0.92)]
+        return found
 
     def pressed(self, evidence: Evidence, guess: Values) -> list[dict[str, float]]:
         """Return starts whose preload, in closed form, opens where order 2 begins."""
@@ -384,6 +384,11 @@ class DelaminatedWithClearance(Delaminated):
             for e in (0.35, 0.7)
             for friction in (0.0, 0.1, 0.3)
         ]
+
+
+def common_at(split: float, evidence: Evidence) -> float:
+    """Return the common frequency of halves that are this far apart, by the resonance."""
+    return evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
 
 
 SOUND = (*(Bonded(), NonlinearSpring(), DryFriction(), PositiveStop(), NegativeStop(), TwoModes()),)

@@ -25,9 +25,7 @@ from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, integrated, meas
 from ..laboratory.pieces import Floats
 
 ORDERS = np.arange(1, 13)  # of what a window is projected on
-HIGH = slice(5, None)  # orders 6 to 12
-MIN_QUIET = 8  # windows in which nothing strikes: of fewer those that move least are taken
-PRIOR = 1e-6  # weight of a participation of 1, over that of the windows
+HIGH = slice(5, 12)  # orders 6 to 12
 
 
 @dataclass(frozen=True)
@@ -58,16 +56,21 @@ class TimingSettings:
     opposite: float = -0.97
     together: float = 0.0
     order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
-    # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.54 or less
+    # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.46 or less
     # before `at_end` of the stroke, or an order 2 of 0.54 where faces make up to 0.47; a slow half
     # that a moving one strikes up to 1.5, a stop then from 1.8
-    softens: float = -0.5
+    softens: float = -0.4
     lifts: float = 0.5
     at_end: float = 0.8
     stiffens: float = 0.5
     stiffens_moving: float = 1.5
     middle: float = 0.6  # share of the windows for the spread: one by itself is chance
     spread: float = 0.15  # of the place, over the stroke: stops and play make 0.07, gaps 0.28
+    # see `stiffnesses`: windows up to this factor from the loud ones' frequency, where no other
+    # mode moves the sensor; how many tell the beam at rest; weight of a participation of 1
+    near: float = 1.5
+    quiet: int = 8
+    prior: float = 1e-6
     known: float = 0.03  # error of a frequency that is known
     stiffer: float = 1.06  # frequency while something strikes, over that of the faces shut
 
@@ -161,7 +164,7 @@ def strikes_at(
     loud[top] = True
     turned = np.exp(1j * peak[loud])
     shut *= 1.0 - settings.known
-    rest, stiffness = stiffnesses(motion, loud, quiet)
+    rest, stiffness = stiffnesses(motion, loud, quiet, settings)
     grown = [
         float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
     ]
@@ -184,7 +187,10 @@ def strikes_at(
 
 
 def stiffnesses(
-    motion: NDArray[Any], loud: NDArray[np.bool_], quiet: NDArray[np.bool_]
+    motion: NDArray[Any],
+    loud: NDArray[np.bool_],
+    quiet: NDArray[np.bool_],
+    settings: TimingSettings,
 ) -> tuple[float, Floats]:
     """Return the frequency of the beam at rest and the squared one in each window, in Hz.
 
@@ -193,15 +199,19 @@ def stiffnesses(
     participation p, which the windows in which nothing strikes tell with the stiffness at rest.
     """
     moved, base, stroke = motion
-    size = abs(stroke)
-    if quiet.sum() < MIN_QUIET:  # faces that touch strike at any stroke
-        quiet = size <= max(0.5 * size[loud].min(), np.sort(size)[len(size) // 3])
+    size, square = abs(stroke), abs(moved / stroke)
+    ratio = square / np.median(square[loud])
+    near = np.maximum(ratio, 1.0 / ratio) <= settings.near**2
+    rest_of = near & quiet
+    if rest_of.sum() < settings.quiet:  # faces that touch strike at any stroke: what moves least
+        third = np.quantile(size[near], 1.0 / 3.0)
+        rest_of = near & (size <= max(0.5 * size[loud].min(), third))
     toward = stroke.conj() / size
     scale = float(np.median(abs(moved) / size))
-    rows = np.array([scale * size, (base * toward).real])[:, quiet]
-    products, sums = rows @ rows.T, -rows @ (moved * toward).real[quiet]
+    rows = np.array([scale * size, (base * toward).real])[:, rest_of]
+    products, sums = rows @ rows.T, -rows @ (moved * toward).real[rest_of]
     # where windows do not tell the participation from the stiffness it is 1
-    weight = PRIOR * float(np.sum(abs(base[quiet]) ** 2))
+    weight = settings.prior * float(np.sum(abs(base[rest_of]) ** 2))
     rest, part = np.linalg.solve(products + np.diag([0.0, weight]), sums + [0.0, weight])
     stiffness = -((moved + part * base) / stroke).real
     return math.sqrt(max(scale * rest, 1e-9)) / TURN, stiffness / TURN**2

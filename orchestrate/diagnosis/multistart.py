@@ -12,7 +12,7 @@ from ..fmu import Player
 from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .hypotheses import Hypothesis
-from .linear import SOFT_LIMIT, LinearModel, misfit
+from .misfit import SOFT_LIMIT, LinearModel, misfit
 
 STEPS = {  # of the differences that make derivatives; f and common: parts of the resonance's
     **{"common": 3e-4, "f": 1e-4, "split": 3e-3, "e": 0.02, "clearance": 0.01},
@@ -73,7 +73,8 @@ class Search:
 
     def minima(self, starts: Sequence[Mapping[str, float]]) -> list[Solution]:
         """Go downhill from the best starts that differ; return the minima, the best first."""
-        count = self.evidence.settings.starts
+        settings = self.evidence.settings
+        count = settings.rugged_starts if self.hypothesis.is_rugged else settings.starts
         chosen = without_neighbours(self.rank_starts(starts))[:count]
         return sorted((self.refine(one.values) for one in chosen), key=lambda one: one.misfit)
 

@@ -38,14 +38,28 @@ from .search_job import RecordData
 from .undamaged import SoundStructure
 
 WORDS = (DELAMINATED, NOT_SEEN, NOT_DESCRIBED, UNDECIDED)
-COVERED = (0.65, 1.4)  # of the bonded resonance, and a tenth beyond those of the halves
-WINDOWS = 5.0  # of the timing, while the sweep crosses the resonance's width
-SAMPLES = 25.6  # in a period of the highest frequency: fewer do not show when something strikes
-LONGEST = 120.0  # s
-MOST_PERIODS = 5400.0  # of the bonded resonance, of a sweep as slow as ISO 7626-2 asks for
 USUAL_NOISE = 1e-3  # (m/s2)/sqrt(Hz)
 USUAL_LEVELS = tuple(float(f"{level:.2g}") for level in np.geomspace(0.01, 1.0, 9))  # g
 
+
+@dataclass(frozen=True)
+class PlanSettings:
+    """How far, slow and finely a test is swept."""
+
+    # of the bonded resonance, and a tenth beyond those of the halves
+    lowest: float = 0.65
+    highest: float = 1.4
+    beyond: float = 0.1
+    windows: float = 5.0  # of the timing, while the sweep crosses the resonance's width
+    # in a period of the highest frequency: fewer do not show when something strikes; and the
+    # sensors' bandwidth over their sampling rate
+    samples: float = 25.6
+    bandwidth: float = 0.39
+    longest: float = 120.0  # s
+    periods: float = 5400.0  # of the bonded resonance, of a sweep as slow as ISO 7626-2 asks for
+
+
+PLAN = PlanSettings()
 HERE: Running = {"jobs": 1, "cluster": InlineExecutor(), "progress": False}  # in a worker
 
 
@@ -144,20 +158,21 @@ def plan_test(
 def usual_ends(structure: Structure) -> tuple[float, float]:
     """Return the frequencies in Hz between which a sweep passes the resonance."""
     f, halves = SoundStructure.from_structure(structure).f, (structure.f1, structure.f2)
-    return min(COVERED[0] * f, 0.9 * min(halves)), max(COVERED[1] * f, 1.1 * max(halves))
+    low, high = (1.0 - PLAN.beyond) * min(halves), (1.0 + PLAN.beyond) * max(halves)
+    return min(PLAN.lowest * f, low), max(PLAN.highest * f, high)
 
 
 def usual_sensor(last: float, noise: float = USUAL_NOISE, range: float = math.inf) -> Sensor:
     """Return an accelerometer that samples a sweep up to ``last`` Hz as the rule needs it."""
-    rate = SAMPLES * last
-    return Sensor(bandwidth=0.39 * rate, sample_rate=rate, noise=noise, range=range)
+    rate = PLAN.samples * last
+    return Sensor(bandwidth=PLAN.bandwidth * rate, sample_rate=rate, noise=noise, range=range)
 
 
 def slow_enough(f: float, zeta: float, first: float, last: float) -> float:
     """Return the duration, s, of a sweep that shows a resonance and what strikes in it."""
-    seen, heard = sweep_rate(f, zeta), 2.0 * zeta * f**2 / (WINDOWS * TIMING.periods)
+    seen, heard = sweep_rate(f, zeta), 2.0 * zeta * f**2 / (PLAN.windows * TIMING.periods)
     steady, timed = ((last - first) / max(rate, 1e-9) for rate in (seen, heard))
-    return min(max(timed, min(steady, MOST_PERIODS / f)), LONGEST)
+    return min(max(timed, min(steady, PLAN.periods / f)), PLAN.longest)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -326,10 +341,11 @@ def checked_sensors(
         if not one.noise:
             text = "expected its density in (m/s2)/sqrt(Hz), > 0: without it every level counts"
             raise InputError(f"sensor on {name}: noise = 0.0; {text}")
-    every, rate = {BOX: next(iter(responses.values())), **sensors}, SAMPLES * last
+    every, rate = {BOX: next(iter(responses.values())), **sensors}, PLAN.samples * last
+    widest = PLAN.bandwidth * rate
     if every[BOX].rate > rate:
         every = {
-            name: replace(one, bandwidth=min(one.bandwidth, 0.39 * rate), sample_rate=rate)
+            name: replace(one, bandwidth=min(one.bandwidth, widest), sample_rate=rate)
             for name, one in every.items()
         }
     return tuple(every.items())

@@ -21,7 +21,7 @@ from .curve_evidence import COARSE_SAMPLES, CurveData
 from .even_orders import EvenOrders, even_orders
 from .evidence import Evidence
 from .hypotheses import SOUND, Delaminated, DelaminatedWithClearance, Hypothesis, Onset
-from .linear import misfit
+from .misfit import misfit
 from .multistart import Search, Solution, difference_step, with_distinct_misfits, without_neighbours
 from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
 from .settings import SETTINGS, Settings
@@ -138,7 +138,7 @@ class SearchJob(Job):
     delaminated: bool = True  # whether that is searched too
     last_item_uses_all: ClassVar[bool] = True
     item_columns: ClassVar[tuple[str, ...]] = ()  # solutions
-    last_weight: ClassVar[int] = 40  # refining takes about twice as long as all searches
+    last_weight: ClassVar[int] = 8  # refining takes about as long as all searches
     item: ClassVar[str] = "step"
 
     @property
@@ -163,33 +163,26 @@ class SearchJob(Job):
                 found.append(DelaminatedWithClearance(self.guess, (*free, "clearance"), onset))
         return tuple(found)
 
-    def items(self) -> Sequence[tuple[int, int]]:
-        parts = [1] * len(self.sound)
-        if self.delaminated:
-            parts += [Delaminated.parts] * (1 + ("clearance" in self.free))
-        longest_first = reversed(list(enumerate(parts)))
-        return [*((h, part) for h, count in longest_first for part in range(count)), (-1, 0)]
+    def items(self) -> Sequence[int]:
+        return [*reversed(range(len(self.hypotheses))), -1]  # longest first
 
     def progress_note(self, first: int) -> str:
         """Return a note for the progress bar while the last item refines, else none."""
         return "refining the best fits" if first == self.count() - 1 else ""
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[tuple[int, int]], previous: Table | None
-    ) -> Table:
-        """Do one search; the last one refines the best of all others."""
-        position, part = items[0]
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+        """Search for one hypothesis; the last item refines the best of all others."""
         with Player(fmus[OSCILLATOR]) as player:
-            if position >= 0:
-                return self.search_part(position, part, player)
+            if items[0] >= 0:
+                return self.search(items[0], player)
             assert previous is not None
             return self.finish(previous, player)
 
-    def search_part(self, position: int, part: int, player: Player) -> Table:
-        """Search near the resonance for the minima of a hypothesis from a part of its starts."""
+    def search(self, position: int, player: Player) -> Table:
+        """Search near the resonance for the minima of a hypothesis."""
         hypothesis = self.hypotheses[position]
         search = Search(hypothesis, cached_coarse_evidence(self.data), player)
-        starts = hypothesis.starts(self.evidence, part)
+        starts = hypothesis.starts(self.evidence)
         worth = position < len(self.sound) or self.is_worth_a_search
         found = search.minima(starts) if worth else search.rank_starts(starts[:1])
         return solutions_table(position, found, search.evaluations)
@@ -218,7 +211,7 @@ class SearchJob(Job):
         best = min(range(count), key=lambda position: made[position][1][0].misfit)
         rows = []
         for position, one in enumerate(made):
-            with_errors = position in (0, best) or position >= count and worth
+            with_errors = position >= count if worth else position in (0, best)  # may be stated
             rows.append(self.hypothesis_result(one, player, with_errors))
             spent = previous["evaluations"][previous["place"] == position]
             rows[-1]["end_evaluations"] += spent.sum()
@@ -252,7 +245,8 @@ class SearchJob(Job):
         search.evaluations += coarse.evaluations
         ends = search.rank_starts([*polished, *starts[len(starts) - len(contained) :]])
         best, *rest = self.sort_by_misfit_and_guess(search, ends)
-        return [search.polish(best), *rest]
+        # errors of what may be stated come from clouds that polish it as well
+        return [best if worth else search.polish(best), *rest]
 
     def sort_by_misfit_and_guess(
         self, search: Search, solutions: Sequence[Solution]

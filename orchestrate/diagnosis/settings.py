@@ -79,7 +79,9 @@ class Settings:
     noise_squares: float = 1.3
 
     # -- the search: see `multistart.Search.minima` --
-    starts: int = 2  # of each part, from which to go downhill
+    # from which to go downhill: of a sound hypothesis, and of two masses
+    starts: int = 2
+    rugged_starts: int = 4
     steps: int = 8  # on each way
     tolerance: float = 1e-3  # relative: a way downhill that gains less in a step ends
     rounds: int = 7  # of the regressions over clouds that follow

@@ -38,7 +38,7 @@ from ..laboratory.pieces import Floats
 from ..laboratory.sampled import Sampled
 from .evidence import Evidence
 from .hypotheses import Hypothesis
-from .linear import LinearModel, misfit, soft_squares
+from .misfit import LinearModel, misfit, soft_squares
 from .multistart import Search, difference_step
 from .order_windows import ORDERS, RecordOrders
 from .settings import Settings

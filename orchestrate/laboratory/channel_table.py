@@ -17,6 +17,7 @@ import numpy as np
 from ..errors import InputError
 from ..files import write_whole
 from ..lazy import xr
+from ..model.arguments import checked_path
 from ..response.labels import variable
 from .channel_setup import ACTING, SENSOR_WORDS, Channels, ChannelSetup
 from .columns import Assignment, Columns, assigned_columns, converted_channels, times_in_s
@@ -93,7 +94,7 @@ def channels(
     """
     setup = ChannelSetup.of(channels)
     rate = setup.sample_rate if sample_rate is None else sample_rate
-    table = read_columns(Path(path)).at_rate(rate)
+    table = read_columns(checked_path("path", path)).at_rate(rate)
     assignment = assigned_columns(table, setup.columns)
     given = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
     stated = {name: setup.keyword(name, value) for name, value in given.items()}
@@ -106,7 +107,7 @@ def channels(
     except InputError as error:
         found.attrs["refused"] = str(error)
     if output is not None:
-        write_setup(found, setup, Path(output))
+        write_setup(found, setup, checked_path("output", output))
     return found
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputError
 from ..lazy import xr
+from ..model.arguments import checked_path
 from .columns import (
     ANGLES,
     BY_NAME,
@@ -96,7 +96,7 @@ def read_curve(
     >>> curve.attrs["columns"]
     'frequency "frequency", amplitude1 "face 1"'
     """
-    path = Path(path)
+    path = checked_path("path", path)
     if file_kind(path) != "csv":
         raise InputError(f"{path}: expected columns of text (.csv, .txt, .tsv, .asc, .dat)")
     table = read_columns(path, True)  # fields may be empty

@@ -14,6 +14,7 @@ import numpy as np
 from ..errors import InputError, printable
 from ..files import check_path_encoding, reason, write_whole
 from ..lazy import xr
+from ..model.arguments import checked_path
 from ..reader_process import read_in_process
 from ..running.netcdf import check_size, stored_size
 from .analysis.channels import NAMES_IN_RESULTS
@@ -111,7 +112,7 @@ def read_record(
     >>> read_record(path).box_acceleration.values.round(4).tolist()
     [0.9807, 2.942, -1.9613, 0.0]
     """
-    path, setup = Path(path), ChannelSetup.of(channels)
+    path, setup = checked_path("path", path), ChannelSetup.of(channels)
     rate = setup.sample_rate if sample_rate is None else sample_rate
     table, kind = read_columns(path).at_rate(rate), file_kind(path)
     if kind == "wav" and not setup.keyword("scale", scale):

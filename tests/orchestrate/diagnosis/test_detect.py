@@ -9,7 +9,7 @@ import orchestrate
 from orchestrate.diagnosis.decision_rule import Beam
 from orchestrate.diagnosis.detect import DetectJob, beam_job, record_findings, sweep_direction
 from orchestrate.diagnosis.fit import checked_data
-from orchestrate.diagnosis.hypotheses import FREE, STARTING_SPLITS
+from orchestrate.diagnosis.hypotheses import FREE
 from orchestrate.diagnosis.multistart import Search, Solution
 from orchestrate.diagnosis.search_job import bonded_even
 from orchestrate.diagnosis.settings import SETTINGS
@@ -149,7 +149,7 @@ def test_the_search_for_pressed_faces_starts_at_the_preload_that_opens_where_ord
     job = DetectJob(name="x", data=checked_data(pressed), guess=guess(), free=FREE)
     hypothesis = job.hypotheses[-1]
     assert hypothesis.onset.common == pytest.approx(33.79, rel=0.01)
-    starts = hypothesis.starts(job.evidence, STARTING_SPLITS.index(0.3))
+    starts = [one for one in hypothesis.starts(job.evidence) if one["split"] == 0.3]
     gaps = [s["clearance"] * job.evidence.displacement for s in starts]
     assert min(abs(gap / PRESSED - 1.0) for gap in gaps) < 0.25
     data = checked_data(record(BEAM.as_bonded()))

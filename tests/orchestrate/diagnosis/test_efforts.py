@@ -9,7 +9,7 @@ import pytest
 from orchestrate.diagnosis import multistart
 from orchestrate.diagnosis.detect import halves_around
 from orchestrate.diagnosis.hypotheses import Bonded
-from orchestrate.diagnosis.linear import soft_squares
+from orchestrate.diagnosis.misfit import soft_squares
 from orchestrate.diagnosis.multistart import (
     Search,
     Solution,
@@ -43,14 +43,16 @@ def bounds(monkeypatch):
     monkeypatch.setattr(Bonded, "bounds", lambda *_: wide)
 
 
-def test_one_goes_downhill_from_two_starts_that_differ(monkeypatch):
+@pytest.mark.parametrize(("is_rugged", "count"), [(False, 2), (True, 4)])
+def test_one_goes_downhill_from_starts_that_differ(monkeypatch, is_rugged, count):
     """Halves that change places are two solutions, however near each other."""
     begun, search = [], MadeUp(lambda x, y: [x, y])
+    monkeypatch.setattr(Bonded, "is_rugged", is_rugged)
     monkeypatch.setattr(
         search, "refine", lambda values: begun.append(values) or Solution("", {}, 1)
     )
-    search.minima([{**HERE, "f": f} for f in (40.0, 35.0, 36.0)])
-    assert [values["f"] for values in begun] == [35.0, 36.0]
+    search.minima([{**HERE, "f": f} for f in (40.0, 35.0, 36.0, 39.0, 38.0)])
+    assert [values["f"] for values in begun] == [35.0, 36.0, 38.0, 39.0][:count]
     one, near, other = (Solution("x", {"split": s, "e": 0.5}, 0.2) for s in (0.015, 0.02, -0.015))
     assert without_neighbours([one, near, other]) == [one, other]
 

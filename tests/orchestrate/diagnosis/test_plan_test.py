@@ -15,6 +15,7 @@ from orchestrate.diagnosis.plan_test import (
     checked_sensors,
     recommended_levels,
     slow_enough,
+    usual_ends,
 )
 from orchestrate.diagnosis.undamaged import SoundStructure
 from orchestrate.errors import InputError
@@ -93,6 +94,15 @@ def test_a_rehearsal_takes_as_many_periods_at_any_frequency(zeta, periods):
     """At 950 Hz it took 12,900, six minutes on a busy computer."""
     for f in (95.0, 950.0):
         assert f * slow_enough(f, zeta, 0.65 * f, 1.4 * f) == pytest.approx(periods, rel=1e-3)
+
+
+def test_a_sweep_passes_the_resonance_and_those_of_the_halves():
+    """By a tenth, and takes two minutes at most."""
+    near = HALVES.replace(f1=46.0, f2=46.0)
+    assert usual_ends(near) == pytest.approx((0.65 * 46.0, 1.4 * 46.0))
+    far = HALVES.replace(f1=20.0, f2=200.0)
+    assert usual_ends(far) == pytest.approx((18.0, 220.0))
+    assert slow_enough(10.0, 0.001, 6.5, 14.0) == 120.0
 
 
 def test_a_rehearsal_samples_no_faster_than_the_rule_needs():

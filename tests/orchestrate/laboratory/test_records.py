@@ -11,6 +11,7 @@ import scipy.io
 import xarray as xr
 from scipy.io import wavfile
 
+import orchestrate
 from orchestrate import InputError, Sampled, read_record, reader_process, record, write_record
 from orchestrate.laboratory import record_files
 
@@ -379,3 +380,13 @@ def test_numbers_of_a_record_that_was_made_have_their_units():
     assert data.attrs["sample_rate"] == 10.0 and data.attrs["source"] == "measured"
     assert data.acceleration1.attrs["units"] == "m/s2" and data.time.attrs["units"] == "s"
     assert all(data[name].attrs["long_name"] for name in data.variables)
+
+
+@pytest.mark.parametrize("value", [3, None, b"a.csv"])
+@pytest.mark.parametrize(
+    "read", [orchestrate.read_record, orchestrate.read_curve, orchestrate.channels]
+)
+def test_what_is_no_path_is_refused_in_one_line(read, value):
+    """It was Python's TypeError."""
+    with pytest.raises(InputError, match=f"^path = {value!r}: expected a path"):
+        read(value)

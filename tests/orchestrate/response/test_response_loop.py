@@ -111,15 +111,17 @@ def test_a_response_ends_where_it_comes_near_a_known_motion(instance, same):
     states, gap = stroboscopic_samples(instance, period, 0, 960)
     orbit = SimpleNamespace(states=states[-1:], gap=gap)
     far = SimpleNamespace(states=states[-2:] + 20.0, gap=gap)
-    away = [nearest_state(orbit.states, frequency, gap, states[k - 1])[1] for k in range(8, 401, 8)]
+    away = [
+        nearest_state(orbit.states, frequency, gap, states[k - 1])[1] for k in range(16, 401, 16)
+    ]
     pairs = enumerate(zip([np.inf, *away], away, strict=False))
     looks = [look for look, (before, now) in pairs if before < same and now < before]
-    settings = LoopSettings(transient=400, samples=8, same=same, known=(far, orbit), compared=8)
+    settings = LoopSettings(transient=400, samples=8, same=same, known=(far, orbit))
     results = response_loop(instance).respond([point] * 2, [(0.0, 1.0, 0.0, 0.0)] * 2, settings)
     assert results.counts["reached"].tolist() == [3 if looks else 0] * 2  # of all states
     assert bool(looks) == (same > 1e-8)
     if looks:
-        assert results.ends == pytest.approx(states[[8 * looks[0] + 7] * 2], rel=1e-9, abs=1e-9)
+        assert results.ends == pytest.approx(states[[16 * looks[0] + 15] * 2], rel=1e-9, abs=1e-9)
 
 
 def test_structures_have_the_sizes_of_the_source():
