@@ -393,7 +393,7 @@ RELATED = [  # numbers that do not fit each other, words, and what else has a ru
     (curve(amplitude1=np.ones(9)), "9 values; expected 20"),
     (asked("psd", 3.0), "record: float, without time"),
     (asked("psd", recorded().isel(time=slice(5))), "5 samples; expected at least 16"),
-    (asked("psd", recorded(acceleration1=RECORDED / RECORDED)), "acceleration1[0] = nan at 0 s"),
+    (asked("psd", recorded(acceleration1=np.nan * RECORDED)), "acceleration1[0] = nan at 0 s"),
     (asked("psd", recorded(time=RECORDED + 0.004 * (RECORDED == 0.7))), "time[69] = 0.69 s"),
     (asked("psd", recorded(time=RECORDED % 1.0)), "expected ascending numbers"),
     (asked("psd", recorded().assign_attrs(sample_rate=50.0)), "sample_rate = 50.0 Hz: the time"),
