@@ -2,9 +2,9 @@
 
 A tolerance decides little: a transient that turns round, or that changes sides as next to a
 period doubling, comes back closer after some periods than after one; a torus comes back as close as
-one likes after enough of them; and a narrow period doubling stays within any tolerance. So
-:func:`decide_multiplicity` follows how deviations develop: those of a response that repeats have
-died, or decay. The rule is :func:`fmu_src.kernels.repetition.decide`, for Python and C alike;
+one likes after enough of them; and a narrow period doubling stays within any tolerance. So the rule
+(:func:`fmu_src.kernels.repetition.decide`, called by the loop of responses) follows how deviations
+develop: those of a response that repeats have died, or decay.
 :func:`fmu_src.kernels.repetition.confirm` makes it undecided where impacts contradict it.
 """
 
@@ -51,13 +51,6 @@ def find_repetition(
     """
     memory = apply_rule("find_repetition", samples, (frequency, gap, tolerance))
     return Repetition(int(memory[repetition.MULTIPLICITY]), float(memory[repetition.DEVIATION]))
-
-
-def decide_multiplicity(
-    samples: ArrayLike, frequency: float, gap: float, tolerance: float
-) -> Decision:
-    memory = apply_rule("decide_multiplicity", samples, (frequency, gap, tolerance))
-    return Decision(int(memory[repetition.MULTIPLICITY]), int(memory[repetition.DECIDED]))
 
 
 def nearest_state(

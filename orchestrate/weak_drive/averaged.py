@@ -133,9 +133,9 @@ def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, P
         for part in parts
     )
     above, below = pull + masses, box * (pull + masses) + pull * masses
-    torque = imaginary_part(above * conjugate_polynomial(below))
-    torque = torque * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
-    size = imaginary_part(1j * below * conjugate_polynomial(below))  # |below|^2
+    conjugate = Polynomial(below.coef.conj())
+    torque = Polynomial((above * conjugate).coef.imag) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
+    size = Polynomial((1j * below * conjugate).coef.imag)  # |below|^2
     factor = drive.epsilon / (2.0 * drive.b(structure))
     return size**2 - factor * (torque.deriv() * size - torque * size.deriv()), size**2
 
@@ -222,14 +222,6 @@ def stationary_curve(structure: Structure, drive: Drive) -> xr.Dataset:
     }
     speed = ("speed", Omega * structure.omega, {"units": "rad/s"})
     return xr.Dataset(curves, {"speed": speed}, structure.parameters())
-
-
-def conjugate_polynomial(polynomial: Polynomial) -> Polynomial:
-    return Polynomial(polynomial.coef.conj())
-
-
-def imaginary_part(polynomial: Polynomial) -> Polynomial:
-    return Polynomial(polynomial.coef.imag)
 
 
 def polish_root(polynomial: Polynomial, root: float) -> float:

@@ -187,7 +187,8 @@ class CosimulateJob(CoupledJob, Question):
         for parts in self.finenesses():
             before = previous and rows_of(previous, parts)
             if before and before["ended"][-1]:
-                found = nothing_more(before)
+                found = {name: values[:0] for name, values in before.items()}  # nothing more
+                found["ended"] = before["ended"]
             else:
                 with Instance(fmus[OSCILLATOR]) as one, Instance(self.drive, "drive") as drive:
                     coupling = Coupling(self, one, drive, parts, float(response[0]))
@@ -355,11 +356,6 @@ class CosimulateJob(CoupledJob, Question):
 def rows_of(table: Table, parts: int) -> Table:
     end = f" {parts}"
     return {name.removesuffix(end): table[name] for name in table if name.endswith(end)}
-
-
-def nothing_more(run: Table) -> Table:
-    """Return the table of a run that a drive ended in a chunk before: no rows, the same end."""
-    return {**{name: values[:0] for name, values in run.items()}, "ended": run["ended"]}
 
 
 def turned(links: Mapping[str, Link]) -> str:

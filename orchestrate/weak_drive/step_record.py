@@ -66,9 +66,6 @@ class Record:
     def after(self) -> Record:
         return replace(self, columns=self.columns[:, 1:])
 
-    def at_ends(self) -> Record:
-        return replace(self, columns=self.columns[:, self.ends])
-
     def __getitem__(self, name: str) -> Floats:
         return self.columns[self.names.index(name)]
 
