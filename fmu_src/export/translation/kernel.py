@@ -16,8 +16,8 @@ from typing import Any
 
 from ..errors import CannotExport
 from .expressions import TAKEN
-from .functions import STORAGE, Body, Unit, wrapped
-from .values import C_TYPES, MEMORY, REAL, Type
+from .functions import STORAGE, Body, wrapped
+from .values import C_TYPES, MEMORY, REAL, Type, Unit
 
 HEAD = """\
 /* Translated from the Python in documentation/kernels, where the reasons are.
