@@ -96,10 +96,7 @@ def loop_tables(*more: type[ctypes.Structure]) -> dict[str, Any]:
 
 
 def layout(kind: type[ctypes.Structure]) -> dict[str, Any]:
-    """Return the size of a C structure on a machine of 32 bits, and kind and place of its fields.
-
-    Those of inner structures, and elements of arrays, have names with dots: ``force.places.0``.
-    """
+    """Return size and fields of a C structure of 32 bits; inner ones as ``force.places.0``."""
     size, _, fields = place_members(kind)
     return {"size": size, "fields": fields}
 

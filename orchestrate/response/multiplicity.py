@@ -44,11 +44,7 @@ class Decision(NamedTuple):
 def find_repetition(
     samples: ArrayLike, frequency: float, gap: float, tolerance: float
 ) -> Repetition:
-    """Find the least n after which states repeat within a tolerance; return n, deviation.
-
-    Only the later half of the samples is compared: a transient may outlive hundreds of periods. n
-    is 0 where none up to a quarter of the samples is found.
-    """
+    """Find the least n after which the later half of states repeats (0: none), and deviation."""
     memory = apply_rule("find_repetition", samples, (frequency, gap, tolerance))
     return Repetition(int(memory[repetition.MULTIPLICITY]), float(memory[repetition.DEVIATION]))
 

@@ -210,10 +210,7 @@ class CosimulateJob(CoupledJob, Question):
         return checked_links(dict(self.connect), drive, dict(self.units), self.alone)
 
     def response_to_force(self) -> Floats:
-        """Return by how much 1 N accelerates the box at once, m/s2, and which part of it in a step.
-
-        At once is what a connected acceleration says, else the motion in a short step.
-        """
+        """Return the box's acceleration by 1 N at once, m/s2, and which part of it in a step."""
         seen: list[Any] = []
         if "box_force" not in dict(self.connect):
             return np.array([0.0, math.nan])

@@ -183,10 +183,7 @@ class Master:
         start_time: float = 0.0,
         inverse_mass: float = 0.0,
     ) -> None:
-        """Connect both instances and begin a run.
-
-        ``inverse_mass``: of the drive, 1/kg, if it takes a held force and gives no acceleration.
-        """
+        """Begin a run; ``inverse_mass`` (1/kg) is of a drive that takes a held force only."""
         pushes = connection.pushes
         cubics = (*(name for push in pushes for name in CUBICS[push]),)
         self.oscillator = Channel(oscillator, (*CUBIC, *cubics), OscillatorOutputs._fields)
@@ -237,10 +234,7 @@ class Master:
     def run_controlled(
         self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
     ) -> Record:
-        """Run a number of intervals; the inputs of each are asked for when it begins.
-
-        Fewer, if an FMU ends the simulation (:attr:`ended`): those that it reached the end of.
-        """
+        """Run intervals whose inputs are asked for as each begins; fewer if :attr:`ended`."""
         return self._run_pieces((np.array([row], dtype=float) for row in inputs), count, h)
 
     def _run_pieces(
