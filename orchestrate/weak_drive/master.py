@@ -180,7 +180,6 @@ class Master:
         drive: Instance,
         scheme: Scheme,
         connection: Connection = MOTOR,
-        start_time: float = 0.0,
         inverse_mass: float = 0.0,
     ) -> None:
         """Begin a run; ``inverse_mass`` (1/kg) is of a drive that takes a held force only."""
@@ -194,11 +193,11 @@ class Master:
         self.inputs = slice(len(self.names) - len(connection.inputs), len(self.names))
         self.pair, holds_force = self._described(), len(self.drive.forces) < len(FORCE)
         self.inverse_mass = inverse_mass if holds_force else 0.0
-        self.begin(start_time)
+        self.begin()
 
-    def begin(self, start_time: float = 0.0) -> None:
+    def begin(self) -> None:
         unknown = [math.nan] * len(self.connection.inputs)
-        step, motion = [start_time, *[0.0] * (MOTION - TIME - 1)], self.oscillator.get()
+        step, motion = [0.0] * (MOTION - TIME), self.oscillator.get()
         self.drive.put((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())  # its acceleration follows it
         then = [0.0] * (4 * len(self.connection.pushes))
         self.row = [*step, *motion, *self.drive.get(), *then, *unknown]
@@ -219,9 +218,9 @@ class Master:
         """Return a value at the present time, by the name of its column in a record."""
         return self.row[self.names.index(name)]
 
-    def step(self, *inputs: float, h: float | None = None) -> Record:
+    def step(self, *inputs: float) -> Record:
         """Run one communication interval with constant inputs of the drive."""
-        return self.run([inputs], h)
+        return self.run([inputs])
 
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
         """Run an interval for each row of the drive's inputs, held constant; return the record."""
