@@ -336,6 +336,11 @@ def attractors(
         between which values it is there. Over ``start``: ``attractor_of`` and the ``features`` of
         what a start has settled to.
 
+    Raises
+    ------
+    InputError
+        Where an argument is missing, contradicts another one, or is out of its range.
+
     Notes
     -----
     The non-unique solutions of the paper's sections 3.2 and 4.1. A response is run on until its

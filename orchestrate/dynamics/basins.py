@@ -273,6 +273,11 @@ def basin(
         which no start of it leads; ``multiplicity``, ``impacts_per_period``, ``xi_rel_max``,
         ``multiplier``, ``decided_by``, and ``state`` at phase 0 as there.
 
+    Raises
+    ------
+    InputError
+        Where an argument is missing, contradicts another one, or is out of its range.
+
     Notes
     -----
     A start at another phase is run on to phase 0 first. What a response settles to is decided as

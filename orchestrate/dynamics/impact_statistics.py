@@ -133,6 +133,11 @@ def impact_statistics(
         ``distance_max``. ``exponent`` and ``standard_error`` as in :func:`orchestrate.lyapunov`,
         NaN where there are too few impacts.
 
+    Raises
+    ------
+    InputError
+        Where an argument is missing, contradicts another one, or is out of its range.
+
     Notes
     -----
     The impacts of (13)-(17) that the FMU reports; an impulse over m1 omega a eta^2 is ``mu/(1 + mu)

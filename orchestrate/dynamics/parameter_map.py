@@ -236,6 +236,11 @@ def map(
         where asked for ``exponent`` per unit of tau, with its ``standard_error``, NaN where there
         are too few impacts, and its ``verdict`` as of :func:`orchestrate.lyapunov`.
 
+    Raises
+    ------
+    InputError
+        Where an argument is missing, contradicts another one, or is out of its range.
+
     Notes
     -----
     An impulse follows from its closing velocity by (15). Where attractors coexist a map shows the

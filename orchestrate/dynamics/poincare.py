@@ -154,6 +154,11 @@ def poincare(
         before them, and ``sticks``. There may be none: a motion without impacts has no section at
         impacts.
 
+    Raises
+    ------
+    InputError
+        Where an argument is missing, contradicts another one, or is out of its range.
+
     Notes
     -----
     All states are read from the FMU, at exact times: those of impacts are its events, those of

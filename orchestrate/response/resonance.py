@@ -277,6 +277,12 @@ def resonance(
         ``peak_irregular`` marks peaks inside a range of irregular responses: amplitudes of these
         are the largest of a few periods, and differ by chance from one frequency to the next.
 
+    Raises
+    ------
+    InputError
+        Where a required argument is missing, arguments contradict each other, or a number is
+        out of its range.
+
     Notes
     -----
     A sweep of (6), (10) and (15) as in section 3.1 of the paper, see :func:`orchestrate.sweep`;
@@ -331,6 +337,11 @@ def resonance_levels(
         What :func:`orchestrate.resonance` answers, with ``level`` as first dimension; of each peak
         and jump its ``peak_level``, ``jump_level``. The threshold of a structure with a clearance,
         ``threshold_acceleration`` over the frequency, is one curve for all levels.
+
+    Raises
+    ------
+    InputError
+        Where a number is out of its range.
 
     Examples
     --------

@@ -166,6 +166,12 @@ def simulate(
         ``impact_time`` in s, ``impact_velocity``, the closing speed in m/s, ``impulse`` in N s,
         and ``sticks``.
 
+    Raises
+    ------
+    InputError
+        Where a required argument is missing, arguments contradict each other, or a number is
+        out of its range.
+
     Notes
     -----
     States, impacts and the contact force come from the FMU; accelerations follow from the states by

@@ -179,6 +179,12 @@ def spectra(
         Kinds: ``bonded`` and ``delaminated`` with the impacts' impulses; ``sampled``: delaminated
         without them, as a sampled accelerometer shows it.
 
+    Raises
+    ------
+    InputError
+        Where a required argument is missing, arguments contradict each other, or a number is
+        out of its range.
+
     Notes
     -----
     The paper's Figure 3. With impulses: the square of the frequency times the spectrum of the

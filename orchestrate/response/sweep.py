@@ -286,6 +286,12 @@ def sweep(
         ``a1_max``, ``a2_max``, the largest absolute accelerations in m/s2, which an accelerometer
         on a mass reads between impacts.
 
+    Raises
+    ------
+    InputError
+        Where a required argument is missing, arguments contradict each other, or a number is
+        out of its range.
+
     Notes
     -----
     The paper's section 3.1 and Figures 6, 10 and 11. Samples, impacts, the largest gap, amplitudes

@@ -291,6 +291,11 @@ def capture(
         by the averaged theory no motion below the resonance exists above it, and ``above_fold``
         says where the border lies higher all the same, by more than the theory's error.
 
+    Raises
+    ------
+    InputError
+        Where an argument is not what is expected.
+
     Notes
     -----
     Beyond the resonance is half way between the speeds of the averaged theory's folds, moved with

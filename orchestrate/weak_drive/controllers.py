@@ -79,6 +79,10 @@ class SpeedControl(Controller):
     rise : float
         Rate at which the wanted speed changes from that at the start, rad/s2; infinite: at once.
 
+    Raises
+    ------
+    InputError
+
     Examples
     --------
     >>> control = SpeedControl(speed=100.0, gain=0.3, reset_time=0.5)
@@ -136,6 +140,10 @@ class SpeedGradient(Controller):
         Mean speed from which the resonance is passed, rad/s, > 0.
     low : float
         Part of the voltage while the rotor is slower than its mean, from 0 to 1.
+
+    Raises
+    ------
+    InputError
 
     Notes
     -----

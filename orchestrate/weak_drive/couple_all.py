@@ -95,6 +95,11 @@ def couple_all(
         What :func:`orchestrate.couple` gives, over ``run`` too, with the coordinates ``system``,
         ``structure`` and ``rate``; NaN where a run has fewer revolutions than another.
 
+    Raises
+    ------
+    InputError
+        Where an argument is not what is expected.
+
     Examples
     --------
     >>> from orchestrate import Drive, Structure, couple_all

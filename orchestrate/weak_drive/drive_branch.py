@@ -264,6 +264,11 @@ def drive_branch(
         from the lowest speed goes up; where it does not arrive at the highest, another one goes
         down from there. Off the first two period doublings go the branches of twice the period.
 
+    Raises
+    ------
+    InputError
+        Where an argument is not what is expected.
+
     Notes
     -----
     Voltage and speed are both unknowns of Newton's method, and Keller's pseudo-arclength equation

@@ -173,6 +173,11 @@ def jump_voltages(
         undecided, as ``decided`` says. Over ``rate`` (V/s) too the ``voltage`` at which each ramp
         shows a jump.
 
+    Raises
+    ------
+    InputError
+        Where an argument is not what is expected.
+
     Notes
     -----
     The rule is that of :mod:`orchestrate.weak_drive.hysteresis`, as for :func:`couple`. With a

@@ -137,6 +137,11 @@ def passage(
         positions and velocities of the masses (relative to the box) and of the box, and energies
         since the start (J). Over ``jump`` what :func:`orchestrate.couple` says of the jumps.
 
+    Raises
+    ------
+    InputError
+        Where an argument is not what is expected.
+
     Examples
     --------
     >>> from orchestrate import Drive, Structure, passage
@@ -179,6 +184,10 @@ def waterfall(
     xarray.Dataset
         ``acceleration`` (m/s2) over ``time`` (s, the middle of the revolutions) and ``order``, the
         multiple of the motor's speed; and mean ``speed`` (rad/s) and ``voltage`` (V) over time.
+
+    Raises
+    ------
+    InputError
 
     Notes
     -----

@@ -159,6 +159,10 @@ class Course(Schedule):
     voltages : tuple of float
         V.
 
+    Raises
+    ------
+    InputError
+
     Examples
     --------
     >>> course = Course(times=(0.0, 100.0, 150.0, 150.0, 200.0), voltages=(1.0, 1.5, 1.5, 1.6, 1.6))

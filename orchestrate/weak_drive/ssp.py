@@ -229,6 +229,9 @@ def write_ssp(
     -------
     Path
 
+    Raises
+    ------
+    InputError
     StoreError
         Where the file cannot be written.
 
