@@ -101,12 +101,7 @@ def plain_variable(variable: Variable, excites: bool) -> Variable:
 
 
 def export(folder: str, form: str, target: Path, platforms: tuple[str, ...] | None = None) -> Path:
-    """Write ``target/NAME.fmu`` of the model in a folder; return its path.
-
-    Of forms with ``-plain`` see :func:`plain_model`; with ``-sources`` at its end one has no
-    binaries, for targets that compile the sources themselves. ``CannotExport`` is raised where no
-    binary can be made, or a source was edited meanwhile.
-    """
+    """Write the model's FMU; forms with ``-sources`` have no binaries, but for that sources."""
     model, digest = load_model(folder), model_digest(folder)
     version, token = form[:4], guid(folder, form)
     header = {"model.h": model_header(model, token, digest, real_outputs="-plain" in form)}

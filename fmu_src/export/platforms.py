@@ -70,11 +70,7 @@ def universal_binary(slices: Iterable[bytes]) -> bytes:
 
 
 def binary_files(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the files of ``binaries/``, of libraries by platform.
-
-    FMI 2.0 names ``darwin64``, from before there were other processors: tools on both load what
-    lies there, so it serves both.
-    """
+    """Return ``binaries/``; FMI 2.0's ``darwin64`` serves both processors of macOS."""
     files = {}
     for platform, library in made.items():
         of = PLATFORMS[platform]

@@ -164,11 +164,7 @@ def longest(m):
 
 
 def scale(m, first):
-    """Write the states from ``first`` on, divided by the motion's size, as a row per co-ordinate.
-
-    The length is the largest of all displacements, and velocities over the frequency, among them.
-    The gap is compared with the largest gap, and its rate with the larger one of that and itself.
-    """
+    """Write the states from ``first`` on, a row per co-ordinate, over the motion's size or gap."""
     count = int(m[COUNT])
     later = count - first
     m[LATER] = later
@@ -290,11 +286,7 @@ def remaining_change(m, n, spread):
 
 
 def contraction_ratio(m, n):
-    """Return the late spread of states n periods apart over the early one; 1 if unknown.
-
-    The spread over many periods sees a deviation that turns round, and that is small after one turn
-    of n periods by chance, at its full size.
-    """
+    """Return the late spread of states n apart over the early one, turns included; 1: unknown."""
     count = int(m[LATER])
     half = int(count / 2)
     if 4 * n > half:  # seen too seldom: from the deviations themselves

@@ -193,12 +193,7 @@ def stored(units: Iterable[Unit], often: set[str]) -> Iterator[str]:
 
 
 def translate(entries: Mapping[str, Callable[[Any, float], int]]) -> str:
-    """Translate a kernel's entry points, given by name, to a C99 file of its own.
-
-    Each takes the flat memory and a time, returns a code, and becomes a function ``kernel_NAME``.
-    Of the C library it needs ``sqrt`` and ``fabs``. ``CannotExport`` names a line outside the
-    subset.
-    """
+    """Translate a kernel's entry points, by name, to a C99 file of ``kernel_NAME`` functions."""
     done = Translation()
     exits, often = [], set()
     for name, function in entries.items():
