@@ -196,7 +196,6 @@ def scale(m, first):
 
 
 def scaled_rows(m):
-    """Return the slot at which the scaled states begin."""
     return HEAD + STATE * int(m[COUNT])
 
 
@@ -210,7 +209,6 @@ def next_repetition(m, before, limit, tolerance):
 
 
 def agree(m, rows, count, n, tolerance):
-    """Return whether all states n periods apart agree within the tolerance."""
     for k in range(count - n):
         for column in range(COLUMNS):
             at = rows + column * count + k

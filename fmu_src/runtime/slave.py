@@ -334,7 +334,6 @@ class Slave:
         return []
 
     def write(self, references: Sequence[int], values: Sequence[float], kind: str) -> None:
-        """Set variables, all or none."""
         found = self.find(references, kind)
         for variable, value in zip(found, values):
             problem = self.write_problem(variable, value)

@@ -89,7 +89,6 @@ class Channel:
         self._call(self._set, *self._puts[count])
 
     def get(self) -> list[float]:
-        """Return the values of all outputs of this channel; raise if one is not finite."""
         self._call(self._read, *self._gets)
         values: list[float] = self._outputs[:]
         if not isfinite(sum(values)) and not all(map(isfinite, values)):

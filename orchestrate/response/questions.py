@@ -298,7 +298,6 @@ Values = Annotated[ArrayLike | None, excitation_numbers]
 
 
 def outside_gap(states: NDArray[np.float64], structure: Structure) -> NDArray[np.bool_]:
-    """Return whether states overlap, or have a gap beyond the stroke."""
     gap, rounding = gap_between(states, structure.gap_offset), 1.0 + 1e-14
     beyond = gap > structure.stroke * rounding if structure.stroke else False
     return np.asarray((gap < 0.0) | beyond)

@@ -64,7 +64,6 @@ def transfer_functions(
 
 
 def no_load_speed(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
-    """Return the voltage, as no-load speed over omega, that holds each given speed."""
     Omega = np.asarray(Omega, dtype=float)
     H, _ = transfer_functions(structure, drive, Omega)
     torque = drive.epsilon * Omega**4 * H.imag / (2.0 * drive.b(structure))
@@ -83,7 +82,6 @@ def resonance(structure: Structure, drive: Drive) -> float:
 
 
 def resonance_half_width(structure: Structure, drive: Drive) -> float:
-    """Return the half width of the bonded resonance at half power, over omega."""
     roots = free_vibration_roots(structure, drive)
     return float(-roots[np.argmax(np.abs(roots))].real)
 

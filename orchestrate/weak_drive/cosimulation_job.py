@@ -180,7 +180,6 @@ class CosimulateJob(CoupledJob, Question):
         return "run (not resumable)"
 
     def advance(self, fmus: Fmus, steps: range, previous: Table | None) -> Table:
-        """Do some steps, of half the length too."""
         response = self.response_to_force() if previous is None else previous["response"][-1]
         table: Table = {"response": response[np.newaxis]}
         warned: dict[str, None] = {}
@@ -356,6 +355,5 @@ def rows_of(table: Table, parts: int) -> Table:
 
 
 def turned(links: Mapping[str, Link]) -> str:
-    """Return the connection of the force with the other sign."""
     force = links["box_force"]
     return f"box_force={'-' if force.scale > 0.0 else ''}{force.theirs}"

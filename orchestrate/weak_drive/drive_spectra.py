@@ -114,7 +114,6 @@ class DriveSpectraJob(Job):
 
 
 def voltage_at_resonance(structure: Structure, drive: Drive, share: float = 0.6) -> float:
-    """Return a voltage at which the motor is captured by the resonance, V."""
     folds = averaged.folds(structure, drive)
     if not folds:
         raise InputError("voltage: expected one, in V; by the averaged theory there is no jump")

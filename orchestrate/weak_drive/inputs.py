@@ -97,7 +97,6 @@ class Inputs:
     def _controlled(
         self, rows: list[list[float]], h: float, master: Master
     ) -> Iterator[list[float]]:
-        """Yield the rows with what is commanded as each step begins."""
         first, count = self.controlled, len(self.names)
         for row in rows:
             values, ends = self._commanded(row[first], h, master)

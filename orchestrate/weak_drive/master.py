@@ -157,7 +157,6 @@ class DriveSide:
         return self.forces, self.motions, self.pushes
 
     def put(self, force: Sequence[float], inputs: Sequence[float]) -> None:
-        """Set the force, with the derivatives that are connected, and the other inputs."""
         self.channel.put(*(force[i] / link.scale for i, link in self.forces), *inputs)
 
     def get(self) -> list[float]:

@@ -62,7 +62,6 @@ class RampRecord:
         return self.sense * self.table["voltage"][rows] / self.job.drive.volts(self.job.structure)
 
     def step(self, row: int) -> int:
-        """Return the communication step at the end of a revolution."""
         return min(math.ceil(self.table["time"][row] / self.job.scheme.h), self.job.steps() - 1)
 
     def rows_shown(self, low: float, high: float, before: float, after: float) -> list[float]:

@@ -124,7 +124,6 @@ class Translation:
         return self.units[key]
 
     def own_name(self, name: str, thing: object, module: str) -> str:
-        """Return a name that one thing has: its module's before it, where another has it too."""
         place = module.rpartition(".")[2]
         longer = f"{place.upper() if name.isupper() else place}_{name}"
         for known in (name, longer, *(f"{longer}_{number}" for number in range(2, 100))):

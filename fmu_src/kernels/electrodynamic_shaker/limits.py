@@ -56,7 +56,6 @@ def watch_other(m):
 
 
 def watch_limit(m, series, terms, limit, side, order, kind):
-    """Look for the event that a series reaches a limit on a side."""
     write_guard(m, series, terms, -side, limit)
     note_root(m, order, kind)
 
