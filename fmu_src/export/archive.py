@@ -43,7 +43,6 @@ def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
 
 
 def archive_entry(name: str) -> zipfile.ZipInfo:
-    """Return an entry of the archive that does not depend on when and where it was made."""
     entry = zipfile.ZipInfo(name, EPOCH)
     entry.compress_type = zipfile.ZIP_DEFLATED
     entry.create_system = 3

@@ -140,11 +140,7 @@ def windows_sources() -> dict[str, bytes]:
 def link_all(
     names: Iterable[str], title: str, kernel: bytes, files: Mapping[str, bytes]
 ) -> dict[str, bytes]:
-    """Link the same library for every platform this machine can make it for, by platform.
-
-    ``kernel`` is C that includes nothing of ours, shared with other libraries. A warning says what
-    is left out; ``CannotExport`` is raised where that is all.
-    """
+    """Link a library for all platforms that can be made here; warn of those left out."""
 
     def library(name: str) -> bytes | CannotExport:
         try:

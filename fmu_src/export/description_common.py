@@ -150,13 +150,8 @@ def add_values(typed: ET.Element, variable: Variable) -> None:
         for key, value in given.items():
             typed.set(key, str(int(value)))
     if not variable.calculated:
-        typed.set("start", start_text(variable))
-
-
-def start_text(variable: Variable) -> str:
-    if variable.type == BOOLEAN:
-        return str(bool(variable.start)).lower()
-    return float_text(variable.start) if variable.type == REAL else str(int(variable.start))
+        kind = {REAL: float, INTEGER: int, BOOLEAN: bool}[variable.type]
+        typed.set("start", repr(kind(variable.start)).lower())
 
 
 def xml_bytes(element: ET.Element) -> bytes:

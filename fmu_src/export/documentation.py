@@ -11,12 +11,7 @@ from .sources import ROOT, Files, load_model
 def documentation_files(
     folder: str, digest: str, form: str, variables: tuple[Variable, ...]
 ) -> Files:
-    """Return the files of ``documentation/``, the icon, and what other standards ask for.
-
-    The model's folder has ``documentation/index.html.in`` and its pictures, ``model.png`` and
-    ``reference/``. The page shows the fingerprint of the sources, tells each form's own truth, and
-    has the variables of the form's model description.
-    """
+    """Return ``documentation/`` (the page tells each form's own truth), icon, and companions."""
     place = ROOT / "models" / folder
     files = read_folder(place / "documentation", "documentation/")
     template = files.pop("documentation/index.html.in").decode()

@@ -27,11 +27,7 @@ MODELS = {  # the folder of each model below fmu_src/models
 
 
 def export(name: str, form: str, build: Path, platforms: tuple[str, ...] | None = None) -> Path:
-    """Write ``build/FORM/NAME.fmu``, whole or not at all; return its path.
-
-    ``platforms``, of the native forms, are by default :func:`.platforms.usual`. ``CannotExport``
-    says, as one line, which package or compiler is missing.
-    """
+    """Write ``build/FORM/NAME.fmu``, whole or not at all; return its path."""
     from . import native_form, pythonfmu_form
 
     if form == PYTHON_FORM:

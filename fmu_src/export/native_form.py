@@ -49,13 +49,6 @@ SHIM = {
 }
 
 
-def model_description(model: Model, token: str, version: str, sources: Files) -> bytes:
-    """Return ``modelDescription.xml``; FMI 2.0's names the sources, FMI 3.0 has a file of them."""
-    if version == "fmi2":
-        return fmi2_xml(model, token, sources=compiled_files(sources))
-    return fmi3_xml(model, token)
-
-
 def shim_sources(version: str) -> Files:
     found = read_sources(*(f"runtime/native/{name}" for name in SHIM[version]))
     return {Path(name).name: content for name, content in found.items()}
@@ -108,12 +101,7 @@ def plain_variable(variable: Variable, excites: bool) -> Variable:
 
 
 def export(folder: str, form: str, target: Path, platforms: tuple[str, ...] | None = None) -> Path:
-    """Write ``target/NAME.fmu`` of the model in a folder; return its path.
-
-    Of forms with ``-plain`` see :func:`plain_model`; with ``-sources`` at its end one has no
-    binaries, for targets that compile the sources themselves. ``CannotExport`` is raised where no
-    binary can be made, or a source was edited meanwhile.
-    """
+    """Write the model's FMU; forms with ``-sources`` have no binaries, but for that sources."""
     model, digest = load_model(folder), model_digest(folder)
     version, token = form[:4], guid(folder, form)
     header = {"model.h": model_header(model, token, digest, real_outputs="-plain" in form)}
@@ -122,7 +110,11 @@ def export(folder: str, form: str, target: Path, platforms: tuple[str, ...] | No
     kernel = kernel_source(folder)
     sources = {**shim, "kernel.c": kernel}
     files = source_files(model.name, version, sources)
-    files["modelDescription.xml"] = model_description(described, token, version, sources)
+    files["modelDescription.xml"] = (
+        fmi2_xml(described, token, sources=compiled_files(sources))  # FMI 3.0 has a file of them
+        if version == "fmi2"
+        else fmi3_xml(described, token)
+    )
     if not form.endswith("-sources"):
         made = link_all(platforms or usual(), model.name, kernel, shim)
         files.update(binary_files(version, model.name, made))

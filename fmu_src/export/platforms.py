@@ -18,37 +18,16 @@ class Platform:
     zig_target: str  # zig's name of it, with the oldest C library it is to run on
     cpu: str  # zig's name of the oldest processor it is to run on
     suffix: str  # of a shared library
-    folders: dict[str, str]  # below `binaries/`, by FMI version
+    folder: str  # below `binaries/`, of FMI 2.0
 
 
-PLATFORMS = {
-    "x86_64-linux": Platform(
-        "x86_64-linux-gnu.2.17", "x86_64_v2", ".so", {"fmi2": "linux64", "fmi3": "x86_64-linux"}
-    ),
-    "x86_64-windows": Platform(
-        "x86_64-windows-gnu", "x86_64_v2", ".dll", {"fmi2": "win64", "fmi3": "x86_64-windows"}
-    ),
-    "x86_64-darwin": Platform(
-        "x86_64-macos.11.0", "x86_64_v2", ".dylib", {"fmi2": "darwin64", "fmi3": "x86_64-darwin"}
-    ),
-    "aarch64-linux": Platform(
-        "aarch64-linux-gnu.2.17",
-        "generic",
-        ".so",
-        {"fmi2": "aarch64-linux", "fmi3": "aarch64-linux"},
-    ),
-    "aarch64-windows": Platform(
-        "aarch64-windows-gnu",
-        "generic",
-        ".dll",
-        {"fmi2": "aarch64-windows", "fmi3": "aarch64-windows"},
-    ),
-    "aarch64-darwin": Platform(
-        "aarch64-macos.11.0",
-        "apple_m1",
-        ".dylib",
-        {"fmi2": "aarch64-darwin", "fmi3": "aarch64-darwin"},
-    ),
+PLATFORMS = {  # by FMI 3.0's names of their folders
+    "x86_64-linux": Platform("x86_64-linux-gnu.2.17", "x86_64_v2", ".so", "linux64"),
+    "x86_64-windows": Platform("x86_64-windows-gnu", "x86_64_v2", ".dll", "win64"),
+    "x86_64-darwin": Platform("x86_64-macos.11.0", "x86_64_v2", ".dylib", "darwin64"),
+    "aarch64-linux": Platform("aarch64-linux-gnu.2.17", "generic", ".so", "aarch64-linux"),
+    "aarch64-windows": Platform("aarch64-windows-gnu", "generic", ".dll", "aarch64-windows"),
+    "aarch64-darwin": Platform("aarch64-macos.11.0", "apple_m1", ".dylib", "aarch64-darwin"),
 }
 ALL = tuple(PLATFORMS)
 ARCHITECTURES = {"amd64": "x86_64", "arm64": "aarch64"}
@@ -91,15 +70,12 @@ def universal_binary(slices: Iterable[bytes]) -> bytes:
 
 
 def binary_files(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the files of ``binaries/``, of libraries by platform.
-
-    FMI 2.0 names ``darwin64``, from before there were other processors: tools on both load what
-    lies there, so it serves both.
-    """
+    """Return ``binaries/``; FMI 2.0's ``darwin64`` serves both processors of macOS."""
     files = {}
     for platform, library in made.items():
         of = PLATFORMS[platform]
-        files[f"binaries/{of.folders[version]}/{name}{of.suffix}"] = library
+        folder = of.folder if version == "fmi2" else platform
+        files[f"binaries/{folder}/{name}{of.suffix}"] = library
     apple = [library for platform, library in made.items() if platform.endswith("-darwin")]
     if version == "fmi2" and apple:
         files[f"binaries/darwin64/{name}.dylib"] = universal_binary(apple)

@@ -45,11 +45,7 @@ def has_right_bits(model: Model, path: Path) -> bool:
 
 
 def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> int:
-    """Return the fingerprint of all variables over a short run from the start values.
-
-    For its second half all real inputs are moved. The memory, a list or a ctypes array, is all
-    zeros; the entry points are the kernel's in one of its forms.
-    """
+    """Return the fingerprint of a short run in a memory of zeros; half way all inputs move."""
     total = 0
     for variable in model.variables:
         memory[variable.slot] = 0.0 if variable.calculated else float(variable.start)

@@ -93,11 +93,7 @@ def text_files(folder: str) -> Files:
 
 
 def check_unedited() -> None:
-    """Raise ``CannotExport`` if a source was edited since this process began.
-
-    Modules and compiled kernels stay in memory, files are read when they are needed: after an edit
-    an FMU would be made of both, under a GUID of the later ones.
-    """
+    """Raise if a source was edited since this process began: the FMU would be made of both."""
     now = read_folder(ROOT)
     edited = sorted(name for name in {*AT_IMPORT, *now} if AT_IMPORT.get(name) != now.get(name))
     if edited:

@@ -104,7 +104,3 @@ def references(folder: str) -> dict[str, int]:
     model = load_model(folder)
     arrays = {array.name: ARRAY_BASE + i for i, array in enumerate(model.arrays)}
     return {v.name: v.slot for v in model.variables if not v.series} | arrays
-
-
-def array_sizes(folder: str) -> dict[str, int]:
-    return {array.name: array.size for array in load_model(folder).arrays}

@@ -86,7 +86,6 @@ def segments(m, time):
 
 
 def oscillator_at(mode, mass):
-    """Return the first slot of the oscillator that a mass is in a mode."""
     return OSCILLATORS + WIDTH * (mass if mode == IN_FLIGHT else int(mode) + 1)
 
 
@@ -152,7 +151,6 @@ def apart_at(m, node):
 
 
 def parts(m, node):
-    """Return whether the masses part at a node by an impact."""
     return m[node + 4] == IN_FLIGHT and m[node + 5] == 0.0
 
 

@@ -163,11 +163,7 @@ def longest(m):
 
 
 def scale(m, first):
-    """Write the states from ``first`` on, divided by the motion's size, as a row per co-ordinate.
-
-    The length is the largest of all displacements, and velocities over the frequency, among them.
-    The gap is compared with the largest gap, and its rate with the larger one of that and itself.
-    """
+    """Write the states from ``first`` on, a row per co-ordinate, over the motion's size or gap."""
     count = int(m[COUNT])
     later = count - first
     m[LATER] = later
@@ -199,7 +195,6 @@ def scale(m, first):
 
 
 def scaled_rows(m):
-    """Return the slot at which the scaled states begin."""
     return HEAD + STATE * int(m[COUNT])
 
 
@@ -213,7 +208,6 @@ def next_repetition(m, before, limit, tolerance):
 
 
 def agree(m, rows, count, n, tolerance):
-    """Return whether all states n periods apart agree within the tolerance."""
     for k in range(count - n):
         for column in range(COLUMNS):
             at = rows + column * count + k
@@ -287,11 +281,7 @@ def remaining_change(m, n, spread):
 
 
 def contraction_ratio(m, n):
-    """Return the late spread of states n periods apart over the early one; 1 if unknown.
-
-    The spread over many periods sees a deviation that turns round, and that is small after one turn
-    of n periods by chance, at its full size.
-    """
+    """Return the late spread of states n apart over the early one, turns included; 1: unknown."""
     count = int(m[LATER])
     half = int(count / 2)
     if 4 * n > half:  # seen too seldom: from the deviations themselves

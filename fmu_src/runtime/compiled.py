@@ -23,11 +23,7 @@ loaded: dict[
 
 
 def load_compiled(folder: str, key: str, names: Sequence[str]) -> list[Any] | None:
-    """Return the entry points of the library in a folder, or None.
-
-    Each takes an array of c_double and a time, and returns a code. The key names the library's
-    contents: one loaded before under this name serves, wherever it lay.
-    """
+    """Return the entry points of the library in a folder, if any; ``key`` names its contents."""
     machine = (sys.platform, platform.machine().lower())
     path = os.path.join(folder, LIBRARIES.get(machine, ("", "none"))[1])
     if os.environ.get("VIBROIMPACT_PURE_PYTHON", "0") not in ("", "0"):

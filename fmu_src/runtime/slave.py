@@ -334,7 +334,6 @@ class Slave:
         return []
 
     def write(self, references: Sequence[int], values: Sequence[float], kind: str) -> None:
-        """Set variables, all or none."""
         found = self.find(references, kind)
         for variable, value in zip(found, values):
             problem = self.write_problem(variable, value)
@@ -398,9 +397,7 @@ class Slave:
         self._memory = memory
 
     def _state_problem(self, head: Sequence[float], memory: Any) -> str:
-        """Say why a saved state cannot be one that this FMU had; return an empty string if it can:
-        no number in it is a danger to memory, nor to the end of a step.
-        """
+        """Say why a saved state is none that this FMU had; empty if it is no danger."""
         phase, start_time, stale = head
         if phase not in PHASES or stale not in (0.0, 1.0) or start_time - start_time != 0.0:
             return f"phase {phase!r}, start time {start_time!r} s: expected a saved state's"

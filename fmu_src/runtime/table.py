@@ -18,6 +18,7 @@ HUGE = 1e100  # squares and energies of what an importer may set stay finite
 # LARGE**8 * HUGE, is a number; what needs more is checked where a run or a step begins
 TINY, LARGE = 1e-24, 1e24
 DRIVE_LIMIT = 1e30  # of a drive's start values and inputs: their energies stay finite
+COUNT: dict[str, Any] = {"variability": "discrete", "type": INTEGER, "minimum": 0}
 Entry = Callable[[Any, float], int]  # memory and time (s) -> code, 0 for success
 
 
@@ -119,6 +120,24 @@ def evaluation_limit(function: str) -> Variable:
 def drive(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
     given = {"minimum": -HUGE, "maximum": HUGE, **more}
     return Variable(name, description, "input", unit, start=start, **given)
+
+
+def cubic(
+    name: str, unit: str, description: str, limit: float = HUGE, derivatives: Sequence[str] = ()
+) -> tuple[Variable, ...]:
+    """Return an input and its three time derivatives: together a polynomial in time."""
+    names = derivatives or [f"{name}_{order}" for order in (1, 2, 3)]
+    more: dict[str, Any] = {"minimum": -limit, "maximum": limit}
+    text = f"{description}: value when it was set; runs on as the cubic with "
+    text += f"{names[0]}, {names[1]} and {names[2]}"
+    variables = [drive(name, unit, 0.0, text, input_derivatives=3, **more)]
+    base, per_second, power = unit.partition("/s")
+    first = int(power or 1) if per_second else 0
+    for i, (other, word) in enumerate(zip(names, ("First", "Second", "Third")), 1):
+        own = f"{base}/s{first + i if first + i > 1 else ''}"
+        text = f"{word} time derivative of {name} when one of the four was set"
+        variables.append(drive(other, own, 0.0, text, **more))
+    return tuple(variables)
 
 
 def output(

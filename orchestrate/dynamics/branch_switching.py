@@ -74,7 +74,6 @@ def without_grazing_impact(point: OrbitPoint) -> OrbitPoint:
 
 
 def solve_same_motion(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:
-    """Solve for the same motion as an orbit with another sequence of impacts; return it."""
     family = Family.from_nodes(point.family.setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), point.values)
     normal = unit_vector(len(unknowns), family.size)

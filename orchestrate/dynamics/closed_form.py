@@ -170,7 +170,6 @@ class ClosedForm:
         return self.tabulate("find_steady", (phase, mode), 4)
 
     def gap_at_end(self, outer: Ends) -> Floats:
-        """Return the gap at an end: the limit at the outer one."""
         return np.where(outer, self.limit, 0.0)
 
     def centre(self) -> Floats:

@@ -113,7 +113,6 @@ class CharacteristicPolynomial:
         return float(polynomial.deriv()(multiplier))
 
     def others(self, multiplier: float) -> NDArray[np.complex128]:
-        """Return the orbit's multipliers other than a given real one."""
         quotient, _ = np.polydiv(self.coefficients[::-1], np.array([1.0, -multiplier]))
         return np.asarray(np.roots(quotient), dtype=complex)
 
@@ -241,7 +240,6 @@ def is_point_of_kind(curve: BifurcationCurve, root: Root, kind: PointKind) -> bo
 def end_points(
     curve: BifurcationCurve, root: Root, reason: str, position: float
 ) -> Iterator[CodimensionTwoPoint]:
-    """Yield the codimension-two point at which a curve ends for a given reason, if it does."""
     grazes = reason in ("another impact grazes", "a flight grazes")
     if curve.kind == Kind.TORUS and "resonance" in reason:
         first = root.unknowns[-1] < 0.5 * np.pi

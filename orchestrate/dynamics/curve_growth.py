@@ -90,9 +90,9 @@ class CurveGrower:
         self.image, self.settings = image, settings
         self.direction: Floats | None = None  # of the last chord
 
-    def grow(self, first: float = 0.0) -> GrownCurve:
+    def grow(self) -> GrownCurve:
         settings, curve = self.settings, GrownCurve()
-        curve.add(self.image(first), 0.0)
+        curve.add(self.image(0.0), 0.0)
         step, change_ahead = 0.05, None
         while not curve.end:
             last = curve.points[-1]

@@ -191,14 +191,12 @@ class MotionDecider:
     # -- orbits -----------------------------------------------------------------------------------
 
     def orbit_near(self, state: ArrayLike, periods: int) -> tuple[PeriodicOrbit | None, float]:
-        """Solve for the orbit near a state; return it, or None, and the phase of its start."""
         if self.eventful is None:
             return None, 0.0
         guess, free_phase = self.guess_from(np.array(state), periods)
         return self.solve(guess), free_phase
 
     def solve(self, guess: Guess) -> PeriodicOrbit | None:
-        """Solve for an orbit from a guess, over its least period; None if it is no motion."""
         if len(guess[0].kinds) > self.settings.max_nodes:
             return None
         try:

@@ -83,7 +83,6 @@ class AttractorsAtValue:
         return known
 
     def median_irregular_motion(self, rows: Floats, state: Floats, outcome: int) -> SettledMotion:
-        """Return one irregular motion with the median features of a cluster of responses."""
         _, impacts, gap = np.median(rows[:, :3], axis=0)
         length = self.decider.point.length
         return SettledMotion(
@@ -159,7 +158,6 @@ Links = dict[tuple[int, int, int], tuple[int, int]]  # value, attractor, neighbo
 
 
 def continue_to_neighbours(values: Sequence[AttractorsAtValue]) -> Links:
-    """Continue each attractor to both neighbouring values; return where each one leads."""
     links: Links = {}
     waiting = deque((i, k) for i, value in enumerate(values) for k in range(len(value.motions)))
     while waiting:

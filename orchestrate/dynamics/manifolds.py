@@ -76,17 +76,6 @@ class Saddle:
         return self.multiplier if self.multiplier > 0.0 else self.multiplier**2
 
     @property
-    def relative_gap(self) -> float:
-        """Gap at phase 0, over the orbit's size."""
-        return float(self.state[1] - self.state[0]) / self.size
-
-    @property
-    def gap_change(self) -> float:
-        """By how much a start changes the gap at most, over its distance from the saddle."""
-        # starts lie between the distance and its image, where the first piece ends
-        return float(self.direction[1] - self.direction[0]) * self.growth_factor
-
-    @property
     def periods_per_return(self) -> int:
         """Excitation periods until a point is on the same side: doubled if the multiplier < 0."""
         return self.periods if self.multiplier > 0.0 else 2 * self.periods
@@ -139,7 +128,11 @@ class ManifoldJob(SingleOrbitQuestion):
             expected = "expected an orbit of this structure"
             raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
         saddle = Saddle.from_orbit(family.orbit(root.unknowns))
-        gap, change = saddle.relative_gap, abs(saddle.gap_change)
+        x1, x2, *_ = saddle.state.tolist()
+        gap = (x2 - x1) / saddle.size  # at phase 0
+        # starts lie between the distance and its image, where the first piece ends
+        along = float(saddle.direction[1] - saddle.direction[0])
+        change = abs(along * saddle.growth_factor)
         if self.distance * change > max(gap, 0.0):  # starts would be beyond a closed gap
             limit = f"expected a distance below {gap / change:.2g}"
             if gap <= 0.0:

@@ -253,7 +253,6 @@ def add_or_drop_chattering_impacts(point: OrbitPoint) -> OrbitPoint:
 
 
 def estimated_next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
-    """Return the node of the impact after a short flight, estimated as a parabola."""
     phase, position, velocity, closing = orbit.nodes[node]
     parting = orbit.form.parting(closing)
     outer = bool(orbit.sequence.outer[node])

@@ -117,9 +117,7 @@ class PeriodicOrbit:
 
     @cached_property
     def segments(self) -> tuple[Floats, ...]:
-        """Return of each segment: the residual (k, 4) of its equations, their derivatives by the
-        nodes before and after it (k, 4, 4), and the states (k, 4) at its begin and end.
-        """
+        """Return segments' residuals (k, 4), derivatives by both nodes (k, 4, 4), end states."""
         columns = *self.nodes.T, self.modes, self.sequence.releases, self.sequence.outer
         span = TURN * self.sequence.periods
         rows = self.form.tabulate("find_segments", columns, 44, span).reshape(11, -1, 4)

@@ -108,10 +108,7 @@ class Amplitudes:
 
 
 def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
-    """Return how near the masses come to an end of the gap in all flights without striking it.
-
-    Infinite: they turn nowhere. The second number is the segment, the third the phase.
-    """
+    """Return the smallest gap to an end in flights without a strike (inf: none), segment, phase."""
     inner = np.where(turns.curvature > 0.0, turns.value, np.inf)
     room = np.where(turns.curvature < 0.0, orbit.form.limit - turns.value, inner)
     room[turns.quantity != GAP] = np.inf

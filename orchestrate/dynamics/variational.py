@@ -65,9 +65,7 @@ def period_in_tau(eta: float) -> float:
 
 
 def deviations(impacts: Impacts, end: float, point: Point) -> tuple[Floats, Floats]:
-    """Return matrices (n, 4, 4) that map a deviation from each impact to the next, just before
-    both, and how long permanent contact lasts after each, in tau; 0 without.
-    """
+    """Return matrices (n, 4, 4) from before an impact to before the next; contacts in tau."""
     call, count = call_of(impacts, end, point), len(impacts.time)
     first = exponent_library().find_deviations(*call.span, call.memory.ctypes.data)
     last = first + 16 * count

@@ -14,11 +14,12 @@ answer:
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from ctypes import Structure, byref, c_bool, c_double, c_uint, c_void_p
+from ctypes import Structure, byref, c_bool, c_double, c_void_p
 from math import isfinite
 from typing import Any
 
 from ..errors import FmuError
+from .fmi import references
 from .instance import DISCARD, ERROR, Instance
 
 
@@ -57,17 +58,12 @@ class Channel:
         self._set = dll.fmi3SetFloat64 if is_fmi3 else dll.fmi2SetReal
         self._read = dll.fmi3GetFloat64 if is_fmi3 else dll.fmi2GetReal
         self._free = dll.fmi3FreeFMUState if is_fmi3 else dll.fmi2FreeFMUstate
-        references, count, self._inputs = self._array(inputs)
-        self._puts = [self._arguments(references, n, self._inputs) for n in range(count + 1)]
-        references, count, self._outputs = self._array(outputs)
-        self._names = tuple(outputs)
-        self._gets = self._arguments(references, count, self._outputs)
-
-    def _array(self, names: Sequence[str]) -> tuple[Any, int, Any]:
-        """Return ctypes arrays for named variables: value references, count, value buffer."""
-        references = [self.instance.variable(name).valueReference for name in names]
-        count = len(references)
-        return (c_uint * count)(*references), count, (c_double * count)()
+        self._inputs: Any = (c_double * len(inputs))()
+        self._outputs: Any = (c_double * len(outputs))()
+        sent, read = references(instance, inputs), references(instance, outputs)
+        self._names = outputs
+        self._puts = [self._arguments(sent, n, self._inputs) for n in range(len(inputs) + 1)]
+        self._gets = self._arguments(read, len(outputs), self._outputs)
 
     def _arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
         """Return the arguments of a set or get function; for FMI 3.0 with the number of values."""
@@ -93,7 +89,6 @@ class Channel:
         self._call(self._set, *self._puts[count])
 
     def get(self) -> list[float]:
-        """Return the values of all outputs of this channel; raise if one is not finite."""
         self._call(self._read, *self._gets)
         values: list[float] = self._outputs[:]
         if not isfinite(sum(values)) and not all(map(isfinite, values)):

@@ -134,11 +134,6 @@ def checked_names(data: bytes) -> list[str]:
     return names
 
 
-def check_identifier(name: str) -> None:
-    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
-        raise ValueError(f"modelIdentifier {name[:100]!r}, expected letters, digits and _")
-
-
 def read_description(path: Path) -> Description:
     """Parse and validate an FMU's ``modelDescription.xml``; cached by the file's digest."""
     size = path.stat().st_size
@@ -155,8 +150,10 @@ def read_description(path: Path) -> Description:
         co_simulation = xml.coSimulation
         library = f"{co_simulation and co_simulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
         here = {f"binaries/{one}/{library}" for one in (fmpy.platform, fmpy.platform_tuple)}
-        if co_simulation:
-            check_identifier(co_simulation.modelIdentifier)
+        identifier = co_simulation.modelIdentifier if co_simulation else ""
+        if co_simulation and not re.fullmatch(r"[A-Za-z_]\w*", identifier, re.ASCII):
+            expected = "expected letters, digits and _"
+            raise ValueError(f"modelIdentifier {identifier[:100]!r}, {expected}")
         _known[digest] = Description(
             path=path,
             name=xml.modelName,
@@ -164,7 +161,7 @@ def read_description(path: Path) -> Description:
             fmi_version=xml.fmiVersion,
             variables={v.name: v for v in xml.modelVariables},
             needs_tool=bool(co_simulation and co_simulation.needsExecutionTool),
-            identifier=co_simulation.modelIdentifier if co_simulation else "",
+            identifier=identifier,
             units=units_of(xml),
             has_fixed_step=bool(
                 co_simulation and not co_simulation.canHandleVariableCommunicationStepSize

@@ -129,9 +129,9 @@ class EventInstance(Instance):
 
     EVENTS = {"eventModeUsed": True, "earlyReturnAllowed": True}
 
-    def __init__(self, path: str | PathLike[str], name: str = "instance") -> None:
+    def __init__(self, path: str | PathLike[str]) -> None:
         self._loops: dict[tuple[tuple[str, ...], ...], EventLoop] = {}
-        super().__init__(path, name)
+        super().__init__(path)
         if not self.is_fmi3:
             version = self.description.fmi_version
             self.close()

@@ -140,16 +140,13 @@ def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:
 
 def default_folder() -> Path:
     """Return the folder of exported FMUs: ``build/`` of a clone, else the user's cache folder."""
-    if is_clone(CLONE) and os.access(CLONE, os.W_OK):
+    project = CLONE / "pyproject.toml"
+    is_clone = project.is_file() and 'name = "vibroimpact"' in project.read_text(encoding="utf-8")
+    if is_clone and os.access(CLONE, os.W_OK):
         return CLONE / "build"
     from platformdirs import user_cache_path
 
     return user_cache_path("vibroimpact", appauthor=False) / "fmus" / __version__
-
-
-def is_clone(root: Path) -> bool:
-    project = root / "pyproject.toml"
-    return project.is_file() and 'name = "vibroimpact"' in project.read_text(encoding="utf-8")
 
 
 def find(

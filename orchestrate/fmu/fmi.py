@@ -47,7 +47,6 @@ class Fmi(ctypes.Structure):
         return cls(component, version, *(next(addresses) if name else None for name in names))
 
     def error(self, instance: Instance) -> FmuError:
-        """Return the error of the call at which a loop stopped."""
         return instance.refusal((self.failed or b"").decode(), self.status)
 
 

@@ -29,17 +29,9 @@ READ_VARIABLES = (
     *("impact_count", "contact_count", "in_contact"),
 )
 PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max")
-TRAITS = (  # of a structure
-    *("m1", "m2", "k1", "k2", "d1", "d2"),
-    *("clearance", "bonded", "wall", "stroke"),
-)
-DERIVED_TRAITS = (
-    "gap_offset",
-    "rest_1",
-    "rest_2",
-    "threshold",
-    "must_impact",
-)  # what follows from them
+# of a structure, and what follows from them
+TRAITS = ("m1", "m2", "k1", "k2", "d1", "d2", "clearance", "bonded", "wall", "stroke")
+DERIVED_TRAITS = ("gap_offset", "rest_1", "rest_2", "threshold", "must_impact")
 TRAIT_NAMES = (*TRAITS, "omega", "frequency", "amplitude", "pushed", *DERIVED_TRAITS)
 DEVIATING = (  # of deviations' growth
     *(*TRAITS[:6], "e", "gamma", "bonded"),
@@ -138,19 +130,9 @@ class Oscillator:
         self.calls = OscillatorCalls(
             Fmi.from_instance(instance),
             *(references(instance, names) for names in (self.reals, self.booleans)),
-            *(
-                series,
-                references(instance, PEAKS),
-                len(self.reals),
-                len(self.booleans),
-                self.reals.index(START_PARAMETERS[0]),
-            ),
-            *(
-                len(elements),
-                self.capacity,
-                *references(instance, READ_VARIABLES),
-                self.kept.ctypes.data,
-            ),
+            *(series, references(instance, PEAKS), len(self.reals), len(self.booleans)),
+            *(self.reals.index(START_PARAMETERS[0]), len(elements), self.capacity),
+            *(*references(instance, READ_VARIABLES), self.kept.ctypes.data),
         )
 
     @classmethod
@@ -184,15 +166,12 @@ def sampled(instance: Instance, time: float, target: float, count: int) -> Float
 def stroboscopic_samples(
     instance: Instance, period: float, transient: int, samples: int
 ) -> tuple[Floats, float]:
-    oscillator, states, peak = Oscillator.from_instance(instance), empty(samples), c_double()
+    oscillator, peak = Oscillator.from_instance(instance), c_double()
+    states = np.empty((samples, len(STATE)))
     places = states.ctypes.data, byref(peak)
     if not oscillator.run("sample_periods", period, transient, samples, *places):
         raise oscillator.error()
     return states, peak.value
-
-
-def empty(count: int) -> Floats:
-    return np.empty((count, len(STATE)))
 
 
 def traits(

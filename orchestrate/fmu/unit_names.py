@@ -31,7 +31,6 @@ AMBIGUOUS = ("g",)  # gram, or an acceleration
 
 
 def unit_by_name(name: str) -> Unit | None:
-    """Return the unit of a name; None where it is not made of known symbols."""
     text = name.strip().replace("\u00b2", "2").replace("\u00b3", "3").replace("**", "^")
     if not text or text in AMBIGUOUS:
         return None

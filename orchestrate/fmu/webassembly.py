@@ -14,7 +14,7 @@ from fmu_src.export import webassembly as sources
 from fmu_src.export.archive import fingerprint
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import MODELS
-from fmu_src.export.sources import model_sources
+from fmu_src.export.sources import load_model, model_sources
 
 from ..errors import InputError
 from ..files import made_once, open_folder, write_whole
@@ -78,6 +78,7 @@ def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
 def loop_tables(*more: type[ctypes.Structure]) -> dict[str, Any]:
     """Return what a page needs to call the loops, as JSON: structures, names, and their order."""
     structures: tuple[type[ctypes.Structure], ...] = (*STRUCTURES, *more)
+    arrays = load_model(MODELS[OSCILLATOR]).arrays
     booleans = [name for name, value in oscillator.START_VALUES.items() if isinstance(value, bool)]
     return {
         "structures": {kind.__name__: layout(kind) for kind in structures},
@@ -87,7 +88,7 @@ def loop_tables(*more: type[ctypes.Structure]) -> dict[str, Any]:
         "reals": [name for name in oscillator.START_VALUES if name not in booleans],
         "read": oscillator.READ_VARIABLES,
         "series": oscillator.SAMPLE_SERIES,
-        "capacity": sources.array_sizes(MODELS[OSCILLATOR])[oscillator.SAMPLE_SERIES[0]],
+        "capacity": next(a.size for a in arrays if a.name == oscillator.SAMPLE_SERIES[0]),
         "counts": oscillator.COUNTS,
         "traits": oscillator.TRAIT_NAMES,
         "deviating": oscillator.DEVIATING,
@@ -95,10 +96,7 @@ def loop_tables(*more: type[ctypes.Structure]) -> dict[str, Any]:
 
 
 def layout(kind: type[ctypes.Structure]) -> dict[str, Any]:
-    """Return the size of a C structure on a machine of 32 bits, and kind and place of its fields.
-
-    Those of inner structures, and elements of arrays, have names with dots: ``force.places.0``.
-    """
+    """Return size and fields of a C structure of 32 bits; inner ones as ``force.places.0``."""
     size, _, fields = place_members(kind)
     return {"size": size, "fields": fields}
 

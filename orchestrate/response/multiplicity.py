@@ -2,9 +2,9 @@
 
 A tolerance decides little: a transient that turns round, or that changes sides as next to a
 period doubling, comes back closer after some periods than after one; a torus comes back as close as
-one likes after enough of them; and a narrow period doubling stays within any tolerance. So
-:func:`decide_multiplicity` follows how deviations develop: those of a response that repeats have
-died, or decay. The rule is :func:`fmu_src.kernels.repetition.decide`, for Python and C alike;
+one likes after enough of them; and a narrow period doubling stays within any tolerance. So the rule
+(:func:`fmu_src.kernels.repetition.decide`, called by the loop of responses) follows how deviations
+develop: those of a response that repeats have died, or decay.
 :func:`fmu_src.kernels.repetition.confirm` makes it undecided where impacts contradict it.
 """
 
@@ -44,20 +44,9 @@ class Decision(NamedTuple):
 def find_repetition(
     samples: ArrayLike, frequency: float, gap: float, tolerance: float
 ) -> Repetition:
-    """Find the least n after which states repeat within a tolerance; return n, deviation.
-
-    Only the later half of the samples is compared: a transient may outlive hundreds of periods. n
-    is 0 where none up to a quarter of the samples is found.
-    """
+    """Find the least n after which the later half of states repeats (0: none), and deviation."""
     memory = apply_rule("find_repetition", samples, (frequency, gap, tolerance))
     return Repetition(int(memory[repetition.MULTIPLICITY]), float(memory[repetition.DEVIATION]))
-
-
-def decide_multiplicity(
-    samples: ArrayLike, frequency: float, gap: float, tolerance: float
-) -> Decision:
-    memory = apply_rule("decide_multiplicity", samples, (frequency, gap, tolerance))
-    return Decision(int(memory[repetition.MULTIPLICITY]), int(memory[repetition.DECIDED]))
 
 
 def nearest_state(

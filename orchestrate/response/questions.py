@@ -64,11 +64,7 @@ class Point(NamedTuple):
         return np.array([length, length, speed, speed])
 
     def faces(self, states: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return SI states in the paper's units, with displacements of the contact faces.
-
-        That of mass 2 is ``xi_2`` and the clearance over a eta^2: the gap is the difference of
-        both, 0 in contact.
-        """
+        """Return SI states in the paper's units, by the faces: their difference is the gap."""
         offset = self.structure.gap_offset
         if offset != 0.0:
             states = np.array(states, dtype=float)
@@ -302,7 +298,6 @@ Values = Annotated[ArrayLike | None, excitation_numbers]
 
 
 def outside_gap(states: NDArray[np.float64], structure: Structure) -> NDArray[np.bool_]:
-    """Return whether states overlap, or have a gap beyond the stroke."""
     gap, rounding = gap_between(states, structure.gap_offset), 1.0 + 1e-14
     beyond = gap > structure.stroke * rounding if structure.stroke else False
     return np.asarray((gap < 0.0) | beyond)

@@ -25,7 +25,6 @@ class Response:
     end: tuple[float, ...]  # the last one, rounded, from which the next response starts
     x_rel_max: float  # largest gap in them, exact between the samples too
     impacts_per_period: float  # mean over the samples' periods
-    impact_count: int  # impacts from the beginning of the transient to the last sample
     permanent_contact: bool  # whether any occurred in them
     frequency: float  # of the excitation, rad/s
     tolerance: float  # within which a state repeats, over the motion's size: see multiplicity
@@ -83,7 +82,6 @@ def responses_from(
             end=tuple(results.ends[i].tolist()),
             x_rel_max=float(results.x_rel_max[i]),
             impacts_per_period=(after - before) / count,
-            impact_count=after,
             permanent_contact=bool(touching) or contacts_after > contacts_before,
             frequency=point.excitation.frequency,
             tolerance=tolerance,

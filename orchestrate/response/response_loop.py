@@ -70,16 +70,9 @@ class Responses(NamedTuple):
     must_impact: NDArray[np.bool_]  # whether no motion without impacts exists
 
     def rows(self, chosen: NDArray[np.intp]) -> Responses:
-        return self._replace(
-            states=self.states[chosen],
-            ends=self.ends[chosen],
-            x_rel_max=self.x_rel_max[chosen],
-            impacts=self.impacts[chosen],
-            deviations=self.deviations[chosen],
-            peaks=self.peaks[chosen],
-            counts={name: numbers[chosen] for name, numbers in self.counts.items()},
-            must_impact=self.must_impact[chosen],
-        )
+        counts = {name: numbers[chosen] for name, numbers in self.counts.items()}
+        parts = (counts if isinstance(part, dict) else part[chosen] for part in self)
+        return Responses._make(parts)
 
 
 class Rows(NamedTuple):

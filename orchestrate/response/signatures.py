@@ -30,10 +30,7 @@ class Changes(NamedTuple):
 
 
 def as_given(label: str = "", /, **changed: Any) -> Any:
-    """Answer a public function by its arguments as they are given, but for those changed.
-
-    ``label`` ends the name of the result.
-    """
+    """Answer by the arguments as given, but for those changed; ``label`` ends the result's name."""
     return Changes(label, changed)
 
 

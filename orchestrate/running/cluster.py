@@ -41,7 +41,6 @@ def cluster(where: Any, count: int) -> Iterator[Workers]:
 
 @contextmanager
 def dask_workers(client: Any) -> Iterator[Workers]:
-    """Provide the workers of a Dask client; on an error their chunks are cancelled."""
     executor = client.get_executor(pure=False, retries=RETRIES)
     try:
         yield Workers(executor, lambda: 2 * max(1, sum(client.ncores().values())), remote=True)

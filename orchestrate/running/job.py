@@ -99,10 +99,7 @@ class Job(ABC):
         return ""
 
     def boundary_state(self, table: Table) -> bytes:
-        """Return a chunk's end state as bytes, to compare with the next one's guessed start.
-
-        It is in the last entries of the chunk before.
-        """
+        """Return a chunk's end state as bytes, to compare with the next one's guessed start."""
         raise NotImplementedError
 
     @abstractmethod

@@ -251,10 +251,7 @@ def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
 
 
 def load(path: Path, read: Callable[[Path], xr.Dataset] | None = None) -> xr.Dataset:
-    """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum).
-
-    A result of this project's is read in this process; :func:`load_foreign` takes any file.
-    """
+    """Return a file's dataset, read in this process; raise ``StoreError`` if damaged (checksum)."""
     check_path_encoding(path)
     try:
         data = (read or open_result)(path)

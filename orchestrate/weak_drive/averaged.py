@@ -64,7 +64,6 @@ def transfer_functions(
 
 
 def no_load_speed(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
-    """Return the voltage, as no-load speed over omega, that holds each given speed."""
     Omega = np.asarray(Omega, dtype=float)
     H, _ = transfer_functions(structure, drive, Omega)
     torque = drive.epsilon * Omega**4 * H.imag / (2.0 * drive.b(structure))
@@ -83,7 +82,6 @@ def resonance(structure: Structure, drive: Drive) -> float:
 
 
 def resonance_half_width(structure: Structure, drive: Drive) -> float:
-    """Return the half width of the bonded resonance at half power, over omega."""
     roots = free_vibration_roots(structure, drive)
     return float(-roots[np.argmax(np.abs(roots))].real)
 
@@ -133,9 +131,9 @@ def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, P
         for part in parts
     )
     above, below = pull + masses, box * (pull + masses) + pull * masses
-    torque = imaginary_part(above * conjugate_polynomial(below))
-    torque = torque * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
-    size = imaginary_part(1j * below * conjugate_polynomial(below))  # |below|^2
+    conjugate = Polynomial(below.coef.conj())
+    torque = Polynomial((above * conjugate).coef.imag) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
+    size = Polynomial((1j * below * conjugate).coef.imag)  # |below|^2
     factor = drive.epsilon / (2.0 * drive.b(structure))
     return size**2 - factor * (torque.deriv() * size - torque * size.deriv()), size**2
 
@@ -222,14 +220,6 @@ def stationary_curve(structure: Structure, drive: Drive) -> xr.Dataset:
     }
     speed = ("speed", Omega * structure.omega, {"units": "rad/s"})
     return xr.Dataset(curves, {"speed": speed}, structure.parameters())
-
-
-def conjugate_polynomial(polynomial: Polynomial) -> Polynomial:
-    return Polynomial(polynomial.coef.conj())
-
-
-def imaginary_part(polynomial: Polynomial) -> Polynomial:
-    return Polynomial(polynomial.coef.imag)
 
 
 def polish_root(polynomial: Polynomial, root: float) -> float:

@@ -138,7 +138,6 @@ def checked_variable(drive: Description, name: str, causality: str, any_type: bo
 
 
 def of_causality(drive: Description, causality: str) -> str:
-    """Return text on the drive's variables of a causality, or on all."""
     names = [name for name, one in drive.variables.items() if causality in ("", one.causality)]
     listed = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
     return f"one of its {f'{causality}s' if causality else 'variables'}: {listed or 'it has none'}"
@@ -164,7 +163,6 @@ def factor_to_si(drive: Description, ours: str, theirs: str, units: Mapping[str,
 
 
 def near(name: str, known: Iterable[str]) -> str:
-    """Return a hint on names that are nearly this one, or nothing."""
     return did_you_mean(*difflib.get_close_matches(name, list(known), 3))
 
 

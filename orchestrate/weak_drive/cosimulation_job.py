@@ -180,14 +180,14 @@ class CosimulateJob(CoupledJob, Question):
         return "run (not resumable)"
 
     def advance(self, fmus: Fmus, steps: range, previous: Table | None) -> Table:
-        """Do some steps, of half the length too."""
         response = self.response_to_force() if previous is None else previous["response"][-1]
         table: Table = {"response": response[np.newaxis]}
         warned: dict[str, None] = {}
         for parts in self.finenesses():
             before = previous and rows_of(previous, parts)
             if before and before["ended"][-1]:
-                found = nothing_more(before)
+                found = {name: values[:0] for name, values in before.items()}  # nothing more
+                found["ended"] = before["ended"]
             else:
                 with Instance(fmus[OSCILLATOR]) as one, Instance(self.drive, "drive") as drive:
                     coupling = Coupling(self, one, drive, parts, float(response[0]))
@@ -209,10 +209,7 @@ class CosimulateJob(CoupledJob, Question):
         return checked_links(dict(self.connect), drive, dict(self.units), self.alone)
 
     def response_to_force(self) -> Floats:
-        """Return by how much 1 N accelerates the box at once, m/s2, and which part of it in a step.
-
-        At once is what a connected acceleration says, else the motion in a short step.
-        """
+        """Return the box's acceleration by 1 N at once, m/s2, and which part of it in a step."""
         seen: list[Any] = []
         if "box_force" not in dict(self.connect):
             return np.array([0.0, math.nan])
@@ -357,12 +354,6 @@ def rows_of(table: Table, parts: int) -> Table:
     return {name.removesuffix(end): table[name] for name in table if name.endswith(end)}
 
 
-def nothing_more(run: Table) -> Table:
-    """Return the table of a run that a drive ended in a chunk before: no rows, the same end."""
-    return {**{name: values[:0] for name, values in run.items()}, "ended": run["ended"]}
-
-
 def turned(links: Mapping[str, Link]) -> str:
-    """Return the connection of the force with the other sign."""
     force = links["box_force"]
     return f"box_force={'-' if force.scale > 0.0 else ''}{force.theirs}"

@@ -25,8 +25,6 @@ from ..running.runner import compute_datasets
 from . import averaged, couple, own_resonance
 from .couple import KINDS
 
-System = tuple[Structure, Drive]
-
 
 def voltage_range(structure: Structure, drive: Drive) -> tuple[float, float]:
     """Return the two ends of the voltage ramp, over K omega, from below to past resonance."""
@@ -39,7 +37,7 @@ def voltage_range(structure: Structure, drive: Drive) -> tuple[float, float]:
 
 def couple_job_from_numbers(
     name: str,
-    system: System,
+    system: tuple[Structure, Drive],
     kind: str,
     rate: float,
     eta0: tuple[float, float] | None,
@@ -59,7 +57,7 @@ def couple_job_from_numbers(
 
 
 def couple_all(
-    systems: Mapping[str, System],
+    systems: Mapping[str, tuple[Structure, Drive]],
     *,
     eta0: tuple[float, float] | None = None,
     rates: Sequence[float] = (1e-4,),

@@ -85,10 +85,10 @@ class DriveSpectraJob(Job):
     def sample_displacements(self, run: MotorRun, interval: float) -> np.ndarray:
         """Run on at equal steps; return both masses' absolute displacements, m, (2, samples)."""
         count = self.revolutions * self.points
-        found = run.master.run([self.approach.last] * count, h=interval).at_ends()
+        record = run.master.run([self.approach.last] * count, h=interval)
+        x1, x2, box = (record[name][record.ends] for name in ("x1", "x2", "box_position"))
         rest_1, rest_2 = run.job.structure.at_rest
-        box = found["box_position"]
-        return np.array([found["x1"] - rest_1 + box, found["x2"] - rest_2 + box])
+        return np.array([x1 - rest_1 + box, x2 - rest_2 + box])
 
     def is_captured(self, fmus: Fmus) -> bool:
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
@@ -114,7 +114,6 @@ class DriveSpectraJob(Job):
 
 
 def voltage_at_resonance(structure: Structure, drive: Drive, share: float = 0.6) -> float:
-    """Return a voltage at which the motor is captured by the resonance, V."""
     folds = averaged.folds(structure, drive)
     if not folds:
         raise InputError("voltage: expected one, in V; by the averaged theory there is no jump")

@@ -122,9 +122,6 @@ class ShooterStepper(continuation.ArclengthStepper[Shooter]):
 
     jacobian: Floats
 
-    def move_to(self, motion: Motion) -> None:
-        self.root, self.jacobian = motion.root, motion.matrix
-
     def root_after(self, length: float) -> continuation.Root:
         self.curve.restart(self.root.unknowns, self.jacobian)
         return super().root_after(length)
@@ -168,7 +165,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
     def go_on_from(self, point: Motion) -> Motion:
         """Set the stepper to a motion, begun far from impacts, for the next step; return it."""
         motion = start_far_from_impacts(self.shooter, point)
-        self.stepper.move_to(motion)
+        self.stepper.root, self.stepper.jacobian = motion.root, motion.matrix
         self.shot = self.shooter.shoot(motion.root.unknowns)
         self.half_period_change = half_period_change(self.shooter, motion.root)
         return motion

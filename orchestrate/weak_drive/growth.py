@@ -27,10 +27,7 @@ CLEAR = 0.3  # of the widest gap: a period begins where it is wider, far from im
 
 
 def growth_rate(run: MotorRun, voltage: float, speed: float) -> float:
-    """Return the rate, 1/s, at which disturbances of a run's motion grow; NaN if unknown.
-
-    Voltage (V) and mean speed (rad/s) are those of the motion. The run is over then.
-    """
+    """Return the rate, 1/s, at which disturbances grow (V, rad/s), or NaN; the run is over then."""
     if speed < 0.0:  # the shooter's motors turn forward
         return math.nan
     structure, drive = run.job.structure, run.job.drive

@@ -65,11 +65,7 @@ class Inputs:
         return {name: values.get(name, 0.0) for name in self.names}
 
     def over_steps(self, edges: Floats, width: int = 0, earlier: int = 0) -> Floats:
-        """Return the inputs of the steps between edges, but some earlier ones.
-
-        Of a control it is what its supply has on average, or 0. Where a row has the width for it,
-        they are followed by the inputs at the step's end.
-        """
+        """Return inputs of steps between edges (a supply's mean), with ends if ``width``."""
         count = len(self.names)
         h, rows = np.diff(edges), np.zeros((len(edges) - 1, max(width, count)))
         ends = rows[:, count:] if width > count else np.zeros((len(h), count))
@@ -101,7 +97,6 @@ class Inputs:
     def _controlled(
         self, rows: list[list[float]], h: float, master: Master
     ) -> Iterator[list[float]]:
-        """Yield the rows with what is commanded as each step begins."""
         first, count = self.controlled, len(self.names)
         for row in rows:
             values, ends = self._commanded(row[first], h, master)

@@ -157,7 +157,6 @@ class DriveSide:
         return self.forces, self.motions, self.pushes
 
     def put(self, force: Sequence[float], inputs: Sequence[float]) -> None:
-        """Set the force, with the derivatives that are connected, and the other inputs."""
         self.channel.put(*(force[i] / link.scale for i, link in self.forces), *inputs)
 
     def get(self) -> list[float]:
@@ -180,13 +179,9 @@ class Master:
         drive: Instance,
         scheme: Scheme,
         connection: Connection = MOTOR,
-        start_time: float = 0.0,
         inverse_mass: float = 0.0,
     ) -> None:
-        """Connect both instances and begin a run.
-
-        ``inverse_mass``: of the drive, 1/kg, if it takes a held force and gives no acceleration.
-        """
+        """Begin a run; ``inverse_mass`` (1/kg) is of a drive that takes a held force only."""
         pushes = connection.pushes
         cubics = (*(name for push in pushes for name in CUBICS[push]),)
         self.oscillator = Channel(oscillator, (*CUBIC, *cubics), OscillatorOutputs._fields)
@@ -197,11 +192,11 @@ class Master:
         self.inputs = slice(len(self.names) - len(connection.inputs), len(self.names))
         self.pair, holds_force = self._described(), len(self.drive.forces) < len(FORCE)
         self.inverse_mass = inverse_mass if holds_force else 0.0
-        self.begin(start_time)
+        self.begin()
 
-    def begin(self, start_time: float = 0.0) -> None:
+    def begin(self) -> None:
         unknown = [math.nan] * len(self.connection.inputs)
-        step, motion = [start_time, *[0.0] * (MOTION - TIME - 1)], self.oscillator.get()
+        step, motion = [0.0] * (MOTION - TIME), self.oscillator.get()
         self.drive.put((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())  # its acceleration follows it
         then = [0.0] * (4 * len(self.connection.pushes))
         self.row = [*step, *motion, *self.drive.get(), *then, *unknown]
@@ -222,9 +217,9 @@ class Master:
         """Return a value at the present time, by the name of its column in a record."""
         return self.row[self.names.index(name)]
 
-    def step(self, *inputs: float, h: float | None = None) -> Record:
+    def step(self, *inputs: float) -> Record:
         """Run one communication interval with constant inputs of the drive."""
-        return self.run([inputs], h)
+        return self.run([inputs])
 
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
         """Run an interval for each row of the drive's inputs, held constant; return the record."""
@@ -237,10 +232,7 @@ class Master:
     def run_controlled(
         self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
     ) -> Record:
-        """Run a number of intervals; the inputs of each are asked for when it begins.
-
-        Fewer, if an FMU ends the simulation (:attr:`ended`): those that it reached the end of.
-        """
+        """Run intervals whose inputs are asked for as each begins; fewer if :attr:`ended`."""
         return self._run_pieces((np.array([row], dtype=float) for row in inputs), count, h)
 
     def _run_pieces(

@@ -63,7 +63,6 @@ def free_modes(structure: Structure, drive: Drive) -> tuple[np.ndarray, np.ndarr
 
 
 def gap_stays_open(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
-    """Return whether the gap stays open between two impacts of a mode."""
     angles = np.pi / Omega * np.linspace(-1.0, 1.0, 401)[1:-1]
     gaps = np.cos(np.outer(angles, w)) @ (n**2 / (w * np.sin(w * np.pi / Omega)))
     return bool((gaps > 0.0).all() or (gaps < 0.0).all())

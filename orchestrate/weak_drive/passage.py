@@ -58,7 +58,6 @@ class PassageJob(couple.CoupleJob):
     item_columns: ClassVar[tuple[str, ...]] = tuple(KEPT + name for name in SAMPLES)
 
     def kept_table(self, run: MotorRun, steps: range) -> Table:
-        """Run some communication steps; return their revolutions and all samples."""
         record = run.record(steps)
         revolutions, energies = run.revolutions.add(record)
         own = energies._asdict()

@@ -24,7 +24,6 @@ def matched_cubics(*given: Any) -> NDArray[np.float64]:
 
 
 def end_derivatives(cubic: Cubic, h: Any) -> Cubic:
-    """Return the value and derivatives of cubics at the steps' ends."""
     return tuple(np.moveaxis(cubics_by("continued_cubics", (*cubic, h)), -1, 0))
 
 
@@ -58,7 +57,6 @@ def integrate_product(f: Sequence[Any], g: Sequence[Any]) -> Any:
 
 
 def matched_quartic(ends: tuple[Any, Any], slopes: tuple[Any, Any], mean: Any) -> tuple[Any, ...]:
-    """Return the quartic in s with given end values, end slopes and mean."""
     p0, p1 = ends
     d0, d1 = slopes
     rise = p1 - p0

@@ -61,12 +61,7 @@ class RampRecord:
         """Return the voltage over K omega at the ends of revolutions."""
         return self.sense * self.table["voltage"][rows] / self.job.drive.volts(self.job.structure)
 
-    def speed_ratio_at(self, rows: Any) -> Any:
-        """Return the mean speed over omega of revolutions."""
-        return np.abs(self.table["speed"][rows]) / self.job.structure.omega
-
     def step(self, row: int) -> int:
-        """Return the communication step at the end of a revolution."""
         return min(math.ceil(self.table["time"][row] / self.job.scheme.h), self.job.steps() - 1)
 
     def rows_shown(self, low: float, high: float, before: float, after: float) -> list[float]:
@@ -78,7 +73,7 @@ class RampRecord:
             b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
             width = max(4, math.ceil(SMOOTH / (b * omega * turn)))
             past = self.sign * self.eta0(leg) >= self.sign * low
-            slips = self.eta0(leg) - self.speed_ratio_at(leg)
+            slips = self.eta0(leg) - np.abs(self.table["speed"][leg]) / omega
             if not past.any() or len(leg) < width:
                 continue
             done = np.convolve((first - slips) / fall, np.full(width, 1.0 / width), "valid")

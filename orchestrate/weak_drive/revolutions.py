@@ -51,7 +51,6 @@ class Revolutions:
         self.largest = np.full(5, NOTHING)
 
     def add(self, record: Record) -> tuple[Table, Energies]:
-        """Return the revolutions that a record completes, and the energies at its rows."""
         energies = self.balance.add(record)
         of_mass, of_box = range_of_mass(self.structure, record), range_of_box(record)
         shaken = np.abs(record.after["box_acceleration"])

@@ -40,7 +40,6 @@ def oscillator_start(structure: Structure) -> dict[str, float | bool]:
 
 
 def state_rows(table: Table, rows: slice) -> Table:
-    """Return the columns of a run's state alone, at some rows of a table."""
     return {name: table[name][rows] for name in table if name.endswith((STATE, MEMORY))}
 
 

@@ -228,9 +228,7 @@ class Course(Schedule):
         return low + (high - low) * (time - begin) / (end - begin)
 
     def over_steps(self, edges: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return values at both ends of steps between edges, means, and first moments about their
-        middles. A jump at an edge belongs to the step after it.
-        """
+        """Return end values, means, moments of steps; a jump at an edge is of the one after."""
         known, values = np.array(self.times), np.array(self.voltages)
         inner = known[(known > edges[0]) & (known < edges[-1])]
         nodes = np.unique(np.concatenate([edges, inner]))

@@ -90,7 +90,6 @@ class Shooter:
         self.drive, self.parameters = drive, drive.parameters()
 
     def begin_together(self, together: bool) -> None:
-        """Set whether a period begins with the masses in contact."""
         self.together = together
         structure, drive, length = self.structure, self.drive, self.length
         omega = structure.omega
@@ -303,7 +302,6 @@ class Shooter:
         return np.asarray(values[np.argsort(-np.abs(values))])
 
     def map_derivative(self) -> Floats:
-        """Return the derivative of the return map at a fixed motor angle."""
         count = self.size
         flow = self.matrix[:, :count] + np.eye(count + 1, count)
         drift = self.matrix[:, -1]  # a longer period is a slower mean speed

@@ -53,7 +53,6 @@ class Record:
     def of_rows(
         cls, names: tuple[str, ...], rows: Any, ends: Any, recorded: Any = NOTHING
     ) -> Record:
-        """Make a record of rows, one for the state before and for each step."""
         columns = np.ascontiguousarray(np.transpose(rows))
         table = np.asarray(recorded, dtype=float)
         return cls(names, columns, np.asarray(ends, dtype=np.intp), table)
@@ -65,9 +64,6 @@ class Record:
     @property
     def after(self) -> Record:
         return replace(self, columns=self.columns[:, 1:])
-
-    def at_ends(self) -> Record:
-        return replace(self, columns=self.columns[:, self.ends])
 
     def __getitem__(self, name: str) -> Floats:
         return self.columns[self.names.index(name)]

@@ -31,6 +31,7 @@ from .values import (
     UNARY,
     WHOLE,
     Type,
+    Unit,
     Value,
     common_type,
 )
@@ -68,8 +69,10 @@ volatile while finite isinf isnan signbit larger smaller floored
 TAKEN = frozenset(WORDS.split())
 
 
-class Names(Protocol):
-    """What the translation of an expression asks the translation of the kernel for."""
+class Kernel(Protocol):
+    """What the translation of a function asks the translation of the kernel for."""
+
+    begun: set[FunctionType]
 
     def constant(self, module: ModuleType, name: str) -> str:
         """Return the name in C of a module's number."""
@@ -77,30 +80,51 @@ class Names(Protocol):
     def c_type(self, kind: Type) -> str:
         """Return the name in C of a type."""
 
+    def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
+        """Return another function, translated."""
+
 
 class Expressions(ABC):
-    """Translator of the expressions in one module's functions."""
+    """Translator of the expressions in a function."""
 
-    kernel: Names
+    kernel: Kernel
+    unit: Unit
     module: ModuleType
+    tree: ast.FunctionDef
+    first: int  # line of the function in its file
     types: dict[str, Type]  # of the variables known so far
     # whether values can be kept in variables before the present statement: not where C evaluates an
     # expression only if another one is true, or again
     may_keep: bool
+    is_rare: bool
+    count_of_kept: int
 
     @abstractmethod
+    def line(self, text: str) -> None:
+        """Write one line of C before the present statement."""
+
     def refuse(self, node: ast.AST, what: str, expected: str) -> CannotExport:
-        """Return the error that names a line outside the subset."""
+        line = self.first + getattr(node, "lineno", 1) - 1
+        return CannotExport(f"{self.module.__file__}, line {line}: {what}; expected {expected}")
 
-    @abstractmethod
     def keep(self, value: Value) -> Value:
-        """Return a variable that the value is assigned to before the present statement."""
+        if not self.may_keep:
+            instead = "it in a statement of its own before"
+            raise self.refuse(self.tree, f"{value.text} would be evaluated too early", instead)
+        self.count_of_kept += 1
+        name = f"part_{self.count_of_kept}"
+        self.line(f"{self.kernel.c_type(value.type)} {name} = {value.text};")
+        return Value(name, value.type)
 
-    @abstractmethod
     def function(
         self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
     ) -> tuple[str, Type]:
-        """Return a function's name in C for arguments of these types, and its result's type."""
+        if function in self.kernel.begun:  # nobody could say how much stack it takes
+            raise self.refuse(node, f"{function.__name__} calls itself", "a loop, no recursion")
+        unit = self.kernel.unit(function, kinds)
+        if not self.is_rare:
+            self.unit.often.add(unit.name)
+        return unit.name, unit.result
 
     def expression(self, node: ast.expr) -> Value:
         known: Mapping[type, Callable[[Any], Value]] = {

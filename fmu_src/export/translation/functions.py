@@ -9,14 +9,11 @@ import ast
 import sys
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from types import FunctionType
-from typing import Any, Protocol
+from typing import Any
 
-from ..errors import CannotExport
 from . import subset
-from .expressions import OPERATORS, Expressions, Names, in_c, is_simple
-from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Value, common_type
+from .expressions import OPERATORS, Expressions, Kernel, in_c, is_simple
+from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Unit, Value, common_type
 
 WIDTH = 100
 STORAGE = "static INLINE"  # of every function, until it is known how often it is called
@@ -26,33 +23,8 @@ HINTS = {"rarely": "RARELY", "usually": "USUALLY"}
 INLINE = "inline"  # the comment on a def: it is to be inlined
 
 
-@dataclass
-class Unit:
-    """One function with the types of its arguments."""
-
-    function: FunctionType
-    kinds: tuple[Type, ...]  # of its arguments
-    name: str  # in C
-    result: Type = NOTHING
-    text: str = ""  # its definition in C
-    is_inline: bool = False  # wherever it is called
-    # names of the functions that it calls, but for those behind a test that is rarely true
-    often: set[str] = field(default_factory=set)
-
-
-class Kernel(Names, Protocol):
-    """What the translation of a function needs from the translation of the kernel."""
-
-    begun: set[FunctionType]
-
-    def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
-        """Return another function, translated."""
-
-
 class Body(Expressions):
     """Translator of one function: gives its unit a result and a text."""
-
-    kernel: Kernel
 
     def __init__(self, kernel: Kernel, unit: Unit) -> None:
         self.kernel, self.unit = kernel, unit
@@ -99,31 +71,6 @@ class Body(Expressions):
         self.unit.is_inline = self.hints.get(self.tree.lineno) == INLINE
         line = f"{STORAGE} {c_type(self.unit.result)} {self.unit.name}({', '.join(parameters)})"
         return [*comment, *wrapped(line, "", INDENT)]
-
-    # -- what expressions ask for --
-
-    def refuse(self, node: ast.AST, what: str, expected: str) -> CannotExport:
-        line = self.first + getattr(node, "lineno", 1) - 1
-        return CannotExport(f"{self.module.__file__}, line {line}: {what}; expected {expected}")
-
-    def keep(self, value: Value) -> Value:
-        if not self.may_keep:
-            instead = "it in a statement of its own before"
-            raise self.refuse(self.tree, f"{value.text} would be evaluated too early", instead)
-        self.count_of_kept += 1
-        name = f"part_{self.count_of_kept}"
-        self.line(f"{self.kernel.c_type(value.type)} {name} = {value.text};")
-        return Value(name, value.type)
-
-    def function(
-        self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
-    ) -> tuple[str, Type]:
-        if function in self.kernel.begun:  # nobody could say how much stack it takes
-            raise self.refuse(node, f"{function.__name__} calls itself", "a loop, no recursion")
-        unit = self.kernel.unit(function, kinds)
-        if not self.is_rare:
-            self.unit.often.add(unit.name)
-        return unit.name, unit.result
 
     # -- lines --
 

@@ -16,8 +16,8 @@ from typing import Any
 
 from ..errors import CannotExport
 from .expressions import TAKEN
-from .functions import STORAGE, Body, Unit, wrapped
-from .values import C_TYPES, MEMORY, REAL, Type
+from .functions import STORAGE, Body, wrapped
+from .values import C_TYPES, MEMORY, REAL, Type, Unit
 
 HEAD = """\
 /* Translated from the Python in documentation/kernels, where the reasons are.
@@ -124,7 +124,6 @@ class Translation:
         return self.units[key]
 
     def own_name(self, name: str, thing: object, module: str) -> str:
-        """Return a name that one thing has: its module's before it, where another has it too."""
         place = module.rpartition(".")[2]
         longer = f"{place.upper() if name.isupper() else place}_{name}"
         for known in (name, longer, *(f"{longer}_{number}" for number in range(2, 100))):
@@ -193,12 +192,7 @@ def stored(units: Iterable[Unit], often: set[str]) -> Iterator[str]:
 
 
 def translate(entries: Mapping[str, Callable[[Any, float], int]]) -> str:
-    """Translate a kernel's entry points, given by name, to a C99 file of its own.
-
-    Each takes the flat memory and a time, returns a code, and becomes a function ``kernel_NAME``.
-    Of the C library it needs ``sqrt`` and ``fabs``. ``CannotExport`` names a line outside the
-    subset.
-    """
+    """Translate a kernel's entry points, by name, to a C99 file of ``kernel_NAME`` functions."""
     done = Translation()
     exits, often = [], set()
     for name, function in entries.items():

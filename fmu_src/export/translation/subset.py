@@ -95,7 +95,6 @@ def assigned_in(block: Block) -> list[ast.expr]:
 
 
 def may_declare(statement: ast.stmt, name: str) -> bool:
-    """Return whether a statement assigns to a name that it does not read."""
     if not isinstance(statement, ast.Assign) or name in names_in(statement.value):
         return False
     return any(isinstance(one, ast.Name) and one.id == name for one in targets_of(statement))
@@ -127,7 +126,6 @@ def owner_blocks(body: Block) -> dict[str, Block]:
 
 
 def innermost_shared_block(paths: Sequence[list[Block]]) -> Block:
-    """Return the last block that all paths go through."""
     last = paths[0][0]
     for blocks in zip(*paths, strict=False):
         if any(block is not blocks[0] for block in blocks):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import FunctionType
 from typing import TypeAlias
 
 from ..errors import CannotExport
@@ -50,6 +51,20 @@ class Value:
         if self.type == LONG and kind == REAL:
             return Value(f"(double){self.within(UNARY)}", REAL, UNARY)
         return self
+
+
+@dataclass
+class Unit:
+    """One function with the types of its arguments."""
+
+    function: FunctionType
+    kinds: tuple[Type, ...]  # of its arguments
+    name: str  # in C
+    result: Type = NOTHING
+    text: str = ""  # its definition in C
+    is_inline: bool = False  # wherever it is called
+    # names of the functions that it calls, but for those behind a test that is rarely true
+    often: set[str] = field(default_factory=set)
 
 
 def common_type(kinds: Sequence[Type]) -> Type:

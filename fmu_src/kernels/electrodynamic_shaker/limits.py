@@ -56,7 +56,6 @@ def watch_other(m):
 
 
 def watch_limit(m, series, terms, limit, side, order, kind):
-    """Look for the event that a series reaches a limit on a side."""
     write_guard(m, series, terms, -side, limit)
     note_root(m, order, kind)
 
@@ -70,11 +69,7 @@ def note_root(m, order, kind):
 
 
 def first_root(m, order):
-    """Return the first root of GUARD in its interval, or NONE.
-
-    Where ``order`` is not 0, the terms before it are known to vanish, and the next ones to make it
-    positive: what speaks against that is rounding.
-    """
+    """Return the first root of GUARD, or NONE; terms before ``order`` vanish, but for rounding."""
     first = order
     while first < at.TERMS and (
         m[at.GUARD + first] == 0.0 or (order > 0 and m[at.GUARD + first] < 0.0)

@@ -43,11 +43,7 @@ def part_at(m, time):
 
 
 def renew_inputs(m):
-    """Begin a state at the communication point where an input was set.
-
-    Inputs that are set once more there begin it again from the same states: what was read in
-    between changes nothing.
-    """
+    """Begin a state where an input was set; once more there, from the same states."""
     command = cubic_begins(m, at.COMMAND_SET, at.COMMAND)
     force = cubic_begins(m, at.FORCE_SET, at.BOX_FORCE)
     m[at.COMMAND_SET] = 0.0

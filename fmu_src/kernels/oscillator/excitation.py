@@ -15,7 +15,6 @@ from .secular import set_secular
 
 
 def inputs_changed(m):
-    """Return whether the present inputs call for a new segment."""
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         for i in range(3):
             if m[at.CUBIC + 6 * i + at.ON] != 0.0 and m[at.CUBIC_SET + i] != 0.0:

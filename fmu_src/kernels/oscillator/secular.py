@@ -70,7 +70,6 @@ def set_growth(m, b):
 
 
 def set_step_growth(m, b):
-    """Set the growth over a spacing, which is the same for all nodes."""
     h_cos, h_sin, d_cos, d_sin = grown_amplitude(m, b, m[at.SPACING])
     m[b + at.STEP_GROWTH] = h_cos
     m[b + at.STEP_GROWTH + 1] = h_sin

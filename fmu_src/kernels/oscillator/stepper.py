@@ -249,17 +249,7 @@ def finish_step(m, time, tau, left, highest, same):
 
 
 def write_point(m, time, tau, left, highest, same, plain):  # inline
-    """Write all outputs at the point ``time``, at the present state's age ``tau``, if all are
-    finite.
-
-    ``left`` is the point that the step has left, ``highest`` the largest gap in between, ``same``
-    whether no impact and no change of state was, ``plain`` as :func:`.outputs.is_plain` has it.
-
-    Returns
-    -------
-    int
-        OK, or NOT_FINITE; then nothing is written.
-    """
+    """Write all outputs at ``time``, age ``tau``, if finite; ``same``: no event since ``left``."""
     h = time - m[at.TIME]
     seen = outputs_at(m, tau, plain)
     reached = point_of(m, seen, tau)
@@ -297,11 +287,7 @@ def check_finite(sum_of_outputs):
 
 
 def renew_segment(m, now):
-    """Begin a segment with the present inputs, ``now`` after the present state's start.
-
-    Positions and phase are continuous; so is a cubic, where none of its inputs was set. Where what
-    drives the gap jumps, the contact force does: whether the masses stay together is decided again.
-    """
+    """Begin a segment with the present inputs; whether contact stays is decided again."""
     x1, v1, x2, v2 = state_at(m, now)
     gap = gap_between(m, now, x1, x2)
     goes_on = now > 0.0 and m[at.MODE] != at.GLUED and (gap > 0.0 or is_inside_state(m, now))
@@ -336,13 +322,7 @@ def is_inside_state(m, tau):
 
 
 def run_samples(m, start, time, now):
-    """Run to ``time``, keeping the states at equal parts of the step on the way.
-
-    Returns the present state's age there.
-
-    Where the step stops at an impact, the samples that are left show the state there; where its
-    work is used up, none is kept.
-    """
+    """Run to ``time``, keeping states at equal parts of the step; return the state's age there."""
     count = int(m[at.SAMPLE_COUNT])
     for i in range(count):
         if m[at.STOPPED] == 0.0:

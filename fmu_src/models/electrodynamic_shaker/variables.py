@@ -9,10 +9,9 @@ from typing import Any
 from ...kernels.electrodynamic_shaker import memory
 from ...runtime.table import (
     BOOLEAN,
+    COUNT,
     DRIVE_LIMIT,
-    INTEGER,
-    Variable,
-    drive,
+    cubic,
     evaluation_limit,
     not_negative,
     numbered,
@@ -21,27 +20,6 @@ from ...runtime.table import (
     positive,
     start_value,
 )
-
-
-def cubic(name: str, units: tuple[str, ...], description: str) -> tuple[Variable, ...]:
-    limits: dict[str, Any] = {"minimum": -DRIVE_LIMIT, "maximum": DRIVE_LIMIT}
-    text = f"{description}: value when it was set; runs on as the cubic with {name}_1, {name}_2"
-    value = drive(name, units[0], 0.0, f"{text} and {name}_3", input_derivatives=3, **limits)
-    orders = zip(("First", "Second", "Third"), units[1:], strict=True)
-    return (
-        value,
-        *(
-            drive(
-                f"{name}_{i}",
-                unit,
-                0.0,
-                f"{order} time derivative of {name} when one of the four was set",
-                **limits,
-            )
-            for i, (order, unit) in enumerate(orders, 1)
-        ),
-    )
-
 
 MILLIMETRES: dict[str, Any] = {"display_unit": "mm"}
 PARAMETERS = (
@@ -83,10 +61,11 @@ PARAMETERS = (
 INPUTS = (
     *cubic(
         "command",
-        ("V", "V/s", "V/s2", "V/s3"),
+        "V",
         "Voltage of the amplifier; where current_control is true its current, A",
+        DRIVE_LIMIT,
     ),
-    *cubic("box_force", ("N", "N/s", "N/s2", "N/s3"), "Force on the table"),
+    *cubic("box_force", "N", "Force on the table", DRIVE_LIMIT),
 )
 # what the current at the start follows from, and the voltage with the slope of a commanded current
 CURRENT = (
@@ -175,14 +154,7 @@ OUTPUTS = (
         variability="discrete",
         **ELECTRIC,
     ),
-    output(
-        "evaluations",
-        "",
-        "Power series computed in the last communication step",
-        type=INTEGER,
-        variability="discrete",
-        minimum=0,
-    ),
+    output("evaluations", "", "Power series computed in the last communication step", **COUNT),
 )
 LIMITS = (evaluation_limit("power series"),)
 VARIABLES = numbered(PARAMETERS + INPUTS + OUTPUTS + LIMITS, memory)

@@ -6,9 +6,9 @@ from typing import Any
 
 from ...kernels.motor_shaker import memory
 from ...runtime.table import (
+    COUNT,
     DRIVE_LIMIT,
-    INTEGER,
-    Variable,
+    cubic,
     drive,
     evaluation_limit,
     not_negative,
@@ -30,10 +30,6 @@ CIRCUIT = (
 STORED = (*(name for name in BOX if name != "box_damping"), *ROTOR)
 FORCE = ("box_force", "box_force_1")
 ALL = (*BOX, *ROTOR, *(name for name in CIRCUIT if name not in ROTOR), "voltage")
-
-
-def given(name: str, unit: str, description: str, start: float = 0.0, **more: Any) -> Variable:
-    return drive(name, unit, start, description, minimum=-DRIVE_LIMIT, maximum=DRIVE_LIMIT, **more)
 
 
 RPM: dict[str, Any] = {"display_unit": "rpm"}
@@ -63,19 +59,12 @@ PARAMETERS = (
     start_value("current_start", "A", "Current at the start, where armature_inductance > 0"),
 )
 INPUTS = (
-    given("voltage", "V", "Voltage of the motor, U, constant over the step", start=8.0),
-    given(
-        "box_force",
-        "N",
-        "Force on the box: value when it was set; runs on as the cubic with box_force_1, "
-        "box_force_2 and box_force_3",
-        input_derivatives=3,
+    drive(
+        *("voltage", "V", 8.0, "Voltage of the motor, U, constant over the step"),
+        minimum=-DRIVE_LIMIT,
+        maximum=DRIVE_LIMIT,
     ),
-    given("box_force_1", "N/s", "First time derivative of box_force when one of the four was set"),
-    given(
-        "box_force_2", "N/s2", "Second time derivative of box_force when one of the four was set"
-    ),
-    given("box_force_3", "N/s3", "Third time derivative of box_force when one of the four was set"),
+    *cubic("box_force", "N", "Force on the box", DRIVE_LIMIT),
 )
 NOW: dict[str, Any] = {"dependencies": ("voltage", "box_force")}
 JERK: dict[str, Any] = {"dependencies": ("voltage", *FORCE)}
@@ -147,9 +136,7 @@ OUTPUTS = (
         "evaluations",
         "",
         "Evaluations of the right-hand side in the last communication step",
-        type=INTEGER,
-        variability="discrete",
-        minimum=0,
+        **COUNT,
     ),
 )
 LIMITS = (evaluation_limit("right-hand side"),)

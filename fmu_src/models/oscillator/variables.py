@@ -10,16 +10,19 @@ from typing import Any
 from ...kernels.oscillator import memory
 from ...runtime.table import (
     BOOLEAN,
+    COUNT,
     HUGE,
     INTEGER,
     LARGE,
-    TINY,
     Variable,
+    cubic,
     drive,
     evaluation_limit,
+    not_negative,
     numbered,
     output,
     parameter,
+    positive,
     start_value,
 )
 
@@ -64,7 +67,6 @@ IMPACT = (*IMPACT_2, "box_amplitude", "box_frequency", "box_acceleration")
 
 
 DISCRETE: dict[str, Any] = {"variability": "discrete"}
-COUNT: dict[str, Any] = {"variability": "discrete", "type": INTEGER, "minimum": 0}
 
 
 def samples(name: str, unit: str, description: str) -> tuple[Variable, ...]:
@@ -86,30 +88,6 @@ def peak(name: str, unit: str, signal: str) -> Variable:
     return Variable(name, text, "local", unit, initial="calculated", minimum=0.0)
 
 
-def force(half: int) -> tuple[Variable, ...]:
-    name = f"force{half}"
-    orders = ("First", "Second", "Third")
-    return (
-        drive(
-            name,
-            "N",
-            0.0,
-            f"Force on mass {half}, positive as x{half}: value when it was set; runs on as the "
-            f"cubic with {name}_1, {name}_2 and {name}_3",
-            input_derivatives=3,
-        ),
-        *(
-            drive(
-                f"{name}_{k + 1}",
-                "N/s" if k == 0 else f"N/s{k + 1}",
-                0.0,
-                f"{order} time derivative of {name} when one of the four was set",
-            )
-            for k, order in enumerate(orders)
-        ),
-    )
-
-
 FORCES = (
     *(
         drive(
@@ -120,8 +98,8 @@ FORCES = (
         )
         for half in (1, 2)
     ),
-    *force(1),
-    *force(2),
+    *cubic("force1", "N", "Force on mass 1, positive as x1"),
+    *cubic("force2", "N", "Force on mass 2, positive as x2"),
 )
 IN_CONTACT = (
     *(*IMPACT, "bonded", "box_jerk", "box_snap", "box_crackle"),
@@ -145,30 +123,12 @@ STROKE = parameter(
     maximum=HUGE,
 )
 SCALARS = (
-    parameter("m1", "kg", 1.0, "Mass 1", minimum=TINY, maximum=LARGE),
-    parameter("m2", "kg", 1.0, "Mass 2", minimum=TINY, maximum=LARGE),
-    parameter(
-        "k1", "N/m", 1.0, "Stiffness between mass 1 and the box", minimum=TINY, maximum=LARGE
-    ),
-    parameter(
-        "k2", "N/m", 1.2, "Stiffness between mass 2 and the box", minimum=TINY, maximum=LARGE
-    ),
-    parameter(
-        "d1",
-        "N.s/m",
-        0.01,
-        "Viscous damping between mass 1 and the box",
-        minimum=0.0,
-        maximum=LARGE,
-    ),
-    parameter(
-        "d2",
-        "N.s/m",
-        0.01,
-        "Viscous damping between mass 2 and the box",
-        minimum=0.0,
-        maximum=LARGE,
-    ),
+    positive("m1", "kg", 1.0, "Mass 1"),
+    positive("m2", "kg", 1.0, "Mass 2"),
+    positive("k1", "N/m", 1.0, "Stiffness between mass 1 and the box"),
+    positive("k2", "N/m", 1.2, "Stiffness between mass 2 and the box"),
+    not_negative("d1", "N.s/m", 0.01, "Viscous damping between mass 1 and the box"),
+    not_negative("d2", "N.s/m", 0.01, "Viscous damping between mass 2 and the box"),
     parameter("e", "1", 0.7, "Coefficient of restitution", minimum=0.0, maximum=1.0),
     parameter(
         "gamma",
@@ -225,32 +185,7 @@ SCALARS = (
         maximum=LARGE,
         display_unit="Hz",
     ),
-    drive(
-        "box_acceleration",
-        "m/s2",
-        0.0,
-        "Acceleration of the box added to the harmonic one: value when it was set; runs on as the "
-        "cubic with box_jerk, box_snap and box_crackle",
-        input_derivatives=3,
-    ),
-    drive(
-        "box_jerk",
-        "m/s3",
-        0.0,
-        "First time derivative of box_acceleration when one of the four was set",
-    ),
-    drive(
-        "box_snap",
-        "m/s4",
-        0.0,
-        "Second time derivative of box_acceleration when one of the four was set",
-    ),
-    drive(
-        "box_crackle",
-        "m/s5",
-        0.0,
-        "Third time derivative of box_acceleration when one of the four was set",
-    ),
+    *cubic(EXTRA[0], "m/s2", "Acceleration of the box added to the harmonic one", HUGE, EXTRA[1:]),
     output(
         "x1",
         "m",

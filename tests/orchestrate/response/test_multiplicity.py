@@ -18,7 +18,7 @@ from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.model import Excitation
 from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
-from orchestrate.response.multiplicity import decide_multiplicity, find_repetition
+from orchestrate.response.multiplicity import Decision, apply_rule, find_repetition
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import respond
 
@@ -36,7 +36,8 @@ def decide(samples, frequency=1.0, gap=1.0):
     memory[: repetition.MULTIPLICITY] = count, frequency, gap, TOLERANCE
     memory[repetition.HEAD : repetition.HEAD + samples.size] = samples.ravel()
     repetition.decide(memory, 0.0)
-    found = decide_multiplicity(samples, frequency, gap, TOLERANCE)
+    compiled = apply_rule("decide_multiplicity", samples, (frequency, gap, TOLERANCE))
+    found = Decision(*(int(compiled[i]) for i in (repetition.MULTIPLICITY, repetition.DECIDED)))
     assert found == (memory[repetition.MULTIPLICITY], memory[repetition.DECIDED])
     repetition.repeat(memory, 0.0)
     repeated = memory[repetition.MULTIPLICITY], memory[repetition.DEVIATION]
