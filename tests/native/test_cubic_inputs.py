@@ -4,7 +4,7 @@ What is compared is bits: however the way is divided, the motion is that of one 
 """
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from ..fmu.programs.driver import STATE, harmonic, open_fmu
@@ -56,6 +56,7 @@ def test_five_splits_event_mode_and_early_return_are_one_step(ways, motion):
     values, splits = motion
     end = [splits[0][-1]]
     expected = run(ways[0], values, end)
+    assume(ways[0].get("impact_count")[0] < 10_000)  # at e = 1 there may be 1e5, each an event
     for way in ways:
         for grid in (end, *splits):
             assert run(way, values, grid) == expected
