@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -15,6 +17,7 @@ from ..flags import flag_word, flag_words, runs_of
 from ..lazy import np, xr
 
 MOST_ROWS = 10  # of a table that is printed
+MOST_WORDS = 4  # of a variable that are counted, the most frequent ones
 PARAMETERS = ("eta", "frequency", "level")  # shown in Hz and g unless other units are asked for
 SIDES = ("direction", "structure")  # dimensions that are no parameter
 HINTS = {  # words of results, alone or of a variable, and what to do
@@ -59,7 +62,7 @@ def describe(data: xr.Dataset, names: str) -> Iterator[str]:
 def meaning(array: xr.DataArray) -> str:
     if array.name == "xi_rel_max":
         return "largest gap"
-    return str(array.attrs.get("long_name", array.name)).partition(",")[0]
+    return re.split("[,;]", str(array.attrs.get("long_name", array.name)))[0]
 
 
 def value_text(data: xr.Dataset, name: Any) -> str:
@@ -80,20 +83,23 @@ def counts(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
     along = "".join(others & {*map(str, data.coords)}) if len(others) == 1 else ""
     if along:
         data, array = data.sortby(along), array.sortby(along)
-    known = np.unique(array.values[array.notnull().values]).tolist()
+    known = Counter(array.values[array.notnull().values].tolist()).most_common()
     words = flag_words(array.attrs) if "flag_meanings" in array.attrs else {}
-    for one in known:
+    for one, count in known[:MOST_WORDS]:
         word = one if isinstance(one, str) else words.get(int(one), f"{array.name} {one:g}")
         word = {"yes": str(array.name), "no": f"not {array.name}"}.get(word, word)
         holds = array == one
-        line = f"{word}: {format_share(int(holds.sum()), holds.size)}"
+        line = f"{word}: {format_share(count, holds.size)}"
         for case in itertools.product(*(holds[dim].values.tolist() for dim in sides)):
             part = holds.sel(dict(zip(sides, case, strict=True)))
             if along and part.any():
                 which = "".join(f", {side}" for side in case)
-                line += f"{which} at {format_ranges(data, along, part.values)}"
+                line += f"{which} at {format_ranges(data, along, part.values, 3)}"
         yield line
         yield from hints([f"{array.name}: {word}"])
+    if len(known) > MOST_WORDS:
+        rest = sum(count for _, count in known[MOST_WORDS:])
+        yield f"another {array.name}: {format_share(rest, array.size)}"
 
 
 def hints(words: Iterable[str]) -> Iterator[str]:

@@ -14,7 +14,7 @@ import orchestrate
 from ..errors import InputError
 from ..lazy import np, xr
 from ..model import Drive, Structure
-from ..units import range_text, text_of, units_of, with_units
+from ..units import text_of, units_of, with_units
 from . import grammar, printing
 from .answer import Asked, Only, Runs
 from .command import Keywords, Options, option
@@ -107,24 +107,20 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
     def summaries(self, results: Runs) -> Iterator[str]:
         if self.stationary is not None:
             yield from drive_branch_lines(with_units(self.stationary, self.display_units({})))
-        rows: list[tuple[str, ...]] = []
+        yield from super().summaries(results)
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield from printing.describe(data, "speed passage_time")
+        keys = ("missing_over_motor_work", "defects_over_motor_work")
+        missing, defects = (float(data.attrs[key]) for key in keys)
+        if max(abs(missing), defects) > ERROR_LIMIT:
+            yield (
+                f"relative energy error {missing:.1e}, coupling error {defects:.1e} of the motor's "
+                f"work: more than {ERROR_LIMIT:g}, take a shorter --step"
+            )
         volts = self.job.drive.volts(self.job.structure)
-        for name, data in results.items():
-            speeds = range_text(data, data.speed.min(), data.speed.max(), "rad/s")
-            line = f"{name}: {data.sizes['revolution']} revolutions at {speeds}"
-            passed = float(data.passage_time)
-            if math.isfinite(passed) and not data.jumps.notnull().any():
-                line += f", beyond the resonance from {passed:.4g} s on"
-            yield line
-            keys = ("missing_over_motor_work", "defects_over_motor_work")
-            missing, defects = (float(data.attrs[key]) for key in keys)
-            if max(abs(missing), defects) > ERROR_LIMIT:
-                yield (
-                    f"  relative energy error {missing:.1e}, coupling error {defects:.1e} of the "
-                    f"motor's work: more than {ERROR_LIMIT:g}, take a shorter --step"
-                )
-            rows += [(name, *jump_cells(data.sel(jump=jump), volts)) for jump in data.jump.values]
-        titles = ("structure", "jump", "voltage V", "eta0", "of the ramp V", "decided")
+        rows = [jump_cells(data.sel(jump=jump), volts) for jump in data.jump.values]
+        titles = ("jump", "voltage V", "eta0", "of the ramp V", "decided")
         yield from printing.table(dict(zip(titles, zip(*rows, strict=True), strict=True)))
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
