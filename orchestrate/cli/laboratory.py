@@ -410,11 +410,8 @@ is a guess: --structure of diagnose, plan and others; complete it by e and clear
             name, _, text = str(error).partition(": ")
             path = dict(zip(("record", "other"), self.records, strict=False)).get(name, name)
             raise InputError(f"{path}: {text}" if text else name) from None
-        columns = {"half": [str(half) for half in fits.knocked.values]}
-        for name in ("mass", "frequency", "damping"):
-            title = f"{name} {str(fits[name].units).removeprefix('1')}".rstrip()
-            columns[title] = printing.with_error(fits[name], fits[f"{name}_error"])
-        columns |= printing.columns_of(fits, "misfit:.1%")
+        fitted = "mass+mass_error frequency+frequency_error damping+damping_error"
+        columns = printing.columns_of(fits, f"knocked {fitted} misfit:.1%", form=".5g")
         print(*printing.table(columns), sep="\n")
         print("e = {e:g} and clearance = {clearance:g} m are assumed".format(**fits.attrs))
         if self.output is not None:
@@ -442,10 +439,8 @@ they are, the last line says what is missing."""
 
         reading = self.given(Reading)
         found = orchestrate.channels(self.record, **reading, output=self.output)
-        names = ("column", "role", "known", "quantity", "unit")
-        rows = {name: found[name].values.tolist() for name in names}
-        rms = ["" if value != value else f"{value:.4g}" for value in found.rms.values]
-        print(*printing.table({**rows, "rms": rms}, len(rms)), sep="\n")
+        rows = printing.columns_of(found, "column role known quantity unit rms:.4g")
+        print(*printing.table(rows, found.column.size), sep="\n")
         if proposed := found.role.values[found.known.values == BY_ORDER].tolist():
             columns = found.column.values[found.known.values == BY_ORDER].tolist()
             said = [f'"{one}" as {role}' for one, role in zip(columns, proposed, strict=True)]

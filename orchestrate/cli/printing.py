@@ -30,6 +30,7 @@ HINTS = {  # words of results, alone or of a variable, and what to do
     "multiplicity_decided: undecided": "slow to converge or nearly periodic; --transient 5000 "
     "decides most",
 }
+COLUMN = re.compile(r"(\w+)(?:\+(\w+))?(?::(\S+))?")  # a variable, its error, their format
 Columns = dict[str, list[str]]  # of a table: cells by title
 
 # -- variables ------------------------------------------------------------------------------------
@@ -130,15 +131,22 @@ def listing(data: xr.Dataset, of: str, names: str, form: str = ".6g") -> Iterato
         yield f"no {of.replace('_', ' ')} in this range"
 
 
+def rows_of(data: xr.Dataset, names: str) -> Columns:
+    """Return columns of variables, a row for each value of all dimensions of the first one."""
+    dims = [*map(str, data[re.split("[ +:]", names)[0]].dims)]
+    rows = data.stack(row=dims, create_index=False) if dims else data.expand_dims("row")
+    return columns_of(rows.transpose("row", ...), " ".join([*dims, names]))
+
+
 def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g") -> Columns:
     """Return columns of variables along one dimension, in display units.
 
-    A name may have a format of its own: ``"kind eta:.8f"``.
+    A name may have an error and a format of its own: ``"kind jumps+standard_error:.5f"``.
     """
     columns: Columns = {}
-    for name, _, own in (one.partition(":") for one in names.split()):
-        array = data[prefix + name]
-        form_of_it, values = own or form, array.values
+    for name, error, own in COLUMN.findall(names):
+        array, form_of_it = data[prefix + name], own or form
+        values = array.values
         if name in PARAMETERS:
             parts = [parameter_parts(data, name, float(one), form_of_it) for one in values]
             before, _, unit = parts[0] if parts else (name, "", "")
@@ -152,8 +160,11 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g"
             columns[title] = [words[int(value)] for value in values]
         elif array.ndim > 1:
             columns[title] = [", ".join(format(x, form_of_it) for x in row) for row in values]
+        elif error:
+            columns[title] = with_error(values / factor, data[error].values / factor, form_of_it)
         elif array.dtype.kind == "f":
-            columns[title] = [format(value / factor, form_of_it) for value in values]
+            texts = [format(value / factor, form_of_it) for value in values]
+            columns[title] = [text.replace("nan", "") for text in texts]
         else:
             columns[title] = [str(value) for value in values]
     return columns

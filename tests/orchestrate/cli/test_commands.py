@@ -58,7 +58,7 @@ ASKED = {  # command: options, a unit and what is printed in it, what is printed
     "sweep": ((*SWEPT, *SHORT), "rpm", r"at 7[28]0 rpm", (), {"direction": "up", "transient": 10}),
     "spectra": (
         (*BOX, "--transient", "5", "--periods", "8"),
-        *("rpm", r"delaminated at 720 rpm: largest line", (), {**AT, "periods": 8}),
+        *("rpm", r"\n +720 +delaminated +0\.[\d]+ ", (), {**AT, "periods": 8}),
     ),
     "map": (
         (*BEAM, "--hz", "12,13", "--g", "0.02", "--over", "e", "--values", "0.3,0.7", *SHORT),
