@@ -44,12 +44,12 @@ def said(done):
 
 
 SHOWN = {
-    "frf": ["largest |H1|", "mass 1   3 at", "mass 2   1.5 at"],
+    "frf": ["magnitude", "mass 1   3 ", "mass 2   1.5 "],
     "psd": ["rms m/s2", "1.41", "4.2"],
-    "orders": ["order 1", "6 m/s2 at", "0.6 m/s2 at"],
-    "harmonics": ["largest distortion", "0.1 at"],
-    "spectrogram": ["largest amplitude", "box      1.", "mass 1   "],
-    "shock": ["largest maximax", "mass 1   "],
+    "orders": ["amplitude m/s2  at Hz", "mass 1   1      6 ", "mass 1   2      0.6 "],
+    "harmonics": ["distortion", "mass 1   0.1 "],
+    "spectrogram": ["at Hz", "box      1.", "mass 1   "],
+    "shock": ["maximax", "mass 1   "],
     "density": ["skewness_error", "1.5"],
 }
 
@@ -130,7 +130,7 @@ def test_records_of_all_kinds_of_files_say_the_same(ask, tmp_path):
         said(ask("analyse", path, *options, *show, "--units", "m/s2"))
         for path, options in zip(paths, ([], columns, ["--scale", "10"]), strict=True)
     )
-    assert others == [first] * 2 and any("  0.5 m/s2 at" in line for line in first)
+    assert others == [first] * 2 and any("  0.5 " in line for line in first)
     out = ask("analyse", paths[1], *columns[:1], "m/s^2", *columns[2:], *show).success().out
     assert "although" not in out
 
