@@ -47,6 +47,7 @@ DOCUMENTED: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts are
     "xarray.Dataset": (Path, "FILE.nc"),
     "array_like": (float, "X"),
 }
+RUNNING = "Running"  # in place of a function: the keywords of all on how to compute
 NEEDED = " (needed)"
 MEANT = {  # for options of ours
     **{"--gravity": "--box-acceleration -1g", "--level": "--g", "--g-rms": "--g", "--rms": "--g"},
@@ -274,8 +275,10 @@ def arguments_of(function: str) -> dict[str, bool]:
 def documentation_of(function: str) -> dict[str, tuple[str, str]]:
     import docstring_parser
 
+    from ..running.options import Running
+
     found = {}
-    text = inspect.getdoc(getattr(orchestrate, function)) or ""
+    text = inspect.getdoc(Running if function == RUNNING else getattr(orchestrate, function)) or ""
     for one in docstring_parser.parse(text, docstring_parser.DocstringStyle.NUMPYDOC).params:
         for name in one.arg_name.split(", "):
             meaning = " ".join((one.description or "").split())
@@ -308,14 +311,16 @@ def options_of_functions(
     for part in filter(None, takes.split("; ")):
         function, _, names = part.rpartition(": ")
         function = function or usual_function
-        parameters = inspect.signature(getattr(orchestrate, function)).parameters
+        of = None if function == RUNNING else inspect.signature(getattr(orchestrate, function))
         for name in names.split():
             typed, meaning = documentation_of(function)[name]
             known = (DOCUMENTED[one] for one in DOCUMENTED if typed.startswith(one))
             kind, value = next(known, (None, ""))
             if typed.startswith("{"):
                 kind = Literal[tuple(re.findall(r'"(\w+)"', typed))]
-            usual = parameters[name].default if name in parameters else None
+            usual: Any = False if kind is bool else None
+            if of and name in of.parameters:
+                usual = of.parameters[name].default
             words = help_text(meaning)
             if usual is inspect.Parameter.empty:
                 usual, words = None, words if if_given else f"{words}{NEEDED}"

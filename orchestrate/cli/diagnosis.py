@@ -13,7 +13,7 @@ import orchestrate
 from ..errors import InputError
 from ..lazy import xr
 from ..model import Structure
-from ..units import Units, range_text, text_of, with_units
+from ..units import Units, with_units
 from . import grammar, output, printing
 from .answer import Asked
 from .command import Command, Keywords, Options, option
@@ -21,6 +21,10 @@ from .options import OfSensors, OfStructure
 from .output import Files, Reading, digest, file_checksum, unit_note
 
 log = logging.getLogger(__name__)
+RECOMMENDED = (  # variables of a plan
+    "recommended_level second_level recommended_first recommended_last recommended_duration "
+    "recommended_rate opening_level"
+)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
     "wiring": "wiring",
     "reason": "decided by",
@@ -250,27 +254,15 @@ The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s
         return self.read_units().with_defaults(Units("Hz", acceleration="g"))
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        levels = (data.recommended_level, data.second_level, data.opening_level)
-        level, second, lowest = (text_of(data, one, "m/s2", ".3g") for one in levels)
-        ends = range_text(data, data.recommended_first, data.recommended_last, "Hz")
-        seconds, rate = float(data.recommended_duration), float(data.recommended_rate)
-        twice = f"at {level}, then at {second}" if second != level else f"twice at {level}"
-        yield f"sweep {ends} {twice}, {seconds:.0f} s each, {rate:.0f} samples a s"
-        if second == level:
+        yield from printing.describe(data, RECOMMENDED)
+        if data.second_level == data.recommended_level:
             yield "the highest of the levels: a second, higher one in --g would be a further check"
         if not data.counts and data.decides.any():
             yield "both verdicts are right at lower levels only, not at all above: see the table"
         elif not data.counts:
             yield "no verdict is right at these levels: raise --g, or lower the --noise"
-        if (opens := float(data.opening_level)) > 0.0:
-            times = float(data.recommended_level) / opens
-            yield f"pressed together: it opens from {lowest}: {times:.2g} times less"
-        elif not data.attrs["clearance"]:
+        if not data.attrs["clearance"]:
             yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
-        rows = printing.columns_of(data, "level verdict sound_verdict opening", form=".3g")
-        if data.overload.any():
-            rows["sensor"] = ["overload" * bool(flag) for flag in data.overload.values]
+        rows = printing.columns_of(data, "level verdict sound_verdict opening overload", form=".3g")
         titles = {"verdict": "verdict on the guess", "sound_verdict": "on its sound twin"}
-        titles = {title: titles.get(title, title) for title in rows}
-        named = {titles[t].replace("opening", "largest gap"): cells for t, cells in rows.items()}
-        yield from printing.table(named)
+        yield from printing.table({titles.get(title, title): rows[title] for title in rows})

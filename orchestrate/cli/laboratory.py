@@ -14,7 +14,7 @@ from ..constants import GRAVITY
 from ..errors import InputError
 from ..lazy import xr
 from ..model import Shaker, Structure
-from ..units import Units, text_of
+from ..units import Units
 from . import grammar, output, printing
 from .answer import Asked, Runs
 from .command import Command, Keywords, Options, arguments_of, option, option_names
@@ -192,33 +192,21 @@ ANALYSES = {  # of --show: the public function, what it shows; whose peaks, what
 SHOWN = ", ".join(f"{name} ({row[1]})" for name, row in ANALYSES.items())
 
 
-def peak_cells(data: xr.Dataset, values: xr.DataArray) -> list[str]:
-    cells = []
-    for channel in values.channel.values:
-        flat = values.sel(channel=channel).stack(every=[d for d in values.dims if d != "channel"])
-        peak = flat.isel(every=int(flat.fillna(-1.0).values.argmax()))
-        size = text_of(data, peak, str(values.attrs["units"]), ".4g")
-        when = f", {float(peak.time):.4g} s" if "time" in peak.coords else ""
-        frequency = text_of(data, peak.frequency, "Hz", ".5g")
-        cells.append(f"{size.replace('m2/s4', '(m/s2)2')} at {frequency}{when}")
-    return cells
-
-
 def columns_of_analysis(name: str, data: xr.Dataset) -> printing.Columns:
+    """Return a row for each channel, and each order: the largest value, and where it is."""
     if name in ("orders", "harmonics"):  # of the box they are those of the excitation
         data = data.drop_sel(channel="box_acceleration", errors="ignore")
-    columns = {"channel": [MASSES[str(channel)] for channel in data.channel.values]}
+    data = data.assign_coords(channel=[MASSES[str(one)] for one in data.channel.values])
     _, _, variable, others = ANALYSES[name]
-    if variable:
-        peaks, title = data[variable], f"largest {variable}"
-        if name == "frf":
-            peaks, title = peaks.sel(estimator="H1", drop=True), "largest |H1|"
-            peaks = peaks.where(data.excited > 0)
-            data = data.isel(frequency=peaks.fillna(-1.0).argmax("frequency"))
-        orders = data.order.values if name == "orders" else ()
-        parts = {f"order {n:g}": peaks.sel(order=n) for n in orders} or {title: peaks}
-        columns |= {of: peak_cells(data, part) for of, part in parts.items()}
-    return columns | printing.columns_of(data, others)
+    if not variable:
+        return printing.columns_of(data, f"channel {others}")
+    peaks = data[variable]
+    if name == "frf":
+        peaks = peaks.sel(estimator="H1", drop=True).where(data.excited > 0)
+    along = [dim for dim in peaks.dims if dim not in ("channel", "order")]
+    top = data.assign({variable: peaks}).isel(peaks.fillna(-1.0).argmax(along))
+    where = "at:.5g time:.4g" if "time" in top.coords else "at:.5g"
+    return printing.rows_of(top.assign(at=top.frequency), f"{variable}:.4g {where} {others}")
 
 
 class Settings(Options):
@@ -410,11 +398,8 @@ is a guess: --structure of diagnose, plan and others; complete it by e and clear
             name, _, text = str(error).partition(": ")
             path = dict(zip(("record", "other"), self.records, strict=False)).get(name, name)
             raise InputError(f"{path}: {text}" if text else name) from None
-        columns = {"half": [str(half) for half in fits.knocked.values]}
-        for name in ("mass", "frequency", "damping"):
-            title = f"{name} {str(fits[name].units).removeprefix('1')}".rstrip()
-            columns[title] = printing.with_error(fits[name], fits[f"{name}_error"])
-        columns |= printing.columns_of(fits, "misfit:.1%")
+        fitted = "mass+mass_error frequency+frequency_error damping+damping_error"
+        columns = printing.columns_of(fits, f"knocked {fitted} misfit:.1%", form=".5g")
         print(*printing.table(columns), sep="\n")
         print("e = {e:g} and clearance = {clearance:g} m are assumed".format(**fits.attrs))
         if self.output is not None:
@@ -442,10 +427,8 @@ they are, the last line says what is missing."""
 
         reading = self.given(Reading)
         found = orchestrate.channels(self.record, **reading, output=self.output)
-        names = ("column", "role", "known", "quantity", "unit")
-        rows = {name: found[name].values.tolist() for name in names}
-        rms = ["" if value != value else f"{value:.4g}" for value in found.rms.values]
-        print(*printing.table({**rows, "rms": rms}, len(rms)), sep="\n")
+        rows = printing.columns_of(found, "column role known quantity unit rms:.4g")
+        print(*printing.table(rows, found.column.size), sep="\n")
         if proposed := found.role.values[found.known.values == BY_ORDER].tolist():
             columns = found.column.values[found.known.values == BY_ORDER].tolist()
             said = [f'"{one}" as {role}' for one, role in zip(columns, proposed, strict=True)]

@@ -106,14 +106,7 @@ class HowRun(Options):
     """Options of how results are computed."""
 
     heading, rank = "results and running", 5
-    force: bool = option("recompute what is there already")
-    keep_stale: bool = option("take results that older code or another FMU has made")
-    jobs: int | None = option("threads or processes at once (default: all cores)")
-    cluster: str | None = option(
-        "compute on the workers of a Dask scheduler, such as tcp://host:8786", value="ADDRESS"
-    )
-    fmu: Path | None = option("own FMU (default: the one of the present sources)")
-    build_folder: Path | None = option("where FMUs are looked for and exported to", value="FOLDER")
+    takes = "Running: force keep_stale jobs cluster fmu build_folder"
 
     def running(self, store: Path | None = None) -> Running:
         names = ("jobs", "cluster", "force", "keep_stale", "fmu", "build_folder")
@@ -133,7 +126,7 @@ class Results(Shown, HowRun):
 class OfBoth(Results):
     """The same of a command that runs both FMUs."""
 
-    fmu: list[Path] = option(  # type: ignore[assignment]
+    fmu: list[Path] = option(
         "own FMU (default: the one of the present sources); may be repeated", ()
     )
 

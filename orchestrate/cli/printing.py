@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -15,6 +17,7 @@ from ..flags import flag_word, flag_words, runs_of
 from ..lazy import np, xr
 
 MOST_ROWS = 10  # of a table that is printed
+MOST_WORDS = 4  # of a variable that are counted, the most frequent ones
 PARAMETERS = ("eta", "frequency", "level")  # shown in Hz and g unless other units are asked for
 SIDES = ("direction", "structure")  # dimensions that are no parameter
 HINTS = {  # words of results, alone or of a variable, and what to do
@@ -27,6 +30,7 @@ HINTS = {  # words of results, alone or of a variable, and what to do
     "multiplicity_decided: undecided": "slow to converge or nearly periodic; --transient 5000 "
     "decides most",
 }
+COLUMN = re.compile(r"(\w+)(?:\+(\w+))?(?::(\S+))?")  # a variable, its error, their format
 Columns = dict[str, list[str]]  # of a table: cells by title
 
 # -- variables ------------------------------------------------------------------------------------
@@ -60,7 +64,7 @@ def describe(data: xr.Dataset, names: str) -> Iterator[str]:
 def meaning(array: xr.DataArray) -> str:
     if array.name == "xi_rel_max":
         return "largest gap"
-    return str(array.attrs.get("long_name", array.name)).partition(",")[0]
+    return re.split("[,;]", str(array.attrs.get("long_name", array.name)))[0]
 
 
 def value_text(data: xr.Dataset, name: Any) -> str:
@@ -81,20 +85,23 @@ def counts(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
     along = "".join(others & {*map(str, data.coords)}) if len(others) == 1 else ""
     if along:
         data, array = data.sortby(along), array.sortby(along)
-    known = np.unique(array.values[array.notnull().values]).tolist()
+    known = Counter(array.values[array.notnull().values].tolist()).most_common()
     words = flag_words(array.attrs) if "flag_meanings" in array.attrs else {}
-    for one in known:
+    for one, count in known[:MOST_WORDS]:
         word = one if isinstance(one, str) else words.get(int(one), f"{array.name} {one:g}")
         word = {"yes": str(array.name), "no": f"not {array.name}"}.get(word, word)
         holds = array == one
-        line = f"{word}: {format_share(int(holds.sum()), holds.size)}"
+        line = f"{word}: {format_share(count, holds.size)}"
         for case in itertools.product(*(holds[dim].values.tolist() for dim in sides)):
             part = holds.sel(dict(zip(sides, case, strict=True)))
             if along and part.any():
                 which = "".join(f", {side}" for side in case)
-                line += f"{which} at {format_ranges(data, along, part.values)}"
+                line += f"{which} at {format_ranges(data, along, part.values, 3)}"
         yield line
         yield from hints([f"{array.name}: {word}"])
+    if len(known) > MOST_WORDS:
+        rest = sum(count for _, count in known[MOST_WORDS:])
+        yield f"another {array.name}: {format_share(rest, array.size)}"
 
 
 def hints(words: Iterable[str]) -> Iterator[str]:
@@ -125,15 +132,22 @@ def listing(data: xr.Dataset, of: str, names: str, form: str = ".6g") -> Iterato
         yield f"no {of.replace('_', ' ')} in this range"
 
 
+def rows_of(data: xr.Dataset, names: str) -> Columns:
+    """Return columns of variables, a row for each value of all dimensions of the first one."""
+    dims = [*map(str, data[re.split("[ +:]", names)[0]].dims)]
+    rows = data.stack(row=dims, create_index=False) if dims else data.expand_dims("row")
+    return columns_of(rows.transpose("row", ...), " ".join([*dims, names]))
+
+
 def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g") -> Columns:
     """Return columns of variables along one dimension, in display units.
 
-    A name may have a format of its own: ``"kind eta:.8f"``.
+    A name may have an error and a format of its own: ``"kind jumps+standard_error:.5f"``.
     """
     columns: Columns = {}
-    for name, _, own in (one.partition(":") for one in names.split()):
-        array = data[prefix + name]
-        form_of_it, values = own or form, array.values
+    for name, error, own in COLUMN.findall(names):
+        array, form_of_it = data[prefix + name], own or form
+        values = array.values
         if name in PARAMETERS:
             parts = [parameter_parts(data, name, float(one), form_of_it) for one in values]
             before, _, unit = parts[0] if parts else (name, "", "")
@@ -147,8 +161,11 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g"
             columns[title] = [words[int(value)] for value in values]
         elif array.ndim > 1:
             columns[title] = [", ".join(format(x, form_of_it) for x in row) for row in values]
+        elif error:
+            columns[title] = with_error(values / factor, data[error].values / factor, form_of_it)
         elif array.dtype.kind == "f":
-            columns[title] = [format(value / factor, form_of_it) for value in values]
+            texts = [format(value / factor, form_of_it) for value in values]
+            columns[title] = [text.replace("nan", "") for text in texts]
         else:
             columns[title] = [str(value) for value in values]
     return columns

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from typing import Any, Literal
 
@@ -135,18 +134,13 @@ class Spectra(OfBox, Driven, Stored, OfBoth):
         return structure, motor, {"voltage": voltage}
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        first = data.acceleration.sel(mass=1)
-        others = [str(dim) for dim in first.dims if dim not in ("order", "kind")]
-        for values in itertools.product(*(data[name].values for name in (*others, "kind"))):
-            part = first.sel(dict(zip((*others, "kind"), values, strict=True)))
-            largest, above = part.max(), part.where(part.order > 1.5, 0.0).max()
-            line, share = text_of(data, largest, "m/s2", ".4g"), float(above / largest)
-            where = [printing.format_parameter(data, name, part[name]) for name in others]
-            where = where or [text_of(data, data.speed.sel(kind=values[-1]), "rad/s", ".5g")]
-            yield (
-                f"{values[-1]} at {where[0]}: largest line {line}, {share:.2g} of it above the "
-                "excitation"
-            )
+        lines = data.acceleration.sel(mass=1)
+        largest, above = lines.max("order"), lines.where(lines.order > 1.5).max("order")
+        part = (above / largest).assign_attrs(units="1")
+        shown = data.assign(largest=largest.assign_attrs(lines.attrs), part=part)
+        yield "the largest line, and what part of it the largest above the excitation's is"
+        speed = "speed:.5g " * ("speed" in data)
+        yield from printing.table(printing.rows_of(shown, f"{speed}largest:.4g part:.2g"))
 
 
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6

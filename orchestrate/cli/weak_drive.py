@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -14,7 +13,7 @@ import orchestrate
 from ..errors import InputError
 from ..lazy import np, xr
 from ..model import Drive, Structure
-from ..units import range_text, text_of, units_of, with_units
+from ..units import text_of, units_of, with_units
 from . import grammar, printing
 from .answer import Asked, Only, Runs
 from .command import Keywords, Options, option
@@ -107,25 +106,22 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
     def summaries(self, results: Runs) -> Iterator[str]:
         if self.stationary is not None:
             yield from drive_branch_lines(with_units(self.stationary, self.display_units({})))
-        rows: list[tuple[str, ...]] = []
+        yield from super().summaries(results)
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield from printing.describe(data, "speed passage_time")
+        keys = ("missing_over_motor_work", "defects_over_motor_work")
+        missing, defects = (float(data.attrs[key]) for key in keys)
+        if max(abs(missing), defects) > ERROR_LIMIT:
+            yield (
+                f"relative energy error {missing:.1e}, coupling error {defects:.1e} of the motor's "
+                f"work: more than {ERROR_LIMIT:g}, take a shorter --step"
+            )
         volts = self.job.drive.volts(self.job.structure)
-        for name, data in results.items():
-            speeds = range_text(data, data.speed.min(), data.speed.max(), "rad/s")
-            line = f"{name}: {data.sizes['revolution']} revolutions at {speeds}"
-            passed = float(data.passage_time)
-            if math.isfinite(passed) and not data.jumps.notnull().any():
-                line += f", beyond the resonance from {passed:.4g} s on"
-            yield line
-            keys = ("missing_over_motor_work", "defects_over_motor_work")
-            missing, defects = (float(data.attrs[key]) for key in keys)
-            if max(abs(missing), defects) > ERROR_LIMIT:
-                yield (
-                    f"  relative energy error {missing:.1e}, coupling error {defects:.1e} of the "
-                    f"motor's work: more than {ERROR_LIMIT:g}, take a shorter --step"
-                )
-            rows += [(name, *jump_cells(data.sel(jump=jump), volts)) for jump in data.jump.values]
-        titles = ("structure", "jump", "voltage V", "eta0", "of the ramp V", "decided")
-        yield from printing.table(dict(zip(titles, zip(*rows, strict=True), strict=True)))
+        half = 0.5 * abs(data.jump_high - data.jump_low)
+        shown = data.assign(half=half, eta0=(data.jumps / volts).assign_attrs(units="1"))
+        names = "jumps+half:.5f eta0:.5f ramp_voltage:.4f decided no_jump"
+        yield from printing.table(printing.rows_of(shown, names))
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         return draw_couple(self.picture_title(results), results, self.job, self.stationary)
@@ -146,18 +142,6 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         return orchestrate.write_ssp(path, job.structure, motor, **more)
 
 
-def jump_cells(at: xr.Dataset, volts: float) -> tuple[str, ...]:
-    """Return the cells of a jump: direction, voltage, eta0, the ramp's voltage, how decided."""
-    voltage, direction, decided = float(at.jumps), str(at.jump.item()), str(at.decided.item())
-    if not math.isfinite(voltage):
-        reason = str(at.no_jump.item()).replace("longer hold", "longer --hold")
-        return direction, "undecided" if decided == "undecided" else "none", "", "", reason
-    error = 0.5 * abs(float(at.jump_high) - float(at.jump_low))
-    (jump,) = printing.with_error(voltage, error, ".5f", ".5f")
-    shown = f"{float(at.ramp_voltage):.4f}".replace("nan", "not reached")
-    return direction, jump, f"{voltage / volts:.5f}", shown, decided
-
-
 class Capture(Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
     """Voltages switched on from rest: which pass the resonance, which are captured."""
 
@@ -170,13 +154,9 @@ class Capture(Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
 The motor is switched on at once and followed until its speed has settled."""
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
-        over = [str(dim) for dim in data.passes.dims if dim != "voltage"]
-        rows = data if over else data.expand_dims("row")
-        columns = printing.columns_of(rows, " ".join(over))
-        half = 0.5 * (rows.border_high - rows.border_low)
-        columns["passes from V"] = printing.with_error(rows.border, half, ".5f", ".1g")
-        columns |= printing.columns_of(rows, "above_fold")
-        yield from printing.table(columns, rows.border.size)
+        half = 0.5 * (data.border_high - data.border_low)
+        columns = printing.rows_of(data.assign(half=half), "border+half:.5f above_fold")
+        yield from printing.table(columns, data.border.size)
         yield from printing.hints([f"above_fold: {one}" for one in {*columns["above_fold"]}])
         yield from printing.describe(data, "passes decision")
 
@@ -248,20 +228,9 @@ class JumpVoltages(OfRamp, Over, Stepped, Driven, Stored, OfBoth):
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         # a direction in which no ramp went has not been decided
         went = [jump for jump in data.jump.values if data.decided.sel(jump=jump).any()]
-        over = [str(dim) for dim in data.jumps.dims if dim not in ("structure", "jump")]
-        rows = data.sel(jump=went).rename(jump="direction").stack(row=(*over, "direction"))
-        rows = rows.reset_index("row")
-        columns = printing.columns_of(rows, " ".join(over)) if over else {}
-        columns["jump at rate 0"] = rows.direction.values.tolist()
-        for name in map(str, data.structure.values):
-            at = rows.sel(structure=name)
-            cells = printing.with_error(at.jumps, at.standard_error, ".5f", ".5f")
-            pairs = zip(cells, (at.decided == "undecided").values, strict=True)
-            columns[f"{name} V"] = ["undecided" if open_ else cell for cell, open_ in pairs]
-        change = (rows.jumps.isel(structure=1) - rows.jumps.isel(structure=0)).values
-        columns["change V"] = ["" if math.isnan(volts) else f"{volts:.5f}" for volts in change]
-        yield from printing.table(columns, len(change))
-        if (rows.decided == "undecided").any():
+        rows = printing.rows_of(data.sel(jump=went), "jumps+standard_error:.5f decided")
+        yield from printing.table(rows, data.jumps.size)
+        if (data.decided == "undecided").any():
             yield "undecided by constant voltages; drive-branch shows which motions are stable"
 
 

@@ -35,8 +35,8 @@ class Running(TypedDict, total=False):
         Threads or processes at once; all cores by default. Small questions are computed in this
         process.
     cluster : str, distributed.Client or concurrent.futures.Executor, optional
-        What computes instead: the workers of a Dask scheduler, by its address, such as
-        ``"tcp://host:8786"``, or by a client of it; or any executor of ``jobs`` workers.
+        Address of a Dask scheduler whose workers compute instead, such as ``tcp://host:8786``. Or a
+        client of it, or any executor of ``jobs`` workers.
     progress : bool
         Whether what takes longer than a second shows a progress bar; true by default. A function
         to be called is not taken: log messages and the bar are what there is.
@@ -50,7 +50,7 @@ class Running(TypedDict, total=False):
     keep_stale : bool
         Take a stored result even where the code or the FMU has changed since.
     fmu : path or mapping, optional
-        Own FMU file, or one by model name; by default the one of the present sources.
+        Own FMU file; by default the one of the present sources. A mapping has one by model name.
     build_folder : path, optional
         Where FMUs are looked for and exported to.
     """

@@ -37,7 +37,7 @@ class Section:
     heading: str
     paragraphs: list[str] = field(default_factory=list)
     points: list[str] = field(default_factory=list)  # of a list
-    picture: Figure | None = None
+    picture: Figure | bytes | None = None  # or a PNG file
     caption: str = ""  # what the picture shows, for those who do not see it too
     tables: list[Table] = field(default_factory=list)
     place: str = "second"  # of `PLACES`
@@ -47,7 +47,7 @@ class Section:
         """Address, width and height of the picture, which is a PNG file inside the page."""
         if self.picture is None:
             return {}
-        png = png_bytes(self.picture)
+        png = self.picture if isinstance(self.picture, bytes) else png_bytes(self.picture)
         return {"src": f"data:image/png;base64,{base64.b64encode(png).decode()}", **png_size(png)}
 
 

@@ -43,12 +43,12 @@ def said(done):
 
 
 SHOWN = {
-    "frf": ["largest |H1|", "mass 1   3 at", "mass 2   1.5 at"],
+    "frf": ["magnitude", "mass 1   3 ", "mass 2   1.5 "],
     "psd": ["rms m/s2", "1.41", "4.2"],
-    "orders": ["order 1", "6 m/s2 at", "0.6 m/s2 at"],
-    "harmonics": ["largest distortion", "0.1 at"],
-    "spectrogram": ["largest amplitude", "box      1.", "mass 1   "],
-    "shock": ["largest maximax", "mass 1   "],
+    "orders": ["amplitude m/s2  at Hz", "mass 1   1      6 ", "mass 1   2      0.6 "],
+    "harmonics": ["distortion", "mass 1   0.1 "],
+    "spectrogram": ["at Hz", "box      1.", "mass 1   "],
+    "shock": ["maximax", "mass 1   "],
     "density": ["skewness_error", "1.5"],
 }
 

@@ -49,13 +49,13 @@ def test_couple_tells_jumps_beside_where_the_ramp_shows_them(ask, tmp_path):
     options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--one-way", "--only", "delaminated")
     out = ask("couple", *options, "--step", "0.2", "--settle", "30").success().out
     up, down = (
-        next(line for line in out.splitlines() if line.startswith(f"  delaminated  {way}")).split()
+        next(line for line in out.splitlines() if line.startswith(f"  {way}")).split()
         for way in ("up", "down")
     )
-    value, error, eta0, shown = map(float, (up[2], up[4], up[5], up[6]))
+    value, error, eta0, shown = map(float, (up[1], up[3], up[4], up[5]))
     assert abs(value - 1.56970) <= error + 1e-4 < 3e-4
     assert eta0 == pytest.approx(value, abs=1e-5) and 1.59 < shown < 1.64
-    assert " ".join(down[2:]) == "none the voltage does not fall"
+    assert down[1] == "none" and " ".join(down).endswith("the voltage does not fall")
     ((name, data),) = results(folder).items()
     assert name.startswith("couple_quick_") and name.endswith("_delaminated")
     assert abs(data.attrs["missing_over_motor_work"]) < 2e-6
@@ -77,7 +77,8 @@ def test_a_motor_of_one_s_own(ask, tmp_path):
     ask(*own, "--course", course).success()
     strong = ("--voltage", "12", "--duration", "1.5", *none)
     held = ask(*own, *strong, "--speed-control", "120").success()
-    assert "a controller sets the voltage" in held.out and "beyond the resonance from" in held.out
+    assert "a controller sets the voltage" in held.out
+    assert "speed stays beyond the resonance: " in held.out
     ask(*own, *strong, "--speed-gradient", "--low", "0.5").success()
     found = results(tmp_path / "results")
     assert len(found) == 4 and len(list((tmp_path / "results").glob("*.png"))) == 1
@@ -103,3 +104,14 @@ def test_a_motor_by_its_datasheet(ask, tmp_path):
     drive, structure = Drive.from_file("quick").replace(**line), Structure.from_file("quick")
     expected = couple(structure.as_bonded(), drive, voltage=2.0, duration=60.0, progress=False)
     assert np.array_equal(data.speed, expected.speed) and data.sizes["revolution"] > 10
+
+
+def test_a_jump_that_is_undecided_is_shown_so():
+    each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
+    decided = [["by held voltages", "undecided"], ["by held voltages"] * 2]
+    jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[1e-4, np.nan], [np.nan] * 2]
+    made = {"jumps": jumps, "standard_error": errors, "decided": decided}
+    data = xr.Dataset({name: (tuple(each), values) for name, values in made.items()}, each)
+    _, up, down, *_, hint = weak_drive.JumpVoltages().summary(data)
+    assert up.split() == ["bonded", "up", "1.50000", "+-", "0.0001", "by", "held", "voltages"]
+    assert down.split() == ["bonded", "down", "none", "undecided"] and "drive-branch" in hint
