@@ -93,7 +93,9 @@ def mains(seconds=30.0, hertz=44.0, other=0.0, off=2.0, turn=0.0, until=None):
     ("inside", "outside"),
     [
         ({"seconds": 10.1}, {"seconds": 9.9}),  # five windows of 2 s
-        ({"hertz": 44.9}, {"hertz": 45.1}),  # away from the order by 5 Hz
+        *(  # away from each order by 5 Hz
+            ({"hertz": 44.9 / order}, {"hertz": 45.1 / order}) for order in (0.5, 1.0, 2.0, 3.0)
+        ),
         *(  # six times a line beside it
             ({"other": 1.0 / 6.3, "off": off}, {"other": 1.0 / 5.7, "off": off})
             for off in (-3.0, -2.0, 2.0, 3.0)
