@@ -597,6 +597,7 @@ def test_a_ramp_that_ends_before_the_jump_shows():
     assert low < 1.5831 < high and 1e-3 < high - low < 4.1e-3
 
 
+@pytest.mark.slow
 def test_a_second_jump_in_the_tail_of_a_larger_one_through_both_fmus():
     """The record of the ramp shows one fall of the slip."""
     found = run(TAIL, (1.535, 1.665), 2.5e-5, back=False, step=None).sel(jump=["up", "up 2"])
