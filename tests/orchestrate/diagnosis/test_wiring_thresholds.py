@@ -126,6 +126,14 @@ def test_each_threshold_of_a_jump_of_the_phase():
     assert [jumps(0.8, level=level) for level in (0.51, 0.49)] == [True, False]
 
 
+@pytest.mark.parametrize(("turns", "named"), [(1.0, False), (1.1, True)])
+def test_whole_turns_are_how_a_phase_is_counted(monkeypatch, turns, named):
+    measured = wiring.measured_phase
+    slipped = lambda record: measured(record) + TURN * turns * (record.time > 10.0)  # noqa: E731
+    monkeypatch.setattr(wiring, "measured_phase", slipped)
+    assert jumps(0.0) == named
+
+
 @pytest.mark.parametrize(("count", "saturated"), [(39_500, True), (40_500, False)])
 def test_one_in_ten_thousand_samples_at_an_extreme_is_a_saturated_channel(count, saturated):
     """Each of the spikes alone: a sweep has none."""
