@@ -268,7 +268,7 @@ def lost_sample_notes(orders: RecordOrders, settings: WiringSettings) -> Iterato
     spectrum[hertz > settings.band * windows.frequency.max()] = 0.0  # noise makes the phase slip
     box = np.fft.irfft(spectrum, len(channels.time))
     phase = measured_phase(Channels(channels.time, channels.sample_rate, (BOX,), box[None], ""))
-    jump = np.abs(fftconvolve(phase - phase.mean(), kernel, "same"))
+    jump = np.abs(fftconvolve(phase, kernel, "same"))
     inside = np.zeros(len(phase), bool)
     for part in windows.parts:
         inside[part] = True

@@ -117,8 +117,8 @@ def test_settings_that_are_assumed_differ_or_are_refused():
         assert len(with_distinct_misfits(pair, SETTINGS.distinct)) == count
     guess = halves_around(40.0, SETTINGS)
     assert (guess.f1, guess.f2, guess.zeta1, guess.e) == pytest.approx((38.0, 42.0, 0.01, 0.6))
-    made = checked_settings({"steps": 1, "ratio": 0.5})
+    made = checked_settings({"steps": 1, "ratio": 0.5, "delay": 0.99e6})
     assert (made.steps, made.ratio, made.rounds) == (1, 0.5, SETTINGS.rounds)
-    for wrong in ({"steps": 0}, {"ratio": -0.1}, {"rate": 2.0}):
+    for wrong in ({"steps": 0.9}, {"ratio": -0.1}, {"ratio": 1.01e6}, {"rate": 2.0}):
         with pytest.raises(InputError, match=next(iter(wrong))):
             checked_settings(wrong)

@@ -113,6 +113,8 @@ def test_the_loudest_bin_is_compared_with_the_quietest_third(samples, bins):
     moment = abs(above @ np.exp(1j * middle)) / above.sum()
     rise, opposite = bins / floor / limit, -math.sqrt(1.0 - 1.0 / each)
     assert found == pytest.approx((rise, bins - floor, place, moment, opposite))
+    few = timed_power([np.array([1.0, 1.0, 3.0])], TURN * np.array([0.1, 0.2, 0.3]), TIMING)
+    assert few[2] == pytest.approx(TURN * 4.5 / 16)  # of a record too slow to fill its bins
 
 
 def test_noise_alone_is_far_below_a_strike():

@@ -105,7 +105,7 @@ def orders(face, base, floor=0.0):
         ([0.049, 0.049, 0.15, 0.049], [1.0] * 4, 0.0, []),  # but with a resonance
         ([0.049, 0.049, 0.14, 0.049], [1.0] * 4, 0.0, ["dead"]),
         ([1.0] * 4, [1.0, 1.0, 3.1, 1.0], 0.0, ["swapped"]),
-        ([1.0] * 4, [1.0, 1.0, 2.9, 1.0], 0.0, []),
+        ([1.0] * 4, [1.0, 1.0, 2.9, 0.5], 0.0, []),  # over the larger end
     ],
 )
 def test_each_threshold_of_a_dead_or_exchanged_sensor(face, base, floor, kinds):

@@ -93,7 +93,9 @@ def mains(seconds=30.0, hertz=44.0, other=0.0, off=2.0, turn=0.0, until=None):
     ("inside", "outside"),
     [
         ({"seconds": 10.1}, {"seconds": 9.9}),  # five windows of 2 s
-        ({"hertz": 44.9}, {"hertz": 45.1}),  # away from the order by 5 Hz
+        *(  # away from each order by 5 Hz
+            ({"hertz": 44.9 / order}, {"hertz": 45.1 / order}) for order in (0.5, 1.0, 2.0, 3.0)
+        ),
         *(  # six times a line beside it
             ({"other": 1.0 / 6.3, "off": off}, {"other": 1.0 / 5.7, "off": off})
             for off in (-3.0, -2.0, 2.0, 3.0)
@@ -122,6 +124,14 @@ def test_each_threshold_of_a_jump_of_the_phase():
     assert [jumps(0.49), jumps(0.44)] == [True, False]  # three quarters of it are seen
     assert [jumps(0.8, noise) for noise in (0.2, 0.25)] == [True, False]  # ten times a usual one
     assert [jumps(0.8, level=level) for level in (0.51, 0.49)] == [True, False]
+
+
+@pytest.mark.parametrize(("turns", "named"), [(1.0, False), (1.1, True)])
+def test_whole_turns_are_how_a_phase_is_counted(monkeypatch, turns, named):
+    measured = wiring.measured_phase
+    slipped = lambda record: measured(record) + TURN * turns * (record.time > 10.0)  # noqa: E731
+    monkeypatch.setattr(wiring, "measured_phase", slipped)
+    assert jumps(0.0) == named
 
 
 @pytest.mark.parametrize(("count", "saturated"), [(39_500, True), (40_500, False)])

@@ -52,6 +52,18 @@ def test_the_middle_of_the_longest_run_on_a_ring(flags, expected):
     assert middle_of_longest_run(np.array([letter == "1" for letter in flags])) == expected
 
 
+def test_impacts_are_counted_from_a_pause(monkeypatch):
+    """One a period, that comes now a little later, now a little earlier."""
+    point, now = Point(PAPER, Excitation(frequency=TURN, amplitude=1.0)), [0.0]
+    times = np.arange(3) + 1.0 / 128 + 1e-9 * np.array([1, -1, 1])
+    instance = SimpleNamespace(
+        step=lambda begin, end: now.__setitem__(0, end),
+        get=lambda name: [np.count_nonzero(times <= now[0])],
+    )
+    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    assert count_impacts_from_pause(instance, point, REST, 1) == 1
+
+
 def test_starts_that_come_to_a_known_orbit_are_not_run_on():
     """They lead where they lead alone."""
     gap, rate = np.random.default_rng(3).uniform([[0.0], [-1.3]], 1.3, (2, 12)) / 2.0

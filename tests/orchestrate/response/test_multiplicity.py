@@ -202,6 +202,20 @@ def test_each_threshold_of_a_narrow_period_doubling(apart, drift, expected):
     assert decide(states_of(side)) == expected
 
 
+def test_the_best_guess_is_no_longer_than_what_nearly_repeats():
+    """To and fro by 0.6 of the tolerance; after two periods a deviation is seen to die."""
+    side = lambda n: TOLERANCE * (0.3 * (-1.0) ** n + 0.75 * 0.7 ** (n / 50.0 - 2.0))  # noqa: E731
+    assert decide(states_of(side)) == (1, UNDECIDED)
+
+
+@pytest.mark.parametrize(("growth", "expected"), [(1.06, (10, UNDECIDED)), (1.045, (0, IRREGULAR))])
+def test_what_drifts_steadily_is_irregular(growth, expected):
+    """Of ten periods, by half the tolerance; from the 45 earlier deviations to the later ones."""
+    n, rate = np.arange(200), growth ** (1.0 / 45.0)
+    drift = 4.5 * TOLERANCE / (rate**10 - 1.0) * rate ** (n - 100.0)
+    assert decide(four(n % 10, drift), gap=9.0) == expected
+
+
 @pytest.mark.parametrize(("part", "expected"), [(0.99, REPEATED), (1.01, UNDECIDED)])
 def test_a_period_that_is_seen_a_few_times_repeats_to_a_thousandth_of_the_tolerance(part, expected):
     samples = repeat(np.random.default_rng(4).uniform(-1.0, 1.0, (14, 4)), 60)
@@ -261,6 +275,7 @@ def test_a_period_longer_than_the_samples_can_show_is_undecided(n, expected):
     assert found == (n if expected == UNDECIDED else 0, expected)
     chaotic = np.random.default_rng(5).normal(size=(60, 4))
     assert decide(chaotic) == (0, IRREGULAR)
+    assert decide(np.ones((3, 4))) == (1, REPEATED)  # one period is looked at always
 
 
 @given(st.integers(0, 2**32 - 1))
