@@ -4,9 +4,12 @@ Property tests take the same examples on every machine, however slow: campaigns 
 """
 
 import gc
+import math
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from orchestrate.running import runner
 
 from . import held_files
 from .exports import BUILD, refresh, unexpected
@@ -21,9 +24,13 @@ settings.load_profile("few")
 
 
 def pytest_configure(config):
-    """The slow run takes many examples of each property, and the ordinary one few."""
+    """The slow run takes many examples of each property; the ordinary one few, and all processors
+    are at work there: a test starts no workers of its own.
+    """
     if config.option.markexpr == "slow":
         settings.load_profile("many")
+    else:
+        runner.MIN_PARALLEL_SECONDS = math.inf
     if config.option.held_files:
         held_files.install()
 

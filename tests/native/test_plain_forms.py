@@ -5,6 +5,9 @@ from fmpy.validation import validate_fmu
 
 from fmu_src.export import forms
 from fmu_src.export.platforms import this_machine
+from orchestrate.errors import InputError
+from orchestrate.fmu import Instance
+from orchestrate.response.response_loop import response_loop
 
 from ..fmu.event_driven import CUBICS
 from ..fmu.programs.driver import harmonic, open_fmu
@@ -57,3 +60,5 @@ def test_an_importer_that_knows_real_alone_runs_a_plain_form(plain, fmus, versio
         reference = [fmu.variables["impact_count"].valueReference]
         whole = fmu.fmu.getInt32 if fmu.third else fmu.fmu.getInteger
         assert whole(reference) == [full.one("impact_count")]
+    with Instance(plain) as fmu, pytest.raises(InputError, match="x1_sample"):
+        response_loop(fmu)  # which asks for states inside a step

@@ -345,7 +345,7 @@ def test_curves_over_sweeps_and_maps(ask, tmp_path):
         ask(*few, "--overlay", path, *options).complaint("--overlay", words)
     assert not folder.exists() or not list(folder.glob("*.nc"))
     ask(*few, "--overlay", path).success()
-    limits = ("--limits", "2.55:2.65,0.695:0.705", "--longest", "0.5")
+    limits = ("--limits", "2.55:2.65,0.695:0.705", "--longest", "0.5", "--jobs", "1")
     done = ask("border", "--start", path, "--bifurcation", "all", *limits).success()
     assert "Neimark-Sacker" in done.out and len(list(folder.glob("border_all*.png"))) == 1
     (curve,) = folder.glob("border_window*.nc")
@@ -367,7 +367,8 @@ def test_levels_have_both_structures_and_where_they_open(ask, tmp_path):
 
 
 def test_a_plan(ask, tmp_path, monkeypatch):
-    test = (*BEAM, "--set", "zeta=5%", "--g", "0.002,0.02,0.2", "--noise", "1e-3", "--range", "1")
+    test = (*BEAM, "--set", "zeta=5%", "--g", "0.002,0.2", "--noise", "1e-3", "--range", "1")
+    test = (*test, "--jobs", "1")
     out = ask("plan", *test).success().out
     for words in ("preload=20um", "verdict on the guess", "on its sound twin", "overload"):
         assert words in out

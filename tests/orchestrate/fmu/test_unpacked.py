@@ -1,6 +1,9 @@
 """Unpacked FMUs: once a process, gone at its end, and after a kill with the next process."""
 
+from __future__ import annotations
+
 import os
+import random
 import subprocess
 import sys
 from pathlib import Path
@@ -8,10 +11,11 @@ from pathlib import Path
 import pytest
 
 from fmu_src.version import VERSION
-from orchestrate.errors import StoreError
-from orchestrate.fmu import FORMS, Instance, describe
+from orchestrate.errors import InputError, StoreError
+from orchestrate.fmu import FORMS, OSCILLATOR, Instance, describe, find
 from orchestrate.fmu.unpacked import unpacked
 from orchestrate.temporary import PREFIX, process_folder
+from tests.campaigns import archives
 
 from ...sparing import ordinary
 from ..test_files import OTHER_CONTAINER, in_other_containers
@@ -99,3 +103,24 @@ def test_what_cannot_be_unpacked_leaves_nothing(any_fmu, tmp_path, monkeypatch):
     with pytest.raises(StoreError, match=r"cannot be unpacked \(No space left on device\)"):
         Instance(fmu)
     assert set(process_folder().iterdir()) == before
+
+
+REFUSED = ("path traversal", "link", "bomb", "crowd of files", "a name twice", "no FMU")
+
+
+@pytest.fixture(scope="module")
+def good(exported):
+    return find(OSCILLATOR).path
+
+
+@pytest.mark.parametrize("kind", REFUSED[:-1])
+def test_an_enemys_archive_is_refused_in_a_line(good, tmp_path, monkeypatch, kind):
+    monkeypatch.setattr("orchestrate.fmu.description.MAX_BYTES", 1 << 26)
+    monkeypatch.setattr(archives, "BOMB", 1 << 27)
+    monkeypatch.setattr(archives, "CROWD", 10_001)
+    for seed in range(1 if kind in ("bomb", "crowd of files") else 4):
+        archives.write(kind, good, tmp_path / "bad.fmu", random.Random(seed))
+        with pytest.raises(InputError, match="not readable as an FMU") as told:
+            describe(tmp_path / "bad.fmu")
+        assert len(str(told.value).splitlines()) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["bad.fmu"]

@@ -50,6 +50,7 @@ def test_replacing_a_number_changes_that_number_alone(numbers, name, value):
     for other in ("mu", "kappa", "D1", "D2", "e", "gamma", "omega", "m1"):
         expected = value if other == name else before.get(other)
         assert near(after.get(other), expected), other
+    assert (before.label() == after.label()) == (before == after)
 
 
 @given(STRUCTURES, STRUCTURES)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from orchestrate.errors import FmuError, InputError
+from orchestrate.errors import FmuError
 from orchestrate.fmu import OSCILLATOR, Instance, begin, find, respond_library, stroboscopic_samples
 from orchestrate.fmu.oscillator import OscillatorCalls, ResponseProgress, ResponseTask
 from orchestrate.model import Excitation, Structure
@@ -84,16 +84,11 @@ def test_a_chain_goes_on_from_the_end_before_it_with_the_same_gap(instance):
         assert speeds == pytest.approx(chain.states[i, -1, 2:], abs=0.51 * digit)
 
 
-@pytest.mark.parametrize("form", ["fmi2", "fmi2-python", "fmi2-plain"])
+@pytest.mark.parametrize("form", ["fmi2", "fmi2-python"])
 def test_every_form_runs_through_the_same_loop(instance, form):
     some = list(points(8, 4))
     settings = LoopSettings(transient=20, is_chain=True, **{**SETTINGS, "samples": 9})
     expected = response_loop(instance).respond(some, np.zeros((1, 4)), settings)
-    if form == "fmi2-plain":  # it keeps no states inside a step
-        with Instance(find(OSCILLATOR, form).path) as other, pytest.raises(InputError) as caught:
-            response_loop(other)
-        assert "x1_sample" in str(caught.value)
-        return
     with Instance(find(OSCILLATOR, form).path) as other:
         found = response_loop(other).respond(some, np.zeros((1, 4)), settings)
         assert bits(found) == bits(expected)

@@ -56,6 +56,18 @@ def drive(tmp_path_factory):
     return FmuBuilder.build_FMU(table.__file__, dest=folder)
 
 
+TABLE = replace(
+    table_drive(table.NUMBERS),
+    names=("specimen_force", "volts", "table_acc", "table_pos", "table_vel"),
+)
+
+
+@pytest.fixture
+def native(tmp_path, here):
+    """The same drive compiled, in this process."""
+    return TABLE.write(tmp_path)
+
+
 def error(run, truth):
     """Largest error of both displacements at the times of the truth, m."""
     every = (run.sizes["time"] - 1) // (len(TIMES) - 1)
@@ -71,19 +83,19 @@ ORDERS = {  # connections, structure, steps, largest error over the size, and ra
 
 
 @pytest.mark.parametrize("name", ORDERS)
-def test_errors_under_a_sine_of_the_voltage_fall_with_the_step(drive, name):
+def test_errors_under_a_sine_of_the_voltage_fall_with_the_step(native, name):
     """The voltage is held over each step, by its mean and what makes up for its first moment."""
     structure, steps, most, ratio = ORDERS[name]
-    truth, impacts = together(table_drive(table.NUMBERS), structure, sine(), TIMES)
-    run = {**RUN, "connect": CONNECTIONS[name]}
-    coarse, fine = (orchestrate.cosimulate(structure, drive, step=h, **run) for h in steps)
+    truth, impacts = together(TABLE, structure, sine(), TIMES)
+    run = {**RUN, "connect": CONNECTIONS[name], "parameters": TABLE.parameters}
+    coarse, fine = (orchestrate.cosimulate(structure, native, step=h, **run) for h in steps)
     assert error(coarse, truth) < most * np.abs(truth).max()
     assert error(coarse, truth) / error(fine, truth) > ratio
     assert coarse.sizes["impact"] == fine.sizes["impact"] == impacts > (40 if name == "both" else 9)
     if name == "both":
         assert fine.x_rel.max() > 0.99 * structure.stroke
         with pytest.raises(InputError, match="wall = True: cosimulate"):
-            orchestrate.cosimulate(structure.replace(wall=True), drive, step=0.01, **run)
+            orchestrate.cosimulate(structure.replace(wall=True), native, step=0.01, **run)
 
 
 def jumping(plain):
@@ -103,6 +115,7 @@ def jumping(plain):
 LETTERS = ("a", "av", "avp", "v", "p", "ap", "pv")
 
 
+@pytest.mark.usefixtures("here")
 @pytest.mark.parametrize("seed", ordinary([*range(20), "jumps"], [1, 3, 4, 7, "jumps"]))
 def test_random_drives_against_one_system(tmp_path, seed):
     """Native ones of FMI 2.0 and 3.0, of any names and signs, connected by any motions; every
@@ -125,16 +138,17 @@ def test_random_drives_against_one_system(tmp_path, seed):
     assert found.attrs["resumable"].startswith("yes" if drive.has_states else "no")
 
 
-def test_the_stated_error_is_that_of_the_run(drive):
+def test_the_stated_error_is_that_of_the_run(native):
     """Of displacements and of what is recorded; where it may hide impacts it is a warning."""
-    truth, _ = together(table_drive(table.NUMBERS), STRUCTURE, sine(), TIMES)
-    run = {**RUN, "estimate": True, "record": ["table_pos", "amperes"]}
+    truth, _ = together(TABLE, STRUCTURE, sine(), TIMES)
+    run = {**RUN, "estimate": True, "record": ["table_pos", "table_vel"]}
+    run |= {"parameters": TABLE.parameters}
     with pytest.warns(UserWarning, match="connect box_velocity, box_position"):
-        found = orchestrate.cosimulate(STRUCTURE, drive, connect=CONNECT, step=0.01, **run)
+        found = orchestrate.cosimulate(STRUCTURE, native, connect=CONNECT, step=0.01, **run)
     assert 0.5 < error(found, truth) / float(found.coupling_error.max()) < 2.0
     run |= {"estimate": False, "connect": CONNECTIONS["both"]}
-    exact = orchestrate.cosimulate(STRUCTURE, drive, step=0.001, **run)
-    for name in ("table_pos", "amperes"):
+    exact = orchestrate.cosimulate(STRUCTURE, native, step=0.001, **run)
+    for name in ("table_pos", "table_vel"):
         true = np.abs(found[name].values - exact[name].values[::10]).max()
         assert 0.5 * true < float(found[f"{name}_error"].max()) < 2.0 * true
     assert "box_work" in exact and "box_work" not in found  # without a velocity
@@ -223,12 +237,13 @@ def test_a_drive_without_states_is_said_to_begin_anew(drive, monkeypatch):
     assert job.progress_note(0) == "run (not resumable)"
 
 
-def test_a_level_is_held_on_a_drive_of_somebody_else(drive):
+def test_a_level_is_held_on_a_drive_of_somebody_else(native):
     """It takes the command without its derivatives: its mean over each step."""
     sine = orchestrate.SteppedSine(frequencies=(8.0,), acceleration=2.0, settle_cycles=60)
     control = orchestrate.LevelControl(sine=sine, start=1.0)
     run = {**RUN, "inputs": {"volts": control}, "duration": 8.0, "record": ["volts"]}
-    found = orchestrate.cosimulate(STRUCTURE.as_bonded(), drive, connect=CONNECT, step=5e-3, **run)
+    run |= {"parameters": TABLE.parameters}
+    found = orchestrate.cosimulate(STRUCTURE.as_bonded(), native, connect=CONNECT, step=5e-3, **run)
     last = found.sel(time=slice(7.0, 8.0 - 1e-9))
     turns = np.exp(-1j * sine.phase(last.time.values))
     table, volts = (complex((last[n] * turns).mean()) for n in ("box_acceleration", "volts"))
@@ -262,6 +277,7 @@ def test_what_is_proposed_has_the_causality_and_a_name_like_ours(drive):
     )
 
 
+@pytest.mark.usefixtures("here")
 @pytest.mark.parametrize("letters", ["a", "v", "p"])
 def test_a_wrong_sign_of_the_force_is_an_error_unless_it_is_given(tmp_path, letters):
     drive = draw(4)
@@ -275,6 +291,7 @@ def test_a_wrong_sign_of_the_force_is_an_error_unless_it_is_given(tmp_path, lett
     assert orchestrate.cosimulate(STRUCTURE, path, force_sign="given", **run).sizes["time"] == 3
 
 
+@pytest.mark.usefixtures("here")
 @pytest.mark.parametrize("duration", [0.4, 8.0])  # to a force that is none, and to a refused step
 def test_a_coupling_that_diverges_says_what_to_look_at(tmp_path, duration):
     """By an acceleration in mm/s2 without a unit."""

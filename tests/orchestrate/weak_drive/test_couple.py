@@ -1,10 +1,19 @@
 """The Sommerfeld effect: jumps, the energy balance of a whole run, resuming, many runs at once."""
 
+import math
+
 import numpy as np
 import pytest
 
-from orchestrate import couple, couple_all
+from orchestrate import couple, couple_all, jump_voltages
+from orchestrate.constants import TURN
 from orchestrate.weak_drive import averaged
+from orchestrate.weak_drive.averaged import folds
+from orchestrate.weak_drive.connection import MOTOR
+from orchestrate.weak_drive.couple import schedule_from_arguments, scheme_from_arguments
+from orchestrate.weak_drive.jump_voltages import JumpVoltagesJob
+from orchestrate.weak_drive.revolutions import Revolutions
+from orchestrate.weak_drive.step_record import LEADING, Record
 
 from .coupled import BEAM, QUICK
 
@@ -96,3 +105,64 @@ def test_each_of_many_runs_is_that_of_couple():
         assert np.array_equal(whole[name][row, :count], single[name]), name
     assert np.isnan(whole.speed[row, count:]).all()
     assert whole.speed.units == "rad/s" and whole.rate.units == "1"
+
+
+def completed(time, angle, speed, impacts):
+    """Where whole turns are new, one or more further from the last, to its side."""
+    last, begin, before, found = 0, 0.0, 0.0, []
+    for i, turns in enumerate((angle / TURN).tolist()):
+        if abs(turns - last) >= 1.0:
+            turn = math.floor(turns) if turns > last else math.ceil(turns)
+            end = time[i] - (angle[i] - turn * TURN) / speed[i]
+            found.append((i, end, (turn - last) * TURN / (end - begin), impacts[i] - before))
+            last, begin, before = turn, end, impacts[i]
+    return found
+
+
+def test_revolutions_are_the_turns_that_are_new():
+    """To and fro, across zero, several at once, exact ones, and over records that follow."""
+    rng, names = np.random.default_rng(8), (*LEADING, *MOTOR.outputs)
+    turns = np.concatenate([np.cumsum(rng.normal(0.0, 0.8, 400)), [-3.0, 2.0, -2.5, 0.0, 0.5]])
+    count = len(turns)
+    columns = {"time": np.arange(1.0, count + 1), "angle": TURN * turns}
+    columns |= {"speed": rng.uniform(20.0, 30.0, count), "impacts": np.arange(count) // 3.0}
+    table = np.zeros((len(names), count))
+    table[[names.index(name) for name in columns]] = np.array(list(columns.values()))
+    revolutions, found = Revolutions(QUICK.structure), []
+    for ends in np.split(np.arange(count), [7, 100, 101]):
+        found += revolutions.completed(Record(names, table, ends)).tolist()
+    expected = completed(*columns.values())
+    assert len(found) > 100 and len({row[2] > 0.0 for row in found}) == 2
+    assert [tuple(row) for row in found] == expected
+
+
+@pytest.mark.slow
+def test_quick():
+    """Bonded at the averaged theory's folds, delaminated up and down at lower voltages."""
+    rates = [2e-4, 1e-4, 5e-5]
+    ends = {"voltage": (1.38, 1.64), "step": 0.2, "settle": 200.0, "progress": False}
+    found = jump_voltages(*QUICK, rates=rates, **ends)
+    up, down = folds(*QUICK.as_bonded())
+    bonded, loose = (found.sel(structure=name) for name in ("bonded", "delaminated"))
+    assert bonded.jumps.values == pytest.approx([up.eta0, down.eta0], abs=2e-4)
+    assert loose.jumps.values == pytest.approx([1.56970, 1.43626], abs=1e-4)
+    assert ((found.standard_error > 0.0) & (found.standard_error < 1.1e-4)).all()
+    assert found.rate.values.tolist() == sorted(rates)
+    assert (np.diff(bonded.voltage.sel(jump="up")) > 0.0).all()  # the faster the later
+
+
+def test_over_a_parameter_the_bonded_structure_is_computed_once():
+    ramps = tuple(
+        schedule_from_arguments(*QUICK, (1.3, 1.6), None, r, None, 0.0, False) for r in (1, 2)
+    )
+    scheme = scheme_from_arguments(QUICK[0], 0.2)
+    job = JumpVoltagesJob("x", *QUICK, ramps, scheme, "clearance", (0.0, 0.01))
+    assert [one.bonded for one in job.items()] == [True, False, False]
+    assert [one.clearance for one in job.items()[1:]] == [0.0, 0.01]
+    jumps = np.arange(3.0)[:, None, None] + np.zeros((3, 3, 2))
+    how, shown = np.full((3, 2), "by held voltages"), np.arange(24.0).reshape(3, 2, 2, 2)
+    data = job.dataset({"jumps": jumps, "decided": how, "shown": shown})
+    assert data.jumps.dims == ("structure", "clearance", "jump")
+    assert data.jumps.sel(jump="up").values.tolist() == [[0.0, 0.0], [1.0, 2.0]]
+    at = {"rate": 1, "jump": 0}
+    assert data.voltage.isel(at).values.tolist() == [[4.0, 4.0], [12.0, 20.0]]

@@ -10,7 +10,6 @@ import pytest
 
 import orchestrate
 from orchestrate.errors import FmuError
-from orchestrate.running.runner import answer
 from orchestrate.weak_drive import cosimulate
 
 from .drives import table
@@ -34,14 +33,12 @@ def run(folder, does="NOTHING", fmi=3, has_states=False, **more):
 
 
 @pytest.fixture(params=[2, 3])
-def form(request, monkeypatch):
+def form(request, here):
     """FMI 2.0 and 3.0, in this process."""
-    monkeypatch.setattr(
-        cosimulate, "answer", lambda job, *known, foreign=0: answer(job, *known[:2])
-    )
     return request.param
 
 
+@pytest.mark.usefixtures("here")
 def test_the_first_acceleration_is_that_under_the_force(tmp_path):
     """Without other inputs: second order, as with them."""
     times = np.linspace(0.0, 1.0, 51)
@@ -94,19 +91,18 @@ def test_what_ends_a_run_is_said_with_its_cause(tmp_path, form, does):
     assert "\n" not in str(raised.value)
 
 
-@pytest.mark.parametrize("fmi", [2, 3])
-def test_a_discarded_step_is_halved_where_the_drive_can_go_back(tmp_path, fmi):
+def test_a_discarded_step_is_halved_where_the_drive_can_go_back(tmp_path, form):
     """Into quarters here: as in a run with a quarter of the step; the points of time stay."""
-    found = run(tmp_path, "DISCARDS_LONG", fmi, has_states=True)
-    coarse = run(tmp_path, fmi=fmi, has_states=True)
-    fine = run(tmp_path, fmi=fmi, has_states=True, step=2.5e-3).isel(time=slice(None, None, 4))
+    found = run(tmp_path, "DISCARDS_LONG", form, has_states=True)
+    coarse = run(tmp_path, fmi=form, has_states=True)
+    fine = run(tmp_path, fmi=form, has_states=True, step=2.5e-3).isel(time=slice(None, None, 4))
     assert found.time.values.tobytes() == coarse.time.values.tobytes()
     for name in ("x1", "x2", "box_acceleration"):
         errors = [abs(one[name].values - fine[name].values).max() for one in (found, coarse)]
         assert errors[0] < 1e-6 * errors[1]
     for does, has_states in (("DISCARDS", True), ("DISCARDS_LONG", False)):
         with pytest.raises(FmuError, match="coil too hot"):
-            run(tmp_path, does, fmi, has_states=has_states)
+            run(tmp_path, does, form, has_states=has_states)
 
 
 def test_inputs_as_cubics_go_on_in_halves_of_a_discarded_step():
@@ -152,6 +148,7 @@ def test_a_process_of_its_own_keeps_python_modules_of_one_name_apart(tmp_path):
     assert moved[2].values.tobytes() == moved[0].values.tobytes()
 
 
+@pytest.mark.usefixtures("here")
 def test_units_by_name_are_converted_and_can_be_stated(tmp_path):
     """An acceleration in mm/s2 by the name alone, or without any and stated: the motion in SI."""
     expected = run(tmp_path)

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.running.runner import answer
-from orchestrate.weak_drive import cosimulate
 
 from .drives.linear import table_drive, together
 from .monolithic import Monolith
@@ -63,14 +61,6 @@ def error(run, truth, times=TIMES):
     every = (len(times) - 1) // (run.sizes["time"] - 1)
     both = np.column_stack([run.x1.values, run.x2.values])
     return np.abs(both - truth[::every]).max()
-
-
-@pytest.fixture
-def here(monkeypatch):
-    """Drives run in this process."""
-    monkeypatch.setattr(
-        cosimulate, "answer", lambda job, *known, foreign=0: answer(job, *known[:2])
-    )
 
 
 @pytest.mark.usefixtures("here")

@@ -1,0 +1,14 @@
+"""What the tests of weak drives share."""
+
+import pytest
+
+from orchestrate.running.runner import answer
+from orchestrate.weak_drive import cosimulate
+
+
+@pytest.fixture
+def here(monkeypatch):
+    """Drives of somebody else run in this process, not each in one of its own."""
+    monkeypatch.setattr(
+        cosimulate, "answer", lambda job, *known, foreign=0: answer(job, *known[:2])
+    )
