@@ -241,12 +241,13 @@ class SearchJob(Job):
             return search.rank_starts([best.values])
         close = [one for one in rest[:1] if one.misfit < self.data.settings.close * best.misfit]
         tried = [best, *close] if hypothesis.is_rugged else [best]
-        polished = [coarse.polish(one).values for one in tried]
         search.evaluations += coarse.evaluations
-        ends = search.rank_starts([*polished, *starts[len(starts) - len(contained) :]])
+        ends = search.rank_starts(
+            [*(one.values for one in tried), *starts[len(starts) - len(contained) :]]
+        )
         best, *rest = self.sort_by_misfit_and_guess(search, ends)
-        # errors of what may be stated come from clouds that polish it as well
-        return [best if worth else search.polish(best), *rest]
+        # beside two masses that are stated a sound hypothesis is a comparison
+        return [search.polish(best) if hypothesis.is_rugged or not worth else best, *rest]
 
     def sort_by_misfit_and_guess(
         self, search: Search, solutions: Sequence[Solution]
