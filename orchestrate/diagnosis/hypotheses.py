@@ -105,7 +105,6 @@ class Sound(Hypothesis):
         ]
 
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
-        """Build the single mass that these values describe."""
         return SingleMass(f=values["f"], zeta=math.exp(values["log_zeta"]))
 
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
@@ -144,7 +143,6 @@ class NonlinearSpring(Sound):
         return found
 
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
-        """Build the single mass with the square and cubic stiffness of these values."""
         x = evidence.displacement
         linear = super().single_mass(values, evidence)
         return replace(linear, square=values["square"] / x, cube=values["cube"] / x**2)

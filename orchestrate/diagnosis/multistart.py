@@ -131,7 +131,6 @@ class Search:
 
 
 def difference_step(search: Search, name: str) -> float:
-    """Return the step by which a number is changed for finite differences."""
     return STEPS[name] * (search.evidence.resonance if name in ("f", "common") else 1.0)
 
 
