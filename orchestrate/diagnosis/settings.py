@@ -18,7 +18,7 @@ class Settings:
 
     Change ``hidden`` and ``order2_noise`` for a bolder or more careful verdict,
     ``gain_deviation`` and ``delay_deviation`` for sensors that are calibrated better or worse,
-    ``starts`` and ``steps`` where a search ends in a wrong minimum.
+    ``starts``, ``rugged_starts`` and ``steps`` where a search ends in a wrong minimum.
     """
 
     # -- the verdict: see `decision_rule.Beam.verdict`, and `impact_timing` for what strikes --
