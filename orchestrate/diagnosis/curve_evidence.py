@@ -209,7 +209,6 @@ class CurveEvidence(Evidence):
 
     @cached_property
     def used_windows(self) -> NDArray[np.intp]:
-        """Numbers of the windows that are fitted: all."""
         return np.arange(len(self.orders.windows))
 
     @cached_property

@@ -87,7 +87,6 @@ class Findings:
         ]
 
     def no_opening_conditions(self) -> list[Condition]:
-        """Return the conditions of "no opening seen"."""
         most, heard = 100.0 * self.settings.hidden, self.strikes.word()
         alone = " Two modes of a sound beam do not describe how the sensors differ."
         return [

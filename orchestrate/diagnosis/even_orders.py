@@ -38,7 +38,6 @@ class EvenOrders:
 
     @property
     def is_order_2_seen(self) -> bool:
-        """Whether order 2 exceeds its threshold in any window."""
         return self.excess > 1.0
 
     @property
@@ -88,7 +87,6 @@ def size_of_order_1(evidence: Evidence) -> Floats:
 
 
 def average_over_windows(values: Floats) -> Floats:
-    """Return each sensor's values averaged over neighbouring windows."""
     return np.stack([moving_average(row) for row in values])
 
 

@@ -139,7 +139,6 @@ class Evidence:
 
     @property
     def rate(self) -> float:
-        """Sampling rate, Hz."""
         return self.orders.channels.sample_rate
 
     @property
@@ -244,7 +243,6 @@ class Evidence:
         return found[:, :, 0] + 1j * found[:, :, 1] + self.base
 
     def fitted_orders(self, motion: Floats) -> Complexes:
-        """Compute a motion's orders as the sensors read them, see :meth:`corrected_for_sensors`."""
         return self.corrected_for_sensors(self.orders_of_motion(motion))
 
     def corrected_for_sensors(self, computed: Complexes) -> Complexes:
@@ -308,7 +306,6 @@ class Evidence:
         return np.asarray(self.measured[row, 0])
 
     def unbounded_residuals(self) -> Floats:
-        """Return the residuals that stand for a motion that grows without bounds."""
         return np.full((len(self.masses), 4, len(self.used_windows)), UNBOUNDED_RESIDUAL)
 
     def residuals(self, motion: Floats) -> Floats:

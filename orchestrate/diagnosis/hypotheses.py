@@ -105,7 +105,6 @@ class Sound(Hypothesis):
         ]
 
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
-        """Build the single mass that these values describe."""
         return SingleMass(f=values["f"], zeta=math.exp(values["log_zeta"]))
 
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
@@ -144,7 +143,6 @@ class NonlinearSpring(Sound):
         return found
 
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
-        """Build the single mass with the square and cubic stiffness of these values."""
         x = evidence.displacement
         linear = super().single_mass(values, evidence)
         return replace(linear, square=values["square"] / x, cube=values["cube"] / x**2)
@@ -367,7 +365,7 @@ class DelaminatedWithClearance(Delaminated):
         for split in [math.log(peaks[1] / peaks[0])] if both else STARTING_SPLITS:
             f1 = peaks[0] if evidence.masses[0] == 0 else peaks[0] * math.exp(-split)
             common = f1 * math.sqrt((m1 + m2 * math.exp(2.0 * split)) / (m1 + m2))
-            found += [{"common": part * common, "split": split} for part in (1.0, 0.96, 0.92)]
+            found += [{"common": part * common, "split": split} for part in (1.0, 0.94)]
         return found
 
     def pressed(self, evidence: Evidence, guess: Values) -> list[dict[str, float]]:
@@ -379,9 +377,8 @@ class DelaminatedWithClearance(Delaminated):
         force = self.onset.level * float(opening_force(shut, self.onset.frequency))
         closed = -force * (1.0 / shut.k1 + 1.0 / shut.k2) / evidence.displacement
         return [
-            {**guess, **alike, "e": e, "clearance": part * closed, "friction": friction}
+            {**guess, **alike, "clearance": part * closed, "friction": friction}
             for part in (1.0, 0.8, 0.6)
-            for e in (0.35, 0.7)
             for friction in (0.0, 0.1, 0.3)
         ]
 

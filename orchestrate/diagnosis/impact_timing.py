@@ -56,10 +56,10 @@ class TimingSettings:
     opposite: float = -0.97
     together: float = 0.0
     order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
-    # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.46 or less
+    # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.32 or less
     # before `at_end` of the stroke, or an order 2 of 0.54 where faces make up to 0.47; a slow half
     # that a moving one strikes up to 1.5, a stop then from 1.8
-    softens: float = -0.4
+    softens: float = -0.25
     lifts: float = 0.5
     at_end: float = 0.8
     stiffens: float = 0.5

@@ -52,28 +52,29 @@ class LinearModel:
         values: Mapping[str, float],
         covariance: Floats,
         seed: int = 0,
+        points: int = 4,
     ) -> LinearModel:
-        """Compute the residuals at a cloud of points around these values, and their regression."""
+        """Compute the residuals at a cloud of points, so many a number, and their regression."""
         count = len(values)
         rng = np.random.default_rng([20_241, seed])
         sizes, axes = np.linalg.eigh(covariance)
-        normal = rng.standard_normal((4 * count, count))
+        normal = rng.standard_normal((points * count, count))
         normal -= normal.mean(axis=0)
         offsets = (normal * np.sqrt(np.maximum(sizes, 0.0))) @ axes.T
         here = np.array(list(values.values()))
         low, high = np.array([bounds[name] for name in values]).T
-        points = np.clip(here + offsets, low, high)
-        named = [dict(zip(values, point, strict=True)) for point in points.tolist()]
+        places = np.clip(here + offsets, low, high)
+        named = [dict(zip(values, place, strict=True)) for place in places.tolist()]
         rows = np.stack([residuals(one) for one in named])
-        basis = np.column_stack([np.ones(len(points)), points - here])
+        basis = np.column_stack([np.ones(len(places)), places - here])
         solution = np.linalg.lstsq(basis, rows.reshape(len(rows), -1), rcond=None)[0]
         shape = rows.shape[1:]
         sizes_of_rows = [misfit(row) for row in rows]
         number = int(np.argmin(sizes_of_rows))
         slopes = solution[1:].T.reshape(*shape, count)
         residuals_here = solution[0].reshape(shape)
-        free = max(len(points) - basis.shape[1], 1)
-        scatter = (rows.reshape(len(rows), -1) - basis @ solution) * np.sqrt(len(points) / free)
+        free = max(len(places) - basis.shape[1], 1)
+        scatter = (rows.reshape(len(rows), -1) - basis @ solution) * np.sqrt(len(places) / free)
         return cls(residuals_here, slopes, named[number], sizes_of_rows[number], scatter)
 
     @property

@@ -100,18 +100,18 @@ class Search:
 
     def polish(self, start: Solution) -> Solution:
         """Improve a minimum by linear regressions over clouds of points."""
-        here, size = start, 1.0
+        here, size, settings = start, 1.0, self.evidence.settings
         shape = np.diag([difference_step(self, name) ** 2 for name in start.values])
         bounds = self.hypothesis.bounds(self.evidence)
-        for number in range(self.evidence.settings.rounds):
+        for number in range(settings.rounds):
             model = LinearModel.from_cloud(
-                self.residuals, bounds, here.values, size * shape, number
+                self.residuals, bounds, here.values, size * shape, number, settings.points
             )
             best = self.rank_starts(model.damped_minima(bounds, here.values))[0]
             if model.lowest < best.misfit:
                 best = Solution(best.name, model.best, model.lowest)
             shape = model.cloud_covariance()
-            if best.misfit < (1.0 - self.evidence.settings.gain) * here.misfit:
+            if best.misfit < (1.0 - settings.gain) * here.misfit:
                 here, size = best, min(1.0, 1.5 * size)
             elif size > 0.1:
                 size *= 0.2
@@ -131,7 +131,6 @@ class Search:
 
 
 def difference_step(search: Search, name: str) -> float:
-    """Return the step by which a number is changed for finite differences."""
     return STEPS[name] * (search.evidence.resonance if name in ("f", "common") else 1.0)
 
 

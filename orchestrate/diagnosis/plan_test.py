@@ -195,7 +195,6 @@ class PlanJob(Job):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[float], previous: Table | None
     ) -> Table:
-        """Rehearse the test at some levels with the structure and with its sound twin."""
         pair = self.structure, self.structure.as_bonded()
         rows = [[self.rehearsal(one, level, fmus) for one in pair] for level in items]
         names = ("word", "heard", "opening", "peak")
@@ -224,7 +223,6 @@ class PlanJob(Job):
         return float(WORDS.index(word)), findings.strikes.heard, times * gap, peak
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the verdicts over the level, and what is recommended."""
         words = [[WORDS[int(one)] for one in row] for row in table["word"]]
         right = np.array([row == [DELAMINATED, NOT_SEEN] for row in words])
         ranges = np.array([one.range for name, one in self.sensors if name != BOX]).min()
@@ -313,7 +311,6 @@ def recommended_levels(
 
 
 def checked_frequencies(frequencies: ArrayLike) -> Floats:
-    """Check that frequencies ascend, and return them in Hz."""
     f = checked_positive("frequencies", frequencies, "Hz")
     if len(f) < 2 or not (np.diff(f) > 0.0).all():
         text = "expected two at least, ascending, in Hz"

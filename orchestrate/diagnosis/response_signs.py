@@ -110,7 +110,6 @@ def mean_of_known(power: Floats) -> Floats:
 
 
 def window_of_largest(power: Floats) -> NDArray[np.intp]:
-    """Return the number of the window with the largest value, for each row."""
     return np.asarray(np.nan_to_num(power, nan=-1.0).argmax(axis=-1))
 
 

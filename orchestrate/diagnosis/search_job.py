@@ -153,7 +153,6 @@ class SearchJob(Job):
 
     @property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
-        """All hypotheses of the job, in the order of the results."""
         found: list[Hypothesis] = [SOUND[number] for number in self.sound]
         if self.delaminated:
             free = tuple(name for name in self.free if name != "clearance")
@@ -167,11 +166,9 @@ class SearchJob(Job):
         return [*reversed(range(len(self.hypotheses))), -1]  # longest first
 
     def progress_note(self, first: int) -> str:
-        """Return a note for the progress bar while the last item refines, else none."""
         return "refining the best fits" if first == self.count() - 1 else ""
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Search for one hypothesis; the last item refines the best of all others."""
         with Player(fmus[OSCILLATOR]) as player:
             if items[0] >= 0:
                 return self.search(items[0], player)
@@ -179,7 +176,6 @@ class SearchJob(Job):
             return self.finish(previous, player)
 
     def search(self, position: int, player: Player) -> Table:
-        """Search near the resonance for the minima of a hypothesis."""
         hypothesis = self.hypotheses[position]
         search = Search(hypothesis, cached_coarse_evidence(self.data), player)
         starts = hypothesis.starts(self.evidence)
@@ -233,20 +229,18 @@ class SearchJob(Job):
             starts = [*starts, guessed, exchanged]
             contained = others[len(self.sound) :]
         zero = dict.fromkeys(hypothesis.bounds(self.evidence), 0.0)
-        starts = [*starts, *({**zero, **one[0].values} for one in contained)]
+        above = [{**zero, **one[0].values} for one in contained]
         coarse = Search(hypothesis, cached_coarse_evidence(self.data), search.player)
-        ranked = self.sort_by_misfit_and_guess(search, coarse.rank_starts(starts))
+        ranked = self.sort_by_misfit_and_guess(search, coarse.rank_starts([*starts, *above]))
         best, *rest = without_neighbours(ranked)
         if hypothesis.is_rugged and not worth:
             return search.rank_starts([best.values])
-        close = [one for one in rest[:1] if one.misfit < self.data.settings.close * best.misfit]
-        tried = [best, *close] if hypothesis.is_rugged else [best]
-        polished = [coarse.polish(one).values for one in tried]
+        near = self.data.settings.close * best.misfit * hypothesis.is_rugged
+        tried = [best.values, *(one.values for one in rest[:1] if one.misfit < near)]
         search.evaluations += coarse.evaluations
-        ends = search.rank_starts([*polished, *starts[len(starts) - len(contained) :]])
-        best, *rest = self.sort_by_misfit_and_guess(search, ends)
-        # errors of what may be stated come from clouds that polish it as well
-        return [best if worth else search.polish(best), *rest]
+        best, *rest = self.sort_by_misfit_and_guess(search, search.rank_starts([*tried, *above]))
+        # beside two masses that are stated a sound hypothesis is a comparison
+        return [search.polish(best) if hypothesis.is_rugged or not worth else best, *rest]
 
     def sort_by_misfit_and_guess(
         self, search: Search, solutions: Sequence[Solution]

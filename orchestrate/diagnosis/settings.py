@@ -18,7 +18,7 @@ class Settings:
 
     Change ``hidden`` and ``order2_noise`` for a bolder or more careful verdict,
     ``gain_deviation`` and ``delay_deviation`` for sensors that are calibrated better or worse,
-    ``starts`` and ``steps`` where a search ends in a wrong minimum.
+    ``starts``, ``rugged_starts`` and ``steps`` where a search ends in a wrong minimum.
     """
 
     # -- the verdict: see `decision_rule.Beam.verdict`, and `impact_timing` for what strikes --
@@ -84,7 +84,8 @@ class Settings:
     rugged_starts: int = 4
     steps: int = 8  # on each way
     tolerance: float = 1e-3  # relative: a way downhill that gains less in a step ends
-    rounds: int = 7  # of the regressions over clouds that follow
+    points: int = 3  # of a cloud, over the count of numbers
+    rounds: int = 4  # of the regressions over clouds that follow
     gain: float = 2e-3  # relative: a round that gains less is one with too large a cloud
     distinct: float = 1.03  # misfit over another from which both count as two minima
     close: float = 1.3  # misfit over the best, up to which the second best minimum goes on too

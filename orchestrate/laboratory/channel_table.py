@@ -112,7 +112,6 @@ def channels(
 
 
 def described_columns(table: Columns, assignment: Assignment, setup: ChannelSetup) -> xr.Dataset:
-    """Return the dataset of :func:`channels`."""
     import xarray as xr
 
     roles = {place: name for name, place in assignment.places.items()}
@@ -152,7 +151,6 @@ def rate_of(table: Columns, place: int, units: Mapping[str, str]) -> float | Non
 
 
 def quantity_of(values: Any, text: str, unit: str, role: str) -> str:
-    """Return what a column holds, by its unit or its role."""
     if text:
         return "text"
     if role == "time":

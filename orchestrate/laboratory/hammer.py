@@ -72,7 +72,6 @@ class Hammer(ExcitationSignal):
         return 20.0 / self.width
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """Return the knock as a shock's pieces, in N."""
         pulse = Shock(
             peak=abs(self.peak), length=self.width, delay=self.at, duration=self.duration
         ).pieces(accuracy)

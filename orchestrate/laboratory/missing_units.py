@@ -58,7 +58,6 @@ def check_volts(path: str, used: Used, units: Mapping[str, str], stated: Mapping
 
 
 def file_and_columns(path: str, used: Used, names: Sequence[str]) -> str:
-    """Return file and columns of channels as a text for messages."""
     columns = (f'column "{used[name].name}" ({SHORT_NAMES[name]})' for name in names)
     return f"{path}, {', '.join(columns)}"
 

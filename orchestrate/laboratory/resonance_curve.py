@@ -143,7 +143,6 @@ class CurveColumns:
         return found
 
     def for_each_frequency(self, name: str, given: ArrayLike) -> Floats:
-        """Return a quantity at each frequency, shape (n,), from one number or from one for each."""
         values = plain_numbers(name, given)
         count = len(self.frequency)
         if values.shape not in ((), (1,), (count,)):
@@ -202,7 +201,6 @@ def made_curve(
 
 
 def curve_coordinates(faces: list[str], frequency: Floats) -> dict[str, Any]:
-    """Return the coordinates of a resonance curve: channel, order and frequency."""
     channels = [FACES[int(name[-1]) - 1] for name in faces]
     return {
         "channel": ("channel", channels, {"long_name": "face that was measured"}),
@@ -256,7 +254,6 @@ def check_frequencies(frequency: Floats, rows: NDArray[np.intp]) -> None:
 def check_positive(
     name: str, values: Floats, rows: NDArray[np.intp] | None, least: bool = False
 ) -> None:
-    """Check that numbers are above 0, or at least 0."""
     wrong = np.flatnonzero(values < 0.0 if least else ~(values > 0.0))
     if len(wrong):
         row = wrong[0] if rows is None else rows[wrong[0]]

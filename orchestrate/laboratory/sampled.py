@@ -90,7 +90,6 @@ class Sampled(ExcitationSignal):
         return self.sample_rate
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """Return the pieces of the spline through the samples."""
         from scipy.interpolate import CubicSpline
 
         nodes = np.arange(len(self.acceleration)) / self.sample_rate

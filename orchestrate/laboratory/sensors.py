@@ -101,7 +101,6 @@ class Sensor:
 
     @property
     def rate(self) -> float:
-        """Sampling rate of the record, Hz."""
         assert self.sample_rate is not None  # set when it was made
         return self.sample_rate
 
@@ -273,7 +272,6 @@ def driven_channel(history: xr.Dataset) -> str:
 def sensor_by_channel(
     sensor: Sensor | Mapping[str, Sensor], known: tuple[str, ...] = tuple(ACCELERATIONS)
 ) -> dict[str, Sensor]:
-    """Return the sensor of each channel, by name."""
     if isinstance(sensor, Sensor):
         plain = replace(sensor, noise=0.0, range=math.inf, resolution=0.0)
         return {name: plain if name in FORCES else sensor for name in known}

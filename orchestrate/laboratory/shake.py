@@ -36,7 +36,6 @@ DECAYED = 1e-3  # what is left of the free vibration from the start where it cou
 
 @lru_cache(maxsize=4)
 def pieces_of(excitation: ExcitationSignal, accuracy: float) -> Pieces:
-    """Return an excitation's pieces, made once per process."""
     return excitation.pieces(accuracy)
 
 
@@ -59,11 +58,9 @@ class ShakeJob(Question):
 
     @property
     def pieces(self) -> Pieces:
-        """Excitation as cubic pieces, which the FMU takes."""
         return pieces_of(self.excitation, self.accuracy)
 
     def parameters(self) -> dict[str, Any]:
-        """Return the parameters, with the excitation's kind."""
         found = super().parameters()
         found["excitation"] = {"kind": type(self.excitation).__name__, **found["excitation"]}
         return found
@@ -81,7 +78,6 @@ class ShakeJob(Question):
         return times[(times >= first) & (times < end)]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Compute the motion over some pieces, and the FMU's state to go on from."""
         pieces, first, last = self.pieces, items[0], items[-1] + 1
         cubics, drives = pieces.derivatives[first:last], self.excitation.drives
         if drives == BOX:
@@ -125,7 +121,6 @@ class ShakeJob(Question):
         return given
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return histories, impacts, and what is known of the excitation."""
         drives = self.excitation.drives
         acting = [name for name in CHANNELS if name in (BOX, drives) or getattr(self, name, False)]
         columns = [*PLAYED, "a1_abs", "a2_abs"]

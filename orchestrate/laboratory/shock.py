@@ -63,7 +63,6 @@ class Shock(ExcitationSignal):
         return 100.0 / self.length
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """Return the pulse as pieces between its corners, and quiet before and after it."""
         edges, error = self._edges(accuracy)
         begin, end = self.delay, self.delay + self.length
         nodes = np.unique([0.0, *(begin + edges), end, self.duration])
@@ -82,7 +81,6 @@ class Shock(ExcitationSignal):
         return self.length * angles[:-1] / math.pi, error
 
     def _pulse(self, time: Floats) -> Floats:
-        """Return the acceleration at times inside the pulse, m/s2."""
         part = (time - self.delay) / self.length
         if self.shape == "half-sine":
             return self.peak * np.sin(np.pi * part)

@@ -141,14 +141,12 @@ class Sine(ExcitationSignal):
         """Return the phase at a time, rad."""
 
     def level(self, time: ArrayLike) -> Floats:
-        """Return the peak acceleration at a time, m/s2."""
         if isinstance(self.acceleration, float):
             return np.full(np.shape(time), self.acceleration)
         low, high = self.acceleration[0][0], self.acceleration[-1][0]
         return along_profile(self.acceleration, np.clip(self.frequency(time), low, high))
 
     def __call__(self, time: ArrayLike) -> Floats:
-        """Return the acceleration at a time, m/s2."""
         return np.asarray(self.level(time) * np.sin(self.phase(time)))
 
     def check_length(self, phase: float, longest: float, name: str) -> None:
@@ -159,7 +157,6 @@ class Sine(ExcitationSignal):
 
 
 def parts_of(signal: ExcitationSignal) -> tuple[ExcitationSignal, ...]:
-    """Return a sum's parts, or the signal itself."""
     return signal.parts if isinstance(signal, SumOfSignals) else (signal,)
 
 
@@ -194,5 +191,4 @@ class SumOfSignals(ExcitationSignal):
         return max(part.usual_rate for part in self.parts)
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """Return the pieces of the sum, on the nodes of all parts."""
         return reduce(add, (part.pieces(accuracy) for part in self.parts))

@@ -107,13 +107,11 @@ class SweptSine(signals.Sine):
         return np.asarray(TURN * self.first / self._growth * np.expm1(self._growth * t))
 
     def time_of(self, frequency: float) -> float:
-        """Return the time, s, at which the sine has a frequency, Hz."""
         if self.spacing == "linear":
             return (frequency - self.first) / self._growth
         return math.log(frequency / self.first) / self._growth
 
     def _times_of(self, phase: Floats) -> Floats:
-        """Return the times, s, at which the sine has phases, rad."""
         growth, turns = self._growth, phase / TURN
         if self.spacing == "linear":
             root = np.sqrt(np.maximum(self.first**2 + 2.0 * growth * turns, 0.0))
@@ -121,7 +119,6 @@ class SweptSine(signals.Sine):
         return np.asarray(np.log1p(growth * turns / self.first) / growth)
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """Return pieces of equal phase, shorter where the frequency changes within them."""
         end = float(self.phase(self.duration))
         self.check_length(end, phase_step(accuracy), "sweep")
         phases = equal_nodes(0.0, end, phase_step(accuracy))
@@ -134,12 +131,10 @@ class SweptSine(signals.Sine):
         return Pieces.interpolate(nodes, self, float(self._bounds(nodes).max()))
 
     def _peak(self) -> float:
-        """Return the largest level, m/s2; 1 if the level is zero."""
         ends = np.array([0.0, *self._corners(), self.duration])
         return float(self.level(ends).max()) or 1.0
 
     def _corners(self) -> list[float]:
-        """Return the times at which the profile has its break points, s."""
         if isinstance(self.acceleration, float):
             return []
         times = [self.time_of(f) for f, _ in self.acceleration]

@@ -61,7 +61,6 @@ class Channels:
 
     @property
     def box(self) -> Floats:
-        """Acceleration of the box, m/s2."""
         return np.asarray(self.values[self.names.index(BOX)])
 
     @property
@@ -121,17 +120,14 @@ def checked_finite(name: str, array: xr.DataArray, time: Floats) -> Floats:
 
 
 def channel_coordinate(names: Sequence[str]) -> dict[str, Variable]:
-    """Return the coordinate along the channels, for a dataset."""
     return {"channel": ("channel", np.array(names), {"long_name": "channel of the record"})}
 
 
 def frequency_coordinate(frequency: Floats) -> dict[str, Variable]:
-    """Return the coordinate along frequencies, for a dataset."""
     return {"frequency": variable("frequency", frequency, "Hz", "frequency")}
 
 
 def attributes(analysis: str, heading: str, title: str, **settings: Any) -> dict[str, Any]:
-    """Return a result's attributes: which analysis it is, of what, with which settings."""
     return {"analysis": analysis, "title": f"{heading}: {title}", **settings}
 
 

@@ -165,7 +165,6 @@ def first_estimate(s: Complexes, curve: Complexes, weight: Floats) -> Floats:
 
 
 def dataset_of_halves(fits: list[HalfFit], structure: Structure) -> xr.Dataset:
-    """Return the dataset of :func:`halves`."""
     import xarray as xr
 
     every = [fit.values for fit in fits], [fit.errors for fit in fits]
