@@ -77,6 +77,10 @@ class Poincare(OfStructure, OfBox, Asked, Stored, Results):
   {program} poincare --eta 0.8 --at impacts
   {program} poincare --structure beam --hz 12.5 --g 0.02 --at releases"""
 
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield f"{data.sizes['point']} points"
+        yield from super().summary(data)
+
 
 def motion_of(data: xr.Dataset, state: xr.DataArray, periods: int) -> xr.Dataset:
     """Simulate the motion that begins at a state of a result, under its excitation."""
