@@ -129,11 +129,9 @@ alone may miss one whose basin is small."""
             yield "few starts overlook small basins: basin, or a range of values, finds them"
             return
         shares = data.share.where(data.multiplicity.notnull())
-        ends = zip(data.first_found.values, data.last_found.values, strict=True)
-        columns = {"range": [printing.format_range(data, name, *pair) for pair in ends]}
-        for word, values in (("smallest", shares.min(name)), ("largest", shares.max(name))):
-            columns[f"{word} share"] = [f"{share:.1%}" for share in values.values]
-        yield from printing.table(columns)
+        shown = data.assign(least_share=shares.min(name), largest_share=shares.max(name))
+        found = "first_found last_found least_share:.1% largest_share:.1%"
+        yield from printing.table(printing.rows_of(shown, found))
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.planes import draw_motions
