@@ -207,8 +207,7 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
         size = max(abs(complex(*pair)) for pair in parts)
         word = flag_word(data.stability)
         yield f"{word}: the largest multiplier has the absolute value {size:.6f}"
-        if word == "undecided":
-            yield "a run of the FMU from this orbit has other impacts: it may not be a motion"
+        yield from printing.hints([f"stability: {word}"])
         yield "multipliers " + ", ".join(f"{real:.6f}{other:+.6f}i" for real, other in parts)
         for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
             if math.isfinite(time):
