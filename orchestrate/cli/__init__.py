@@ -11,7 +11,7 @@ module                idea
 :mod:`.output`        options of results: where they go, how they are computed
 :mod:`.answer`        steps of most commands: call, summary, files
 :mod:`.notes`         notes on trivial questions, warnings of unlikely numbers
-:mod:`.printing`      numbers, ranges and tables as text, in display units
+:mod:`.printing`      what is printed of a result, by what its variables say; tables
 :mod:`.responses`     simulate, resonance, spectra, sweep, map
 :mod:`.dynamics`      exponents, sections, attractors, basins, orbits, branches
 :mod:`.laboratory`    shake, analyse, channels, halves

@@ -171,16 +171,11 @@ class Options:
                 raise InputError(f"{option_names([name])}: expected only with {words}")
 
 
-class Debugging(Options):
-    """The option of all commands."""
+class Command(Options, ABC):
+    """A command; calling it runs it, and its docstring stands in the list of commands."""
 
     heading, rank = "mistakes of the program", 6
     debug: bool = option("show where in the program an error occurred")
-
-
-class Command(Debugging, ABC):
-    """A command; calling it runs it, and its docstring stands in the list of commands."""
-
     calls = ""  # the public function, whose keywords are the options of the class itself
     renamed: ClassVar[dict[str, str]] = {}  # options of other names, by the function's keywords
     examples = ""

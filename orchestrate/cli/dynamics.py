@@ -77,6 +77,10 @@ class Poincare(OfStructure, OfBox, Asked, Stored, Results):
   {program} poincare --eta 0.8 --at impacts
   {program} poincare --structure beam --hz 12.5 --g 0.02 --at releases"""
 
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield f"{data.sizes['point']} points"
+        yield from super().summary(data)
+
 
 def motion_of(data: xr.Dataset, state: xr.DataArray, periods: int) -> xr.Dataset:
     """Simulate the motion that begins at a state of a result, under its excitation."""
@@ -125,11 +129,9 @@ alone may miss one whose basin is small."""
             yield "few starts overlook small basins: basin, or a range of values, finds them"
             return
         shares = data.share.where(data.multiplicity.notnull())
-        ends = zip(data.first_found.values, data.last_found.values, strict=True)
-        columns = {"range": [printing.format_range(data, name, *pair) for pair in ends]}
-        for word, values in (("smallest", shares.min(name)), ("largest", shares.max(name))):
-            columns[f"{word} share"] = [f"{share:.1%}" for share in values.values]
-        yield from printing.table(columns)
+        shown = data.assign(least_share=shares.min(name), largest_share=shares.max(name))
+        found = "first_found last_found least_share:.1% largest_share:.1%"
+        yield from printing.table(printing.rows_of(shown, found))
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.planes import draw_motions
@@ -205,8 +207,7 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
         size = max(abs(complex(*pair)) for pair in parts)
         word = flag_word(data.stability)
         yield f"{word}: the largest multiplier has the absolute value {size:.6f}"
-        if word == "undecided":
-            yield "a run of the FMU from this orbit has other impacts: it may not be a motion"
+        yield from printing.hints([f"stability: {word}"])
         yield "multipliers " + ", ".join(f"{real:.6f}{other:+.6f}i" for real, other in parts)
         for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
             if math.isfinite(time):

@@ -72,19 +72,6 @@ class InUnits(Options):
             print(f"--units {chosen}: these have no such numbers, only {words}")
 
 
-class Formats(Options):
-    """Options of the files written with a result."""
-
-    heading, rank = "files", 4
-    format: str = option(
-        f"also as {', '.join(FORMATS[1:])}, a list; nc is always written", "nc", "A,B,..."
-    )
-    plot: str = option(f"pictures: {', '.join(PLOTS)}, a list, or none", "png", "A,B,...")
-    size: str | None = option(
-        "shape of the pictures for slides, such as 16:9, with larger letters", value="W:H"
-    )
-
-
 class Stored(Options):
     """The option of a result's own file."""
 
@@ -109,14 +96,22 @@ class HowRun(Options):
     takes = "Running: force keep_stale jobs cluster fmu build_folder"
 
     def running(self, store: Path | None = None) -> Running:
-        names = ("jobs", "cluster", "force", "keep_stale", "fmu", "build_folder")
-        running: Any = {name: getattr(self, name) for name in names}
+        running: Any = self.given(HowRun)
         running |= {"fmu": user_fmus(self.fmu)} if isinstance(self.fmu, list) else {}
         return running if store is None else {**running, "store": store}
 
 
-class Shown(InUnits, Formats, InFolder):
-    """Options of units and files."""
+class Shown(InUnits, InFolder):
+    """Options of the files written with a result; units; the folder."""
+
+    heading, rank = "files", 4
+    format: str = option(
+        f"also as {', '.join(FORMATS[1:])}, a list; nc is always written", "nc", "A,B,..."
+    )
+    plot: str = option(f"pictures: {', '.join(PLOTS)}, a list, or none", "png", "A,B,...")
+    size: str | None = option(
+        "shape of the pictures for slides, such as 16:9, with larger letters", value="W:H"
+    )
 
 
 class Results(Shown, HowRun):

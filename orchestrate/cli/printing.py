@@ -27,6 +27,7 @@ HINTS = {  # words of results, alone or of a variable, and what to do
     "above_fold: yes": "the averaged theory has no motion below the resonance from its fold on",
     "decision: undecided": "the speed had not settled; give a longer --time",
     "decision: settled at the resonance": "neither passed nor captured",
+    "stability: undecided": "runs of the FMU have other impacts: it may not be a motion",
     "multiplicity_decided: undecided": "slow to converge or nearly periodic; --transient 5000 "
     "decides most",
 }
@@ -105,7 +106,7 @@ def counts(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
 
 
 def hints(words: Iterable[str]) -> Iterator[str]:
-    """Yield what to do about words that need not be the last ones."""
+    """Yield what to do about those words of a result after which more can be done."""
     yield from (f"{word.rpartition(': ')[2]}: {HINTS[word]}" for word in words if word in HINTS)
 
 

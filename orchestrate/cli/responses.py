@@ -30,23 +30,18 @@ class Simulate(OfStructure, OfBox, Beside, Asked, Stored, Results):
 
 
 def level_columns(data: xr.Dataset) -> printing.Columns:
-    rows = printing.columns_of(data, "level", form=".4g")
-    for structure in ("bonded", "delaminated"):
-        part = data.x1_max.sel(structure=structure)
-        tops = [at.isel(at.argmax(...)) for _, at in part.groupby("level")]
-        rows[f"{structure} x1"] = [
-            f"{text_of(data, top, 'm', '.4g')} at "
-            f"{printing.format_parameter(data, 'frequency', top.frequency, '.4g')}"
-            for top in tops
-        ]
-    gaps = data.x_rel_max.sel(structure="delaminated").transpose("level", ...)
-    rows["largest gap"] = [text_of(data, gap.max(), "m", ".4g") for gap in gaps]
+    """Return the largest response at each level, bonded and delaminated, and where it opens."""
+    data = data.transpose("level", "structure", ...)
+    others = [dim for dim in data.x1_max.dims if dim not in ("level", "structure")]
+    gap = data.x_rel_max.max(others, keep_attrs=True)
+    top = data.isel(data.x1_max.argmax(others)).assign(gap=gap)
+    columns = printing.rows_of(top, "x1_max:.4g frequency:.4g gap:.4g")
     if data.attrs["clearance"] < 0.0:
-        opens = (gaps > 0.0).any(set(gaps.dims) - {"level", "frequency"})
-        rows["opens at"] = [
-            printing.format_ranges(data, "frequency", row.values, 2) for row in opens
-        ]
-    return rows
+        opens = (data.x_rel_max > 0.0).any({*others} - {"frequency"})
+        rows = opens.stack(row=("level", "structure"), create_index=False).transpose("row", ...)
+        texts = [printing.format_ranges(data, "frequency", row.values, 2) for row in rows]
+        columns["opens at"] = texts
+    return columns
 
 
 class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
@@ -72,7 +67,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         if "level" in data.dims:
-            yield from printing.table(level_columns(data), data.sizes["level"])
+            yield from printing.table(level_columns(data), 2 * data.sizes["level"])
         else:
             if not data.sizes["peak"]:
                 for part in (data.sel(structure=one) for one in data.structure):
