@@ -1,7 +1,7 @@
 /* A motion from event to event, under an input of pieces: what it is at given times, and its impacts.
  *
  * Each piece is set where it begins and runs on, so the motion does not depend on where it is read. Where a buffer is full the loop pauses.
- * fmu/event_loop.py has the same structures.
+ * fmu/events.py has the same structures.
  */
 #include "fmi.h"
 

@@ -12,12 +12,7 @@ LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the r
 SHORT = 0.01
 
 
-def is_plain(m):  # inline
-    """Return whether only the box's harmonic motion and a wide gap are there: ``plain`` below."""
-    return m[at.UNEQUAL] == 0.0 and m[at.CUBIC_PRESENT] == 0.0
-
-
-def outputs_at(m, tau, plain):  # inline
+def outputs_at(m, tau):  # inline
     """Return the outputs ``tau`` after the state's start, then cosine and sine of the phase."""
     x1, v1, x2, v2, cosine, sine = state_and_phase_at(m, tau)
     omega = m[at.OMEGA]
@@ -29,7 +24,7 @@ def outputs_at(m, tau, plain):  # inline
     contact = m[at.REDUCED_MASS] * omega * omega * force if force > 0.0 else 0.0
     v1, v2 = omega * v1, omega * v2
     box_force = pull_1 + m[at.D1] * v1 + pull_2 + m[at.D2] * v2
-    if not plain and m[at.UNEQUAL] != 0.0:  # rarely
+    if m[at.UNEQUAL] != 0.0:  # rarely
         if m[at.WALL] != 0.0:
             box_force = box_force_with_wall(m, x1, v1, cosine, sine, tau)
         gap_speed, box_force = m[at.SIDE] * gap_speed, m[at.SIDE] * box_force
@@ -40,7 +35,7 @@ def outputs_at(m, tau, plain):  # inline
     xi_rel = gap / unit if unit != 0.0 else 0.0
     phase = TWO_PI * fraction(m[at.TURN] + m[at.ETA_TURNS] * tau)
     phase = phase if phase < TWO_PI else 0.0
-    touch, side = (0.0, 0.0) if flight else (1.0, 1.0 if plain else side_number(m))
+    touch, side = (0.0, 0.0) if flight else (1.0, side_number(m))
     motion = x1, x2, v1, v2, gap, gap_speed, xi1, xi2, xi_rel, box_force
     return motion, (contact, touch, phase, side), (cosine, sine)
 
@@ -85,13 +80,13 @@ def point_of(m, seen, tau):  # inline
     return seen[0][:4], seen[0][9], seen[2], cubic_ages(m, tau)
 
 
-def drives(m, point, plain):  # inline
+def drives(m, point):  # inline
     """Return the forcings of masses 1 and 2 at a point, each with its derivative by tau."""
     _, _, rotation, ages = point
     cosine, sine = rotation
     first = harmonic_drive(m, at.OSCILLATOR_1, cosine, sine)
     second = first
-    if not plain:
+    if m[at.UNEQUAL] != 0.0 or m[at.CUBIC_PRESENT] != 0.0:
         one, two = at.OSCILLATOR_1, at.OSCILLATOR_2
         if m[at.MODE] != at.FLIGHT:
             one, two = at.OSCILLATOR_3, at.OSCILLATOR_3
@@ -100,21 +95,15 @@ def drives(m, point, plain):  # inline
     return first, second
 
 
-def accelerations(m, motion, drive_1, drive_2, plain):  # inline
+def accelerations(m, motion, drive_1, drive_2):  # inline
     """Return the accelerations of both masses relative to the box at a point, m/s2, by (6)."""
     x1, x2, v1, v2 = motion
-    if not plain and m[at.SIDE] < 0.0:  # rarely
+    if m[at.SIDE] < 0.0:  # rarely
         x1, x2, v1, v2 = -x1, -x2, -v1, -v2
     if m[at.GAP_OFFSET] != 0.0 and m[at.MODE] != at.FLIGHT:  # rarely
         x1 -= m[at.REST_1]
     a1, a2 = both_rates(m, drive_1, drive_2, x1, v1, x2, v2)
-    side = side_sign(m, plain)
-    return side * a1, side * a2
-
-
-def side_sign(m, plain):  # inline
-    """Return 1 in the system itself, -1 in the mirrored one."""
-    return 1.0 if plain else m[at.SIDE]
+    return m[at.SIDE] * a1, m[at.SIDE] * a2
 
 
 def both_rates(m, drive_1, drive_2, x1, v1, x2, v2):  # inline
@@ -132,12 +121,12 @@ def acceleration(m, b, drive, x, v):  # inline
     return omega * (omega * (drive - pull) - 2.0 * m[b + at.DAMPING] * v)
 
 
-def force_rates(m, point, plain):  # inline
+def force_rates(m, point):  # inline
     motion, _, _, _ = point
     _, _, v1, v2 = motion
-    first, second = drives(m, point, plain)
-    a1, a2 = accelerations(m, motion, first[0], second[0], plain)
-    unit = side_sign(m, plain) * m[at.OMEGA]
+    first, second = drives(m, point)
+    a1, a2 = accelerations(m, motion, first[0], second[0])
+    unit = m[at.SIDE] * m[at.OMEGA]
     j1, j2 = both_rates(m, first[1] * unit, second[1] * unit, v1, a1, v2, a2)
     k1, k2, d1, d2 = m[at.K1], m[at.K2], m[at.D1], m[at.D2]
     rate = k1 * v1 + d1 * a1 + k2 * v2 + d2 * a2
@@ -221,9 +210,9 @@ def harmonic_impulse(m, h, left, reached):
     return total, half * total + amplitude * half * h * cosine_mid * first
 
 
-def short_impulse(m, h, left, reached, plain):  # inline
+def short_impulse(m, h, left, reached):  # inline
     """Return impulse and moment of a short step without event, by the force's quintic."""
-    rates, rates_after = force_rates(m, left, plain), force_rates(m, reached, plain)
+    rates, rates_after = force_rates(m, left), force_rates(m, reached)
     force, after, square = left[1], reached[1], h * h
     p1, p2, q1, q2 = rates[0] * h, rates[1] * square, rates_after[0] * h, rates_after[1] * square
     moment = square * (

@@ -14,8 +14,8 @@ def differentiate(m, time):
     """Write the rates of change of the outputs into RATES; ``time`` is not used."""
     tau = local_time(m, m[at.TIME])
     point = last_written_point(m, tau)
-    first, second = drives(m, point, False)
-    a1, a2 = accelerations(m, point[0], first[0], second[0], False)
+    first, second = drives(m, point)
+    a1, a2 = accelerations(m, point[0], first[0], second[0])
     omega = m[at.OMEGA]
     v1, v2, v_rel = m[at.V1], m[at.V2], m[at.V_REL]
     unit = unit_of_length(m)

@@ -28,7 +28,6 @@ from .outputs import (
     SHORT,
     finite_check_sum,
     impulse,
-    is_plain,
     last_written_point,
     outputs_at,
     point_of,
@@ -81,7 +80,7 @@ def initialize(m, time):
     begin_first_state(m, x1, x2, gap)
     if m[at.NARROW] != 0.0:  # rarely
         return at.TOO_NARROW
-    seen = outputs_at(m, 0.0, False)
+    seen = outputs_at(m, 0.0)
     write_outputs(m, seen)
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     if m[at.PEAKS_ON] != 0.0:
@@ -186,7 +185,7 @@ def advance(m, time):
         m[at.PHASE_COSINE] = m[at.COSINE]
         m[at.PHASE_SINE] = m[at.SINE]
         if m[at.WALL] != 0.0:  # rarely
-            m[at.BOX_FORCE] = outputs_at(m, 0.0, False)[0][9]
+            m[at.BOX_FORCE] = outputs_at(m, 0.0)[0][9]
         if is_too_fast(m):
             return at.TOO_FAST
     if not is_countable(m, local_time(m, time)):  # rarely
@@ -207,14 +206,14 @@ def advance(m, time):
     if m[at.STOPPED] != 0.0:  # rarely
         time = min(time, m[at.IMPACT_TIME])
     same = m[at.MODE] == mode and m[at.IMPACT_COUNT] == impacts
-    return finish_step(m, time, tau, left, m[at.X_REL_MAX], same)
+    return write_point(m, time, tau, left, m[at.X_REL_MAX], same)
 
 
 def coast(m, time):
     """Advance where the present state lasts; with another code nothing has changed."""
     tau = local_time(m, time)
-    plain = m[at.SAMPLE_COUNT] == 0.0 and m[at.PEAKS_ON] == 0.0
-    if not lasts_beyond(m, tau) or not plain or inputs_changed(m):
+    quick = m[at.SAMPLE_COUNT] == 0.0 and m[at.PEAKS_ON] == 0.0
+    if not lasts_beyond(m, tau) or not quick or inputs_changed(m):
         return at.UNFINISHED
     if not is_countable(m, tau):  # rarely
         return at.UNFINISHED
@@ -226,9 +225,7 @@ def coast(m, time):
             return at.UNFINISHED
     m[at.WORK] = 0.0
     left = last_written_point(m, now)
-    if is_plain(m):  # usually
-        return write_point(m, time, tau, left, highest, True, True)
-    return finish_step(m, time, tau, left, highest, True)
+    return write_point(m, time, tau, left, highest, True)
 
 
 def lasts_beyond(m, tau):
@@ -243,20 +240,15 @@ def is_without_summit(m, start, stop):
     return within and m[at.SERIES] == 0.0 and not has_summit(m, start, stop)
 
 
-def finish_step(m, time, tau, left, highest, same):
-    """Do what :func:`write_point` does, whatever is there."""
-    return write_point(m, time, tau, left, highest, same, False)
-
-
-def write_point(m, time, tau, left, highest, same, plain):  # inline
+def write_point(m, time, tau, left, highest, same):  # inline
     """Write all outputs at ``time``, age ``tau``, if finite; ``same``: no event since ``left``."""
     h = time - m[at.TIME]
-    seen = outputs_at(m, tau, plain)
+    seen = outputs_at(m, tau)
     reached = point_of(m, seen, tau)
     # no momentum at a wall: nothing cancels
-    at_wall = not plain and m[at.WALL] != 0.0 and m[at.MODE] != at.FLIGHT
+    at_wall = m[at.WALL] != 0.0 and m[at.MODE] != at.FLIGHT
     if same and not at_wall and h * m[at.OMEGA] * m[at.RATE] < SHORT:
-        force, moment = short_impulse(m, h, left, reached, plain)
+        force, moment = short_impulse(m, h, left, reached)
     else:
         force, moment = impulse(m, h, left, reached)
     gap = seen[0][4]
