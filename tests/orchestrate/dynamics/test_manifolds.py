@@ -42,7 +42,7 @@ def grown(image, spacing=1.0, first=0.0, **more):
 
 
 def line(s):
-    return np.array([s, 0.0]), (0,)
+    return np.array([s + 3.0, 4.0]), (0,)
 
 
 def bent(angle):
