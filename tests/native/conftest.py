@@ -82,12 +82,6 @@ def importer(request, importer_of):
     return importer_of(request.param)
 
 
-@pytest.fixture(params=VERSIONS)
-def native_fmu(request, fmus):
-    """Path of the native FMU of each FMI version."""
-    return fmus[request.param]
-
-
 @pytest.fixture(autouse=True)
 def instances():
     """No instance outlives its test."""

@@ -1,10 +1,13 @@
 """The comparison of two versions is carried to its end."""
 
+import pytest
+
 from tools import benchmark
 
 from ..fresh import ROOT
 
 
+@pytest.mark.slow
 def test_a_question_that_a_version_does_not_know_is_left_out(monkeypatch, capsys):
     known = "o.simulate(structure, eta=0.8, periods=1)"
     monkeypatch.setattr(benchmark, "QUESTIONS", {"row 1": "o.unknown()", "row 2": known})

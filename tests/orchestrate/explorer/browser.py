@@ -6,8 +6,8 @@ import time
 
 import numpy as np
 
-from tests.chromium import start_chromium
-
+WORDS = ("headless=new", "no-sandbox", "disable-dev-shm-usage", "disable-gpu")
+WORDS += ("autoplay-policy=no-user-gesture-required", "window-size=1300,1400")
 COMPLETE = "return document.getElementById('diagram').dataset.complete === 'true'"
 PACK = """
 const bytes = new Uint8Array(new Float64Array(%s).buffer);
@@ -21,20 +21,23 @@ element.scrollIntoView({ block: "center", behavior: "instant" });
 const { left, top, width, height } = element.getBoundingClientRect();
 return arguments[1].map(([x, y]) => [Math.round(left + x * width), Math.round(top + y * height)]);
 """
-ENTER, TAB = "\ue007", "\ue004"  # as WebDriver names keys
-UNFINISHED = ".crdownload"
 
 
 class Browser:
     """The page in a window: clicks, keys, what it shows, and what it computed to the last bit."""
 
-    leave = (TAB,)  # keys with which a field is left
+    leave = ("\ue004",)  # the key with which a field is left, as WebDriver names it
 
-    def __init__(self, program, driver, downloads):
-        self.driver, self.downloads = start_chromium(program, driver, downloads), downloads
+    def __init__(self, program, driver):
+        from selenium import webdriver
 
-    def navigate(self, url):
-        self.driver.get(url)
+        options = webdriver.ChromeOptions()
+        options.binary_location = program
+        for word in WORDS:
+            options.add_argument(f"--{word}")
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        service = webdriver.ChromeService(driver)
+        self.driver = webdriver.Chrome(options=options, service=service)
 
     def run(self, script, *arguments):
         """What a script returns."""
@@ -70,8 +73,8 @@ class Browser:
 
     def open(self, page, fragment="", whole=True):
         """Show a page anew, and wait until its whole diagram is there."""
-        self.navigate("about:blank")
-        self.navigate(page.as_uri() + fragment)
+        self.driver.get("about:blank")
+        self.driver.get(page.as_uri() + fragment)
         self.until("return Boolean(window.explorer)")
         if whole:
             self.until(COMPLETE)
@@ -106,14 +109,3 @@ class Browser:
         """The motion that was asked for has come."""
         self.until("return Boolean(explorer.inspector.found)", seconds)
         return self.run("return explorer.inspector.choice.point.eta")
-
-    def download(self, name, seconds=20):
-        """A file that the page saves."""
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            known = list(self.downloads.iterdir())
-            found = [path for path in self.downloads.glob(name) if path.stat().st_size]
-            if found and not any(path.suffix == UNFINISHED for path in known):
-                return found[0]
-            time.sleep(0.05)
-        raise AssertionError(f"no {name} among {list(self.downloads.iterdir())}")

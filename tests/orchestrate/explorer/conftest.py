@@ -28,12 +28,12 @@ def page(swept, tmp_path_factory):
 
 
 @pytest.fixture(scope="package")
-def chromium(tmp_path_factory):
+def chromium():
     pytest.importorskip("selenium", reason="selenium drives the browser")
     programs = shutil.which("chromium"), shutil.which("chromedriver")
     if None in programs:
         pytest.skip("no chromium with chromedriver here: the page is not tried in a browser")
-    browser = Browser(*programs, tmp_path_factory.mktemp("downloads"))
+    browser = Browser(*programs)
     yield browser
     browser.driver.quit()
 

@@ -17,17 +17,6 @@ def rendered(figure):
     return figure, canvas.get_renderer()
 
 
-def legend_texts(place) -> list[str]:
-    """Texts of the legend of a panel, or of a figure."""
-    legends = place.legends if hasattr(place, "legends") else [place.get_legend()]
-    return [text.get_text() for legend in legends if legend for text in legend.get_texts()]
-
-
-def drawn(axes) -> list[np.ndarray]:
-    """Points of all lines of a panel."""
-    return [line.get_xydata() for line in axes.lines if len(line.get_xydata())]
-
-
 def known(si: bool) -> dict:
     """Attributes of a dataset."""
     gamma = 2e-4 if si else 1e-4
@@ -75,16 +64,3 @@ def curves(si: bool) -> xr.Dataset:
     told |= {"jump_direction": ("jump", ["up", "down"])}
     about = {**known(si), "question": "resonance"}
     return xr.Dataset(found | told, {**along(count, si), **names}, about)
-
-
-def mapped(si: bool) -> xr.Dataset:
-    """A map with frequencies without impacts."""
-    values = RANDOM.uniform(0.5, 20.0, (5, 6))
-    found = {
-        "impacts_per_period": (("e", "eta"), np.where(values > 15.0, 0.0, values)),
-        "multiplicity": (("e", "eta"), values.round() % 10),
-        "xi_rel_max": (("e", "eta"), values),
-        "exponent": (("e", "eta"), values - 10.0),
-    }
-    sides = {"e": np.linspace(0.1, 0.9, 5), "eta": np.linspace(0.5, 2.0, 6)}
-    return xr.Dataset(found, sides, {**known(si), "e": "0.1 ... 0.9"})

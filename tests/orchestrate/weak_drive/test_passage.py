@@ -8,7 +8,7 @@ from orchestrate import Course, cosimulate, couple, passage, waterfall
 
 from .coupled import BEAM, QUICK
 
-FAST = {"voltage": (1.5, 1.7), "rate": 4e-4, "back": False, "settle": 50.0, "step": 0.1}
+FAST = {"voltage": (1.54, 1.66), "rate": 4e-4, "back": False, "settle": 50.0, "step": 0.2}
 FAST |= {"progress": False}
 
 
