@@ -12,6 +12,11 @@ LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the r
 SHORT = 0.01
 
 
+def is_plain(m):  # inline
+    """Return whether only the box's harmonic motion and a wide gap are there."""
+    return m[at.UNEQUAL] == 0.0 and m[at.CUBIC_PRESENT] == 0.0
+
+
 def outputs_at(m, tau):  # inline
     """Return the outputs ``tau`` after the state's start, then cosine and sine of the phase."""
     x1, v1, x2, v2, cosine, sine = state_and_phase_at(m, tau)
@@ -86,7 +91,7 @@ def drives(m, point):  # inline
     cosine, sine = rotation
     first = harmonic_drive(m, at.OSCILLATOR_1, cosine, sine)
     second = first
-    if m[at.UNEQUAL] != 0.0 or m[at.CUBIC_PRESENT] != 0.0:
+    if not is_plain(m):  # rarely
         one, two = at.OSCILLATOR_1, at.OSCILLATOR_2
         if m[at.MODE] != at.FLIGHT:
             one, two = at.OSCILLATOR_3, at.OSCILLATOR_3
