@@ -31,14 +31,14 @@ SETTINGS = GrowthSettings(length=3.0, spacing=0.02, angle=0.2, max_points=3000, 
 START = 1e-5  # of the first piece, from the saddle
 
 
-def grown(image, spacing=1.0, first=0.0, **more):
+def grown(image, spacing=1.0, **more):
     """The numbers of a curve's points, of states along an axis or in a plane."""
     settings = GrowthSettings(
         **{"length": 1e9, "angle": 0.2, "max_points": 5} | more, spacing=spacing
     )
     asked = iter(range(200))  # at most
     point = lambda s: CurvePoint(s, *image(s + 0.0 * next(asked)))  # noqa: E731
-    return [each.s for each in CurveGrower(point, settings).grow(first).points]
+    return [each.s for each in CurveGrower(point, settings).grow().points]
 
 
 def line(s):
@@ -50,10 +50,6 @@ def bent(angle):
     beyond = lambda s: max(s - 0.05, 0.0)  # noqa: E731
     turn = np.array([math.cos(angle) - 1.0, math.sin(angle)])
     return lambda s: (line(s)[0] + beyond(s) * turn, (0,))
-
-
-def jump(at):
-    return lambda s: (np.array([s + 9.0 * (s > at), 0.0]), (0,))
 
 
 GAP_LEFT = 0.05 / 2**20  # by halves
@@ -78,11 +74,10 @@ GAP_LEFT = 0.05 / 2**20  # by halves
         ),
         *(
             (
-                jump(first),
-                {"first": first, "max_points": 2, "resolution": GAP_LEFT / part / max(first, 1.0)},
-                [first, first + GAP_LEFT * (1.0 if part > 0.5 else 2.0)],
+                lambda s: (np.array([s + 9.0 * (s > 0.0), 0.0]), (0,)),
+                {"max_points": 2, "resolution": GAP_LEFT / part},
+                [0.0, GAP_LEFT * (1.0 if part > 0.5 else 2.0)],
             )
-            for first in (0.0, 3.0)
             for part in (0.7, 0.45)
         ),
     ],
