@@ -18,7 +18,7 @@ from .command import Command, Keywords, Options, option, option_names
 from .grammar import read_earlier_result
 from .notes import print_frequency_notes, trivial_notes
 from .options import UNITS
-from .output import Files, digest, result_name, write_result
+from .output import Files, digest, result_name, write_unstored_netcdf
 from .printing import describe, impact_lines
 
 UNIT_OF_OPTION = {name: ALIKE.get(unit, unit) for name, unit in {**UNITS, "eta": "eta"}.items()}
@@ -131,7 +131,7 @@ class Asked(Command):
         self.print_units_note(*shown.values())
         for state, data in in_units.items():
             if not self.stores:
-                write_result(files[state], results[state])
+                write_unstored_netcdf(files[state], results[state])
             files[state].write(data)
         if picture:
             common.write_pictures(partial(self.draw, shown, question, *branches))

@@ -182,7 +182,8 @@ what it gives:
             words["title"] = f"Verdict on {label}: {verdict.verdict.item()}"
             described[sweep] = verdict.assign_attrs(words)
             if not words.items() <= verdict.attrs.items():
-                output.write_result(Files.from_options(self, name, fresh=True), described[sweep])
+                files = Files.from_options(self, name, fresh=True)
+                output.write_unstored_netcdf(files, described[sweep])
         return described
 
     def origin_attributes(self, path: Path, record: xr.Dataset) -> dict[str, str]:
@@ -199,7 +200,7 @@ what it gives:
         for ending, answer in answers.items():
             files = Files.from_options(self, f"{stem}{ending}", fresh=True)
             if ending:  # the verdict is stored already
-                output.write_result(files, answer)
+                output.write_unstored_netcdf(files, answer)
             shown = with_units(answer, units)
             files.write(shown, partial(orchestrate.plot, shown))
         page = self.output / f"{stem}.html"

@@ -268,10 +268,12 @@ def parse_values(option: str, text: str, zero: bool = False, name: str = "") -> 
 Listed = Annotated[tuple[float, ...] | None, parse_values]
 
 
-def parse_listed(name: str, text: str) -> tuple[float, ...]:
+def parse_over_values(parameter: str, text: str) -> tuple[float, ...]:
+    """Parse ``--values`` of ``--over PARAMETER``, in its unit; zero is a value like any other."""
     if ":" in text:
-        return parse_values("--values", text, zero=True, name=name)
-    return tuple(read_number(f"--over {name} --values", one, name) for one in text.split(","))
+        return parse_values("--values", text, zero=True, name=parameter)
+    option = f"--over {parameter} --values"
+    return tuple(read_number(option, one, parameter) for one in text.split(","))
 
 
 def is_single_number(text: str) -> bool:

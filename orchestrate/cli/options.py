@@ -304,7 +304,7 @@ class Over(Options):
     def over_arguments(self) -> Keywords:
         if (self.over is None) != (self.values is None):
             raise InputError("--over and --values: expected both, or none of them")
-        values = self.over and grammar.parse_listed(self.over, self.values)
+        values = self.over and grammar.parse_over_values(self.over, self.values)
         return {"over": self.over, "values": values} if values else {}
 
     def ask_along_parameter(self, si: bool = False) -> tuple[Structure, Keywords]:

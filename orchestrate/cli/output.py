@@ -272,7 +272,7 @@ class Files:
             print(path)
 
 
-def write_result(files: Files, data: xr.Dataset) -> None:
+def write_unstored_netcdf(files: Files, data: xr.Dataset) -> None:
     """Write the NetCDF file of a result that was not stored while it was computed."""
     from ..files import open_folder
     from ..running.store import write_netcdf

@@ -1,5 +1,6 @@
-"""What commands print of a result: its variables by what their attributes say, and tables.
+"""How commands print a result: its variables by what their attributes say, and tables.
 
+Which variables: ``shows`` and ``summary`` of a command's class.
 Sentences that one command prints stand with it.
 """
 

@@ -13,7 +13,7 @@ from . import printing
 from .answer import Asked, Overlay, is_curve
 from .command import Keywords, option, option_names
 from .drive import Driven
-from .grammar import parse_changes, parse_listed
+from .grammar import parse_changes, parse_over_values
 from .options import Beside, OfBox, OfStructure, Over
 from .output import OfBoth, Results, Stored
 
@@ -223,7 +223,7 @@ Each point starts from rest. The picture has a panel for each quantity."""
         for name, text in zip(self.over, self.values, strict=True):
             if name in excitation or (name == "level" and "amplitude" in excitation):
                 raise InputError(f"--over {name}: twice; expected two parameters")
-            excitation[name] = parse_listed(name, text)
+            excitation[name] = parse_over_values(name, text)
         if sum(isinstance(value, tuple) for value in excitation.values()) != 2:
             raise InputError(
                 "map: expected two parameters that vary: a range of frequencies and one of levels "

@@ -25,7 +25,16 @@ from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
 from .events import NO_INPUT, PLAYED, EventInstance, Played, Player
-from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_of, up_to_date
+from .exported import (
+    FORMS,
+    MODELS,
+    PLAIN_FORMS,
+    build,
+    find,
+    finder,
+    is_current_and_trusted,
+    sources_of,
+)
 from .impacts import STATE, Impacts
 from .instance import Instance, function_addresses
 from .models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
@@ -74,5 +83,5 @@ __all__ = [
     "stroboscopic_samples",
     "traits",
     "sources_of",
-    "up_to_date",
+    "is_current_and_trusted",
 ]

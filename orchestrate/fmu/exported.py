@@ -87,7 +87,7 @@ def export_or_copy(name: str, form: str, folder: Path, platforms: tuple[str, ...
     try:
         return sources.export(name, form, folder, platforms or None)
     except CannotExport:
-        if platforms or not up_to_date(form, name, SHIPPED):
+        if platforms or not is_current_and_trusted(form, name, SHIPPED):
             raise
     path = folder / form / f"{name}.fmu"
     log.info("%s is copied from the installed package", path)
@@ -99,7 +99,7 @@ def export_or_copy(name: str, form: str, folder: Path, platforms: tuple[str, ...
 def export_once(name: str, form: str, folder: Path, level: int) -> Description:
     path = folder / form / f"{name}.fmu"
     with made_once(path):
-        if not up_to_date(form, name, folder):
+        if not is_current_and_trusted(form, name, folder):
             export(name, form, folder, level=level)
     return describe(path, name)
 
@@ -124,7 +124,8 @@ def check(name: str, form: str) -> None:
         raise InputError(f"form {form}: expected one of {', '.join(sources.ALL_FORMS)}")
 
 
-def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:
+def is_current_and_trusted(form: str, name: str, folder: str | PathLike[str]) -> bool:
+    """Whether an FMU is of the present sources; others may not write to the default folder."""
     path = Path(folder) / form / f"{name}.fmu"
     try:
         current = path.is_file() and describe(path, name).guid == guid(form, name)
@@ -167,7 +168,7 @@ def find(
                 f"no {form} FMU here, {candidate} serves instead, without events: {reasons[0]}"
             )
         for base in folders:
-            if up_to_date(candidate, model, base):
+            if is_current_and_trusted(candidate, model, base):
                 return describe(base / candidate / f"{model}.fmu", model)
         try:
             return export_once(model, candidate, folders[0], level)

@@ -21,7 +21,7 @@ module                    idea
 :mod:`.record_of_run`     the run of a weak drive as a record
 :mod:`.columns`           which columns of a file are its channels, their units, lost samples
 :mod:`.missing_units`     what is missing to read columns, and the arguments that give it
-:mod:`.channel_setup`     how the channels of a file are read, as TOML or a mapping
+:mod:`.stated_channels`   what a user states of a file's channels, as TOML or a mapping
 :mod:`.channel_table`     the columns of a file as a dataset, and the setup that is written of it
 :mod:`.conversion`        velocities, displacements and voltages made accelerations
 :mod:`.time_base`         rounded and uneven times made equal

@@ -19,7 +19,6 @@ from ..files import write_whole
 from ..lazy import xr
 from ..model.arguments import checked_path
 from ..response.labels import variable
-from .channel_setup import ACTING, SENSOR_WORDS, Channels, ChannelSetup
 from .columns import Assignment, Columns, assigned_columns, converted_channels, times_in_s
 from .conversion import (
     ACCELERATIONS,
@@ -34,6 +33,7 @@ from .conversion import (
 from .record import CHANNELS, SHORT_NAMES
 from .record_checks import is_ascending
 from .record_files import read_columns
+from .stated_channels import ACTING, SENSOR_WORDS, Channels, ChannelSetup
 
 NOT_READ = "not read"
 QUANTITIES = {
@@ -107,7 +107,7 @@ def channels(
     except InputError as error:
         found.attrs["refused"] = str(error)
     if output is not None:
-        write_setup(found, setup, checked_path("output", output))
+        write_channels_toml(found, setup, checked_path("output", output))
     return found
 
 
@@ -160,7 +160,7 @@ def quantity_of(values: Any, text: str, unit: str, role: str) -> str:
     return known[0] if known else "counter" if is_ascending(values) else "unknown"
 
 
-def write_setup(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
+def write_channels_toml(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
     """Write a setup as TOML; what is not known of the sensors is left to be filled in."""
     of_role = {SHORT_NAMES.get(name, name): name for name in ("time", *CHANNELS)}
     lines = [f"# {found.attrs['title']}: columns by name or number from 0, units as in the file"]

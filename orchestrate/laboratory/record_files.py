@@ -18,7 +18,6 @@ from ..model.arguments import checked_path
 from ..reader_process import read_in_process
 from ..running.netcdf import check_size, stored_size
 from .analysis.channels import NAMES_IN_RESULTS
-from .channel_setup import Channels, ChannelSetup
 from .columns import Column, Columns, converted_channels
 from .conversion import SMALLEST, ByChannel, number_by_channel
 from .record import CHANNELS, FORCES, Reading, checked_record, unit_of_channel
@@ -26,6 +25,7 @@ from .record_csv import read_csv, write_csv
 from .record_labview import read_lvm, read_tdms
 from .record_mat import read_mat, write_mat
 from .record_uff import read_uff, write_uff
+from .stated_channels import Channels, ChannelSetup
 
 MOST_BYTES = 1 << 30  # a file is read into the memory as a whole
 MOST_LETTERS = 200  # of a name or a unit

@@ -92,7 +92,7 @@ def free_vibration_roots(structure: Structure, drive: Drive) -> np.ndarray:
     return np.asarray((box * (pull + masses) + pull * masses).roots())
 
 
-def calm_speed(structure: Structure, drive: Drive) -> float:
+def speed_above_box_resonance(structure: Structure, drive: Drive) -> float:
     """Return the speed over omega that divides the box's own resonance from the structure's."""
     # least torque between both: folds below are of the box's own resonance, folds above are not
     frequencies = np.abs(free_vibration_roots(structure, drive))
@@ -109,7 +109,7 @@ def folds(
     numerator, denominator = slope_polynomials(structure, drive)
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
-    low = calm_speed(structure, drive) if low is None else low
+    low = speed_above_box_resonance(structure, drive) if low is None else low
     speeds = [polish_root(numerator, root) for root in real if low <= root <= high]
     return [BifurcationPoint(float(no_load_speed(structure, drive, w)), w, FOLD) for w in speeds]
 
@@ -167,7 +167,7 @@ def neimark_sacker_points(
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)
 
-    peak, low = resonance(structure, drive), calm_speed(structure, drive)
+    peak, low = resonance(structure, drive), speed_above_box_resonance(structure, drive)
     speeds = np.linspace(max(0.8 * peak, low), 1.5 * peak, count)
     signs = np.sign([hurwitz_product(Omega) for Omega in speeds])
     points = []
@@ -184,7 +184,7 @@ def neimark_sacker_points(
 def stability_limits(
     structure: Structure, drive: Drive
 ) -> tuple[BifurcationPoint | None, BifurcationPoint | None]:
-    points, stable = branch_stability(structure, drive)
+    points, stable = bifurcations_and_stable_parts(structure, drive)
     if not points:
         return None, None
     ends = [point for point in points if point.kind != TORUS]
@@ -194,7 +194,7 @@ def stability_limits(
     return (points[below[-1]] if below else None, points[beyond[0] - 1] if beyond else None)
 
 
-def branch_stability(
+def bifurcations_and_stable_parts(
     structure: Structure, drive: Drive
 ) -> tuple[list[BifurcationPoint], list[bool]]:
     """Return all folds and Neimark-Sacker points by speed, and whether parts between are stable."""
@@ -210,7 +210,7 @@ def branch_stability(
 def stationary_curve(structure: Structure, drive: Drive) -> xr.Dataset:
     Omega = np.linspace(0.3, 3.0, 20001)
     volts = no_load_speed(structure, drive, Omega) * drive.volts(structure)
-    points, stable = branch_stability(structure, drive)
+    points, stable = bifurcations_and_stable_parts(structure, drive)
     part = np.searchsorted([point.Omega for point in points], Omega)
     amplitudes = amplitude(structure, drive, Omega) * drive.length
     curves = {

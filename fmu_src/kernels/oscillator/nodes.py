@@ -137,7 +137,7 @@ def is_plain_flight(m):
 
 def next_phasors(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
     if not plain and m[at.SECULAR] != 0.0:  # rarely
-        return next_driven_phasors(m, x, v, x_b, v_b, cosine, sine)
+        return next_free_parts(m, x, v, x_b, v_b, cosine, sine)
     a = (at.OSCILLATOR_1 if plain else oscillator_a(m)) + at.STEP_ON
     b = at.OSCILLATOR_2 + at.STEP_ON
     return (
@@ -177,9 +177,9 @@ def phasors_from_closed_form(m, age):
     if m[at.NODE_ETA] != 0.0:  # usually
         sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
     phases = m[at.COSINE], m[at.SINE], cosine, sine
-    x, v = driven_part_after(m, oscillator_a(m), m[at.FREE_A], m[at.FREE_A + 1], age, phases)
+    x, v = free_part_driven_after(m, oscillator_a(m), m[at.FREE_A], m[at.FREE_A + 1], age, phases)
     if m[at.MODE] == at.FLIGHT:
-        x_b, v_b = driven_part_after(
+        x_b, v_b = free_part_driven_after(
             m, at.OSCILLATOR_2, m[at.FREE_B], m[at.FREE_B + 1], age, phases
         )
     return x, v, x_b, v_b, cosine, sine
@@ -191,8 +191,8 @@ def free_part_after(m, b, x, v, t):
     return x * xx + v * xv, x * vx + v * vv
 
 
-def driven_part_after(m, b, x, v, t, phases):
-    """Return :func:`free_part_after`, driven by ``phases`` (cosine, sine before and after)."""
+def free_part_driven_after(m, b, x, v, t, phases):
+    """Return :func:`free_part_after`, driven near resonance by ``phases`` (before and after)."""
     if m[b + at.DRIVEN] == 0.0:  # usually
         return free_part_after(m, b, x, v, t)
     old_cosine, old_sine, cosine, sine = phases
@@ -202,16 +202,17 @@ def driven_part_after(m, b, x, v, t, phases):
     return x + x_driven, v + v_driven
 
 
-def next_driven_phasors(m, x, v, x_b, v_b, old_cosine, old_sine):
+def next_free_parts(m, x, v, x_b, v_b, old_cosine, old_sine):
     cosine = old_cosine * m[at.NODE_COSINE] - old_sine * m[at.NODE_SINE]
     sine = old_sine * m[at.NODE_COSINE] + old_cosine * m[at.NODE_SINE]
     phases = old_cosine, old_sine, cosine, sine
-    x, v = next_driven_part(m, oscillator_a(m), x, v, phases)
-    x_b, v_b = next_driven_part(m, at.OSCILLATOR_2, x_b, v_b, phases)
+    x, v = next_free_part(m, oscillator_a(m), x, v, phases)
+    x_b, v_b = next_free_part(m, at.OSCILLATOR_2, x_b, v_b, phases)
     return x, v, x_b, v_b, cosine, sine
 
 
-def next_driven_part(m, b, x, v, phases):
+def next_free_part(m, b, x, v, phases):
+    """Return a free part at the next node, by the matrix of a spacing, driven if it grows."""
     step = b + at.STEP_ON
     if m[b + at.DRIVEN] == 0.0:  # usually
         return x * m[step] + v * m[step + 2], x * m[step + 1] + v * m[step + 3]
@@ -302,10 +303,10 @@ def parts_by_functions(m, tau, cosine, sine):
     """Return both free parts where one decays steeply or grows, by elementary functions."""
     t, p = tau - m[at.LEFT_AGE], at.LEFT
     phases = m[p + 4], m[p + 5], cosine, sine
-    x_a, v_a = driven_part_after(m, oscillator_a(m), m[p], m[p + 1], t, phases)
+    x_a, v_a = free_part_driven_after(m, oscillator_a(m), m[p], m[p + 1], t, phases)
     if m[at.MODE] != at.FLIGHT:
         return x_a, 0.0, v_a, 0.0
-    x_b, v_b = driven_part_after(m, at.OSCILLATOR_2, m[p + 2], m[p + 3], t, phases)
+    x_b, v_b = free_part_driven_after(m, at.OSCILLATOR_2, m[p + 2], m[p + 3], t, phases)
     return x_a, x_b, v_a, v_b
 
 

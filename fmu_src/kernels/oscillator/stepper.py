@@ -313,18 +313,17 @@ def is_inside_state(m, tau):
     return h0 > 0.0 or value_on_decided_side(m, tau, h0, h1) > 0.0
 
 
-def run_samples(m, start, time, now):
+def run_samples(m, start, time, age):
     """Run to ``time``, keeping states at equal parts of the step; return the state's age there."""
     count = int(m[at.SAMPLE_COUNT])
     for i in range(count):
         if m[at.STOPPED] == 0.0:
-            now = run_states(
-                m, start + (time - start) * ((i + 1.0) / count) if i + 1 < count else time, now
-            )
+            until = start + (time - start) * ((i + 1.0) / count) if i + 1 < count else time
+            age = run_to(m, until, age)
         if m[at.WORK] >= m[at.WORK_LIMIT]:  # rarely
-            return now
-        keep_sample(m, i, now)
-    return now if count > 0 else run_states(m, time, now)
+            return age
+        keep_sample(m, i, age)
+    return age if count > 0 else run_to(m, time, age)
 
 
 def keep_sample(m, i, tau):
@@ -341,23 +340,24 @@ def keep_sample(m, i, tau):
         m[at.X_REL_MAX] = gap
 
 
-def run_states(m, time, now):
+def run_to(m, time, age):
+    """Run from the present state's ``age`` to ``time``; return the age of the state there."""
     watching = m[at.X_REL_MAX_ON] != 0.0
     while True:
         tau = local_time(m, time)
         if watching and m[at.MODE] == at.FLIGHT:
-            walk_with_largest_gap(m, now, tau)
+            walk_with_largest_gap(m, age, tau)
         else:
             walk(m, tau)
         if m[at.PEAKS_ON] != 0.0:
-            record_peaks(m, now, tau if tau < m[at.END] else m[at.END])
+            record_peaks(m, age, tau if tau < m[at.END] else m[at.END])
         if m[at.END_KIND] == at.END_OPEN or m[at.END] > tau or m[at.WORK] >= m[at.WORK_LIMIT]:
             return tau
         impacts = m[at.IMPACT_COUNT]
         end_state(m)
         if watching and m[at.SIDE] < 0.0 and m[at.BEGIN_GAP] == 0.0:  # rarely
             m[at.X_REL_MAX] = m[at.LIMIT]
-        now = 0.0
+        age = 0.0
         if m[at.STOP_AT_IMPACT] != 0.0 and m[at.IMPACT_COUNT] > impacts:
             m[at.STOPPED] = 1.0
             return 0.0

@@ -123,7 +123,7 @@ def test_a_range_has_its_decimal_values_exactly(first, step, count):
     grid = [text(first + k * step) for k in range(count + 1)]
     values = grammar.parse_values("--eta", f"{grid[0]}:{grid[-1]}:{text(step)}")
     assert values == tuple(map(float, grid))
-    assert grammar.parse_listed("clearance", "0:20um:0.01mm") == (0.0, 1e-5, 2e-5)
+    assert grammar.parse_over_values("clearance", "0:20um:0.01mm") == (0.0, 1e-5, 2e-5)
 
 
 def test_other_names_and_units_of_parameters():

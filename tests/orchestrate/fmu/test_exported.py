@@ -18,7 +18,7 @@ from orchestrate.fmu import (
     exported,
     find,
     finder,
-    up_to_date,
+    is_current_and_trusted,
 )
 
 from .altered import altered_fmu
@@ -95,7 +95,7 @@ def test_what_is_damaged_or_out_of_date_is_made_anew(maker, places, real, damage
     else:
         guid = describe(path).guid
         altered_fmu(real["fmi3"], path, instantiationToken=(guid, guid.replace("-", "0")))
-    assert not up_to_date("fmi3", OSCILLATOR, places[0])
+    assert not is_current_and_trusted("fmi3", OSCILLATOR, places[0])
     assert find(OSCILLATOR).guid == describe(real["fmi3"]).guid
     assert (OSCILLATOR, "fmi3", places[0]) in maker.asked
 

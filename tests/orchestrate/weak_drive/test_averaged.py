@@ -44,7 +44,7 @@ def test_folds_are_extrema_of_the_voltage(changes):
 def test_stability_is_that_of_slow_disturbances(name):
     """Between the points it does not change; at a fold and at a Neimark-Sacker point it does."""
     system = Structure.from_file(name), Drive.from_file(name)
-    points, stable = averaged.branch_stability(*system)
+    points, stable = averaged.bifurcations_and_stable_parts(*system)
     assert stable[0] and stable[-1] and not all(stable)
     speeds = [point.Omega for point in points]
     assert speeds == sorted(speeds) and {"fold"} <= {point.kind for point in points}
