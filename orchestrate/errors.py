@@ -10,7 +10,13 @@ class VibroimpactError(Exception):
 
 
 class InputError(VibroimpactError, ValueError):
-    """Raised for a parameter, file or option of the user that cannot be accepted."""
+    """Raised for a parameter, file or option of the user that cannot be accepted, in one line."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(printable(text))
+
+
+NOT_NUMBERS = TypeError, ValueError, OverflowError  # of float() and NumPy, for a user's value
 
 
 class StaleError(InputError):

@@ -89,7 +89,7 @@ def read_in_process(
     if "value" in answer:
         return answer["value"]
     text = answer.get("refused") or f"{path}: {printable(answer['failed'], 200)}; {expected}"
-    raise InputError(printable(text.replace(str(whole), str(path))))
+    raise InputError(text.replace(str(whole), str(path)))
 
 
 def start_child(path: Path, folder: Path) -> Child:

@@ -16,7 +16,7 @@ from ..laboratory.analysis.channels import BOX
 from ..laboratory.pieces import Floats
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import checked_word
+from ..model.arguments import checked_texts, checked_word
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Table, refuse_family
@@ -155,7 +155,7 @@ def fit(
 
 def checked_free(free: Sequence[str]) -> tuple[str, ...]:
     """Check the names of the parameters to be fitted, and return them as a tuple."""
-    names = (free,) if isinstance(free, str) else tuple(free)
+    names = checked_texts("free", free)
     expected = f"expected some of {', '.join(FREE)}"
     for name in names:
         if name not in FREE:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields, replace
 from ..errors import InputError
 from ..laboratory.analysis.channels import checked_number
 from ..laboratory.record_checks import CLIPPED
+from ..model.arguments import checked_mapping
 
 Changes = Mapping[str, float] | None  # of a caller: names of settings with other values
 
@@ -112,10 +113,11 @@ def checked_settings(changes: Changes) -> Settings:
     (2.0, 1.5)
     """
     names = [one.name for one in fields(Settings)]
-    if unknown := [name for name in changes or {} if name not in names]:
+    changes = checked_mapping("settings", changes)
+    if unknown := [name for name in changes if name not in names]:
         raise InputError(f"settings: unknown name {unknown[0]!r}; known names: {', '.join(names)}")
     made = SETTINGS
-    for name, value in (changes or {}).items():
+    for name, value in changes.items():
         kind = type(getattr(SETTINGS, name))
         least = 1.0 if kind is int else 0.0
         number = checked_number(f"settings[{name!r}]", value, least, 1e6)

@@ -45,6 +45,7 @@ DECIDED_BY = (
     "undecided: states repeat nearly, near an unstable orbit or before impacts that have to come, "
     "or other starts still leave such an irregular motion"
 )
+LARGEST = 1e24  # m, of a box of starts
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
 
 
@@ -211,6 +212,8 @@ def random_starts(
     count: int, scale: float, seed: tuple[int, int], structure: Structure
 ) -> NDArray[np.float64]:
     """Draw ``count`` states, shape (count, 4), uniformly from a box around rest, gap >= 0."""
+    if not scale <= LARGEST:
+        raise InputError(f"starts in +-{scale:g} m: expected a smaller scale or width")
     draws = np.random.default_rng(list(seed)).uniform(-scale, scale, (count, 4))
     omega, x1, gap = structure.omega, draws[:, 0] + structure.at_rest[0], np.abs(draws[:, 1])
     v1, rate = draws[:, 2] * omega, draws[:, 3] * omega
@@ -366,7 +369,9 @@ def attractors(
     (array([1., 2.]), array([0.825, 0.175]))
     """
     if starts is None:
-        several = any(x is not None and np.size(x) > 1 for x in (eta, frequency, amplitude, values))
+        along = {"eta": eta, "frequency": frequency, "amplitude": amplitude, "values": values}
+        given = (checked_numbers(*each) for each in along.items())
+        several = any(isinstance(one, tuple) and len(one) > 1 for one in given)
         starts = 60 if several else 600
     return as_given(
         starts=starts,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
-from ..errors import InputError
+from ..errors import NOT_NUMBERS, InputError
 from ..fmu import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, stroboscopic_samples
 from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
@@ -209,7 +209,7 @@ def checked_axis(name: str, argument: Any) -> PlaneAxis:
     try:
         axis, low, high, count = argument
         low, high = float(low), float(high)
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         raise InputError(f"{name} = {argument!r}: {expected}") from None
     if axis not in AXES:
         raise InputError(f"{name} = {argument!r}: no coordinate {axis!r}; {expected}")

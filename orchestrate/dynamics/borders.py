@@ -8,12 +8,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import InputError
+from ..errors import NOT_NUMBERS, InputError
 from ..flags import flag_word
 from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import Count, Number
+from ..model.arguments import Count, Number, checked_texts
 from ..response.labels import variable
 from ..response.questions import EXCITATION_PARAMETERS, OF_EXCITATION, Question, require_delaminated
 from ..response.signatures import as_given, question
@@ -198,7 +198,7 @@ def border(
     require_delaminated(structure)
     branches.require_orbit_dataset(start, several=True)
     branches.checked_bifurcation_index(start, "bifurcation", bifurcation)
-    names = tuple(over)
+    names = checked_texts("over", over)
     check_parameters(names)
     if len(set(names)) != 2 or len(names) != 2 or names[0] != start.attrs.get("over"):
         raise InputError(
@@ -238,7 +238,7 @@ def lies_on_curve(curve: xr.Dataset, question: Mapping[str, Any], near: float = 
 def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
     try:
         return tuple(branches.checked_limits(*each) for each in zip(names, limits, strict=True))
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         expected = "expected a lower and an upper one for each parameter"
         raise InputError(f"limits = {limits!r}: {expected}") from None
 

@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import Count, Number, checked_integer, checked_number
+from ..model.arguments import Count, Number, checked_integer, checked_number, checked_pair
 from ..model.ranges import OF_LENGTH, PUSHES
 from ..response.questions import OF_EXCITATION, Question, excitation_numbers, require_delaminated
 from ..response.signatures import as_given, question
@@ -267,12 +267,14 @@ def pushes_at_start(start: xr.Dataset | None, **arguments: float | None) -> dict
 
 
 def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
-    pair = excitation_numbers(over, limits)
-    if not isinstance(pair, tuple) or len(pair) != 2 or not pair[0] < pair[1]:
-        raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
+    expected = "two numbers, the lower one first"
+    pair = checked_pair("limits", limits, expected)
+    excitation_numbers(over, pair)
+    if not pair[0] < pair[1]:
+        raise InputError(f"limits = {limits!r}: expected {expected}")
     if over == "amplitude" and pair[0] == 0.0:
         raise InputError(f"limits = {limits!r}: expected amplitudes > 0, the unit of the motion")
-    return pair[0], pair[1]
+    return pair
 
 
 def complete_excitation(

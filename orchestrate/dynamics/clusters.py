@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import Instance
-from ..model.arguments import checked_integer, checked_positive
+from ..model.arguments import MAX_COUNT, checked_integer, checked_positive
 from ..response.questions import Point
 from ..response.respond import Response, responses_from
 from ..response.response_loop import LoopSettings, response_loop
@@ -91,6 +91,8 @@ RUN_LENGTHS = ("transient", "settle", "samples")
 
 def transient_periods(transient: int, settle: float, eta: float) -> int:
     """Return the periods to drop: ``transient``, or ``settle * eta`` where that is more."""
+    if settle * eta > MAX_COUNT:
+        raise InputError(f"settle = {settle:g}: expected at most {MAX_COUNT / eta:g}")
     return max(transient, round(settle * eta))
 
 

@@ -70,7 +70,7 @@ def check_parameters(over: tuple[str, ...]) -> None:
     box = (name for name in QUANTITIES if name != "level")  # the amplitude varies instead
     known = (*box, *PARAMETERS)
     for name in over:
-        if name not in known:
+        if not isinstance(name, str) or name not in known:
             raise InputError(f"over = {name!r}: no parameter; {expected_one_of(name, known)}")
 
 

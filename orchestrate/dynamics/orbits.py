@@ -16,7 +16,15 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
 from ..lazy import Unpack, xr
 from ..model import Structure
-from ..model.arguments import Count, Number, Transient, checked_integer, checked_numbers, whole
+from ..model.arguments import (
+    Count,
+    Number,
+    Transient,
+    checked_integer,
+    checked_number,
+    checked_numbers,
+    whole,
+)
 from ..response import questions
 from ..response.labels import make_dataset
 from ..response.signatures import as_given, question
@@ -188,7 +196,8 @@ def excitation_arguments(
     eta: ArrayLike | None, frequency: ArrayLike | None, amplitude: ArrayLike | None
 ) -> tuple[tuple[str, float], ...]:
     arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    return tuple((name, float(np.asarray(v))) for name, v in arguments.items() if v is not None)
+    given = ((name, value) for name, value in arguments.items() if value is not None)
+    return tuple((name, checked_number(name, value)) for name, value in given)
 
 
 @question(OrbitJob)

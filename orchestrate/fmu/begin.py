@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..errors import NOT_NUMBERS, InputError
 from ..model import Excitation, Structure
 from .instance import Instance
 from .oscillator import START_PARAMETERS, respond_library, to_rest
@@ -44,7 +44,7 @@ def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDA
 def four_numbers(start: ArrayLike) -> list[float]:
     try:
         state = np.asarray(start, dtype=float)
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         state = np.empty(0)
     if state.shape != (len(START_PARAMETERS),):
         raise InputError(f"start = {start!r}: expected 4 numbers, x1, x2, v1, v2")

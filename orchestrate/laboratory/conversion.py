@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..constants import GRAVITY, TURN
-from ..errors import InputError
+from ..errors import NOT_NUMBERS, InputError
 from .pieces import Floats
 
 INCH = 0.0254
@@ -111,7 +111,7 @@ def number_by_channel(
     for channel, value in by_channel(name, argument, channels).items():
         try:
             numbers[channel] = float(value)
-        except (TypeError, ValueError):
+        except NOT_NUMBERS:
             numbers[channel] = math.nan
         if not smallest <= abs(numbers[channel]) <= LARGEST:
             sizes = f"of sizes from {smallest:g} to {LARGEST:g}, such as face1=-1"

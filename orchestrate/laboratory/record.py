@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..errors import NOT_NUMBERS, InputError
 from ..lazy import xr
 from ..model.arguments import unmasked
 from ..response.labels import variable
@@ -188,7 +188,7 @@ def plain_numbers(name: str, given: Any, kind: type = float) -> NDArray[Any]:
     unmasked(name, given)
     try:
         return np.array(given, dtype=kind)
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         raise InputError(f"{name}: expected a list of numbers") from None
 
 

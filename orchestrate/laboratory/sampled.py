@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import NOT_NUMBERS, InputError
 from ..lazy import xr
 from ..model.arguments import unmasked
 from .pieces import Pieces
@@ -38,7 +38,7 @@ class Sampled(ExcitationSignal):
         unmasked("acceleration", self.acceleration)
         try:
             values = np.asarray(self.acceleration, dtype=float)
-        except (TypeError, ValueError):
+        except NOT_NUMBERS:
             raise InputError("acceleration: expected a list of numbers, in m/s2") from None
         if values.ndim != 1 or not 4 <= len(values) <= MOST_PIECES:
             shape = "x".join(map(str, values.shape)) or "one"

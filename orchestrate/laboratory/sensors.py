@@ -246,9 +246,10 @@ def at_sensor(mass: Cells, box: Cells, participation: float) -> Cells:
 def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Pieces:
     """Return what drives a history as pieces, from the history's beginning on."""
     if excitation is not None:
-        if excitation.label != history.attrs.get("excitation"):
+        label = getattr(excitation, "label", repr(excitation))
+        if label != history.attrs.get("excitation"):
             text = f"expected {history.attrs.get('excitation', 'none')}, which made the history"
-            raise InputError(f"excitation = {excitation.label}: {text}")
+            raise InputError(f"excitation = {label}: {text}")
         whole = excitation.pieces(float(history.attrs["accuracy"]))
         begin = float(history.time[0])
         return Pieces(whole.nodes - begin, whole.derivatives, whole.error)

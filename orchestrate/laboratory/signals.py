@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..constants import TURN
-from ..errors import InputError
+from ..errors import NOT_NUMBERS, InputError
 from ..model.ranges import Quantity
 from .pieces import Floats, Pieces
 
@@ -45,7 +45,7 @@ def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
     expected = "expected pairs (Hz, value) with ascending frequencies, at least two"
     try:
         pairs = [(float(f), float(value)) for f, value in given]  # type: ignore[attr-defined]
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         raise InputError(f"{name} = {given!r}: {expected}") from None
     for f, value in pairs:
         checked_quantity(HERTZ, f"{name}'s frequency", f)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields
 from functools import cache, partial
 from pathlib import Path
@@ -17,7 +17,7 @@ from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import InputError
+from ..errors import NOT_NUMBERS, InputError
 from .ranges import checked_flag
 
 MAX_COUNT = 1_000_000  # periods, samples, values: more is a typing error
@@ -35,9 +35,31 @@ def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUN
 
 def checked_word(name: str, value: Any, known: Iterable[str]) -> str:
     words = tuple(known)
-    if value not in words:
+    if not isinstance(value, str) or value not in words:
         raise InputError(f"{name} = {value!r}: expected one of {', '.join(words)}")
     return str(value)
+
+
+def checked_text(name: str, value: Any) -> str | None:
+    if value is not None and not isinstance(value, str):
+        raise InputError(f"{name} = {value!r}: expected a text, or None")
+    return value
+
+
+def checked_texts(name: str, value: Any) -> tuple[str, ...]:
+    """Return one text or several as a tuple; none for None."""
+    texts = () if value is None else (value,) if isinstance(value, str) else value
+    if not isinstance(texts, (tuple, list)) or not all(isinstance(one, str) for one in texts):
+        raise InputError(f"{name} = {value!r}: expected a list of texts")
+    return tuple(texts)
+
+
+def checked_mapping(name: str, value: Any) -> dict[str, Any]:
+    """Return a mapping from names as a dict; an empty one for None."""
+    found = {} if value is None else value
+    if not isinstance(found, Mapping) or not all(isinstance(key, str) for key in found):
+        raise InputError(f"{name} = {value!r}: expected a mapping from names, such as {{'a': ...}}")
+    return dict(found)
 
 
 def checked_path(name: str, value: Any) -> Path:
@@ -76,7 +98,7 @@ def checked_numbers(
         if array.dtype.kind not in "iuf":
             raise ValueError
         array = array.astype(float)
-    except (TypeError, ValueError, OverflowError):
+    except NOT_NUMBERS:
         raise InputError(f"{name} = {value!r}: expected a number or a list of numbers") from None
     if array.ndim > 1 or not 1 <= array.size <= MAX_COUNT:
         shape = "x".join(map(str, array.shape))
@@ -93,6 +115,19 @@ def checked_number(name: str, value: Any, expected: str = "one number") -> float
     if not isinstance(number, float):
         raise InputError(f"{name} = {value!r}: expected {expected}")
     return number
+
+
+def checked_list(name: str, value: Any) -> tuple[float, ...]:
+    """Return one finite number or several as a tuple."""
+    numbers = checked_numbers(name, () if value is None else value)
+    return numbers if isinstance(numbers, tuple) else (float(numbers or 0.0),)
+
+
+def checked_pair(name: str, value: Any, expected: str) -> tuple[float, float]:
+    pair = checked_numbers(name, value)
+    if not isinstance(pair, tuple) or len(pair) != 2:
+        raise InputError(f"{name} = {value!r}: expected {expected}")
+    return pair[0], pair[1]
 
 
 def checked_positive(name: str, value: Any) -> float:
@@ -120,7 +155,8 @@ def check_of(kind: Any) -> Check | None:
         return found
     if get_origin(kind) is Literal:
         return partial(checked_word, known=get_args(kind))
-    return checked_flag if kind is bool else None
+    known: dict[Any, Check] = {bool: checked_flag, str | None: checked_text}
+    return known.get(kind)
 
 
 # Types of keywords that several public functions have, each with its check: `Annotated` is a type

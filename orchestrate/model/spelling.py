@@ -20,7 +20,7 @@ def did_you_mean(*names: str) -> str:
 def closest(name: str, names: Iterable[str]) -> str:
     """Return the name that begins so, whatever its case, or is most alike; empty if none is."""
     known = {one.lstrip("-"): one for one in sorted(names, key=len)}
-    plain = name.lstrip("-")
+    plain = str(name).lstrip("-")
     near = [one for one in known if plain and one.lower().startswith(plain.lower())]
     near = near or difflib.get_close_matches(plain, known, n=1, cutoff=0.5)
     return known[near[0]] if near else ""

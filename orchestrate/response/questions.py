@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..errors import NOT_NUMBERS, InputError
 from ..fmu import REST, finder, gap_between
 from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
@@ -313,7 +313,7 @@ def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> 
     given = unmasked(name, REST if value is None else value)
     try:
         rows = np.atleast_2d(np.asarray(given, dtype=float))
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         text = "a dataset" if hasattr(value, "data_vars") else repr(value)
         raise InputError(f"{name} = {text}: {expected}") from None
     if rows.ndim != 2 or rows.shape[1] != 4 or not len(rows):

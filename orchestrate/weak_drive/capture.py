@@ -22,7 +22,7 @@ from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
-from ..model.arguments import checked_integer
+from ..model.arguments import checked_integer, checked_list, checked_pair
 from ..model.drive import Drive
 from ..model.ranges import DRIVE
 from ..model.structure import Structure
@@ -216,11 +216,8 @@ def check_parameter_values(
         raise InputError(f"over = {over!r} and values = {values!r}: expected both, or none of them")
     if over is None:
         return ()
-    try:
-        numbers = tuple(np.asarray(values, dtype=float).ravel().tolist())
-    except (TypeError, ValueError):
-        raise InputError(f"values = {values!r}: expected numbers, such as [1.0, 2.0]") from None
-    if not numbers or len(set(numbers)) != len(numbers):
+    numbers = checked_list("values", values)
+    if len(set(numbers)) != len(numbers):
         raise InputError(f"values = {values!r}: expected one number or more, each once")
     for value in numbers:
         replace_parameter(system, over, value)
@@ -315,10 +312,7 @@ def capture(
     require_motor(structure, drive)
     system = System(structure, drive)
     parameter_values = check_parameter_values(over, values, system)
-    try:
-        low, high = (float(value) for value in voltage)
-    except (TypeError, ValueError):
-        raise InputError(f"voltage = {voltage!r}: expected (lowest, highest) in V") from None
+    low, high = checked_pair("voltage", voltage, "(lowest, highest) in V")
     check("voltage", low, "V", low=0.0)
     check("voltage", high, "V", low=0.0)
     if not low < high:

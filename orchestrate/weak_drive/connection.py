@@ -104,14 +104,12 @@ def checked_links(
     return links
 
 
-def checked_units(units: Mapping[str, str] | None, drive: Description) -> dict[str, str]:
-    if not isinstance(units or {}, Mapping):
-        raise InputError(f"units = {units!r}: expected units by names of the drive")
-    for name, unit in (units or {}).items():
+def checked_units(units: Mapping[str, str], drive: Description) -> dict[str, str]:
+    for name, unit in units.items():
         checked_variable(drive, name, "")
         if unit_by_name(str(unit)) is None:
             raise InputError(f"units: {name} = {unit!r}; expected a unit such as m/s2, mm or kN")
-    return dict(units or {})
+    return dict(units)
 
 
 def checked_variable(drive: Description, name: str, causality: str, any_type: bool = False) -> Any:

@@ -8,21 +8,27 @@ from __future__ import annotations
 import hashlib
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from os import PathLike
-from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import InputError
+from ..errors import NOT_NUMBERS, InputError
 from ..fmu.description import Description, describe_runnable
 from ..fmu.exported import finder
 from ..fmu.instance import REAL_TYPES
 from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER
 from ..lazy import Unpack, xr
-from ..model.arguments import Count, checked_integer
+from ..model.arguments import (
+    Count,
+    checked_integer,
+    checked_mapping,
+    checked_path,
+    checked_texts,
+    checked_word,
+)
 from ..model.drive import Drive
 from ..model.shaker import Shaker
 from ..model.structure import Structure
@@ -39,6 +45,7 @@ from .schedule import Course, check
 # in place of the structure where there is none: the drive does not feel it
 BALLAST = Structure(m1=1.0, m2=1.0, k1=1.0, k2=1.0, bonded=True)
 MAX_STEPS = 10_000_000
+ForceSign = Literal["tested", "given"]
 NOTICED = 0.01  # of the largest displacement: a larger coupling error gives a warning
 RESOLVED = 0.5  # of a drive's response to a force at once, its mean over a step, else a warning
 
@@ -56,7 +63,7 @@ def cosimulate(
     record: Sequence[str] | None = None,
     start: ArrayLike | None = None,
     estimate: bool = True,
-    force_sign: Literal["tested", "given"] = "tested",
+    force_sign: ForceSign = "tested",
     points: Count = 1,
     **running: Unpack[Running],
 ) -> xr.Dataset:
@@ -152,16 +159,18 @@ def cosimulate(
     >>> run.x1.dims, bool(run.coupling_error.max() < 1e-6)
     (('time',), True)
     """
+    mappings = {"connect": connect, "units": units, "parameters": parameters, "inputs": inputs}
+    connect, units, parameters, inputs = (checked_mapping(*one) for one in mappings.items())
     foreign = not isinstance(drive, (Drive, Shaker))
     if isinstance(drive, (Drive, Shaker)):
-        parameters = {**drive.parameters(), **(parameters or {})}
+        parameters = {**drive.parameters(), **parameters}
         model = MOTOR_SHAKER if isinstance(drive, Drive) else ELECTRODYNAMIC_SHAKER
         ours = {name: name for name in OURS if structure is not None or name not in FORCE}
         connect, drive = connect or ours, finder(running)(model).path
-    path = Path(drive).resolve()
+    path = checked_path("drive", drive).resolve()
     description = describe_runnable(path)
     units = checked_units(units, description)
-    links = checked_links(connect or {}, description, units, structure is None)
+    links = checked_links(connect, description, units, structure is None)
     for name, value in (("duration", duration), ("step", step)):
         check(name, value, "s", low=0.0, exclusive=True)
     check_internal_step(duration, step, description, estimate)
@@ -175,31 +184,25 @@ def cosimulate(
         estimate=estimate,
         drive=str(path),
         drive_sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
-        connect=tuple((connect or {}).items()),
+        connect=tuple(connect.items()),
         units=tuple(units.items()),
-        start_values=checked_parameters(parameters or {}, description),
-        inputs=checked_inputs(inputs or {}, description, duration),
+        start_values=checked_parameters(parameters, description),
+        inputs=checked_inputs(inputs, description, duration),
         step=float(duration) / count,
-        record=checked_record(record or (), description),
+        record=checked_record(record, description),
         start=checked_state("start", start, checked),
-        force_sign=force_sign,
+        force_sign=checked_word("force_sign", force_sign, get_args(ForceSign)),
         points=points,
     )
     check_inputs(job.inputs, links)
     found = answer(job, running, finder(running), job.drive_sha256 if foreign else "")
-    warn_of_drive(found)
-    moves = set(MOTION) & set(links)
-    missing = [name for name in MOTION if name not in links and moves]
-    if missing:
-        warn_of_step(found, missing)
-    if estimate:
-        warn_of_error(found, missing)
+    warn_of_run(found, links, estimate)
     return found
 
 
 def checked_step_count(duration: float, step: float, drive: Description) -> int:
     """Return the number of steps; raise ``InputError`` if a drive of equal steps has a rest."""
-    count = max(1, math.ceil(duration / step - 1e-9))
+    count = max(1, math.ceil(min(duration / step, MAX_STEPS + 1.0) - 1e-9))
     if drive.has_fixed_step and not math.isclose(count * step, duration, rel_tol=1e-9):
         raise InputError(
             f"duration = {duration} s, step = {step} s: the FMU {drive.name} takes only steps "
@@ -252,21 +255,30 @@ def checked_inputs(
                 value = Course(tuple(np.ravel(times)), tuple(np.ravel(values)))
             except InputError as error:
                 raise InputError(f"inputs: {name}: {error}") from None
-            except (TypeError, ValueError):
+            except NOT_NUMBERS:
                 text = "expected a number, (times, values) or a Course"
                 raise InputError(f"inputs: {name} = {value!r:.60}: {text}") from None
         courses.append((name, value))
     return tuple(courses)
 
 
-def checked_record(record: Sequence[str], drive: Description) -> tuple[str, ...]:
-    if isinstance(record, str):
-        record = [record]
+def checked_record(record: Any, drive: Description) -> tuple[str, ...]:
+    record = checked_texts("record", record)
     for name in record:
         checked_variable(drive, name, "", any_type=True)
         if name in (*IN_TIME, *IN_TIME_TOO):
             raise InputError(f"record: {name} is a name of the oscillator's; leave it out")
     return tuple(dict.fromkeys(record))
+
+
+def warn_of_run(run: xr.Dataset, links: Container[str], estimate: bool) -> None:
+    warn_of_drive(run)
+    missing = [name for name in MOTION if name not in links]
+    missing = missing if len(missing) < len(MOTION) else []
+    if missing:
+        warn_of_step(run, missing)
+    if estimate:
+        warn_of_error(run, missing)
 
 
 def warn_of_drive(run: xr.Dataset) -> None:

@@ -11,8 +11,9 @@ import numpy as np
 
 from ..errors import InputError
 from ..lazy import Unpack, xr
-from ..model.arguments import unmasked
+from ..model.arguments import checked_list, checked_number
 from ..model.drive import Drive
+from ..model.ranges import checked_flag
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
@@ -209,12 +210,8 @@ def schedule_from_arguments(
     require_motor(structure, drive)
     if isinstance(voltage, Schedule):
         return voltage
-    unmasked("voltage", voltage)
-    try:
-        ends = [float(value) for value in np.ravel(voltage)]
-    except (TypeError, ValueError):
-        ends = []
-    if len(ends) not in (1, 2):
+    ends = checked_list("voltage", voltage)
+    if len(ends) > 2:
         raise InputError(f"voltage = {voltage!r}: expected a number or (first, last), in V")
     if (duration is None) == (len(ends) == 1):
         raise InputError(
@@ -222,17 +219,19 @@ def schedule_from_arguments(
             "duration, or (first, last) and a rate"
         )
     if duration is not None:
-        return Constant(ends[0], float(duration))
+        return Constant(ends[0], checked_number("duration", duration))
     omega, volts = structure.omega, drive.volts(structure)
-    rate = 1e-4 * volts * omega if rate is None else rate
-    settle = 300.0 / omega if settle is None else settle
+    rate = 1e-4 * volts * omega if rate is None else checked_number("rate", rate)
+    settle = 300.0 / omega if settle is None else checked_number("settle", settle)
+    increment = checked_number("increment", increment)
     first, last = ends
     low = 0.9 * own_resonance.resonances(structure, drive)[0] * volts
     sense = math.copysign(1.0, last)
     if spin_up is None:  # a run up begins on the branch below the resonance
         spin_up = 600.0 / omega if sense * last > sense * first > low / 0.9 else 0.0
-    ramp = Ramp(first, last, float(rate), float(settle), float(increment), bool(back))
-    return replace(ramp, spin_up=float(spin_up), low=sense * low) if spin_up else ramp
+    ramp = Ramp(first, last, rate, settle, increment, checked_flag("back", back))
+    spin_up = checked_number("spin_up", spin_up)
+    return replace(ramp, spin_up=spin_up, low=sense * low) if spin_up else ramp
 
 
 def scheme_from_arguments(
@@ -242,12 +241,13 @@ def scheme_from_arguments(
     if tolerance is None:
         # of the displacements errors are about half as large
         tolerance = 1e-7 if step is None else 0.0
+    tolerance = checked_number("tolerance", tolerance)
     if step is None:
         step = (0.4 if tolerance and not sampled else 0.1) / omega
-    rounding = 1.0 + 1e-12
+    step, rounding = checked_number("step", step), 1.0 + 1e-12
     if not 1e-4 / rounding <= step * omega <= rounding:
         raise InputError(f"step = {step} s: expected {1e-4 / omega:g} <= step <= {1.0 / omega:g}")
-    return Scheme(float(step), float(tolerance))
+    return Scheme(step, tolerance)
 
 
 def couple_job(
@@ -263,7 +263,7 @@ def couple_job(
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
     steps = schedule.duration / scheme.h
-    if math.ceil(steps - 1e-9) < 1:
+    if not steps > 1e-9:
         raise InputError(
             f"duration = {schedule.duration:g} s: expected one communication step or more, "
             f"duration >= {scheme.h:g}"
@@ -277,9 +277,11 @@ def couple_job(
         at_rest = control is not None
         speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
     check("speed_start", speed_start, "rad/s")
-    hysteresis = hysteresis or HysteresisSettings()
+    hysteresis = HysteresisSettings() if hysteresis is None else hysteresis
+    if not isinstance(hysteresis, HysteresisSettings):
+        raise InputError(f"hysteresis = {hysteresis!r}: expected HysteresisSettings(...)")
     hold = hysteresis.usual_hold(structure, drive) if hold is None else hold
-    check("hold", hold, "s", low=0.0)
+    check("hold", hold, "s", low=0.0, high=MAX_STEPS * scheme.h)
     run = (structure, drive, schedule, scheme, float(speed_start), float(hold), control)
     return CoupleJob(f"couple_{structure.kind}", *run, hysteresis)
 

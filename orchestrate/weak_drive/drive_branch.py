@@ -8,7 +8,6 @@ the unit circle before (Neimark-Sacker).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -23,7 +22,7 @@ from ..fmu.exported import finder
 from ..fmu.instance import Instance
 from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
-from ..model.arguments import checked_integer
+from ..model.arguments import checked_integer, checked_pair
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
@@ -32,7 +31,7 @@ from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
 from .couple import KINDS as STRUCTURES
-from .couple import require_motor
+from .couple import MAX_STEPS, require_motor
 from .drive_tracer import (
     ENDS,
     HALVED,
@@ -305,12 +304,14 @@ def drive_branch(
     require_motor(structure, drive)
     omega = structure.omega
     low, high = (speed * omega for speed in own_resonance.resonances(structure, drive))
-    first, last = (0.95 * low, 1.25 * high) if speed is None else map(float, speed)
-    if not (0.0 < first < last < math.inf):
-        raise InputError(f"speed = {speed} rad/s: expected (first, last) with 0 < first < last")
+    expected = "(first, last) in rad/s, with 0 < first < last"
+    usual = 0.95 * low, 1.25 * high
+    first, last = checked_pair("speed", usual if speed is None else speed, expected)
+    if not 0.0 < first < last:
+        raise InputError(f"speed = {speed} rad/s: expected {expected}")
     check("longest", longest, "", low=1e-4, high=1.0)
-    settle = 600.0 / omega if settle is None else float(settle)
-    check("settle", settle, "s", low=0.0)
+    settle = 600.0 / omega if settle is None else settle
+    check("settle", settle, "s", low=0.0, high=MAX_STEPS * 0.1 / omega)
     least = (("most", most, 2), ("period", period, 1), ("steps", steps, 16))
     most, period, steps = (checked_integer(*count) for count in least)
     own = (float(longest), most, period, steps, settle)

@@ -19,7 +19,7 @@ from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
-from ..model.arguments import checked_integer
+from ..model.arguments import checked_integer, checked_number
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
@@ -28,7 +28,7 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
-from .couple import KINDS, couple_job, require_motor, scheme_from_arguments
+from .couple import KINDS, MAX_STEPS, couple_job, require_motor, scheme_from_arguments
 from .run import MotorRun, begin_run
 from .schedule import Ramp, check
 
@@ -188,21 +188,22 @@ def drive_spectra(
     """
     require_motor(structure, drive)
     omega, volts = structure.omega, drive.volts(structure)
-    speed = 1e-4 * volts * omega if rate is None else float(rate)
-    hold = 800.0 / omega if hold is None else float(hold)
-    check("hold", hold, "s", low=0.0)
+    speed = 1e-4 * volts * omega if rate is None else checked_number("rate", rate)
     revolutions = checked_integer("revolutions", revolutions, 1)
     points = checked_integer("points", points, 4)
+    highest = checked_number("highest", highest)
     if not 0.0 < highest <= points / 2:
         raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
     step = scheme_from_arguments(structure, step, 0.0).h
-    record = (revolutions, points, float(highest))
+    hold = 800.0 / omega if hold is None else hold
+    check("hold", hold, "s", low=0.0, high=MAX_STEPS * step)
+    record = (revolutions, points, highest)
     shares = (0.6, 0.45, 0.3, 0.15) if voltage is None else ()
     tried = [voltage_at_resonance(structure, drive, share) for share in shares]
-    tried = tried or [float(voltage)]  # type: ignore[arg-type]
+    tried = tried or [checked_number("voltage", voltage)]
     jobs = []
     for target in tried:
-        first = 0.85 * target if begin is None else float(begin)
+        first = 0.85 * target if begin is None else checked_number("begin", begin)
         approach = Ramp(first, target, speed, settle=300.0 / omega, back=False)
         jobs.append(
             DriveSpectraJob("drive_spectra", structure, drive, approach, hold, step, *record)

@@ -17,6 +17,7 @@ from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
+from ..model.arguments import checked_list
 from ..model.drive import Drive
 from ..model.ranges import STRUCTURE
 from ..model.structure import Structure
@@ -195,9 +196,8 @@ def jump_voltages(
     """
     require_motor(structure, drive)
     unit = drive.volts(structure) * structure.omega
-    volt_rates = [rate * unit for rate in (1e-4, 5e-5, 2.5e-5)] if rates is None else list(rates)
-    if not volt_rates:
-        raise InputError(f"rates = {rates}: expected one or more, in V/s")
+    usual = [rate * unit for rate in (1e-4, 5e-5, 2.5e-5)]
+    volt_rates = checked_list("rates", usual if rates is None else rates)
     every = (
         schedule_from_arguments(structure, drive, voltage, None, rate, settle, 0.0, back)
         for rate in sorted(set(volt_rates))

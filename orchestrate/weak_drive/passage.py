@@ -241,8 +241,7 @@ def waterfall(
 
 
 def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:
-    if mass not in (1, 2):
-        raise InputError(f"mass = {mass!r}: expected 1 or 2")
+    checked_integer("mass", mass, 1, 2)
     checked_integer("revolutions", revolutions, 1)
     check("highest", highest, "times the speed", low=0.0, exclusive=True)
     missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import numbers
+import sys
 from abc import ABC, abstractmethod
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -27,7 +28,7 @@ def check(
     exclusive: bool = False,
 ) -> None:
     number = isinstance(value, numbers.Real) and not isinstance(value, bool)
-    if not (number and math.isfinite(value) and low <= value <= high) or (
+    if not (number and abs(value) <= sys.float_info.max and low <= value <= high) or (
         exclusive and value == low
     ):
         ends = f"{low:g} {'<' if exclusive else '<='} {name}"

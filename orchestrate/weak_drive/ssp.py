@@ -314,7 +314,7 @@ def drive_component(
     description, exchanged = describe(path), ("box_force", "box_acceleration")
     if connect is None and isinstance(drive, Shaker):
         connect = {name: name for name in exchanged}
-    links = checked_links(connect or {}, description, checked_units(units, description))
+    links = checked_links(connect or {}, description, checked_units(units or {}, description))
     taken = [name for name in links if name in FORCE[1:]]
     if taken or ("box_force" in links and "box_acceleration" not in links):
         raise InputError(

@@ -170,6 +170,17 @@ def test_a_question_asked_wrongly(exported, name, wrong, words):
     refusal(lambda: getattr(orchestrate, name)(first, **asked), words)
 
 
+@pytest.mark.parametrize("name", ASKED)
+def test_each_keyword_of_a_question_is_refused_by_its_name(exported, name):
+    function, good = getattr(orchestrate, name), {"eta": 1.3, **ASKED[name][0]}
+    first = good.pop("data", good.pop("structure", UNIT))
+    keys = [*inspect.signature(function).parameters][1:]
+    for key in (key for key in keys if key not in ("running", "parameters")):
+        asked = {one: value for one, value in good.items() if one in keys}
+        for wrong in (object(), {"a": 1}, [[1.0], [2.0, 3.0]]):
+            refusal(lambda asked={**asked, key: wrong}: function(first, **asked), key)
+
+
 @functools.cache
 def window():
     return orchestrate.branch(UNIT, eta=2.6, limits=(2.5, 2.7))
@@ -292,7 +303,8 @@ MADE = {  # what is made of numbers, each of which is refused by its name where 
 @pytest.mark.parametrize("name", MADE)
 def test_what_is_no_number_is_refused_by_its_name(name):
     for key, value in MADE[name].items():
-        for wrong in (math.nan, "x", [object()], -math.inf):
+        large = [10**400] * (key not in ("seed", "range"))
+        for wrong in (math.nan, "x\ny", [object()], -math.inf, *large):
             with pytest.raises(InputError, match=rf"^[^\n]*\b{key}\b[^\n]*expected[^\n]*$"):
                 getattr(orchestrate, name)(**{**MADE[name], key: wrong})
         assert getattr(orchestrate, name)(**{**MADE[name], key: value})
@@ -431,14 +443,14 @@ RELATED = [  # numbers that do not fit each other, words, and what else has a ru
     (asked("capture", **RAMP, over="D", values=[0.1, 0.1]), "values = [0.1, 0.1] | each once"),
     (asked("capture", **RAMP, time=1e-300), "1e-300 | one communication step"),
     (asked("drive_branch", speed=(1.4, 1.2)), "speed = (1.4, 1.2) rad/s"),
-    (asked("jump_voltages", **RAMP, rates=[]), "rates = [] | one or more"),
+    (asked("jump_voltages", **RAMP, rates=[]), "rates: 0 values | a list of 1"),
     (asked("jump_voltages", **RAMP, rates=[1e-4, -1e-4]), "rate = -0.0001 | > 0"),
     (asked("jump_voltages", **RAMP, over="m1", values=[1.0]), "over = 'm1' | expected clearance"),
     (asked("jump_voltages", **RAMP, over="e"), "over = 'e' and values = None | both"),
     (lambda: drive_spectra(QUICK, DRIVE, points=64, highest=99), "points/2 = 32"),
     (lambda: drive_spectra(QUICK, DRIVE, voltage=0.001, begin=0.0009, hold=1.0), "no two revol"),
     (asked("waterfall", xr.Dataset({"x1": ("time", [0.0])})), "no angle in the dataset"),
-    (asked("waterfall", xr.Dataset(), mass=3), "mass = 3 | 1 or 2"),
+    (asked("waterfall", xr.Dataset(), mass=3), "mass = 3 | from 1 to 2"),
     (asked("couple_all", {"one": (QUICK, DRIVE)}, rates=[]), "expected one of each"),
     (asked("couple_all", {"one": (QUICK, DRIVE)}, kinds=["glued"]), "kinds = 'glued' | bonded"),
     (

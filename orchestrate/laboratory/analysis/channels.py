@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import InputError
+from ...errors import NOT_NUMBERS, InputError
 from ...lazy import xr
 from ...model.arguments import checked_word
 from ...response.labels import Variable, variable
@@ -98,7 +98,7 @@ def sample_rate(time: Floats, stated: Any) -> float:
         return float(rate)
     try:
         number = float(stated)
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         number = np.nan
     if not abs(number / rate - 1.0) <= 0.01:
         text = f"the time has {rate:.6g} samples a second; expected the same"
@@ -137,7 +137,7 @@ def checked_number(
     """Return a number as a float; raise if it is outside its range."""
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         number = np.nan
     if not low <= number <= high or (open_end and number == high):
         sign = "<" if open_end else "<="

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...constants import TURN
-from ...errors import InputError
+from ...errors import NOT_NUMBERS, InputError
 from ...lazy import xr
 from ...response.labels import variable
 from ..stepped_sine import SteppedSine
@@ -161,7 +161,7 @@ def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:
                 raise ValueError
             return tuple(map(float, range(1, int(highest) + 1)))
         wanted = tuple(sorted({float(order) for order in orders}))  # type: ignore[union-attr]
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         raise InputError(f"orders = {orders!r}: {expected}") from None
     if 1.0 not in wanted or len(wanted) > MOST_ORDERS or not 0.0 < wanted[0] <= wanted[-1] < 1e3:
         raise InputError(f"orders = {orders!r}: {expected}")
@@ -177,7 +177,7 @@ def given_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike |
         return phase.phase(channels.time)
     try:
         angle = np.asarray(phase, dtype=float)
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         angle = np.empty(0)
     if angle.shape != channels.time.shape or not np.isfinite(angle).all():
         count = len(channels.time)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...errors import InputError
+from ...errors import NOT_NUMBERS, InputError
 from ...lazy import xr
 from ...model.arguments import unmasked
 from ...response.labels import variable
@@ -91,7 +91,7 @@ def natural_frequencies(channels: Channels, given: ArrayLike | None) -> Floats:
     unmasked("frequencies", given)
     try:
         natural = np.atleast_1d(np.asarray(given, dtype=float))
-    except (TypeError, ValueError):
+    except NOT_NUMBERS:
         natural = np.array([np.nan])
     limit = 0.5 * channels.sample_rate
     if natural.ndim != 1 or not len(natural) or not ((natural > 0.0) & (natural <= limit)).all():
