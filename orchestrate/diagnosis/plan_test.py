@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from ..constants import GRAVITY
 from ..errors import InputError
 from ..fmu import finder
-from ..laboratory.analysis.channels import BOX, Channels, attributes, checked_number
+from ..laboratory.analysis.channels import BOX, Channels, attributes
 from ..laboratory.pieces import Floats
 from ..laboratory.sensors import CHANNELS, Sensor, measure, sensor_by_channel
 from ..laboratory.shake import shake
@@ -24,6 +24,7 @@ from ..laboratory.swept_sine import SweptSine
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked_numbers
+from ..model.ranges import checked_range
 from ..response.labels import variable, yes_or_no
 from ..response.questions import checked_structure
 from ..running.executors import InlineExecutor
@@ -150,7 +151,7 @@ def plan_test(
         first=first,
         last=last,
         duration=slow_enough(sound.f, sound.zeta, first, last),
-        reserve=checked_number("reserve", reserve, 1.0, 1e3),
+        reserve=checked_range("reserve", reserve, low=1.0, high=1e3),
     )
     return answer(job, running, finder(running))
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 
 from ..errors import InputError
-from ..laboratory.analysis.channels import checked_number
 from ..laboratory.record_checks import CLIPPED
 from ..model.arguments import checked_mapping
+from ..model.ranges import checked_range
 
 Changes = Mapping[str, float] | None  # of a caller: names of settings with other values
 
@@ -120,6 +120,6 @@ def checked_settings(changes: Changes) -> Settings:
     for name, value in changes.items():
         kind = type(getattr(SETTINGS, name))
         least = 1.0 if kind is int else 0.0
-        number = checked_number(f"settings[{name!r}]", value, least, 1e6)
+        number = checked_range(f"settings[{name!r}]", value, low=least, high=1e6)
         made = replace(made, **{name: kind(number)})
     return made

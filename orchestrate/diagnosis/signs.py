@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..laboratory.analysis.channels import BOX, Channels, attributes, checked_number
+from ..laboratory.analysis.channels import BOX, Channels, attributes
 from ..laboratory.pieces import Floats
 from ..laboratory.record import FORCES
 from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer
+from ..model.ranges import checked_range
 from ..response.labels import flags, variable
 from ..running.job import refuse_family
 from .drive_signs import is_drive_run, signs_against_sound
@@ -112,10 +113,10 @@ def signs(
     True
     """
     others = [other] if isinstance(other, xr.Dataset) else list(other or ())
-    times = checked_number("factor", factor, 1.0, 1e6)
+    times = checked_range("factor", factor, low=1.0, high=1e6)
     if is_drive_run(record):
         return signs_of_drive_run(record, others, times)
-    length = checked_number("periods", periods, 2.0, 1e4)
+    length = checked_range("periods", periods, low=2.0, high=1e4)
     count = checked_integer("seeds", seeds, 1, 1000)
     every = [reference_channels(one) for one in (record, *others)]
     reference = every[0].box_label
@@ -123,8 +124,8 @@ def signs(
     edge = high_band
     if edge is not None:
         highest = MAX_EDGE * every[0].sample_rate
-        edge = checked_number("high_band", edge, 1e-9, highest, "Hz")
-    level = None if noise is None else checked_number("noise", noise, 0.0, math.inf, "m/s2", True)
+        edge = checked_range("high_band", edge, "Hz", low=1e-9, high=highest)
+    level = None if noise is None else checked_range("noise", noise, "m/s2", low=0.0)
     swept = [is_swept(channels, length) for channels in every]
     pairs = zip(every, swept, strict=True)
     own = [response_signs(channels, sine, length, edge) for channels, sine in pairs]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from .conversions import damping_from_ratio
 from .described import Described
-from .ranges import DRIVE, RATIO_QUANTITIES, construct_or_explain, exact_inverse
+from .ranges import DRIVE, RATIO_QUANTITIES, checked_range, construct_or_explain, exact_inverse
 from .structure import Structure
 
 if TYPE_CHECKING:
@@ -263,8 +263,7 @@ def torque_line(
         "stall_torque": stall_torque,
     }
     for name, value in checked.items():
-        if not (math.isfinite(value) and value > 0.0):
-            raise InputError(f"{name} = {value}: expected a number > 0")
+        checked_range(name, value, low=0.0, open_low=True)
     constant = rated_voltage / no_load_speed
     return constant, constant * rated_voltage / stall_torque
 

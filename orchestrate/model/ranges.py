@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import numbers
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -84,6 +85,27 @@ class Quantity:
             unit = "" if self.unit == "1" else f" {self.unit}"
             raise InputError(f"{self.name} = {number!r}{unit}: expected {self.expected}")
         return number + 0.0  # no negative zero
+
+
+def checked_range(
+    name: str,
+    value: Any,
+    unit: str = "",
+    low: float = -math.inf,
+    high: float = math.inf,
+    open_low: bool = False,
+    open_high: bool = False,
+) -> float:
+    """Return a finite number from ``low`` to ``high``, of which either end may be left out."""
+    is_number = isinstance(value, numbers.Real) and not isinstance(value, bool)
+    number: Any = value if is_number and abs(value) <= sys.float_info.max else math.nan
+    left_out = (open_low and number == low) or (open_high and number == high)
+    if not low <= number <= high or left_out:
+        begin = "" if low == -math.inf else f"{low:.4g} {'<' if open_low else '<='} "
+        end = "" if high == math.inf else f" {'<' if open_high else '<='} {high:.4g}"
+        expected = f"{begin}{name}{end}" if begin or end else "a finite number"
+        raise InputError(f"{name} = {value!r}{unit and f' {unit}'}: expected {expected}")
+    return float(number)
 
 
 def known_units(name: str) -> dict[str, str]:

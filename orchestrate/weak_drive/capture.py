@@ -24,7 +24,7 @@ from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer, checked_list, checked_pair
 from ..model.drive import Drive
-from ..model.ranges import DRIVE
+from ..model.ranges import DRIVE, checked_range
 from ..model.structure import Structure
 from ..response.labels import parameter_variable, variable, yes_or_no
 from ..running.job import Fmus, Job, Table
@@ -36,7 +36,7 @@ from .controllers import Controller
 from .couple import couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
 from .run import MotorJob, MotorRun, motor_runs
-from .schedule import Constant, check
+from .schedule import Constant
 
 DRIVE_NAMES = tuple(field.name for field in fields(Drive))
 
@@ -313,14 +313,14 @@ def capture(
     system = System(structure, drive)
     parameter_values = check_parameter_values(over, values, system)
     low, high = checked_pair("voltage", voltage, "(lowest, highest) in V")
-    check("voltage", low, "V", low=0.0)
-    check("voltage", high, "V", low=0.0)
+    checked_range("voltage", low, "V", low=0.0)
+    checked_range("voltage", high, "V", low=0.0)
     if not low < high:
         raise InputError(f"voltage = ({low:g}, {high:g}) V: expected (lowest, highest)")
     voltages = tuple(np.linspace(low, high, checked_integer("count", count, 2)).tolist())
-    check("tolerance", tolerance, "V", low=0.0, exclusive=True)
+    checked_range("tolerance", tolerance, "V", low=0.0, open_low=True)
     if time is not None:
-        check("time", time, "s", low=0.0, exclusive=True)
+        checked_range("time", time, "s", low=0.0, open_low=True)
     stay = checked_integer("stay", stay, 1)
     scheme = scheme_from_arguments(structure, step, sampled=control is not None)
     what = (structure, drive, over or "", parameter_values, voltages)

@@ -12,8 +12,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from ..model.ranges import checked_range
 from .polynomials import Cubic
-from .schedule import check
 
 ControllerState = tuple[float, ...]
 
@@ -97,11 +97,11 @@ class SpeedControl(Controller):
     rise: float = math.inf
 
     def __post_init__(self) -> None:
-        check("speed", self.speed, "rad/s")
-        check("gain", self.gain, "V.s/rad", low=0.0, exclusive=True)
+        checked_range("speed", self.speed, "rad/s")
+        checked_range("gain", self.gain, "V.s/rad", low=0.0, open_low=True)
         for name, unit in (("reset_time", "s"), ("rise", "rad/s2")):
             if getattr(self, name) != math.inf:
-                check(name, getattr(self, name), unit, low=0.0, exclusive=True)
+                checked_range(name, getattr(self, name), unit, low=0.0, open_low=True)
 
     def begin(self, speed: float) -> ControllerState:
         return (self.speed if self.rise == math.inf else speed), 0.0
@@ -164,9 +164,9 @@ class SpeedGradient(Controller):
     low: float = 0.0
 
     def __post_init__(self) -> None:
-        check("filter_time", self.filter_time, "s", low=0.0, exclusive=True)
-        check("passed", self.passed, "rad/s", low=0.0, exclusive=True)
-        check("low", self.low, "of the voltage", low=0.0, high=1.0)
+        checked_range("filter_time", self.filter_time, "s", low=0.0, open_low=True)
+        checked_range("passed", self.passed, "rad/s", low=0.0, open_low=True)
+        checked_range("low", self.low, "of the voltage", low=0.0, high=1.0)
 
     def begin(self, speed: float) -> ControllerState:
         return (speed,)

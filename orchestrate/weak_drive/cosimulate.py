@@ -30,6 +30,7 @@ from ..model.arguments import (
     checked_word,
 )
 from ..model.drive import Drive
+from ..model.ranges import checked_range
 from ..model.shaker import Shaker
 from ..model.structure import Structure
 from ..response.questions import checked_state, checked_structure
@@ -40,7 +41,7 @@ from .connection import FORCE, MOTION, OURS, checked_links, checked_units, check
 from .controllers import InputControl
 from .cosimulation_job import AT_THE_DURATION, IN_TIME_TOO, CosimulateJob, Values
 from .inputs import Input, check_inputs
-from .schedule import Course, check
+from .schedule import Course
 
 # in place of the structure where there is none: the drive does not feel it
 BALLAST = Structure(m1=1.0, m2=1.0, k1=1.0, k2=1.0, bonded=True)
@@ -172,7 +173,7 @@ def cosimulate(
     units = checked_units(units, description)
     links = checked_links(connect, description, units, structure is None)
     for name, value in (("duration", duration), ("step", step)):
-        check(name, value, "s", low=0.0, exclusive=True)
+        checked_range(name, value, "s", low=0.0, open_low=True)
     check_internal_step(duration, step, description, estimate)
     count = checked_step_count(duration, step, description)
     estimate = estimate and structure is not None
@@ -236,7 +237,7 @@ def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Val
         if isinstance(value, (bool, np.bool_)):
             checked.append((name, bool(value)))
             continue
-        check(name, value, str(drive.variable(name).unit or ""))
+        checked_range(name, value, str(drive.variable(name).unit or ""))
         is_real = drive.variable(name).type in REAL_TYPES
         checked.append((name, float(value) if is_real else int(value)))
     return tuple(checked)

@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_list, checked_number
 from ..model.drive import Drive
-from ..model.ranges import checked_flag
+from ..model.ranges import checked_flag, checked_range
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
@@ -27,7 +27,7 @@ from .master import Scheme
 from .ramp_record import DONE, RampRecord, jump_labels, time_beyond, variables_shown
 from .revolutions import COLUMNS
 from .run import MotorJob, motor_runs
-from .schedule import Constant, Ramp, Schedule, check
+from .schedule import Constant, Ramp, Schedule
 
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 DIRECTIONS = ("up", "down")
@@ -276,12 +276,12 @@ def couple_job(
     if speed_start is None:
         at_rest = control is not None
         speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
-    check("speed_start", speed_start, "rad/s")
+    checked_range("speed_start", speed_start, "rad/s")
     hysteresis = HysteresisSettings() if hysteresis is None else hysteresis
     if not isinstance(hysteresis, HysteresisSettings):
         raise InputError(f"hysteresis = {hysteresis!r}: expected HysteresisSettings(...)")
     hold = hysteresis.usual_hold(structure, drive) if hold is None else hold
-    check("hold", hold, "s", low=0.0, high=MAX_STEPS * scheme.h)
+    checked_range("hold", hold, "s", low=0.0, high=MAX_STEPS * scheme.h)
     run = (structure, drive, schedule, scheme, float(speed_start), float(hold), control)
     return CoupleJob(f"couple_{structure.kind}", *run, hysteresis)
 

@@ -6,7 +6,6 @@ was interrupted, and is not computed again by a later call with more sets or rat
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
@@ -18,6 +17,7 @@ from ..errors import InputError
 from ..fmu.exported import finder
 from ..lazy import Unpack, xr
 from ..model.drive import Drive
+from ..model.ranges import checked_range
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..running.options import Running
@@ -113,8 +113,7 @@ def couple_all(
         if kind not in KINDS:
             raise InputError(f"kinds = {kind!r}: expected {' or '.join(KINDS)}")
     for rate in rates:
-        if not (math.isfinite(rate) and rate > 0.0):
-            raise InputError(f"rate = {rate}: expected a number > 0, of eta0 in a time 1/omega")
+        checked_range("rate", rate, "of eta0 in a time 1/omega", low=0.0, open_low=True)
     runs = list(product(systems, kinds, dict.fromkeys(rates)))
     more = (eta0, back, step)
     jobs = [couple_job_from_numbers(n, systems[n], kind, rate, *more) for n, kind, rate in runs]

@@ -24,6 +24,7 @@ from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer, checked_pair
 from ..model.drive import Drive
+from ..model.ranges import checked_range
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
 from ..running.job import Fmus, Job, Table
@@ -42,7 +43,6 @@ from .drive_tracer import (
     double_period,
     motion_near,
 )
-from .schedule import check
 from .shooting import Shooter
 
 LEGS = ("from below", "from above", "first doubled", "second doubled")
@@ -309,9 +309,9 @@ def drive_branch(
     first, last = checked_pair("speed", usual if speed is None else speed, expected)
     if not 0.0 < first < last:
         raise InputError(f"speed = {speed} rad/s: expected {expected}")
-    check("longest", longest, "", low=1e-4, high=1.0)
+    checked_range("longest", longest, "", low=1e-4, high=1.0)
     settle = 600.0 / omega if settle is None else settle
-    check("settle", settle, "s", low=0.0, high=MAX_STEPS * 0.1 / omega)
+    checked_range("settle", settle, "s", low=0.0, high=MAX_STEPS * 0.1 / omega)
     least = (("most", most, 2), ("period", period, 1), ("steps", steps, 16))
     most, period, steps = (checked_integer(*count) for count in least)
     own = (float(longest), most, period, steps, settle)

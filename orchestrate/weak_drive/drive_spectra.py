@@ -21,6 +21,7 @@ from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer, checked_number
 from ..model.drive import Drive
+from ..model.ranges import checked_range
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
@@ -30,7 +31,7 @@ from ..running.runner import answer
 from . import averaged, own_resonance
 from .couple import KINDS, MAX_STEPS, couple_job, require_motor, scheme_from_arguments
 from .run import MotorRun, begin_run
-from .schedule import Ramp, check
+from .schedule import Ramp
 
 
 @dataclass(frozen=True)
@@ -196,7 +197,7 @@ def drive_spectra(
         raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
     step = scheme_from_arguments(structure, step, 0.0).h
     hold = 800.0 / omega if hold is None else hold
-    check("hold", hold, "s", low=0.0, high=MAX_STEPS * step)
+    checked_range("hold", hold, "s", low=0.0, high=MAX_STEPS * step)
     record = (revolutions, points, highest)
     shares = (0.6, 0.45, 0.3, 0.15) if voltage is None else ()
     tried = [voltage_at_resonance(structure, drive, share) for share in shares]

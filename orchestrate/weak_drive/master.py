@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
 from ..fmu.c_library import loaded_loop
 from ..fmu.channel import Channel, SimulationEnded, StepAnswer
 from ..fmu.events import CUBICS
 from ..fmu.fmi import NOT_FINITE, Fmi, references
 from ..fmu.instance import REAL_TYPES, WARNING, Instance, function_addresses
+from ..model.ranges import checked_range
 from .connection import FORCE, MOTOR, PUSHES, Connection, Link
 from .step_record import BOX, LEADING, PLACE, OscillatorOutputs, Record
 
@@ -52,12 +52,8 @@ class Scheme:
     halves_discarded: bool = False  # a step that the drive discards, where it can go back
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.h) and self.h > 0.0):
-            raise InputError(f"step {self.h}: expected a number > 0, in s")
-        if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
-            raise InputError(
-                f"tolerance {self.tolerance}: expected a number >= 0; 0 leaves steps as they are"
-            )
+        checked_range("step", self.h, "s", low=0.0, open_low=True)
+        checked_range("tolerance", self.tolerance, "(0 leaves steps as they are)", low=0.0)
 
     def most_rows(self, intervals: int) -> int:
         halves = self.tolerance or self.halves_discarded

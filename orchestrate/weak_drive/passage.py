@@ -18,6 +18,7 @@ from ..fmu.exported import finder
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
+from ..model.ranges import checked_range
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
@@ -29,7 +30,7 @@ from .controllers import Controller
 from .energy_balance import ACCOUNTS
 from .revolutions import COLUMNS
 from .run import MotorRun
-from .schedule import Schedule, check
+from .schedule import Schedule
 
 SAMPLES = {
     "time": ("s", "time"),
@@ -150,7 +151,7 @@ def passage(
     (('time',), 1000, 'rad/s')
     """
     if around is not None:
-        check("around", around, "s", low=0.0, exclusive=True)
+        checked_range("around", around, "s", low=0.0, open_low=True)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     settings = (duration, rate, settle, 0.0, back, spin_up)
@@ -243,7 +244,7 @@ def waterfall(
 def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:
     checked_integer("mass", mass, 1, 2)
     checked_integer("revolutions", revolutions, 1)
-    check("highest", highest, "times the speed", low=0.0, exclusive=True)
+    checked_range("highest", highest, "times the speed", low=0.0, open_low=True)
     missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(
         getattr(data, "variables", ())
     )

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import numbers
-import sys
 from abc import ABC, abstractmethod
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -17,24 +15,7 @@ import numpy as np
 from ..errors import InputError
 from ..files import read_text, reason
 from ..model.arguments import checked_numbers
-
-
-def check(
-    name: str,
-    value: float,
-    unit: str,
-    low: float = -math.inf,
-    high: float = math.inf,
-    exclusive: bool = False,
-) -> None:
-    number = isinstance(value, numbers.Real) and not isinstance(value, bool)
-    if not (number and abs(value) <= sys.float_info.max and low <= value <= high) or (
-        exclusive and value == low
-    ):
-        ends = f"{low:g} {'<' if exclusive else '<='} {name}"
-        ends += "" if high == math.inf else f" <= {high:g}"
-        expected = "a finite number" if low == -math.inf else ends
-        raise InputError(f"{name} = {value} {unit}: expected {expected}")
+from ..model.ranges import checked_range
 
 
 @dataclass(frozen=True)
@@ -68,8 +49,8 @@ class Constant(Schedule):
     time: float  # s
 
     def __post_init__(self) -> None:
-        check("voltage", self.value, "V")
-        check("duration", self.time, "s", low=0.0)
+        checked_range("voltage", self.value, "V")
+        checked_range("duration", self.time, "s", low=0.0)
 
     @property
     def duration(self) -> float:
@@ -96,19 +77,18 @@ class Ramp(Schedule):
     low: float = 0.0  # voltage at which it spins up from, V
 
     def __post_init__(self) -> None:
-        check("voltage", self.first, "V")
-        check("voltage", self.last, "V")
-        check("spin_up", self.spin_up, "s", low=0.0)
-        check("low", self.low, "V")
+        checked_range("voltage", self.first, "V")
+        checked_range("voltage", self.last, "V")
+        checked_range("spin_up", self.spin_up, "s", low=0.0)
+        checked_range("low", self.low, "V")
         if self.first == self.last:
             raise InputError(
                 f"voltage = ({self.first}, {self.last}) V: expected two different ones, or a "
                 "number and a duration"
             )
-        if not (math.isfinite(self.rate) and self.rate > 0.0):
-            raise InputError(f"rate = {self.rate} V/s: expected a number > 0")
-        check("settle", self.settle, "s", low=0.0)
-        check("increment", self.increment, "V", low=0.0, high=abs(self.last - self.first))
+        checked_range("rate", self.rate, "V/s", low=0.0, open_low=True)
+        checked_range("settle", self.settle, "s", low=0.0)
+        checked_range("increment", self.increment, "V", low=0.0, high=abs(self.last - self.first))
 
     @property
     def begin(self) -> float:
@@ -182,8 +162,8 @@ class Course(Schedule):
             count = f"{len(self.times)} times and {len(self.voltages)} voltages"
             raise InputError(f"{count}: expected as many of both, two or more")
         for time, value in zip(self.times, self.voltages, strict=True):
-            check("time", time, "s", low=0.0)
-            check("voltage", value, "V")
+            checked_range("time", time, "s", low=0.0)
+            checked_range("voltage", value, "V")
         falls = any(after < before for before, after in pairwise(self.times))
         if self.times[0] != 0.0 or falls or self.times[-1] == 0.0:
             raise InputError(f"times = {self.times}: expected rising ones from 0, in s")

@@ -29,13 +29,13 @@ from ..files import write_whole
 from ..fmu.description import Description, describe
 from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
 from ..model.drive import Drive
+from ..model.ranges import checked_range
 from ..model.shaker import Shaker
 from ..model.structure import Structure
 from ..response.questions import checked_structure
 from .connection import FORCE, MOTION, PUSHES, Link, checked_links, checked_units
 from .cosimulate import checked_parameters
 from .run import oscillator_start
-from .schedule import check
 
 NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
@@ -252,9 +252,9 @@ def write_ssp(
         raise InputError(f"version = {version!r}: expected {' or '.join(map(repr, REAL))}")
     checked_structure(structure)
     stop = 100.0 / structure.omega if stop_time is None else stop_time
-    check("stop_time", stop, "s", low=0.0)
+    checked_range("stop_time", stop, "s", low=0.0)
     length = 1e-3 / structure.omega if step is None else step
-    check("step", length, "s", low=0.0, exclusive=True)
+    checked_range("step", length, "s", low=0.0, open_low=True)
     own, other = (Path(fmu) for fmu in fmus) if fmus else (None, None)
     if isinstance(drive, Drive):
         shaker, links, text = motor_component(drive, other, voltage, speed_start)
@@ -288,9 +288,9 @@ def motor_component(
 ) -> tuple[Component, Links, str]:
     if voltage is None:
         raise InputError("voltage: expected with a motor, in V")
-    check("voltage", voltage, "V")
+    checked_range("voltage", voltage, "V")
     speed = voltage / drive.motor_constant if speed is None else speed
-    check("speed_start", speed, "rad/s")
+    checked_range("speed_start", speed, "rad/s")
     path = fmu or fmu_path(MOTOR_SHAKER)
     values = {**drive.parameters(), "speed_start": speed, "voltage": voltage}
     links = {name: Link(name, 1.0) for name in ("box_force", "box_acceleration", "box_jerk")}

@@ -11,6 +11,7 @@ import numpy as np
 from ...errors import NOT_NUMBERS, InputError
 from ...lazy import xr
 from ...model.arguments import checked_word
+from ...model.ranges import checked_range
 from ...response.labels import Variable, variable
 from ...running.provenance import describe_dataset
 from ..columns import column_taken
@@ -131,21 +132,6 @@ def attributes(analysis: str, heading: str, title: str, **settings: Any) -> dict
     return {"analysis": analysis, "title": f"{heading}: {title}", **settings}
 
 
-def checked_number(
-    name: str, value: Any, low: float, high: float, unit: str = "", open_end: bool = False
-) -> float:
-    """Return a number as a float; raise if it is outside its range."""
-    try:
-        number = float(value)
-    except NOT_NUMBERS:
-        number = np.nan
-    if not low <= number <= high or (open_end and number == high):
-        sign = "<" if open_end else "<="
-        text = f"expected {low:.4g} <= {name} {sign} {high:.4g}"
-        raise InputError(f"{name} = {value!r}{' ' + unit if unit else ''}: {text}")
-    return number
-
-
 WINDOWS = ("hann", "hamming", "blackman", "blackmanharris", "flattop", "boxcar")
 FEWEST_LINES = 8  # samples in a segment
 
@@ -202,7 +188,7 @@ def segment_length(channels: Channels, resolution: float | None, longest: int = 
         return longest
     ends = longest or len(channels.time), FEWEST_LINES
     finest, coarsest = (channels.sample_rate / n for n in ends)
-    checked = checked_number("resolution", resolution, finest, coarsest, "Hz")
+    checked = checked_range("resolution", resolution, "Hz", low=finest, high=coarsest)
     return round(channels.sample_rate / checked)
 
 
@@ -211,7 +197,7 @@ def averaging(
 ) -> Averaging:
     """Divide a record into overlapping windowed segments."""
     checked_word("window", window, WINDOWS)
-    part = checked_number("overlap", overlap, 0.0, 0.95)
+    part = checked_range("overlap", overlap, low=0.0, high=0.95)
     count, rate = len(channels.time), channels.sample_rate
     length = segment_length(channels, resolution) or max(count // 16, FEWEST_LINES)
     shared = min(int(part * length), length - 1)

@@ -7,8 +7,9 @@ import warnings
 import numpy as np
 
 from ...lazy import xr
+from ...model.ranges import checked_range
 from ...response.labels import variable
-from .channels import Channels, Floats, attributes, channel_coordinate, checked_number
+from .channels import Channels, Floats, attributes, channel_coordinate
 
 PARTS = 16  # of the record, for standard errors
 
@@ -47,7 +48,7 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
     True
     """
     channels = Channels.from_record(record)
-    number = round(checked_number("bins", bins, 4, 100_000))
+    number = round(checked_range("bins", bins, low=4, high=100_000))
     counted = [np.histogram(channel, number, density=True) for channel in channels.values]
     middles = np.stack([0.5 * (edges[:-1] + edges[1:]) for _, edges in counted])
     density = np.stack([heights for heights, _ in counted])

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...lazy import xr
+from ...model.ranges import checked_range
 from ...response.labels import variable
 from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
-from .channels import attributes, checked_number
+from .channels import attributes
 from .order_tracking import MOST_ORDERS, track_orders
 
 
@@ -51,7 +52,7 @@ def harmonics(
     >>> bool(answer.distortion.sel(channel="acceleration1").max() > 0.01)
     True
     """
-    number = round(checked_number("highest", highest, 2, MOST_ORDERS))
+    number = round(checked_range("highest", highest, low=2, high=MOST_ORDERS))
     tracked = track_orders(record, orders=number, phase=phase, periods=periods, overlap=overlap)
     first = tracked.amplitude.sel(order=1.0, drop=True)
     higher = tracked.amplitude.sel(order=slice(2.0, None))

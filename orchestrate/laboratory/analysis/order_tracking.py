@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from ...constants import TURN
 from ...errors import NOT_NUMBERS, InputError
 from ...lazy import xr
+from ...model.ranges import checked_range
 from ...response.labels import variable
 from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
-from .channels import BOX, Channels, Floats, attributes, channel_coordinate, checked_number
+from .channels import BOX, Channels, Floats, attributes, channel_coordinate
 
 MOST_ORDERS = 50
 EDGE = 2.0  # periods at both ends where the Hilbert transform is not trusted
@@ -94,8 +95,8 @@ def track_orders(
     """
     channels = Channels.from_record(record, (BOX,) if phase is None else ())
     wanted = checked_orders(orders)
-    length = checked_number("periods", periods, 2.0, 1e4)
-    part = checked_number("overlap", overlap, 0.0, 0.95)
+    length = checked_range("periods", periods, low=2.0, high=1e4)
+    part = checked_range("overlap", overlap, low=0.0, high=0.95)
     windows, complex_amplitudes, residual = fit_windows(channels, wanted, phase, length, part)
     over = ("channel", "order", "time")
     rate = [window.rate for window in windows]

@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike
 from ...errors import NOT_NUMBERS, InputError
 from ...lazy import xr
 from ...model.arguments import unmasked
+from ...model.ranges import checked_range
 from ...response.labels import variable
 from .channels import (
     Channels,
     Floats,
     attributes,
     channel_coordinate,
-    checked_number,
     frequency_coordinate,
 )
 
@@ -61,7 +61,7 @@ def shock_spectrum(
     array([ 40.5, 164.8, 100.8])
     """
     channels = Channels.from_record(record)
-    ratio = checked_number("damping", damping, 0.0, 1.0, open_end=True)
+    ratio = checked_range("damping", damping, low=0.0, high=1.0, open_high=True)
     natural = natural_frequencies(channels, frequencies)
     primary = np.empty((len(channels.names), len(natural)))
     residual = np.empty_like(primary)

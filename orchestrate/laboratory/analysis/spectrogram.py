@@ -6,6 +6,7 @@ import numpy as np
 
 from ...lazy import xr
 from ...model.arguments import checked_word
+from ...model.ranges import checked_range
 from ...response.labels import variable
 from .channels import (
     FEWEST_LINES,
@@ -13,7 +14,6 @@ from .channels import (
     Channels,
     attributes,
     channel_coordinate,
-    checked_number,
     frequency_coordinate,
     segment_length,
 )
@@ -56,7 +56,7 @@ def spectrogram(
 
     channels = Channels.from_record(record)
     checked_word("window", window, WINDOWS)
-    most = round(checked_number("spectra", spectra, 1, 100_000))
+    most = round(checked_range("spectra", spectra, low=1, high=100_000))
     count, rate = len(channels.time), channels.sample_rate
     # as many lines times spectra as 32 times the samples
     usual = min(max(int((32.0 * count) ** 0.5), FEWEST_LINES), count)

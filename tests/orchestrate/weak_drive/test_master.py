@@ -163,6 +163,6 @@ def test_what_is_refused():
         m.step(1.4)
         with pytest.raises(FmuError, match="voltage = inf"):
             m.run([1.4, math.inf, 1.4])
-    for arguments, text in (((0.0,), "step 0.0"), ((0.1, -1.0), "tolerance -1.0")):
+    for arguments, text in (((0.0,), "step = 0.0"), ((0.1, -1.0), "tolerance = -1.0")):
         with pytest.raises(InputError, match=text):
             Scheme(*arguments)
