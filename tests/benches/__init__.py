@@ -17,7 +17,7 @@ module              idea
 :mod:`.bench`       a system, an excitation and sensors: a record
 :mod:`.recipe`      random beams, with the truth about each and a guess of it
 :mod:`.strikers`    sound beams that something strikes or kinks: stops, cracks, parts, bearings
-:mod:`.verdicts`    rates of verdicts on random beams, by kind
+:mod:`.verdicts`    rates of verdicts on random beams
 :mod:`.tutorial`    the CSV files of the manual
 ==================  ==============================================================================
 """

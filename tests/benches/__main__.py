@@ -1,4 +1,4 @@
-"""``python -m tests.benches``: records of the manual's tutorial, rates of verdicts by kind."""
+"""``python -m tests.benches``: records of the manual's tutorial, rates of verdicts."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ def main(arguments: list[str] | None = None) -> None:
     commands = parser.add_subparsers(dest="command", required=True)
     one = commands.add_parser("tutorial", help="write the CSV files of the manual's tutorial")
     one.add_argument("--folder", type=Path, default=tutorial.FOLDER)
-    two = commands.add_parser("verdicts", help="diagnose random beams and print their verdicts")
-    two.add_argument("--kinds", nargs="+", choices=verdicts.GROUPS, default=list(verdicts.GROUPS))
+    two = commands.add_parser("verdicts", help="judge random beams and print rates of verdicts")
+    two.add_argument("--kinds", nargs="+", choices=verdicts.MAKERS, default=list(verdicts.MAKERS))
     two.add_argument("--seed", type=int, default=0)
-    two.add_argument("--count", type=int, default=1, help="beams of each kind")
+    two.add_argument("--count", type=int, default=1, help="beams of each kind, twice if split")
     two.add_argument("--budget", type=float, default=600.0, help="processor time, s")
+    two.add_argument("--out", type=Path, required=True, help="a line for each beam, which resumes")
     chosen = parser.parse_args(arguments)
     if chosen.command == "verdicts":
-        rates = chosen.kinds, chosen.seed, chosen.count, chosen.budget
-        for line in verdicts.table_rows(*rates):
-            print(line, flush=True)
+        chosen.out.touch()
+        beams = chosen.kinds, chosen.seed, chosen.count, chosen.budget, chosen.out
+        print(*verdicts.table_rows(verdicts.judged_beams(*beams)), sep="\n")
         return
     for path in tutorial.write_records(chosen.folder):
         data = path.read_bytes()
