@@ -1,4 +1,4 @@
-"""Rates of verdicts on random beams: a line of JSON for each, and a table by groups.
+"""Rates of verdicts on random beams, in a table by groups.
 
 Judged is :meth:`.decision_rule.Beam.verdict` on the records of a :func:`.detect.beam_job`: what
 ``detect`` answers, without the fits, which size its answer and do not act on it.
@@ -6,12 +6,10 @@ Judged is :meth:`.decision_rule.Beam.verdict` on the records of a :func:`.detect
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,7 +23,7 @@ from orchestrate.errors import InputError
 from orchestrate.lazy import xr
 from orchestrate.model import Structure
 
-from .recipe import KINDS, Conditions, Truth, draw_levels, draw_log_uniform
+from .recipe import KINDS, SPLIT, Conditions, Truth, draw_levels, draw_log_uniform
 from .strikers import STRIKERS
 
 REFUSED, FAILED, WRONG = "refused", "failed", "wrong"
@@ -35,34 +33,25 @@ RATES = (1250.0, 10_000.0)  # samples a second
 TIMES = (1.0, 2.0)  # of the level that a beam is drawn for
 MASSES, ELEMENTS, LESS = "two masses", "finite elements", "opens less"
 STRUCK, SOUND = "stops, cracks, parts", "sound"
-RIGHT = {MASSES: DELAMINATED, ELEMENTS: DELAMINATED, SOUND: NO_OPENING}  # else what is not wrong
+PLANNED, TWIN = "planned", "planned, bonded"
+RIGHT = {  # else what is not wrong
+    **dict.fromkeys((MASSES, ELEMENTS, PLANNED), DELAMINATED),
+    **dict.fromkeys((SOUND, TWIN), NO_OPENING),
+}
 ANYWHERE = Conditions(off=0.03, sensors=2, participation=(0.3, 1.6))  # guesses within 3 %
 ON_BEAMS = Conditions(off=0.03, sensors=2, size=(0.3, 0.9), anywhere=True, sensor=(0.3, 1.0))
 MAKERS = {**KINDS, **STRIKERS}
-SPLIT = ("delaminated", "gap", "preloaded", "elements")  # drawn twice as often as the others
+TWICE = (*SPLIT, "elements")  # drawn twice as often as the others
 HARMLESS = ("sound", "hardening", "sagging", "friction", "torsion", "intact elements")
 HARMLESS += ("fixture", "bearing", "washer")
 
 
-def judged_beams(
-    kinds: Sequence[str], seed: int, count: int, budget: float, out: Path
-) -> list[dict[str, Any]]:
-    """Judge beams until the processor time (s) is spent; return these and those in the file.
-
-    Each has a generator of its own, and one that stands in the file is not judged again.
-    """
-    lines = [json.loads(line) for line in out.read_text("utf-8").splitlines()]
-    known = {(line["seed"], line["kind"], line["number"]) for line in lines}
+def cases(kinds: Sequence[str], count: int) -> Iterator[tuple[str, int]]:
+    """Yield kind and number of each beam, all kinds by turns."""
     for turn in range(count):
         for kind in kinds:
-            for number in (2 * turn, 2 * turn + 1) if kind in SPLIT else (turn,):
-                if time.process_time() > budget or (seed, kind, number) in known:
-                    continue
-                line = {"seed": seed, "kind": kind, "number": number}
-                lines.append(line | judged_beam(seed, kind, number))
-                with out.open("a", encoding="utf-8") as file:
-                    file.write(json.dumps(lines[-1]) + "\n")
-    return [line for line in lines if line["seed"] == seed and line["kind"] in kinds]
+            numbers = (2 * turn, 2 * turn + 1) if kind in TWICE else (turn,)
+            yield from ((kind, number) for number in numbers)
 
 
 def judged_beam(seed: int, kind: str, number: int) -> dict[str, Any]:
@@ -85,14 +74,18 @@ def judged_beam(seed: int, kind: str, number: int) -> dict[str, Any]:
 
 def judged(records: list[xr.Dataset], guess: Structure | None, truth: Truth) -> dict[str, str]:
     """Return the verdict on records of one beam, its reason, and what is wrong with it."""
+    verdict, reason, smallest = verdict_on(records, guess)
+    problem = verdict_problem(verdict, truth, reason, smallest)
+    return {"group": group_of(truth), "verdict": verdict, "reason": reason, "problem": problem}
+
+
+def verdict_on(records: list[xr.Dataset], guess: Structure | None) -> tuple[str, str, float]:
+    """Return the verdict on a beam, why, and the smallest opening that would be seen, m."""
     try:
         beam = beam_job(records, guess, FREE, None, SETTINGS).beam()
     except InputError as error:
-        verdict, reason, smallest = REFUSED, str(error), 0.0
-    else:
-        verdict, reason, smallest = beam.verdict(), beam.reason(), beam.records[-1].smallest
-    problem = verdict_problem(verdict, truth, reason, smallest)
-    return {"group": group_of(truth), "verdict": verdict, "reason": reason, "problem": problem}
+        return REFUSED, str(error), 0.0
+    return beam.verdict(), beam.reason(), beam.records[-1].smallest
 
 
 def group_of(truth: Truth) -> str:
@@ -113,7 +106,7 @@ def table_rows(lines: Sequence[Mapping[str, Any]]) -> Iterator[str]:
             counts[answer["group"], asked].update({answer["verdict"]: 1, **problem})
     columns = (DELAMINATED, NO_OPENING, UNDECIDED, NOT_DESCRIBED, REFUSED, WRONG)
     yield f"{'':42}" + "".join(f"{column:>17}" for column in (*columns, "n", "% right"))
-    for group in (MASSES, ELEMENTS, LESS, STRUCK, SOUND):
+    for group in (MASSES, ELEMENTS, LESS, STRUCK, SOUND, PLANNED, TWIN):
         for asked in dict.fromkeys(asked for own, asked in counts if own == group):
             row = counts[group, asked]
             total = row.total() - row[WRONG]
