@@ -17,7 +17,10 @@ module              idea
 :mod:`.bench`       a system, an excitation and sensors: a record
 :mod:`.recipe`      random beams, with the truth about each and a guess of it
 :mod:`.strikers`    sound beams that something strikes or kinks: stops, cracks, parts, bearings
-:mod:`.verdicts`    rates of verdicts on random beams, by kind
+:mod:`.verdicts`    rates of verdicts on random beams
+:mod:`.plans`       plans of tests, followed to the letter
+:mod:`.intervals`   whether intervals of fits contain the truth
+:mod:`.lines`       a line of JSON for each case, so that a run resumes
 :mod:`.tutorial`    the CSV files of the manual
 ==================  ==============================================================================
 """

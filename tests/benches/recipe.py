@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from orchestrate import Structure, plan_test
+from orchestrate import Structure
 from orchestrate.constants import TURN
 from orchestrate.lazy import xr
 
 from .beam import DelaminatedBeam
 from .bench import Bench
-from .excitation import Excitation, Random, Stepped, Swept
+from .excitation import Random, Stepped, Swept
 from .integrator import UnboundedMotionError
 from .lumped import Clamp, Faces, Halves, cubic_stiffness, frequency_change, in_rattling_clamp
 from .sensors import Sensor
@@ -107,7 +107,6 @@ class Conditions:
     participation: tuple[float, float] = (1.0, 1.0)  # of each sensor on masses
     # force that presses the faces together, over the one that opens them at resonance
     preload: tuple[float, float] = (0.1, 1.6)
-    planned: bool = False  # swept as `plan_test` recommends for a guess of the preload, too
     off: float = 0.1  # how far guesses may be off
     # of the sensor on face 1, over its largest signal: below 1 it saturates
     range: float = math.inf
@@ -253,6 +252,14 @@ def draw_place(
     return rng.uniform(*conditions.sensor) * beam.length if conditions.sensor else None
 
 
+def shut_frequency(system: ModalSystem) -> float:
+    """Return the lowest natural frequency of a system whose contacts are closed, Hz."""
+    closed = np.diag(system.frequency**2)
+    if contacts := system.contacts:
+        closed += contacts.rows.T * contacts.stiffness @ contacts.rows
+    return math.sqrt(float(np.linalg.eigvalsh(closed)[0])) / TURN
+
+
 def draw_finite_elements(
     rng: np.random.Generator, level: float, conditions: Conditions
 ) -> Specimen:
@@ -265,8 +272,9 @@ def draw_finite_elements(
     touching = replace(draw_contact_law(rng), law="hunt-crossley", friction=0.0)
     zeta = draw_log_uniform(rng, 0.005, 0.02)
     system = beam.system(touching, zeta, modes=12, sensor=draw_place(rng, beam, conditions))
-    f1, f2 = system.frequency[:2] / TURN
-    return Specimen(system, share, 1.0 - share, float(f1), float(f2), zeta, zeta, size=size)
+    f1, shut = float(system.frequency[0]) / TURN, shut_frequency(system)
+    f2 = math.sqrt((shut**2 - share * f1**2) / (1.0 - share))
+    return Specimen(system, share, 1.0 - share, f1, f2, zeta, zeta, size=size)
 
 
 def draw_intact_finite_elements(
@@ -301,7 +309,9 @@ KINDS: Mapping[str, Maker] = {
 }
 
 
-def draw_excitation(rng: np.random.Generator, name: str, level: float) -> tuple[str, Excitation]:
+def draw_excitation(
+    rng: np.random.Generator, name: str, level: float
+) -> tuple[str, Swept | Stepped | Random]:
     """Draw a base excitation of a kind, or of any kind; return the kind's name and it."""
     if name == "any":
         name = str(rng.choice(EXCITATIONS, p=(0.6, 0.15, 0.1, 0.1, 0.05)))
@@ -348,6 +358,18 @@ def draw(
     kinds: Mapping[str, Maker] = KINDS,
 ) -> Case:
     """Draw a beam and a bench and measure it; return record, guess and truth as a ``Case``."""
+    return draw_levels(rng, kind, conditions, rate, kinds)[0]
+
+
+def draw_levels(
+    rng: np.random.Generator,
+    kind: str,
+    conditions: Conditions | None = None,
+    rate: float = 2000.0,
+    kinds: Mapping[str, Maker] = KINDS,
+    times: Sequence[float] = (1.0,),
+) -> list[Case]:
+    """Draw a beam and a bench, and measure it at multiples of the level it is drawn for."""
     conditions = conditions or Conditions()
     level = draw_log_uniform(rng, *conditions.level)
     noise = draw_log_uniform(rng, *conditions.noise)
@@ -363,32 +385,23 @@ def draw(
         rate=rate,
         steps=30.0 if "elements" in kind else 60.0,
     )
+    louder = [replace(bench, excitation=replace(shaker, level=n * shaker.level)) for n in times]
     for _ in range(TRIES):
         own = kinds[kind](rng, level, conditions)
-        guess = draw_guess(rng, own, conditions.off) if conditions.planned else None
-        if guess is not None:
-            guess = guess.replace(clearance=own.clearance * rng.uniform(0.7, 1.3))
-            bench = replace(bench, excitation=planned_sweep(guess))
-            level = bench.excitation.level
         placed = own.system
         if conditions.participation != (1.0, 1.0):
             rows = rng.uniform(*conditions.participation, (2, 1)) * placed.output_rows
             placed = replace(placed, output_rows=rows)
         try:
-            record, motion = bench.measure(placed, int(rng.integers(1 << 31)))
+            measured = [one.measure(placed, int(rng.integers(1 << 31))) for one in louder]
         except UnboundedMotionError:
             continue
-        truth = make_truth(kind, own, motion, Setup(level, noise, count, name))
-        return Case(record, guess or draw_guess(rng, own, conditions.off), truth)
+        guess = draw_guess(rng, own, conditions.off)
+        return [
+            Case(record, guess, make_truth(kind, own, moved, Setup(n * level, noise, count, name)))
+            for n, (record, moved) in zip(times, measured, strict=True)
+        ]
     raise UnboundedMotionError(f"{kind}: {TRIES} beams, and none whose motion stays bounded")
-
-
-def planned_sweep(guess: Structure) -> Swept:
-    """Return the sweep that the package recommends for a structure, at most 120 s long."""
-    plan = plan_test(guess, progress=False)
-    ends = float(plan.recommended_first), float(plan.recommended_last)
-    duration = min(float(plan.recommended_duration), 120.0)
-    return Swept(*ends, duration, float(plan.recommended_level))
 
 
 def gap_at_sensors(system: ModalSystem, motion: Motion) -> float:

@@ -1,61 +1,118 @@
-"""Rates of verdicts on random beams: a table by kind, within a given processor time."""
+"""Rates of verdicts on random beams, in a table by groups.
+
+Judged is :meth:`.decision_rule.Beam.verdict` on the records of a :func:`.detect.beam_job`: what
+``detect`` answers, without the fits, which size its answer and do not act on it.
+"""
 
 from __future__ import annotations
 
+import math
 import time
-from collections import Counter
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-import orchestrate
+from orchestrate.diagnosis.decision_rule import DELAMINATED, NOT_DESCRIBED, UNDECIDED
+from orchestrate.diagnosis.decision_rule import NOT_SEEN as NO_OPENING
+from orchestrate.diagnosis.detect import beam_job
+from orchestrate.diagnosis.hypotheses import FREE
+from orchestrate.diagnosis.settings import SETTINGS
+from orchestrate.errors import InputError
+from orchestrate.lazy import xr
+from orchestrate.model import Structure
 
-from .recipe import Conditions, Truth, draw
+from .recipe import KINDS, SPLIT, Conditions, Truth, draw_levels, draw_log_uniform
+from .strikers import STRIKERS
 
-DELAMINATED, NO_OPENING, UNDECIDED = "delaminated", "no opening seen", "undecided"
 REFUSED, FAILED, WRONG = "refused", "failed", "wrong"
 VISIBLE = 2e-5  # m: a gap that opens less may be overlooked
-PLACES = (0.3, 1.0)  # of the sensors on a beam of finite elements
-ANYWHERE = Conditions(participation=(0.3, 1.6))  # of two masses
-GROUPS: Mapping[str, tuple[str, Conditions]] = {  # name in the table -> kind, conditions
-    **{kind: (kind, ANYWHERE) for kind in ("sound", "hardening", "friction", "sagging")},
-    "torsion": ("torsion", replace(ANYWHERE, sensors=2)),
-    "clamp": ("clamp", ANYWHERE),
-    "FE sound": ("intact elements", Conditions(sensor=PLACES)),
-    "delaminated": ("delaminated", ANYWHERE),
-    "gap": ("gap", ANYWHERE),
-    "pressed, shut": ("preloaded", replace(ANYWHERE, preload=(1.2, 1.6))),
-    "pressed, opens": ("preloaded", replace(ANYWHERE, planned=True)),
-    "FE 0.3 to 0.5": ("elements", Conditions(size=(0.3, 0.5), anywhere=True, sensor=PLACES)),
-    "FE 0.5 to 0.7": ("elements", Conditions(size=(0.5, 0.7), anywhere=True, sensor=PLACES)),
-    "torsion clamp": ("rattling torsion", replace(ANYWHERE, sensors=2)),
-    "FE clamp": ("rattling elements", Conditions(sensor=PLACES)),
+OPENS = 1e-4  # m: a gap at the sensor that should be called
+RATES = (1250.0, 10_000.0)  # samples a second
+TIMES = (1.0, 2.0)  # of the level that a beam is drawn for
+MASSES, ELEMENTS, LESS = "two masses", "finite elements", "opens less"
+STRUCK, SOUND = "stops, cracks, parts", "sound"
+PLANNED, TWIN = "planned", "planned, bonded"
+RIGHT = {  # else what is not wrong
+    **dict.fromkeys((MASSES, ELEMENTS, PLANNED), DELAMINATED),
+    **dict.fromkeys((SOUND, TWIN), NO_OPENING),
 }
+ANYWHERE = Conditions(off=0.03, sensors=2, participation=(0.3, 1.6))  # guesses within 3 %
+ON_BEAMS = Conditions(off=0.03, sensors=2, size=(0.3, 0.9), anywhere=True, sensor=(0.3, 1.0))
+MAKERS = {**KINDS, **STRIKERS}
+TWICE = (*SPLIT, "elements")  # drawn twice as often as the others
+HARMLESS = ("sound", "hardening", "sagging", "friction", "torsion", "intact elements")
+HARMLESS += ("fixture", "bearing", "washer")
 
 
-def table_rows(names: list[str], seed: int, count: int, budget: float) -> Iterator[str]:
-    """Yield a line per beam, then the table; stop when the processor time (s) is spent."""
-    counts = {name: Counter[str]() for name in names}
-    for number in range(count):
-        for name in names:
-            if time.process_time() > budget:
-                break
-            kind, conditions = GROUPS[name]
-            rng = np.random.default_rng([seed, list(GROUPS).index(name), number])
-            case = draw(rng, kind, conditions)
-            begin = time.process_time()
-            answer = orchestrate.detect(case.record, case.guess, jobs=1, progress=False)
-            verdict, smallest = str(answer.verdict.item()), float(answer.smallest_opening)
-            wrong = verdict_problem(verdict, case.truth, "", smallest)
-            counts[name][WRONG if wrong else verdict] += 1
-            numbers = f"ratio {answer.ratio:.2f}, misfits {answer.misfit.values.round(2).tolist()}"
-            spent = f"{time.process_time() - begin:.0f} s"
-            yield f"{name} {number}: {verdict}; {numbers}; {spent} {wrong or case.truth}"
-    columns = (DELAMINATED, NO_OPENING, UNDECIDED, "not described", WRONG)
-    yield f"{'':16}" + "".join(f"{column[:16]:>17}" for column in columns)
-    for name, row in counts.items():
-        yield f"{name:16}" + "".join(f"{row[column]:17d}" for column in columns)
+def cases(kinds: Sequence[str], count: int) -> Iterator[tuple[str, int]]:
+    """Yield kind and number of each beam, all kinds by turns."""
+    for turn in range(count):
+        for kind in kinds:
+            numbers = (2 * turn, 2 * turn + 1) if kind in TWICE else (turn,)
+            yield from ((kind, number) for number in numbers)
+
+
+def judged_beam(seed: int, kind: str, number: int) -> dict[str, Any]:
+    """Draw a beam, measure it at two levels, and judge the records as a user may have them."""
+    begin, rng = time.process_time(), np.random.default_rng([seed, [*MAKERS].index(kind), number])
+    conditions = ON_BEAMS if "elements" in kind else ANYWHERE
+    rate = draw_log_uniform(rng, *RATES)
+    low, high = draw_levels(rng, kind, conditions, rate, MAKERS, TIMES)
+    first, second = (case.record.drop_vars("acceleration2") for case in (low, high))
+    answers = {
+        "one sensor, L": judged([first], low.guess, low.truth),
+        "L and 2 L, no guess": judged([first, second], None, high.truth),
+        "one sensor, 2 L": judged([second], high.guess, high.truth),
+        "two sensors, L": judged([low.record], low.guess, low.truth),
+    }
+    gaps = [1e3 * case.truth.seen_gap for case in (low, high)]
+    numbers = {"rate": rate, "noise": low.truth.setup.noise, "level": low.truth.setup.level}
+    return {**numbers, "mm": gaps, "s": time.process_time() - begin, "answers": answers}
+
+
+def judged(records: list[xr.Dataset], guess: Structure | None, truth: Truth) -> dict[str, str]:
+    """Return the verdict on records of one beam, its reason, and what is wrong with it."""
+    verdict, reason, smallest = verdict_on(records, guess)
+    problem = verdict_problem(verdict, truth, reason, smallest)
+    return {"group": group_of(truth), "verdict": verdict, "reason": reason, "problem": problem}
+
+
+def verdict_on(records: list[xr.Dataset], guess: Structure | None) -> tuple[str, str, float]:
+    """Return the verdict on a beam, why, and the smallest opening that would be seen, m."""
+    try:
+        beam = beam_job(records, guess, FREE, None, SETTINGS).beam()
+    except InputError as error:
+        return REFUSED, str(error), 0.0
+    return beam.verdict(), beam.reason(), beam.records[-1].smallest
+
+
+def group_of(truth: Truth) -> str:
+    """Return the row of the table for a beam at one level."""
+    if not truth.is_delaminated:
+        return SOUND if truth.kind in HARMLESS else STRUCK
+    if not (truth.touched and truth.seen_gap >= OPENS):
+        return LESS
+    return MASSES if math.isnan(truth.size) else ELEMENTS
+
+
+def table_rows(lines: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield the table of judged beams: counts of verdicts, and the share that is right."""
+    counts: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
+    for line in lines:
+        for asked, answer in line["answers"].items():
+            problem = {WRONG: bool(answer["problem"])}
+            counts[answer["group"], asked].update({answer["verdict"]: 1, **problem})
+    columns = (DELAMINATED, NO_OPENING, UNDECIDED, NOT_DESCRIBED, REFUSED, WRONG)
+    yield f"{'':42}" + "".join(f"{column:>17}" for column in (*columns, "n", "% right"))
+    for group in (MASSES, ELEMENTS, LESS, STRUCK, SOUND, PLANNED, TWIN):
+        for asked in dict.fromkeys(asked for own, asked in counts if own == group):
+            row = counts[group, asked]
+            total = row.total() - row[WRONG]
+            right = row[RIGHT[group]] if group in RIGHT else total - row[WRONG]
+            numbers = [*(row[column] for column in columns), total, round(100.0 * right / total, 1)]
+            yield f"{group:21}{asked:21}" + "".join(f"{number:17}" for number in numbers)
 
 
 def verdict_problem(verdict: str, truth: Truth, message: str = "", smallest: float = 0.0) -> str:
