@@ -52,17 +52,17 @@ class TimingSettings:
     one_sided: float = 0.59
     # see `Strikes`: rattling clamps, which are soft, make 0.21, faces 0.36
     blow: float = 0.28
-    # correlation of both sensors' blows: clamps with torsion make -0.953, above 0 it is one blow
+    # correlation of both sensors' blows: clamps with torsion make -0.978, above 0 it is one blow
     opposite: float = -0.97
     together: float = 0.0
     order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
-    # growth of the stiffness over order 2: stops make 0.66 or more, clamps that lift -0.32 or less
-    # before `at_end` of the stroke, or an order 2 of 0.54 where faces make up to 0.47; a slow half
-    # that a moving one strikes up to 1.5, a stop then from 1.8
+    # growth of the stiffness over order 2: faces make 0.01 where the place stays, stops 0.19 or
+    # more; clamps that lift make -0.32 or less before `at_end` of the stroke, or an order 2 of 0.54
+    # where faces make up to 0.47; a slow half that a moving one strikes up to 1.5, a stop from 1.8
     softens: float = -0.25
     lifts: float = 0.5
     at_end: float = 0.8
-    stiffens: float = 0.5
+    stiffens: float = 0.1
     stiffens_moving: float = 1.5
     middle: float = 0.6  # share of the windows for the spread: one by itself is chance
     spread: float = 0.15  # of the place, over the stroke: stops and play make 0.07, gaps 0.28
@@ -108,8 +108,8 @@ class Strikes:
 
         - "nothing heard" up to `faint`, and up to `rattles` unless the peaks' phases agree by
           `locked`; "base strikes" if the base has more than `faint` and `base` of it.
-        - "faces strike": the phases agree, orders 6 to 12 make a `blow`, and those of two
-          sensors are `opposite`.
+        - "faces strike": the phases agree, orders 6 to 12 make a `blow`, those of two sensors are
+          `opposite`, and it is no clamp.
         - "something faint" up to `heard`; "not locked" if the phases do not agree, or the power is
           not on one side of the period by `one_sided`; "kinks" below `blow`; "something small
           strikes" with an order 2 below `order2`.
@@ -125,17 +125,18 @@ class Strikes:
             return NOTHING
         if self.base > max(settings.base * self.heard, settings.faint):
             return "base strikes"
-        if is_locked and is_blow and self.opposite < settings.opposite:
-            return FACES
-        moves, is_end = self.spread >= settings.spread, abs(self.place) >= settings.at_end
+        moves = self.spread >= settings.spread
         stiffens = settings.stiffens_moving if moves else settings.stiffens
-        is_clamp = self.stiffens < settings.softens or self.order2 > settings.lifts
+        lifts = self.stiffens < settings.softens or self.order2 > settings.lifts
+        is_clamp = lifts and abs(self.place) < settings.at_end
+        if is_locked and is_blow and self.opposite < settings.opposite and not is_clamp:
+            return FACES
         limits = {
             FAINT: self.heard > settings.heard,
             "not locked": is_locked and self.one_sided >= settings.one_sided,
             "kinks": is_blow,
             "something small strikes": self.order2 >= settings.order2,
-            STOP: (is_end or not is_clamp) and self.stiffens <= stiffens,
+            STOP: self.stiffens <= stiffens and not is_clamp,
             SOFTER: self.stiffness <= settings.stiffer and not self.opposite > settings.together,
         }
         return next((word for word, holds in limits.items() if not holds), FACES)
@@ -168,7 +169,9 @@ def strikes_at(
     grown = [
         float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
     ]
-    is_known = grown[0] > settings.stiffens and math.isfinite(shut)
+    stiffens = grown[0]
+    if stiffens > settings.stiffens and math.isfinite(shut):  # from the stiffer one of both
+        stiffens = max(min(grown), 0.0)
     ends = 0.5 * (1.0 + settings.middle), 0.5 * (1.0 - settings.middle)
     position = (size * np.cos(peak))[loud] / size.max()
     return Strikes(
@@ -179,7 +182,7 @@ def strikes_at(
         blow=float(np.median(blow[loud])),
         opposite=float(np.median(opposite[loud])),
         order2=float(np.median(second[loud])),
-        stiffens=grown[is_known],
+        stiffens=stiffens,
         place=float(np.median(turned.real)),
         spread=float(np.subtract(*np.quantile(position, ends))),
         stiffness=math.sqrt(max(np.median(stiffness[loud]), 0.0)) / shut * (1.0 - settings.known),
