@@ -151,5 +151,6 @@ def test_numbers_of_texts_are_short_and_beside_their_limits_as_long_as_it_takes(
     few = Beam((replace(OPENED, samples=7.0),))
     assert "with 1.18e+03 samples a second" in few.next_measurement()
     for excess, torsion in ((0.9, True), (1.1, False)):
-        seen = Beam((replace(QUIET, sensors=2, apart=4.0, excess=excess),)).reason()
-        assert ("Two modes of a sound beam" in seen) == torsion, seen
+        beam = Beam((replace(QUIET, sensors=2, apart=4.0, excess=excess),))
+        assert ("Two modes of a sound beam" in beam.reason()) == torsion
+        assert ("on the beam's axis" in beam.next_measurement()) == torsion

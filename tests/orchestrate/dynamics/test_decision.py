@@ -158,7 +158,12 @@ def test_what_rounding_leaves_of_a_deviation_does_not_count(monkeypatch, left, c
 @pytest.mark.parametrize(
     ("multiplier", "n", "longest", "periods", "own"),
     [
-        *((0.999, 2, 7, 6, 1), (0.9, 1, 99, 22, 1), (1e-9, 1, 99, 1, 1)),  # of 22 a tenth is left
+        *(
+            (0.999, 2, 7, 6, 1),
+            (0.999, 8, 7, 8, 1),
+            (0.9, 1, 99, 22, 1),
+            (1e-9, 1, 99, 1, 1),
+        ),  # of 22 a tenth is left
         # of what repeats after 2 or 3 periods one state is nearer to another motion than the next
         *((1e-9, 1, 99, 2, 2), (0.9, 1, 99, 24, 3), (0.9, 2, 99, 44, 4), (1e-9, 6, 99, 6, 3)),
     ],
