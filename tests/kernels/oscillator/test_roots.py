@@ -9,12 +9,7 @@ from hypothesis import strategies as st
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import nodes, stepper
 from fmu_src.kernels.oscillator.event_function import evaluate, event_rounding, set_node_values
-from fmu_src.kernels.oscillator.roots import (
-    clear_from_node,
-    cross_clear_intervals,
-    value_on_decided_side,
-    walk,
-)
+from fmu_src.kernels.oscillator.roots import cross_clear_intervals, value_on_decided_side, walk
 from tests import exact_motion as truth
 
 from .kernel import (
@@ -139,7 +134,6 @@ def test_the_walk_leaves_what_a_look_up_leaves(values):
         ):
             set_node_values(other, values_at, phasors, other[end])
         assert m[at.NODE : at.RIGHT_VALUES + 3] == other[at.NODE : at.RIGHT_VALUES + 3]
-        assert clear_from_node(other) and other[at.CLEAR] == m[at.CLEAR]
 
 
 @pytest.mark.parametrize("slope", [0.1, 1.0, 10.0])
