@@ -185,7 +185,9 @@ def test_each_threshold_of_what_a_lost_motion_comes_to(error, widths):
     """Another one from ``widths`` past the step on, in both directions; or one that is near."""
     for sign in (1.0, -1.0):
         loop = Scripted(
-            lambda *now: -0.02 if now[0] or abs(now[2] - 1.521) < widths * 1e-4 else 0.1
+            lambda *now, sign=sign: (
+                -0.02 if now[0] or -1.0 < sign * (now[2] - 1.521) / 1e-4 < widths else 0.1
+            )
         )
         low, high = loop.at(1.521 - sign * 1e-3)._replace(error=error), loop.at(1.521, -0.02)
         assert loop.lands_surely(low, high) == (widths > 32 and not error)
@@ -360,6 +362,16 @@ def test_the_motion_on_the_way_back_has_to_last(life, outcome):
     for time, expected in ((2.0, 2.05), (2.1, 2.1)):  # since when the other one was lost
         high = loop.at(1.5)._replace(time=time)
         assert loop.lasting(loop.at(1.5, 0.1), high, 9.0).time == pytest.approx(expected)
+    loop, held = Scripted(lambda *now: 0.0), loop.at(1.5)._replace(lasts=3.0)
+    assert loop.lasting(held, held, 5.0).lasts == 5.0  # for the rest alone
+
+
+@pytest.mark.parametrize(("least", "excess"), [(5.0, 1.0), (1.0, 0.0)])
+def test_a_step_is_no_jump_before_its_motions_have_lasted(monkeypatch, least, excess):
+    loop = Scripted(lambda *now: 0.0)
+    monkeypatch.setattr(loop, "least", lambda *ends: least)
+    monkeypatch.setattr(loop, "excess", lambda *step: excess)
+    assert loop.jump_over([loop.at(1.5)._replace(lasts=2.0), loop.at(1.51)], 0, []) is None
 
 
 @pytest.mark.parametrize(("asked", "base", "rotor"), [({}, 4000, 200), ({"base_hold": 1}, 1, 200)])
