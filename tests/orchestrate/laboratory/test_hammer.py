@@ -138,6 +138,7 @@ def test_frequency_response_over_the_force_is_the_oscillators():
         (((100, 4, 1.0), (149, 4, 1.0), (520, 4, 1.0)), 3, 4),
         (((100, 4, 1.0), (107, 2, 1.0), (520, 4, 1.0)), 2, 9),  # one: as close as it is long
         (((100, 4, 1.0), (108, 2, 1.0), (520, 4, 1.0)), 1, 4),
+        (((100, 1, 1.0), (102, 1, 1.0), (520, 1, 1.0)), 1, 1),
     ],
 )
 @pytest.mark.filterwarnings("ignore:.*left out")
@@ -148,8 +149,14 @@ def test_each_threshold_of_a_knock(beats, count, longest):
     channels = Channels(np.arange(1000) / 1e3, 1e3, ("force1",), force[np.newaxis], "x")
     found = Knocks.from_force(force, channels, None)
     assert ((len(found.starts), found.width) if found else (0, 0)) == (count, longest)
-    if found:  # a hundredth is left at the end of a segment
+    if found:  # a hundredth is left at the end of a segment, no force past a knock's length
         assert np.exp(-found.decay * found.length / found.rate) == pytest.approx(0.01)
+        spectrum, past = found.spectra(force, force[np.newaxis])[1], 3 * found.width
+        for place in (past - 1, past):
+            other = 3.0 + force  # an offset is none
+            other[found.starts[0] + place] += 0.04
+            off = np.abs(found.spectra(other, force[np.newaxis])[1] - spectrum).max()
+            assert (off < 1e-9 * spectrum.max()) == (place == past)
 
 
 def test_a_continuous_force_is_averaged_as_the_box_is():
