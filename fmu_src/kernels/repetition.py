@@ -255,12 +255,10 @@ def changes(growth):
 def spread_over_returns(m, first, last, n):
     """Return how far states in a range lie apart at most that n, 2n, 3n ... periods separate."""
     count, rows = int(m[LATER]), scaled_rows(m)
-    widest, end = 0.0, first + n
-    if end > last:
-        end = last
+    widest = 0.0
     for column in range(COLUMNS):
         row = rows + column * count
-        for phase in range(first, end):
+        for phase in range(first, first + n):
             low = high = m[row + phase]
             k = phase + n
             while k < last:

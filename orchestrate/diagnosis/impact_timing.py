@@ -25,7 +25,7 @@ from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, integrated, meas
 from ..laboratory.pieces import Floats
 
 ORDERS = np.arange(1, 13)  # of what a window is projected on
-HIGH = slice(5, 12)  # orders 6 to 12
+HIGH = slice(5, None)  # orders 6 to 12
 
 
 @dataclass(frozen=True)

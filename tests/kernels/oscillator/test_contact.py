@@ -86,9 +86,10 @@ def test_drives_that_cancel_but_for_rounding_decide_nothing():
         for drive, order in ((on_mass, 1), ({"box_acceleration": 0.16 * sine}, 2)):
             m = started(phase_start=phase, **unlike, **drive)
             assert first_nonzero_derivative(m, 0.0, 0.0, 0)[0] == order
-    m = started(d1=2e-6, d2=0.0, **still)
-    damping = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING]
-    part = (m[at.FORCE_X] - m[at.FORCE_V] * damping) / m[at.FORCE_V]
-    for v in np.linspace(0.1, 1.0, 100).tolist():
-        x = part * v / m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
-        assert first_nonzero_derivative(m, x, v, 1)[0] == 2
+    for d1, k2 in ((2e-6, 1.2), (1.1, 0.8)):  # next to no damping; more than the spring
+        m = started(d1=d1, d2=0.0, k2=k2, **still)
+        damping = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING]
+        part = (m[at.FORCE_X] - m[at.FORCE_V] * damping) / m[at.FORCE_V]
+        for v in np.linspace(0.1, 1.0, 100).tolist():
+            x = part * v / m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
+            assert first_nonzero_derivative(m, x, v, 1)[0] == 2

@@ -60,7 +60,7 @@ def voltage_notes(*ratios):
             )
             for pair in ((40 / 1.11, 40 / 1.09), (56.0, 50 / 0.91))  # within a tenth of one
         ),
-        (clearance_notes, {"times": 199.0}, {"times": 201.0}, "201 times what this level moves"),
+        (clearance_notes, {"times": 199.0}, {"times": 201.0}, "times what this level moves"),
     ],
 )
 def test_each_number_from_which_one_is_asked(caplog, ask, inside, outside, words):
@@ -79,6 +79,22 @@ def test_voltages_and_masses_that_are_hardly_meant(caplog):
         beam = Structure.from_halves(m1=1.0, m2=1.0, f1=40.0, f2=ratio * 40.0, zeta1=0.01)
         with pytest.raises(InputError, match="f2 would be") if unlike else nullcontext():
             print_assumptions(beam, "paper", {"f1": 40.0})
+
+
+def test_ratios_a_varied_level_and_a_play(caplog):
+    """Masses in ratios are none in kg; one level is enough; a play is not linear below contact."""
+    ratios, shown = Structure.nondimensional(mu=30.0), xr.Dataset()
+    assert not notes.heavy_mass_note(ratios)
+    arguments, one = SimpleNamespace(structure="mine", set=[]), np.ones(1)
+    box = {"frequency": one, "amplitude": one}
+    assert not said(lambda: notes.print_frequency_notes(arguments, ratios, box), caplog)
+    assert notes.box_motion(ratios, {"eta": 2.0}) == (2.0, 0.25)
+    for over, count in (("level", 1), ("frequency", 0)):
+        assert len([*notes.trivial_notes(HALVES, {"over": over}, shown)]) == count
+    asked = {"frequency": np.array([TURN * 20.0]), "level": np.array([0.1])}
+    for stroke, count in ((0.0, 1), (2e-3, 0)):
+        play = HALVES.replace(clearance=1e-4, stroke=stroke)
+        assert len([*notes.clearance_notes(play, asked, shown)]) == count
 
 
 SIMULATE = "simulate --periods 2 --plot none --set f1=42 --set f2=55 "

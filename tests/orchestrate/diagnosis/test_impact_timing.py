@@ -226,17 +226,16 @@ def windows(part=0.5, growth=0.2, count=60):
 def test_a_participation_is_told_by_the_windows_in_which_nothing_strikes(quiet, loudest):
     """Near the loud ones: if these are eight, else by those that move less than half of them."""
     motion, loud = windows()
-    size = abs(motion[2])
+    size, turns = abs(motion[2]), np.sqrt(abs(motion[0] / motion[2]))
     struck = size == size.max() if loudest else loud
-    mask = ~struck & (np.cumsum(~struck) <= quiet)
+    near = abs(np.log(turns / np.median(turns[struck]))) <= math.log(TIMING.near)
+    mask = ~struck & (np.cumsum(near & ~struck) <= quiet)
     rest, squares = stiffnesses(motion, struck, mask, TIMING)
     used = np.zeros(60, bool)
     for k in range(60):
         off = np.array(motion)
         off[0, k] *= 1.0001
         used[k] = abs(stiffnesses(off, struck, mask, TIMING)[0] / rest - 1.0) > 1e-9
-    turns = np.sqrt(abs(motion[0] / motion[2]))
-    near = abs(np.log(turns / np.median(turns[struck]))) <= math.log(TIMING.near)
     least = near & (size <= max(0.5 * size[struck].min(), np.quantile(size[near], 1.0 / 3.0)))
     assert used.tolist() == (near & mask if (near & mask).sum() > 7 else least).tolist()
     growth = (TURN * np.sqrt(squares)) ** 2 - 1.0
@@ -250,6 +249,11 @@ def test_at_one_frequency_a_participation_is_1():
     rest, _ = stiffnesses(motion, np.arange(60) == 0, np.ones(60, bool), TIMING)
     moved, base, stroke = motion[:, 0]
     assert TURN * rest == pytest.approx(math.sqrt(-((moved + base) / stroke).real), rel=1e-4)
+    # strokes that differ by as little as 1 weighs: midway between it and the true one of 0.5
+    size, base = 1.0 + 1e-3 * (-1.0) ** np.arange(60), 3.0
+    motion = np.array([-(0.5 * base + size), np.full(60, base), size + 0j])
+    rest, _ = stiffnesses(motion, np.arange(60) == 0, np.ones(60, bool), TIMING)
+    assert TURN * rest == pytest.approx(math.sqrt(1.0 - 0.25 * base), rel=1e-3)
 
 
 @pytest.mark.parametrize(("factor", "is_near"), [(1.4, True), (1.5, False)])

@@ -46,7 +46,15 @@ def point_of(structure, eta):
 
 @pytest.mark.parametrize(
     ("flags", "expected"),
-    [("0110", 1), ("10011", 4), ("1110011", 0), ("0000", 0), ("1111", 0), ("0011111000", 4)],
+    [
+        ("0110", 1),
+        ("10011", 4),
+        ("1110011", 0),
+        ("0000", 0),
+        ("1111", 0),
+        ("0011111000", 4),
+        ("0111010", 2),
+    ],
 )
 def test_the_middle_of_the_longest_run_on_a_ring(flags, expected):
     assert middle_of_longest_run(np.array([letter == "1" for letter in flags])) == expected
@@ -158,7 +166,12 @@ def test_what_rounding_leaves_of_a_deviation_does_not_count(monkeypatch, left, c
 @pytest.mark.parametrize(
     ("multiplier", "n", "longest", "periods", "own"),
     [
-        *((0.999, 2, 7, 6, 1), (0.9, 1, 99, 22, 1), (1e-9, 1, 99, 1, 1)),  # of 22 a tenth is left
+        *(
+            (0.999, 2, 7, 6, 1),
+            (0.999, 8, 7, 8, 1),
+            (0.9, 1, 99, 22, 1),
+            (1e-9, 1, 99, 1, 1),
+        ),  # of 22 a tenth is left
         # of what repeats after 2 or 3 periods one state is nearer to another motion than the next
         *((1e-9, 1, 99, 2, 2), (0.9, 1, 99, 24, 3), (0.9, 2, 99, 44, 4), (1e-9, 6, 99, 6, 3)),
     ],
@@ -169,6 +182,25 @@ def test_how_long_a_response_is_watched(monkeypatch, multiplier, n, longest, per
     motion = turns.motion(multiplier=multiplier, multiplicity=n)
     MotionDecider.converges_to(turns, REST, motion, own)
     assert turns.steps == [pytest.approx(periods * turns.point.excitation.period)]
+
+
+def test_starts_are_compared_with_known_orbits_alone(monkeypatch):
+    decider = Scripted()
+    decider.known = [decider.motion(decided=decided) for decided in (ORBIT, REPEATED)]
+    reached = ReachedMotion(decider.known[0], np.zeros(4), 3)
+    settled = lambda *asked: [reached if asked[-1] == decider.known[:1] else None]  # noqa: E731
+    monkeypatch.setattr(decision, "run_until_settled", settled)
+    assert decider.decide_all([REST])[0] is reached
+
+
+@pytest.mark.parametrize(("comes", "repeats"), [(True, True), (False, True), (True, False)])
+def test_a_response_has_an_orbit_that_it_comes_to_and_the_fmu_repeats(comes, repeats):
+    decider = Scripted(comes)
+    motion = decider.motion()
+    decider.orbit_near, decider.stable_motion = lambda *asked: (motion, 0.0), lambda *orbit: motion
+    decider.repeats_in_fmu, decider.remember = lambda motion: repeats, lambda motion: motion
+    response = SimpleNamespace(multiplicity=1, end=REST)
+    assert decider.periodic_motion(response) == (motion if comes and repeats else None, False)
 
 
 @pytest.mark.parametrize("seed", range(6))

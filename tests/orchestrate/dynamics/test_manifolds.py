@@ -215,6 +215,16 @@ def test_a_jump_breaks_the_curve_and_a_root_does_not(height, power):
     assert curve.arclength[number] == curve.arclength[number - 1]
 
 
+def test_a_jump_that_no_impact_tells_is_where_numbers_are_not_divided_any_more():
+    def step(z):
+        return np.array([1.7 * z[0], 0.4 * z[1] + 0.5 * (z[0] > 1.0)])
+
+    settings = GrowthSettings(2.5, 0.02, 0.2, 3000, resolution=1e-10)
+    ((_, border),) = CurveGrower(images(step, 1.7), settings).grow().breaks.items()
+    assert (border.distance, border.power) == (pytest.approx(0.5, rel=1e-6), 0.0)
+    assert border.low.state[0] <= 1.7 < border.high.state[0] == pytest.approx(1.7, abs=1e-8)
+
+
 @functools.cache
 def curve(**more):
     return orchestrate.manifold(PAPER, eta=3.0, **{"length": 1.0, **more}, **QUIET)

@@ -117,8 +117,10 @@ def test_frequency_response_over_the_force_is_the_oscillators():
         assert np.abs(curve - exact)[used].max() <= 5e-3 * np.abs(exact).max()
     assert answer.magnitude.attrs["units"] == "1/kg" and answer.averages == 3
     struck = knocks(3, 4.0, peak=20.0, width=0.004) + Hammer(peak=5.0, width=0.004, at=4.15)
-    with pytest.warns(UserWarning, match=r"1 of 3 knocks left out: double hits.* at 4\.0\d+ s"):
+    text = r"1 of 3 knocks left out: double hits.* at 4\.0\d+ s"
+    with pytest.warns(UserWarning, match=text) as told:
         assert frf(shake(BEAM, struck, sample_rate=2000.0)).averages == 2
+    assert told[0].filename == __file__
     twice = Hammer(peak=5.0, width=0.004, at=0.1) + Hammer(peak=5.0, width=0.004, at=0.15)
     with pytest.raises(InputError, match="double hits.*expected a knock"):
         frf(shake(BEAM, twice, sample_rate=2000.0))
@@ -126,26 +128,35 @@ def test_frequency_response_over_the_force_is_the_oscillators():
 
 
 @pytest.mark.parametrize(
-    ("beats", "count"),  # begin, width and size of each, of 1,000 samples
+    ("beats", "count", "longest"),  # begin, width and size of each, of 1,000 samples
     [
-        (((100, 4, 1.0), (600, 4, 0.049)), 1),
-        (((100, 4, 1.0), (600, 4, 0.051)), 2),  # beyond a twentieth of the largest force
-        (((300, 99, 1.0),), 1),
-        (((300, 101, 1.0),), 0),  # no knocks: a tenth of the record
-        (((100, 4, 1.0), (148, 4, 1.0), (520, 4, 1.0)), 1),  # a double hit: below a tenth of 484
-        (((100, 4, 1.0), (149, 4, 1.0), (520, 4, 1.0)), 3),
+        (((100, 4, 1.0), (600, 4, 0.049)), 1, 4),
+        (((100, 4, 1.0), (600, 4, 0.051)), 2, 4),  # beyond a twentieth of the largest force
+        (((300, 99, 1.0),), 1, 99),
+        (((300, 101, 1.0),), 0, 0),  # no knocks: a tenth of the record
+        (((100, 4, 1.0), (148, 4, 1.0), (520, 4, 1.0)), 1, 4),  # a double hit: a tenth of 484
+        (((100, 4, 1.0), (149, 4, 1.0), (520, 4, 1.0)), 3, 4),
+        (((100, 4, 1.0), (107, 2, 1.0), (520, 4, 1.0)), 2, 9),  # one: as close as it is long
+        (((100, 4, 1.0), (108, 2, 1.0), (520, 4, 1.0)), 1, 4),
+        (((100, 1, 1.0), (102, 1, 1.0), (520, 1, 1.0)), 1, 1),
     ],
 )
 @pytest.mark.filterwarnings("ignore:.*left out")
-def test_each_threshold_of_a_knock(beats, count):
+def test_each_threshold_of_a_knock(beats, count, longest):
     force = np.zeros(1000)
     for begin, width, size in beats:
         force[begin : begin + width] = size
     channels = Channels(np.arange(1000) / 1e3, 1e3, ("force1",), force[np.newaxis], "x")
     found = Knocks.from_force(force, channels, None)
-    assert (len(found.starts) if found else 0) == count
-    if found:  # a hundredth is left at the end of a segment
+    assert ((len(found.starts), found.width) if found else (0, 0)) == (count, longest)
+    if found:  # a hundredth is left at the end of a segment, no force past a knock's length
         assert np.exp(-found.decay * found.length / found.rate) == pytest.approx(0.01)
+        spectrum, past = found.spectra(force, force[np.newaxis])[1], 3 * found.width
+        for place in (past - 1, past):
+            other = 3.0 + force  # an offset is none
+            other[found.starts[0] + place] += 0.04
+            off = np.abs(found.spectra(other, force[np.newaxis])[1] - spectrum).max()
+            assert (off < 1e-9 * spectrum.max()) == (place == past)
 
 
 def test_a_continuous_force_is_averaged_as_the_box_is():

@@ -276,6 +276,7 @@ def test_a_period_longer_than_the_samples_can_show_is_undecided(n, expected):
     chaotic = np.random.default_rng(5).normal(size=(60, 4))
     assert decide(chaotic) == (0, IRREGULAR)
     assert decide(np.ones((3, 4))) == (1, REPEATED)  # one period is looked at always
+    assert decide(np.eye(4)[[0, 1, 0]]) == (2, UNDECIDED)
 
 
 @given(st.integers(0, 2**32 - 1))

@@ -146,6 +146,26 @@ def test_what_comes_after_a_speed_against_the_voltage():
     assert rest == (UNDECIDED, lost.high, 1.56, *rest[3:])
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_a_motion_has_become_is_compared_from_the_step_before_on(monkeypatch, sign):
+    """The fourth of five does not last: the jump to it is decided again, those before stay."""
+    loop, asked, lasts = Scripted(None), [], iter((0.0, 9.0))
+    points = [loop.at(1.5 + sign * 0.01 * n)._replace(lasts=9.0 * (n != 3)) for n in range(5)]
+
+    def jump_over(points, i, jumps):
+        asked.append(i)
+        return Jump((LOST, UNDECIDED)[i % 2], points[i].voltage, points[i + 1].voltage)
+
+    monkeypatch.setattr(loop, "lasting", lambda point, *_: point._replace(lasts=next(lasts)))
+    monkeypatch.setattr(loop, "jump_over", jump_over)
+    scripted = {"hold_grid": points, "excess": 1.0, "insert_between": False, "least": 1.0}
+    for name, answer in scripted.items():
+        monkeypatch.setattr(loop, name, lambda *_, answer=answer: answer)
+    found = loop.jumps(points[0], points[-1].voltage)
+    assert asked == [0, 1, 2, 2, 3]
+    assert [jump.low for jump in found] == [point.voltage for point in points[:4]]
+
+
 def test_a_voltage_that_is_left_out_is_not_tried_again(monkeypatch):
     """The speed settles at 1.53 and, held on there, does not."""
     loop = Scripted(lambda *now: 0.1 * (now[2] > 1.52))
@@ -165,7 +185,9 @@ def test_each_threshold_of_what_a_lost_motion_comes_to(error, widths):
     """Another one from ``widths`` past the step on, in both directions; or one that is near."""
     for sign in (1.0, -1.0):
         loop = Scripted(
-            lambda *now: -0.02 if now[0] or abs(now[2] - 1.521) < widths * 1e-4 else 0.1
+            lambda *now, sign=sign: (
+                -0.02 if now[0] or -1.0 < sign * (now[2] - 1.521) / 1e-4 < widths else 0.1
+            )
         )
         low, high = loop.at(1.521 - sign * 1e-3)._replace(error=error), loop.at(1.521, -0.02)
         assert loop.lands_surely(low, high) == (widths > 32 and not error)
@@ -340,6 +362,16 @@ def test_the_motion_on_the_way_back_has_to_last(life, outcome):
     for time, expected in ((2.0, 2.05), (2.1, 2.1)):  # since when the other one was lost
         high = loop.at(1.5)._replace(time=time)
         assert loop.lasting(loop.at(1.5, 0.1), high, 9.0).time == pytest.approx(expected)
+    loop, held = Scripted(lambda *now: 0.0), loop.at(1.5)._replace(lasts=3.0)
+    assert loop.lasting(held, held, 5.0).lasts == 5.0  # for the rest alone
+
+
+@pytest.mark.parametrize(("least", "excess"), [(5.0, 1.0), (1.0, 0.0)])
+def test_a_step_is_no_jump_before_its_motions_have_lasted(monkeypatch, least, excess):
+    loop = Scripted(lambda *now: 0.0)
+    monkeypatch.setattr(loop, "least", lambda *ends: least)
+    monkeypatch.setattr(loop, "excess", lambda *step: excess)
+    assert loop.jump_over([loop.at(1.5)._replace(lasts=2.0), loop.at(1.51)], 0, []) is None
 
 
 @pytest.mark.parametrize(("asked", "base", "rotor"), [({}, 4000, 200), ({"base_hold": 1}, 1, 200)])
@@ -362,10 +394,14 @@ def test_a_hold_comes_at_the_rate():
     assert courses[-1].times == pytest.approx((0.0, 200.0, 20200.0))
 
 
-@pytest.mark.parametrize(("later", "pieces"), [(1.3, 30), (1.3049, 30), (1.3051, 7)])
-def test_a_motion_is_held_for_a_time_unless_it_is_left(later, pieces):
-    """Its first block is at 1.3; left is what settles `clear` away."""
-    told = []
+@pytest.mark.parametrize(
+    ("later", "error", "pieces"),
+    [(1.3, 0.0, 30), (1.3049, 0.0, 30), (1.3051, 0.0, 7), (1.3051, 2e-4, 30), (1.3053, 2e-4, 7)],
+)
+def test_a_motion_is_held_for_a_time_unless_it_is_left(monkeypatch, later, error, pieces):
+    """Its first block is at 1.3; left is what settles `clear` away, but for its error."""
+    told, settled = [], hysteresis.settled_speed
+    monkeypatch.setattr(hysteresis, "settled_speed", lambda *all: (settled(*all)[0], error))
 
     def speeds(rows):
         told.append(rows)
@@ -378,6 +414,8 @@ def test_a_motion_is_held_for_a_time_unless_it_is_left(later, pieces):
     assert point.time == 50.0 * pieces
     loop.step = 200.0  # longer than a piece
     assert loop.hold(None, 1.5, 1.5).time in 200.0 * np.arange(1, 9)
+    loop.step = 1.0
+    assert loop.hold(None, 1.5, 1.501).time % 50.0 == 0.0  # without the 20 that it comes in
 
 
 def test_where_a_speed_between_is_sought(monkeypatch):
