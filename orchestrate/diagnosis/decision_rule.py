@@ -49,6 +49,7 @@ class Findings:
     end_response: float
     resonance: float  # frequency of that largest one, Hz
     guessed: tuple[float, float]  # lower and higher frequency of the guess's halves, Hz
+    whose: str = "the guess's"  # these frequencies
     samples: float = math.inf  # in a period at the resonance
     settings: Settings = SETTINGS
 
@@ -57,7 +58,7 @@ class Findings:
         factor = factor_outside(self.resonance, *self.guessed)
         low, high = self.guessed
         most = 100.0 * self.settings.end_response
-        away = f"a factor of {factor:.3g} from the guess's {low:.3g} to {high:.3g} Hz"
+        away = f"a factor of {factor:.3g} from {self.whose} {low:.3g} to {high:.3g} Hz"
         return [
             Condition(
                 self.clipped <= self.settings.clipped,

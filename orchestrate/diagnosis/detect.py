@@ -382,6 +382,7 @@ def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Fin
         end_response=float(max(response[0], response[-1]) / response.max()),
         resonance=evidence.resonance,
         guessed=(low, high),
+        whose="the guess's" if is_guessed else "the first record's",
         samples=channels.sample_rate / evidence.resonance,
         settings=data.settings,
     )

@@ -10,6 +10,7 @@ import math
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -40,8 +41,9 @@ RIGHT = {  # else what is not wrong
 }
 ANYWHERE = Conditions(off=0.03, sensors=2, participation=(0.3, 1.6))  # guesses within 3 %
 ON_BEAMS = Conditions(off=0.03, sensors=2, size=(0.3, 0.9), anywhere=True, sensor=(0.3, 1.0))
-MAKERS = {**KINDS, **STRIKERS}
-TWICE = (*SPLIT, "elements")  # drawn twice as often as the others
+CONDITIONS = {"long elements": replace(ON_BEAMS, size=(0.5, 0.9))}
+MAKERS = {**KINDS, **STRIKERS, "long elements": KINDS["elements"]}
+TWICE = (*SPLIT, "elements", "long elements")  # drawn twice as often as the others
 HARMLESS = ("sound", "hardening", "sagging", "friction", "torsion", "intact elements")
 HARMLESS += ("fixture", "bearing", "washer")
 
@@ -57,7 +59,7 @@ def cases(kinds: Sequence[str], count: int) -> Iterator[tuple[str, int]]:
 def judged_beam(seed: int, kind: str, number: int) -> dict[str, Any]:
     """Draw a beam, measure it at two levels, and judge the records as a user may have them."""
     begin, rng = time.process_time(), np.random.default_rng([seed, [*MAKERS].index(kind), number])
-    conditions = ON_BEAMS if "elements" in kind else ANYWHERE
+    conditions = CONDITIONS.get(kind, ON_BEAMS if "elements" in kind else ANYWHERE)
     rate = draw_log_uniform(rng, *RATES)
     low, high = draw_levels(rng, kind, conditions, rate, MAKERS, TIMES)
     first, second = (case.record.drop_vars("acceleration2") for case in (low, high))

@@ -1,14 +1,18 @@
 """The rule of the verdict, number by number."""
 
 import math
+import re
+import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from orchestrate.diagnosis.decision_rule import Beam, Findings, factor_outside
+from orchestrate.diagnosis.detect import beam_job
 from orchestrate.diagnosis.fit import reported_derivatives
-from orchestrate.diagnosis.hypotheses import Delaminated
+from orchestrate.diagnosis.hypotheses import FREE, Delaminated
+from orchestrate.diagnosis.settings import SETTINGS
 
 from .records import BEAM, record, record_evidence
 from .test_impact_timing import FACES
@@ -97,6 +101,22 @@ def test_what_keeps_a_quiet_record_from_its_verdict_is_named(name):
     stopped = Beam((replace(QUIET, **changes),))
     assert stopped.verdict() == "undecided"
     assert reason.lower() in stopped.reason().lower() and advice in stopped.next_measurement()
+
+
+@pytest.mark.parametrize("given", [None, BEAM])
+def test_whose_frequencies_a_resonance_is_away_from_is_named(given):
+    """Those of the first record were called the guess's, and there was none."""
+    first = record(BEAM.as_bonded(), noise=0.02, both=False)
+    slow = first.drop_attrs().assign_coords(time=2.0 * first.time.values)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # that says so of a guess
+        beam = beam_job([first, slow], given, FREE, None, SETTINGS).beam()
+    *_, away = beam.records[1].record_conditions()
+    assert not away.holds
+    low, high = (32.1, 35.5) if given is None else (30.0, 38.0)
+    named = re.search("from the (.*) ([0-9.]+) to ([0-9.]+) Hz", away.reason)
+    assert named[1] == ("first record's" if given is None else "guess's")
+    assert [float(named[2]), float(named[3])] == pytest.approx([low, high], rel=0.02)
 
 
 def test_the_level_from_which_faces_strike_is_stated():
