@@ -169,9 +169,7 @@ def strikes_at(
     grown = [
         float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
     ]
-    stiffens = grown[0]
-    if stiffens > settings.stiffens and math.isfinite(shut):  # from the stiffer one of both
-        stiffens = max(min(grown), 0.0)
+    stiffens = min(grown) if grown[0] > settings.stiffens else grown[0]  # a NaN stays second
     ends = 0.5 * (1.0 + settings.middle), 0.5 * (1.0 - settings.middle)
     position = (size * np.cos(peak))[loud] / size.max()
     return Strikes(
