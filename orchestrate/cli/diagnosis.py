@@ -23,7 +23,7 @@ from .output import Files, Reading, digest, file_checksum, unit_note
 log = logging.getLogger(__name__)
 RECOMMENDED = (  # variables of a plan
     "recommended_level second_level recommended_first recommended_last recommended_duration "
-    "recommended_rate opening_level"
+    "opening_level"
 )
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
     "wiring": "wiring",
@@ -256,6 +256,8 @@ The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         yield from printing.describe(data, RECOMMENDED)
+        if data.recommended_rate.notnull():
+            yield f"recommended sampling: {float(data.recommended_rate):.0f} samples a second"
         if data.second_level == data.recommended_level:
             yield "the highest of the levels: a second, higher one in --g would be a further check"
         if not data.counts and data.decides.any():

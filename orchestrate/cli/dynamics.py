@@ -53,7 +53,7 @@ decided with so few --periods."""
         name = printing.varied_parameter(data)
         rows = data.sortby("exponent", ascending=False).transpose(name, ...)
         shown = f"{name} exponent standard_error verdict{spectrum}"
-        yield from printing.table(printing.columns_of(rows, shown))
+        yield from printing.table(printing.columns_of(rows, shown), printing.MOST_ROWS)
         if data.sizes[name] > printing.MOST_ROWS:
             yield "the largest is biased by its error: repeat it, with another --transient"
         yield from printing.counts(data, data.verdict)
@@ -102,7 +102,7 @@ def attractor_table(data: xr.Dataset, over: str = "") -> Iterator[str]:
     columns["largest gap"] = [printing.format_largest_gap(part) for part in parts]
     in_si = " (SI)" * (not is_in_ratios(data))
     (columns[f"state at phase 0{in_si}"],) = printing.columns_of(rows, "state").values()
-    yield from printing.table(columns, len(parts))
+    yield from printing.table(columns)
 
 
 class Attractors(OfStructure, OfBox, Over, Asked, Stored, Results):
@@ -130,8 +130,10 @@ alone may miss one whose basin is small."""
             return
         shares = data.share.where(data.multiplicity.notnull())
         shown = data.assign(least_share=shares.min(name), largest_share=shares.max(name))
-        found = "first_found last_found least_share:.1% largest_share:.1%"
-        yield from printing.table(printing.rows_of(shown, found))
+        columns = printing.rows_of(shown, "least_share:.1% largest_share:.1%")
+        ends = zip(data.first_found.values.flat, data.last_found.values.flat, strict=True)
+        found = [printing.format_range(data, name, *pair) for pair in ends]
+        yield from printing.table({**columns, "found at": found})
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.planes import draw_motions
@@ -176,8 +178,9 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
                 f"{float(mixed.boundary_basin_entropy):.3g} (above 0.69: fractal)"
             )
             exponent, error = mixed.uncertainty_exponent, mixed.uncertainty_exponent_error
-            (words,) = printing.with_error(exponent, error, ".3g")
-            yield f"uncertainty exponent {words} (1: smooth boundaries)"
+            if math.isfinite(exponent):
+                (words,) = printing.with_error(exponent, error, ".3g")
+                yield f"uncertainty exponent {words} (1: smooth boundaries)"
 
 
 def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:

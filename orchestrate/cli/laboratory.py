@@ -134,7 +134,7 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
     """As in the laboratory: motion and impacts under sines, random, shock or a record."""
 
     calls = "shake"
-    shows = "box_acceleration force1 force2 a1_abs a2_abs x_rel transient_time control_aborted"
+    shows = "box_acceleration force1 force2 a1_abs a2_abs x_rel transient_time"
     shaker: str | None = option("its electrodynamic shaker, level controlled", value="FILE")
     examples = """
   {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --sensor 2000
@@ -146,6 +146,12 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
   {program} shake --structure beam --hammer 20:0.004 --half 2 --at 0.1 --duration 5
   {program} shake --structure beam --record base.csv --unit g
 --sensor also writes what accelerometers read, a record for diagnose, analyse and channels."""
+
+    def summary(self, data: xr.Dataset) -> Iterator[str]:
+        yield from super().summary(data)
+        if "control_aborted" in data and data.control_aborted.notnull():
+            end = float(data.control_aborted)
+            yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
 
     def ask(self) -> tuple[Structure, Keywords]:
         from ..running.job import refuse_family
@@ -428,7 +434,7 @@ they are, the last line says what is missing."""
         reading = self.given(Reading)
         found = orchestrate.channels(self.record, **reading, output=self.output)
         rows = printing.columns_of(found, "column role known quantity unit rms:.4g")
-        print(*printing.table(rows, found.column.size), sep="\n")
+        print(*printing.table(rows), sep="\n")
         if proposed := found.role.values[found.known.values == BY_ORDER].tolist():
             columns = found.column.values[found.known.values == BY_ORDER].tolist()
             said = [f'"{one}" as {role}' for one, role in zip(columns, proposed, strict=True)]

@@ -17,7 +17,7 @@ from .. import units
 from ..flags import flag_word, flag_words, runs_of
 from ..lazy import np, xr
 
-MOST_ROWS = 10  # of a table that is printed
+MOST_ROWS = 10  # of the exponents of a range
 MOST_WORDS = 4  # of a variable that are counted, the most frequent ones
 PARAMETERS = ("eta", "frequency", "level")  # shown in Hz and g unless other units are asked for
 SIDES = ("direction", "structure")  # dimensions that are no parameter
@@ -45,9 +45,10 @@ def describe(data: xr.Dataset, names: str) -> Iterator[str]:
     - of other numbers over parameters the largest, and where it is,
     - of a motion the range, and over the time the root mean square; none of a mass 2 at a wall.
     """
-    names = names.replace("x2", "").replace("a2_abs", "") if data.attrs.get("wall") else names
     parameters = {*data.impacts_per_period.dims} if "impacts_per_period" in data else set()
-    for array in (data[name] for name in names.split() if name in data):
+    left_out = ("x2", "a2") if data.attrs.get("wall") else ()
+    known = (name for name in names.split() if name in data and not name.startswith(left_out))
+    for array in (data[name] for name in known):
         if not array.notnull().any():
             continue
         if array.ndim and ("flag_meanings" in array.attrs or array.dtype.kind in "iU"):
@@ -114,15 +115,15 @@ def hints(words: Iterable[str]) -> Iterator[str]:
 # -- tables ---------------------------------------------------------------------------------------
 
 
-def table(columns: Mapping[str, Iterable[str]], most: int = MOST_ROWS) -> Iterator[str]:
+def table(columns: Mapping[str, Iterable[str]], most: int | None = None) -> Iterator[str]:
     rows = list(zip(*columns.values(), strict=True))
     shown = [tuple(columns), *rows[:most]]
     widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
     for row in shown:
         cells = (f"{cell:{width}}" for cell, width in zip(row, widths, strict=True))
         yield f"  {'  '.join(cells)}".rstrip()
-    if len(rows) > most:
-        yield f"  ... and {len(rows) - most} more"
+    if more := len(rows) + 1 - len(shown):
+        yield f"  ... and {more} more"
 
 
 def listing(data: xr.Dataset, of: str, names: str, form: str = ".6g") -> Iterator[str]:
@@ -150,7 +151,7 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g"
     for name, error, own in COLUMN.findall(names):
         array, form_of_it = data[prefix + name], own or form
         values = array.values
-        if name in PARAMETERS:
+        if name in PARAMETERS and not error:
             parts = [parameter_parts(data, name, float(one), form_of_it) for one in values]
             before, _, unit = parts[0] if parts else (name, "", "")
             title = f"{before or ('frequency' if name == 'eta' else name)} {unit}".rstrip()

@@ -67,7 +67,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
 
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         if "level" in data.dims:
-            yield from printing.table(level_columns(data), 2 * data.sizes["level"])
+            yield from printing.table(level_columns(data))
         else:
             if not data.sizes["peak"]:
                 for part in (data.sel(structure=one) for one in data.structure):
@@ -77,6 +77,8 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
             largest = "x1_max:.4g x2_max:.4g a1_max:.4g a2_max:.4g x_rel_max:.4g irregular"
             yield from printing.listing(data, "peak", f"{of} {largest}")
             yield from printing.listing(data, "jump", f"{of} before:.4g after:.4g")
+            if data.sizes["jump"]:
+                yield "before, after: the largest gap on both sides of the jump"
         if "lowest_threshold" in data:
             level, at = data.lowest_threshold, data.lowest_threshold_frequency
             where = printing.format_parameter(data, "frequency", at, ".4g")
@@ -143,9 +145,8 @@ DIFFERENT = 0.01  # of the largest gap: where up and down differ by more, they a
 
 
 def response_lines(data: xr.Dataset) -> Iterator[str]:
-    yield from printing.describe(
-        data, "xi_rel_max x1_max x2_max a1_max a2_max multiplicity_decided"
-    )
+    sizes = "xi_rel_max x1_max x2_max a1_max a2_max impacts_per_period"
+    yield from printing.describe(data, f"{sizes} multiplicity_decided permanent_contact")
     repeated = printing.has_flag(data.multiplicity_decided, "repeated")
     yield from printing.counts(data, data.multiplicity.where(repeated))
 

@@ -156,7 +156,7 @@ The motor is switched on at once and followed until its speed has settled."""
     def summary(self, data: xr.Dataset) -> Iterator[str]:
         half = 0.5 * (data.border_high - data.border_low)
         columns = printing.rows_of(data.assign(half=half), "border+half:.5f above_fold")
-        yield from printing.table(columns, data.border.size)
+        yield from printing.table(columns)
         yield from printing.hints([f"above_fold: {one}" for one in {*columns["above_fold"]}])
         yield from printing.describe(data, "passes decision")
 
@@ -229,7 +229,7 @@ class JumpVoltages(OfRamp, Over, Stepped, Driven, Stored, OfBoth):
         # a direction in which no ramp went has not been decided
         went = [jump for jump in data.jump.values if data.decided.sel(jump=jump).any()]
         rows = printing.rows_of(data.sel(jump=went), "jumps+standard_error:.5f decided")
-        yield from printing.table(rows, data.jumps.size)
+        yield from printing.table(rows)
         if (data.decided == "undecided").any():
             yield "undecided by constant voltages; drive-branch shows which motions are stable"
 
@@ -263,7 +263,7 @@ def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     unlocated = [unlocated_changes(leg, data.bifurcation_speed.values) for leg in legs]
     if any(unlocated):
         columns["stability changes near, not located (--period)"] = unlocated
-    yield from printing.table(columns, len(legs))
+    yield from printing.table(columns)
     yield from printing.hints(dict.fromkeys(columns["ends by"]))
 
 
@@ -314,7 +314,7 @@ def variable_lines(drive: Path) -> Iterator[str]:
         "unit": [one.unit or "no unit" for _, one in listed],
         "description": [one.description or "" for _, one in listed],
     }
-    yield from printing.table(columns, len(listed))
+    yield from printing.table(columns)
     if likely := proposals(description):
         links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
         yield f"likely: --connect {links}   (a run checks the sign of the force)"

@@ -93,7 +93,7 @@ class Strikes:
     blow: float
     opposite: float  # correlation of what both sensors hear in the loudest bin; NaN with one
     order2: float  # over order 1
-    stiffens: float  # growth of the stiffness, over order 2: see `stiffness_growth`
+    stiffens: float  # growth of the stiffness, over order 2: see `strikes_at`
     place: float  # where it strikes, over the stroke: -1 or 1 at its ends
     spread: float  # of the place in the `middle` of the windows, over the stroke
     stiffness: float  # frequency over that of the faces shut; NaN where that is not known

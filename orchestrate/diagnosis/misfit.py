@@ -51,8 +51,8 @@ class LinearModel:
         bounds: Bounds,
         values: Mapping[str, float],
         covariance: Floats,
-        seed: int = 0,
-        points: int = 4,
+        seed: int,
+        points: int,
     ) -> LinearModel:
         """Compute the residuals at a cloud of points, so many a number, and their regression."""
         count = len(values)

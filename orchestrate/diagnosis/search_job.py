@@ -205,6 +205,9 @@ class SearchJob(Job):
             made.append((search, self.improved(search, starts, [one for _, one in made], worth)))
         count = len(self.sound)
         best = min(range(count), key=lambda position: made[position][1][0].misfit)
+        if worth:  # what two masses are compared with is polished as they are
+            search, found = made[best]
+            made[best] = search, [search.polish(found[0]), *found[1:]]
         rows = []
         for position, one in enumerate(made):
             with_errors = position >= count if worth else position in (0, best)  # may be stated
@@ -239,7 +242,6 @@ class SearchJob(Job):
         tried = [best.values, *(one.values for one in rest[:1] if one.misfit < near)]
         search.evaluations += coarse.evaluations
         best, *rest = self.sort_by_misfit_and_guess(search, search.rank_starts([*tried, *above]))
-        # beside two masses that are stated a sound hypothesis is a comparison
         return [search.polish(best) if hypothesis.is_rugged or not worth else best, *rest]
 
     def sort_by_misfit_and_guess(

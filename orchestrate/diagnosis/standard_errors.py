@@ -44,6 +44,7 @@ from .order_windows import ORDERS, RecordOrders
 from .settings import Settings
 
 SEED = 20_241
+POINTS = 4  # of a cloud, a number: more than searches take (`Settings.points`)
 # Of errors, measured; the halves are alike, so that a number of both has one factor. The errors of
 # both frequencies stay as they are: they hold the truth in 93 of 100 records
 CALIBRATION = {"log_zeta1": 2.9, "log_zeta2": 2.9, "e": 1.35}
@@ -86,10 +87,11 @@ def linear_model_around(search: Search, values: Mapping[str, float]) -> LinearMo
     """Fit a linear model to the residuals at a cloud of points around these values."""
     bounds = search.hypothesis.bounds(search.evidence)
     steps = np.diag([difference_step(search, name) ** 2 for name in values])
-    first = LinearModel.from_cloud(search.residuals, bounds, values, 0.1 * steps)
-    return LinearModel.from_cloud(
-        search.residuals, bounds, values, 0.3 * first.cloud_covariance(), seed=1
-    )
+    shape = 0.1 * steps
+    for seed in (0, 1):
+        model = LinearModel.from_cloud(search.residuals, bounds, values, shape, seed, POINTS)
+        shape = 0.3 * model.cloud_covariance()
+    return model
 
 
 def with_shared_damping(values: Mapping[str, float]) -> dict[str, float]:

@@ -213,7 +213,8 @@ def random_starts(
 ) -> NDArray[np.float64]:
     """Draw ``count`` states, shape (count, 4), uniformly from a box around rest, gap >= 0."""
     if not scale <= LARGEST:
-        raise InputError(f"starts in +-{scale:g} m: expected a smaller scale or width")
+        expected = f"expected at most {LARGEST:g} m, by scale or width"
+        raise InputError(f"starts in +-{scale:g} m: {expected}")
     draws = np.random.default_rng(list(seed)).uniform(-scale, scale, (count, 4))
     omega, x1, gap = structure.omega, draws[:, 0] + structure.at_rest[0], np.abs(draws[:, 1])
     v1, rate = draws[:, 2] * omega, draws[:, 3] * omega

@@ -48,10 +48,13 @@ def checked_text(name: str, value: Any) -> str | None:
 
 def checked_texts(name: str, value: Any) -> tuple[str, ...]:
     """Return one text or several as a tuple; none for None."""
-    texts = () if value is None else (value,) if isinstance(value, str) else value
-    if not isinstance(texts, (tuple, list)) or not all(isinstance(one, str) for one in texts):
+    try:
+        texts = () if value is None else (value,) if isinstance(value, str) else tuple(value)
+    except TypeError:
+        texts = (None,)
+    if not all(isinstance(one, str) for one in texts):
         raise InputError(f"{name} = {value!r}: expected a list of texts")
-    return tuple(texts)
+    return tuple(map(str, texts))
 
 
 def checked_mapping(name: str, value: Any) -> dict[str, Any]:

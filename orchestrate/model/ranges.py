@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import numbers
-import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -97,15 +96,19 @@ def checked_range(
     open_high: bool = False,
 ) -> float:
     """Return a finite number from ``low`` to ``high``, of which either end may be left out."""
-    is_number = isinstance(value, numbers.Real) and not isinstance(value, bool)
-    number: Any = value if is_number and abs(value) <= sys.float_info.max else math.nan
+    number = as_scalar(value)
+    try:
+        is_number = isinstance(number, numbers.Real) and not isinstance(number, bool)
+        number = float(number) if is_number else math.nan
+    except OverflowError:
+        number = math.nan
     left_out = (open_low and number == low) or (open_high and number == high)
-    if not low <= number <= high or left_out:
+    if not (math.isfinite(number) and low <= number <= high) or left_out:
         begin = "" if low == -math.inf else f"{low:.4g} {'<' if open_low else '<='} "
         end = "" if high == math.inf else f" {'<' if open_high else '<='} {high:.4g}"
         expected = f"{begin}{name}{end}" if begin or end else "a finite number"
         raise InputError(f"{name} = {value!r}{unit and f' {unit}'}: expected {expected}")
-    return float(number)
+    return number
 
 
 def known_units(name: str) -> dict[str, str]:

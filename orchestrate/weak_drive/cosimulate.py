@@ -23,7 +23,6 @@ from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER
 from ..lazy import Unpack, xr
 from ..model.arguments import (
     Count,
-    checked_integer,
     checked_mapping,
     checked_path,
     checked_texts,
@@ -174,6 +173,7 @@ def cosimulate(
     links = checked_links(connect, description, units, structure is None)
     for name, value in (("duration", duration), ("step", step)):
         checked_range(name, value, "s", low=0.0, open_low=True)
+    checked_range("duration/step", duration / step, high=MAX_STEPS)
     check_internal_step(duration, step, description, estimate)
     count = checked_step_count(duration, step, description)
     estimate = estimate and structure is not None
@@ -203,13 +203,13 @@ def cosimulate(
 
 def checked_step_count(duration: float, step: float, drive: Description) -> int:
     """Return the number of steps; raise ``InputError`` if a drive of equal steps has a rest."""
-    count = max(1, math.ceil(min(duration / step, MAX_STEPS + 1.0) - 1e-9))
+    count = max(1, math.ceil(duration / step - 1e-9))
     if drive.has_fixed_step and not math.isclose(count * step, duration, rel_tol=1e-9):
         raise InputError(
             f"duration = {duration} s, step = {step} s: the FMU {drive.name} takes only steps "
             "of one length; expected a duration that is a whole number of steps"
         )
-    return checked_integer("duration/step", count, 1, MAX_STEPS)
+    return count
 
 
 def check_internal_step(duration: float, step: float, drive: Description, estimate: bool) -> None:
@@ -286,9 +286,9 @@ def warn_of_drive(run: xr.Dataset) -> None:
     """Warn with what the drive warned of, each text once, and where it ended the simulation."""
     attributes = getattr(run, "attrs", {})
     for text in attributes.get("drive_warnings", "").splitlines():
-        warnings.warn(text, stacklevel=3)
+        warnings.warn(text, stacklevel=4)
     if (ended := attributes.get("ended", AT_THE_DURATION)) != AT_THE_DURATION:
-        warnings.warn(f"{ended}; the result ends there", stacklevel=3)
+        warnings.warn(f"{ended}; the result ends there", stacklevel=4)
 
 
 def warn_of_step(run: xr.Dataset, missing: Sequence[str]) -> None:
@@ -297,7 +297,7 @@ def warn_of_step(run: xr.Dataset, missing: Sequence[str]) -> None:
     if share < RESOLVED:
         text = f"a force accelerates the box by {share:.2g} in a step, where it does by 1 at once: "
         text += "the step is too long for the drive's own motion"
-        warnings.warn(f"{text}; reduce it or connect {', '.join(missing)}", stacklevel=3)
+        warnings.warn(f"{text}; reduce it or connect {', '.join(missing)}", stacklevel=4)
 
 
 def warn_of_error(run: xr.Dataset, missing: Sequence[str]) -> None:
@@ -310,4 +310,4 @@ def warn_of_error(run: xr.Dataset, missing: Sequence[str]) -> None:
         more = f" and connect {', '.join(missing)} if the drive has it" if missing else ""
         text = f"coupling error {error:.2g} m of displacements up to {size:.2g} m: "
         text += "it diverges: look at units" if error > size else "impacts may be missed or added"
-        warnings.warn(f"{text}; reduce the step{more}", stacklevel=3)
+        warnings.warn(f"{text}; reduce the step{more}", stacklevel=4)

@@ -153,6 +153,9 @@ class CosimulateJob(CoupledJob, Question):
     def alone(self) -> bool:
         return not {"box_force", *PUSHES} & set(dict(self.connect))
 
+    def parameters(self) -> dict[str, Any]:
+        return {**super().parameters(), **dict.fromkeys(("structure",) * self.alone)}
+
     def call_text(self) -> str:
         values: dict[str, Any] = {"connect": dict(self.connect), "units": dict(self.units)}
         values |= {"parameters": dict(self.start_values)}

@@ -28,6 +28,7 @@ from ..errors import InputError
 from ..files import write_whole
 from ..fmu.description import Description, describe
 from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
+from ..model.arguments import checked_mapping
 from ..model.drive import Drive
 from ..model.ranges import checked_range
 from ..model.shaker import Shaker
@@ -306,7 +307,9 @@ def drive_component(
     parameters: Values | None,
 ) -> tuple[Component, Links]:
     """Return another drive's component and connections; raise where tools could not have them."""
-    values = dict(parameters or {})
+    values = checked_mapping("parameters", parameters)
+    connect = checked_mapping("connect", connect) if connect is not None else None
+    units = checked_mapping("units", units)
     if isinstance(drive, Shaker):
         path, values = fmu or fmu_path(ELECTRODYNAMIC_SHAKER), {**drive.parameters(), **values}
     else:
@@ -314,7 +317,7 @@ def drive_component(
     description, exchanged = describe(path), ("box_force", "box_acceleration")
     if connect is None and isinstance(drive, Shaker):
         connect = {name: name for name in exchanged}
-    links = checked_links(connect or {}, description, checked_units(units or {}, description))
+    links = checked_links(connect or {}, description, checked_units(units, description))
     taken = [name for name in links if name in FORCE[1:]]
     if taken or ("box_force" in links and "box_acceleration" not in links):
         raise InputError(
