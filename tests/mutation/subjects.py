@@ -22,7 +22,7 @@ SUBJECTS = {
     "fmu_src/kernels/oscillator/impact.py": kernel("impact", "motion"),
     "fmu_src/kernels/oscillator/contact.py": kernel("contact", "event_function", "motion"),
     "fmu_src/kernels/oscillator/series.py": kernel("series", "impact", "motion"),
-    "fmu_src/kernels/oscillator/motion.py": kernel("motion", "impact", "contact"),
+    "fmu_src/kernels/oscillator/motion.py": kernel("motion", "impact", "contact", "series"),
     "fmu_src/kernels/repetition.py": ("tests/orchestrate/response/test_multiplicity.py",),
     "orchestrate/weak_drive/hysteresis.py": (f"{DRIVE}/test_hysteresis.py",),
     "orchestrate/weak_drive/steady_speed.py": (f"{DRIVE}/test_steady_speed.py",),

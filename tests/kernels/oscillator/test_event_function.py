@@ -169,6 +169,8 @@ def test_nothing_ends_a_state_in_which_nothing_moves(moves):
     still = started(**APART)
     assert still[at.MODE] == at.FLIGHT and still[at.CLEAR] == INFINITE
     assert started(clearance=-0.5, box_amplitude=0.0)[at.CLEAR] == INFINITE
+    still[at.EVENT_HARMONIC] = still[at.EVENT_HARMONIC + 1] = 0.1
+    assert not event_function.is_constant(still)
     if moves:
         m = started(**APART, **{moves: 0.1 if "1" not in moves or moves == "v1_start" else -0.1})
     else:  # at a resonance, next to a wall: from rest on

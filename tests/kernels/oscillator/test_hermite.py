@@ -135,9 +135,7 @@ def test_no_summit_is_overlooked_and_a_clear_slope_is_seen(sign):
 
 @pytest.mark.parametrize("length", [0.1, 1.0])
 def test_a_line_has_no_summit_where_it_is_steeper_than_what_may_be_missed(length):
-    """By a sixth derivative of 28,800 times the remainder over h^6: sqrt(5)/30,000 of it in the
-    slope, and 1/1,920 and 1/120 in the curvature and the third derivative along the way.
-    """
+    """By a sixth derivative of 28,800 remainders: in slope, curvature and third derivative."""
     missed = 28800.0 * (math.sqrt(5.0) / 30000.0 + length / 1920.0 + 0.5 * length**2 / 120.0)
     for part, summit in ((0.99, True), (1.01, False)):
         m = interval(Polynomial([1.0, part * missed]), 1.0)

@@ -136,6 +136,14 @@ def test_the_walk_leaves_what_a_look_up_leaves(values):
         assert m[at.NODE : at.RIGHT_VALUES + 3] == other[at.NODE : at.RIGHT_VALUES + 3]
 
 
+@pytest.mark.parametrize("gap", [1e-4, 1e-3])
+def test_phasors_are_those_of_an_end_that_is_near_the_start(gap):
+    m = walk_to(flight(-0.3, 0.5, gap - 0.3, -0.5), 12.0)
+    assert (m[at.END_KIND], m[at.AT_END_NODE]) == (at.END_EVENT, 1.0)
+    there = nodes.phasors_at(m, m[at.END])
+    assert m[at.AT_END : at.AT_END + 6] == pytest.approx(there, rel=0.0, abs=1e-15)
+
+
 @pytest.mark.parametrize("slope", [0.1, 1.0, 10.0])
 @pytest.mark.parametrize("stroke", [0.0, 0.02, 100.0])
 def test_no_more_than_the_first_interval_is_clear_at_a_start_from_the_boundary(slope, stroke):

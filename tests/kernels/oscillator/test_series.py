@@ -68,7 +68,8 @@ def test_a_short_flight_is_that_of_the_gap(values, x, v, slope):
             assert abs(h0 - gap(tau)) <= bound
             assert abs(h1 - closing(tau)) <= 1e-12 * (slope + terms)
             assert abs(h2 - curvature(tau)) <= 1e-12 * (slope + abs(curvature(0)) + terms)
-            x1, v1, *_ = state_at(m, float(tau))
+            x1, v1, x2, _ = state_at(m, float(tau))
+            assert abs(x2 - x1 - max(h0, 0.0)) <= 4e-15 * size
             assert abs(v1 - speed(tau)) <= 1e-14 * size
             assert values["clearance"] or abs(x1 - first(tau)) <= 1e-15  # counted from rest else
         assert abs(gap(mp.mpf(end))) <= 1e-13 * (slope + terms * end) * end + 4.0 * start

@@ -81,20 +81,25 @@ def test_voltages_and_masses_that_are_hardly_meant(caplog):
             print_assumptions(beam, "paper", {"f1": 40.0})
 
 
-def test_ratios_a_varied_level_and_a_play(caplog):
-    """Masses in ratios are none in kg; one level is enough; a play is not linear below contact."""
-    ratios, shown = Structure.nondimensional(mu=30.0), xr.Dataset()
+def test_what_is_not_said(caplog, capsys):
+    """Of ratios, of the halves' own frequencies, of a set that is asked for, of a play."""
+    ratios, shown, one = Structure.nondimensional(mu=30.0), xr.Dataset(), np.ones(1)
+    wide = Structure.from_halves(m1=1.0, m2=1.0, f1=40.0, f2=TURN * 40.0, zeta1=0.01)
+    cases = (ratios, "", ""), (wide, "", ""), (wide, "paper", "e"), (wide, "paper", "")
+    for beam, name, changed in cases:
+        given = SimpleNamespace(structure=name, set=changed, frequency="251.3")
+        box = {"frequency": beam.omega * one, "amplitude": one / beam.omega}
+        assert not said(functools.partial(notes.print_frequency_notes, given, beam, box), caplog)
+        assert bool(capsys.readouterr().out) == (name == "paper" and not changed)
     assert not notes.heavy_mass_note(ratios)
-    arguments, one = SimpleNamespace(structure="mine", set=[]), np.ones(1)
-    box = {"frequency": one, "amplitude": one}
-    assert not said(lambda: notes.print_frequency_notes(arguments, ratios, box), caplog)
     assert notes.box_motion(ratios, {"eta": 2.0}) == (2.0, 0.25)
     for over, count in (("level", 1), ("frequency", 0)):
         assert len([*notes.trivial_notes(HALVES, {"over": over}, shown)]) == count
-    asked = {"frequency": np.array([TURN * 20.0]), "level": np.array([0.1])}
-    for stroke, count in ((0.0, 1), (2e-3, 0)):
-        play = HALVES.replace(clearance=1e-4, stroke=stroke)
-        assert len([*notes.clearance_notes(play, asked, shown)]) == count
+    asked, play = {"frequency": TURN * 20.0 * one, "level": 0.1 * one}, {"clearance": 1e-4}
+    for more, over, count in (({}, {}, 1), ({"stroke": 2e-3}, {}, 0), ({}, {"over": "e"}, 0)):
+        beam = HALVES.replace(**play, **more)
+        assert len([*notes.clearance_notes(beam, asked | over, shown)]) == count
+    assert [len([*clearance_notes(times)()]) for times in (0.99, 1.01)] == [0, 1]
 
 
 SIMULATE = "simulate --periods 2 --plot none --set f1=42 --set f2=55 "

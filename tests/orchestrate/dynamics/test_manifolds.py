@@ -216,11 +216,9 @@ def test_a_jump_breaks_the_curve_and_a_root_does_not(height, power):
 
 
 def test_a_jump_that_no_impact_tells_is_where_numbers_are_not_divided_any_more():
-    def step(z):
-        return np.array([1.7 * z[0], 0.4 * z[1] + 0.5 * (z[0] > 1.0)])
-
+    jump = images(lambda z: np.array([1.7 * z[0], 0.4 * z[1] + 0.5 * (z[0] > 1.0)]), 1.7)
     settings = GrowthSettings(2.5, 0.02, 0.2, 3000, resolution=1e-10)
-    ((_, border),) = CurveGrower(images(step, 1.7), settings).grow().breaks.items()
+    ((_, border),) = CurveGrower(jump, settings).grow().breaks.items()
     assert (border.distance, border.power) == (pytest.approx(0.5, rel=1e-6), 0.0)
     assert border.low.state[0] <= 1.7 < border.high.state[0] == pytest.approx(1.7, abs=1e-8)
 

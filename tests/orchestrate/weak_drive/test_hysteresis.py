@@ -147,7 +147,7 @@ def test_what_comes_after_a_speed_against_the_voltage():
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_what_a_motion_has_become_is_compared_from_the_step_before_on(monkeypatch, sign):
+def test_what_a_motion_has_become_is_compared_from_the_step_before_on(sign):
     """The fourth of five does not last: the jump to it is decided again, those before stay."""
     loop, asked, lasts = Scripted(None), [], iter((0.0, 9.0))
     points = [loop.at(1.5 + sign * 0.01 * n)._replace(lasts=9.0 * (n != 3)) for n in range(5)]
@@ -156,11 +156,9 @@ def test_what_a_motion_has_become_is_compared_from_the_step_before_on(monkeypatc
         asked.append(i)
         return Jump((LOST, UNDECIDED)[i % 2], points[i].voltage, points[i + 1].voltage)
 
-    monkeypatch.setattr(loop, "lasting", lambda point, *_: point._replace(lasts=next(lasts)))
-    monkeypatch.setattr(loop, "jump_over", jump_over)
-    scripted = {"hold_grid": points, "excess": 1.0, "insert_between": False, "least": 1.0}
-    for name, answer in scripted.items():
-        monkeypatch.setattr(loop, name, lambda *_, answer=answer: answer)
+    loop.lasting, loop.jump_over = lambda point, *_: point._replace(lasts=next(lasts)), jump_over
+    loop.hold_grid, loop.insert_between = lambda *ends: points, lambda *step: False
+    loop.excess = loop.least = lambda *step: 1.0
     found = loop.jumps(points[0], points[-1].voltage)
     assert asked == [0, 1, 2, 2, 3]
     assert [jump.low for jump in found] == [point.voltage for point in points[:4]]
@@ -367,10 +365,9 @@ def test_the_motion_on_the_way_back_has_to_last(life, outcome):
 
 
 @pytest.mark.parametrize(("least", "excess"), [(5.0, 1.0), (1.0, 0.0)])
-def test_a_step_is_no_jump_before_its_motions_have_lasted(monkeypatch, least, excess):
+def test_a_step_is_no_jump_before_its_motions_have_lasted(least, excess):
     loop = Scripted(lambda *now: 0.0)
-    monkeypatch.setattr(loop, "least", lambda *ends: least)
-    monkeypatch.setattr(loop, "excess", lambda *step: excess)
+    loop.least, loop.excess = lambda *ends: least, lambda *step: excess
     assert loop.jump_over([loop.at(1.5)._replace(lasts=2.0), loop.at(1.51)], 0, []) is None
 
 
