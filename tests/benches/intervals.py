@@ -35,7 +35,7 @@ def table_rows(lines: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         error = [line["error"][row] / line["true"][name] for line in lines]
         stated = [(a, b) for a, b in zip(off, error, strict=True) if math.isfinite(b)]
         holds = sum(abs(a) <= 1.96 * b for a, b in stated)
-        usual = float(np.nanmedian(np.abs(off)))
+        usual = float(np.median([abs(one) for one in off if math.isfinite(one)] or [math.nan]))
         numbers = f"{len(off):10}{int(np.isfinite(off).sum()):10}{len(stated):10}{holds:10}"
         yield f"{name:8}{numbers}{usual:12.2%}"
     most = SETTINGS.delaminated
