@@ -56,9 +56,10 @@ class TimingSettings:
     opposite: float = -0.97
     together: float = 0.0
     order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
-    # growth of the stiffness over order 2: faces make 0.01 where the place stays, stops 0.19 or
-    # more; clamps that lift make -0.32 or less before `at_end` of the stroke, or an order 2 of 0.54
-    # where faces make up to 0.47; a slow half that a moving one strikes up to 1.5, a stop from 1.8
+    # growth of the stiffness over order 2, from rest: where the place stays faces make up to 0.07,
+    # stops 0.5 or more; a half that meets a slow one 0.9, but from shut faces -0.22 or less, stops
+    # 0.02 or more; clamps that lift make -0.32 or less before `at_end` of the stroke, or an order 2
+    # of 0.54; a slow half that a moving one strikes up to 1.5, a stop from 1.8
     softens: float = -0.25
     lifts: float = 0.5
     at_end: float = 0.8
@@ -109,14 +110,14 @@ class Strikes:
         - "nothing heard" up to `faint`, and up to `rattles` unless the peaks' phases agree by
           `locked`; "base strikes" if the base has more than `faint` and `base` of it.
         - "faces strike": the phases agree, orders 6 to 12 make a `blow`, those of two sensors are
-          `opposite`, and it is no clamp.
+          `opposite`, and the beam does not soften as by a clamp.
         - "something faint" up to `heard`; "not locked" if the phases do not agree, or the power is
           not on one side of the period by `one_sided`; "kinks" below `blow`; "something small
           strikes" with an order 2 below `order2`.
         - "stop" if the stiffness grows with the stroke, over order 2, by more than `stiffens`
-          (`stiffens_moving` where the place moves by `spread`), other than to that of shut faces,
-          or, where it strikes before `at_end` of the stroke, falls by more than `softens` or makes
-          an order 2 above `lifts`: a clamp.
+          (`stiffens_moving` where the place moves by `spread`), and not to less than that of shut
+          faces, or, where it strikes before `at_end` of the stroke, falls by more than `softens` or
+          makes an order 2 above `lifts`: a clamp.
         - "faces strike" with a known frequency, up to `stiffer`, unless two sensors hear blows that
           are `together`; else "stop or softer face".
         """
@@ -127,16 +128,17 @@ class Strikes:
             return "base strikes"
         moves = self.spread >= settings.spread
         stiffens = settings.stiffens_moving if moves else settings.stiffens
-        lifts = self.stiffens < settings.softens or self.order2 > settings.lifts
-        is_clamp = lifts and abs(self.place) < settings.at_end
-        if is_locked and is_blow and self.opposite < settings.opposite and not is_clamp:
+        before_end = abs(self.place) < settings.at_end
+        softens = before_end and self.stiffens < settings.softens
+        lifts = before_end and self.order2 > settings.lifts
+        if is_locked and is_blow and self.opposite < settings.opposite and not softens:
             return FACES
         limits = {
             FAINT: self.heard > settings.heard,
             "not locked": is_locked and self.one_sided >= settings.one_sided,
             "kinks": is_blow,
             "something small strikes": self.order2 >= settings.order2,
-            STOP: self.stiffens <= stiffens and not is_clamp,
+            STOP: self.stiffens <= stiffens and not softens and not lifts,
             SOFTER: self.stiffness <= settings.stiffer and not self.opposite > settings.together,
         }
         return next((word for word, holds in limits.items() if not holds), FACES)
@@ -169,7 +171,7 @@ def strikes_at(
     grown = [
         float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
     ]
-    stiffens = min(grown) if grown[0] > settings.stiffens else grown[0]  # a NaN stays second
+    excused = grown[0] > settings.stiffens and grown[1] < -settings.stiffens  # false of a NaN
     ends = 0.5 * (1.0 + settings.middle), 0.5 * (1.0 - settings.middle)
     position = (size * np.cos(peak))[loud] / size.max()
     return Strikes(
@@ -180,7 +182,7 @@ def strikes_at(
         blow=float(np.median(blow[loud])),
         opposite=float(np.median(opposite[loud])),
         order2=float(np.median(second[loud])),
-        stiffens=stiffens,
+        stiffens=grown[excused],
         place=float(np.median(turned.real)),
         spread=float(np.subtract(*np.quantile(position, ends))),
         stiffness=math.sqrt(max(np.median(stiffness[loud]), 0.0)) / shut * (1.0 - settings.known),
