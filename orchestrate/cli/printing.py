@@ -67,7 +67,7 @@ def describe(data: xr.Dataset, names: str) -> Iterator[str]:
 def meaning(array: xr.DataArray) -> str:
     if array.name == "xi_rel_max":
         return "largest gap"
-    return re.split("[,;]", str(array.attrs.get("long_name", array.name)))[0]
+    return re.split("[,;:]", str(array.attrs.get("long_name", array.name)))[0]
 
 
 def value_text(data: xr.Dataset, name: Any) -> str:
@@ -92,7 +92,8 @@ def counts(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
     words = flag_words(array.attrs) if "flag_meanings" in array.attrs else {}
     for one, count in known[:MOST_WORDS]:
         word = one if isinstance(one, str) else words.get(int(one), f"{array.name} {one:g}")
-        word = {"yes": str(array.name), "no": f"not {array.name}"}.get(word, word)
+        name = str(array.name).replace("_", " ")
+        word = {"yes": name, "no": f"no {name}"}.get(word, word)
         holds = array == one
         line = f"{word}: {format_share(count, holds.size)}"
         for case in itertools.product(*(holds[dim].values.tolist() for dim in sides)):

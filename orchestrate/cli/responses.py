@@ -147,6 +147,9 @@ DIFFERENT = 0.01  # of the largest gap: where up and down differ by more, they a
 def response_lines(data: xr.Dataset) -> Iterator[str]:
     sizes = "xi_rel_max x1_max x2_max a1_max a2_max impacts_per_period"
     yield from printing.describe(data, f"{sizes} multiplicity_decided permanent_contact")
+    if data.multiplicity.size <= 4:  # such as one value up and down
+        names = "xi_rel_max:.4g impacts_per_period:.4g multiplicity multiplicity_decided"
+        yield from printing.table(printing.rows_of(data, names))
     repeated = printing.has_flag(data.multiplicity_decided, "repeated")
     yield from printing.counts(data, data.multiplicity.where(repeated))
 

@@ -163,6 +163,8 @@ def test_knocks_on_each_half_make_a_structure(ask, tmp_path):
     out = ask("halves", *paths, output=tmp_path / "beam.toml").success().out
     assert "half2.csv: taken for knocks on half 2, as the second record" in out
     assert "e = 0.7 and clearance = 0 m are assumed" in out
+    shown = [float(found) for found in re.findall(r"^ +[12] +\S+ \+- \S+ +(\S+) \+-", out, re.M)]
+    assert shown == pytest.approx((beam.f1, beam.f2), rel=1e-3), out
     ask("halves", paths[0], paths[0]).complaint("half1.csv: the same numbers as", "each half")
     fitted = orchestrate.Structure.from_file(tmp_path / "beam.toml")
     assert (fitted.f1, fitted.f2) == pytest.approx((beam.f1, beam.f2), rel=1e-3)
