@@ -260,10 +260,7 @@ def amplitudes(signal: Floats, waves: NDArray[np.complex128]) -> NDArray[np.comp
 def timed_power(
     errors: Sequence[Floats], phase: Floats, settings: TimingSettings
 ) -> tuple[float, float, float, float, float]:
-    """Return how far the loudest bin rises over noise, its power and phase, and the moment.
-
-    Last comes the correlation of both sensors' errors in that bin, NaN of one sensor.
-    """
+    """Return the loudest bin's rise over noise, power, phase, moment, correlation of sensors."""
     from scipy.special import chdtri
 
     bins = np.floor(phase / TURN * settings.bins).astype(int) % settings.bins

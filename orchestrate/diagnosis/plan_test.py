@@ -327,10 +327,7 @@ def checked_positive(name: str, given: ArrayLike, unit: str) -> Floats:
 def checked_sensors(
     sensor: Sensor | dict[str, Sensor], last: float
 ) -> tuple[tuple[str, Sensor], ...]:
-    """Check that the responses' sensors have a noise; return all, and one of the box.
-
-    None is faster than the rule needs it up to ``last`` Hz: a rehearsal takes as many times longer.
-    """
+    """Return sensors with a noise, one of the box too, as fast as the rule needs to ``last`` Hz."""
     sensors = sensor_by_channel(sensor)
     responses = {name: one for name, one in sensors.items() if name != BOX}
     if not responses:
