@@ -123,7 +123,8 @@ def checked_number(name: str, value: Any, expected: str = "one number") -> float
 def checked_list(name: str, value: Any) -> tuple[float, ...]:
     """Return one finite number or several as a tuple."""
     numbers = checked_numbers(name, () if value is None else value)
-    return numbers if isinstance(numbers, tuple) else (float(numbers or 0.0),)
+    assert numbers is not None  # of a value that is given
+    return numbers if isinstance(numbers, tuple) else (numbers,)
 
 
 def checked_pair(name: str, value: Any, expected: str) -> tuple[float, float]:

@@ -154,7 +154,8 @@ class CosimulateJob(CoupledJob, Question):
         return not {"box_force", *PUSHES} & set(dict(self.connect))
 
     def parameters(self) -> dict[str, Any]:
-        return {**super().parameters(), **dict.fromkeys(("structure",) * self.alone)}
+        known = super().parameters()
+        return {**known, "structure": None} if self.alone else known
 
     def call_text(self) -> str:
         values: dict[str, Any] = {"connect": dict(self.connect), "units": dict(self.units)}

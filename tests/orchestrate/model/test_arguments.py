@@ -1,13 +1,16 @@
 """Checks and words that every package shares."""
 
+import math
 from functools import partial
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.model.arguments import MAX_COUNT, checked_integer
+from orchestrate.model.ranges import checked_range
 from orchestrate.model.structure import Structure
 
 QUICK = Structure.from_file("quick"), orchestrate.Drive.from_file("quick")
@@ -64,3 +67,15 @@ def test_masked_entries_are_refused(name, ask):
     text = rf"{name}: 1 of \d entries are masked; expected all to be numbers"
     with pytest.raises(InputError, match=text):
         ask()
+
+
+def test_a_range_takes_numbers_of_every_kind_and_nothing_infinite():
+    """Warnings are errors here: the largest double is infinite as a float32."""
+    for value in (np.float32(1.5), np.array(1.5), 1.5, xr.DataArray(1.5)):
+        assert checked_range("hold", value, "s", low=0.0) == 1.5
+    for wrong in (np.float32("inf"), math.nan, 10**400, True, "1.5", np.array([1.5])):
+        with pytest.raises(InputError, match=r"^hold = .* s: expected 0 <= hold$"):
+            checked_range("hold", wrong, "s", low=0.0)
+    for ends in ({"open_low": True}, {"open_high": True}):
+        with pytest.raises(InputError, match="0 <=? part <=? 0"):
+            checked_range("part", 0.0, low=0.0, high=0.0, **ends)
