@@ -58,13 +58,14 @@ class TimingSettings:
     order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
     # growth of the stiffness over order 2, from rest: where the place stays faces make up to 0.07,
     # stops 0.5 or more; a half that meets a slow one 0.9, but from shut faces -0.22 or less, stops
-    # 0.02 or more; clamps that lift make -0.32 or less before `at_end` of the stroke, or an order 2
-    # of 0.54; a slow half that a moving one strikes up to 1.5, a stop from 1.8
+    # -0.13 or more; clamps that lift make -0.32 or less before `at_end`, or an order 2 of 0.54; a
+    # slow half that a moving one strikes up to 1.5, a stop from 1.8
     softens: float = -0.25
     lifts: float = 0.5
     at_end: float = 0.8
     stiffens: float = 0.1
     stiffens_moving: float = 1.5
+    softer: float = -0.17  # from shut faces
     middle: float = 0.6  # share of the windows for the spread: one by itself is chance
     spread: float = 0.15  # of the place, over the stroke: stops and play make 0.07, gaps 0.28
     # see `stiffnesses`: windows up to this factor from the loud ones' frequency, where no other
@@ -115,8 +116,8 @@ class Strikes:
           not on one side of the period by `one_sided`; "kinks" below `blow`; "something small
           strikes" with an order 2 below `order2`.
         - "stop" if the stiffness grows with the stroke, over order 2, by more than `stiffens`
-          (`stiffens_moving` where the place moves by `spread`), and not to less than that of shut
-          faces, or, where it strikes before `at_end` of the stroke, falls by more than `softens` or
+          (`stiffens_moving` where the place moves by `spread`), unless it stays `softer` than shut
+          faces; or, where it strikes before `at_end` of the stroke, falls by more than `softens` or
           makes an order 2 above `lifts`: a clamp.
         - "faces strike" with a known frequency, up to `stiffer`, unless two sensors hear blows that
           are `together`; else "stop or softer face".
@@ -171,7 +172,7 @@ def strikes_at(
     grown = [
         float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
     ]
-    excused = grown[0] > settings.stiffens and grown[1] < -settings.stiffens  # false of a NaN
+    excused = grown[0] > settings.stiffens and grown[1] < settings.softer  # false of a NaN
     ends = 0.5 * (1.0 + settings.middle), 0.5 * (1.0 - settings.middle)
     position = (size * np.cos(peak))[loud] / size.max()
     return Strikes(
