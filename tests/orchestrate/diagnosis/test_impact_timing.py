@@ -45,13 +45,13 @@ WORDS = {  # on both sides of each threshold
     "stop": [
         {"stiffens": 0.11, "spread": 0.14},
         {"stiffens": 1.51, "spread": 0.16},
-        {"stiffens": -0.26},
-        {"stiffens": -0.26, "place": -0.79},
+        {"stiffens": -0.14},
+        {"stiffens": -0.14, "place": -0.79},
         {"order2": 0.51, "place": -0.79},
         {"stiffens": 0.11, "place": -0.81},
         {"stiffens": 0.8, "base": 14.9},
         {"stiffens": 0.8, "stiffness": math.nan, "opposite": 0.9},
-        {"stiffens": -0.26, "opposite": -0.98},  # clamps that twist make such blows too
+        {"stiffens": -0.14, "opposite": -0.98},  # clamps that twist make such blows too
     ],
     "stop or softer face": [
         {"stiffness": math.nan},
@@ -62,7 +62,7 @@ WORDS = {  # on both sides of each threshold
     "faces strike": [
         {"heard": 10.1, "base": 2.9, "locked": 0.63, "one_sided": 0.6, "blow": 0.29},
         {"order2": 0.026, "stiffens": 0.09, "stiffness": 1.05},
-        {"stiffens": -0.24, "stiffness": 0.7},
+        {"stiffens": -0.12, "stiffness": 0.7},
         {"stiffens": -9.0, "place": -0.81},
         {"order2": 0.51, "place": 0.81},
         {"order2": 0.49},
