@@ -58,11 +58,10 @@ class TimingSettings:
     order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
     # growth of the stiffness over order 2, from rest: where the place stays faces make up to 0.07,
     # stops 0.5 or more; a half that meets a slow one 0.9, but from shut faces -0.22 or less, stops
-    # -0.13 or more; clamps that lift make -0.18 or less before `at_end` (faces that open by 0.1 mm
-    # -0.09 or more), or an order 2 of 0.54; a slow half that a moving one strikes up to 1.5, a stop
-    # from 1.8
+    # -0.13 or more; clamps that lift make -0.18 or less before `at_end` (faces -0.09 or more) or an
+    # order 2 of 0.5 (0.37); a slow half that a moving one strikes up to 1.5, a stop from 1.8
     softens: float = -0.13
-    lifts: float = 0.5
+    lifts: float = 0.43
     at_end: float = 0.8
     stiffens: float = 0.1
     stiffens_moving: float = 1.5
