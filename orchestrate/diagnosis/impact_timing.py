@@ -52,8 +52,9 @@ class TimingSettings:
     one_sided: float = 0.59
     # see `Strikes`: rattling clamps, which are soft, make 0.21, faces 0.36
     blow: float = 0.28
-    # correlation of both sensors' blows: clamps with torsion make -0.978, above 0 it is one blow
-    opposite: float = -0.97
+    # correlation of both sensors' blows: clamps with torsion that do not soften make -0.87, above 0
+    # it is one blow
+    opposite: float = -0.95
     together: float = 0.0
     order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
     # growth of the stiffness over order 2, from rest: where the place stays faces make up to 0.07,

@@ -57,7 +57,7 @@ WORDS = {  # on both sides of each threshold
         {"stiffness": math.nan},
         {"stiffness": 1.07},
         {"opposite": 0.01},
-        {"opposite": -0.96, "stiffness": math.nan},
+        {"opposite": -0.94, "stiffness": math.nan},
     ],
     "faces strike": [
         {"heard": 10.1, "base": 2.9, "locked": 0.63, "one_sided": 0.6, "blow": 0.29},
@@ -68,7 +68,7 @@ WORDS = {  # on both sides of each threshold
         {"order2": 0.42},
         {"stiffens": 1.49, "spread": 0.16},
         {"opposite": -0.01},
-        {"heard": 3.5, "opposite": -0.98, "stiffens": 0.8, "order2": 0.01, "stiffness": math.nan},
+        {"heard": 3.5, "opposite": -0.96, "stiffens": 0.8, "order2": 0.01, "stiffness": math.nan},
     ],
 }
 
