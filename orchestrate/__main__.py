@@ -8,12 +8,12 @@ import sys
 import threading
 
 
-def run() -> int:
+def run_command_line() -> int:
     """Run the command line; return its exit code, 130 after Ctrl-C."""
     try:
-        from .cli import main as run_command_line
+        from .cli import main
 
-        return run_command_line()
+        return main()
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return 130
@@ -28,7 +28,7 @@ def main() -> int:
         sys.modules.setdefault("dask", None)  # type: ignore[arg-type]
     if signal.getsignal(signal.SIGTERM) == signal.SIG_DFL:  # not ignored
         signal.signal(signal.SIGTERM, raise_terminated)
-    return run()
+    return run_command_line()
 
 
 def raise_terminated(*_: object) -> None:

@@ -13,7 +13,7 @@ class InputError(VibroimpactError, ValueError):
     """Raised for a parameter, file or option of the user that cannot be accepted, in one line."""
 
     def __init__(self, text: str) -> None:
-        super().__init__(printable(text))
+        super().__init__(printable_line(text))
 
 
 NOT_NUMBERS = TypeError, ValueError, OverflowError  # of float() and NumPy, for a user's value
@@ -39,15 +39,15 @@ class Terminated(KeyboardInterrupt):
     """``KeyboardInterrupt`` for SIGTERM, to tell it from Ctrl-C."""
 
 
-def printable(text: str, max_length: int = 1000) -> str:
+def printable_line(text: str, max_length: int = 1000) -> str:
     r"""Return a text as one line with control characters escaped; cut a long one in its middle."""
     if not text.isprintable():
-        text = "".join(letter if letter.isprintable() else escaped(letter) for letter in text)
+        text = "".join(letter if letter.isprintable() else escape_letter(letter) for letter in text)
     half = max_length // 2
     return text if len(text) <= max_length else f"{text[:half]} ... {text[-half:]}"
 
 
-def escaped(letter: str) -> str:
+def escape_letter(letter: str) -> str:
     """Return a blank for a kind of blank, and another letter as Python writes it."""
     return " " if unicodedata.category(letter) == "Zs" else repr(letter)[1:-1]
 

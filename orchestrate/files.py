@@ -51,7 +51,7 @@ class HeldLock:
             self._lock.release()
 
 
-class HeldFolder:
+class LockedFolder:
     """Temporary folder of a process, which holds a lock in it as long as it uses the folder.
 
     So it is known from any process, container or host whether what is in it is still needed.
@@ -70,10 +70,10 @@ class HeldFolder:
             return
 
     def remove(self) -> None:
-        remove_held(self.path, self._lock)
+        remove_locked_folder(self.path, self._lock)
 
 
-def remove_held(folder: Path, lock: HeldLock | None) -> None:
+def remove_locked_folder(folder: Path, lock: HeldLock | None) -> None:
     """Delete a temporary folder whose lock this process holds, and release the lock."""
     shutil.rmtree(folder, ignore_errors=True)
     if lock is not None:
@@ -81,15 +81,15 @@ def remove_held(folder: Path, lock: HeldLock | None) -> None:
     shutil.rmtree(folder, ignore_errors=True)  # Windows had left the lock's file, which was open
 
 
-def remove_unheld(parent: Path, pattern: str) -> None:
+def remove_unlocked_folders(parent: Path, pattern: str) -> None:
     """Delete this user's temporary folders of a pattern whose locks nobody holds."""
     for folder in parent.glob(pattern):
         with suppress(OSError):
-            if is_own_folder(folder) and (folder / GUARD).is_file():
-                remove_held(folder, HeldLock(folder / GUARD))
+            if is_folder_of_this_user(folder) and (folder / GUARD).is_file():
+                remove_locked_folder(folder, HeldLock(folder / GUARD))
 
 
-def is_own_folder(folder: Path) -> bool:
+def is_folder_of_this_user(folder: Path) -> bool:
     """Return whether a path is a real folder (no link) that belongs to the current user."""
     return (
         folder.is_dir()
@@ -98,8 +98,8 @@ def is_own_folder(folder: Path) -> bool:
     )
 
 
-def is_private(path: Path) -> bool:
-    """Return whether nobody can write a path who could not as well change this program."""
+def is_written_by_trusted_only(path: Path) -> bool:
+    """Return whether all who can write a path could change this program as well."""
     if sys.platform == "win32":  # where its permissions are not known
         return True
     users, groups, there = *trusted_owners(), path.stat()
@@ -114,18 +114,18 @@ def trusted_owners() -> tuple[set[int], set[int]]:
     return {os.getuid(), 0, program.st_uid}, groups
 
 
-def make_private(path: Path) -> None:
+def forbid_writing_by_others(path: Path) -> None:
     """Take the permission to write a path from others, where it is this user's."""
     with suppress(OSError):
         path.chmod(stat.S_IMODE(path.stat().st_mode) & ~(stat.S_IWGRP | stat.S_IWOTH))
 
 
-def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -> Path:
+def write_atomically(path: str | os.PathLike[str], write: Callable[[Path], object]) -> Path:
     """Write a file atomically: ``write`` fills one in a temporary folder, which is moved."""
     path = Path(path)
     try:
-        remove_unheld(path.parent, f"{escape_glob(path.name)}.*{TEMPORARY}")
-        folder = HeldFolder(path.parent, f"{path.name}.", TEMPORARY)
+        remove_unlocked_folders(path.parent, f"{escape_glob(path.name)}.*{TEMPORARY}")
+        folder = LockedFolder(path.parent, f"{path.name}.", TEMPORARY)
         try:
             write(folder.path / path.name)
             (folder.path / path.name).replace(path)
@@ -139,9 +139,9 @@ def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -
 
 
 @contextmanager
-def made_once(path: Path) -> Iterator[None]:
-    """Hold a file lock in a ``with`` block, so that only one process makes a file at a time."""
-    open_folder(path.parent)
+def creation_lock(path: Path) -> Iterator[None]:
+    """Return a lock for a ``with`` block, in which only one process makes a file at a time."""
+    make_writable_folder(path.parent)
     from filelock import FileLock, Timeout  # brings asyncio: describing a structure is to be quick
 
     lock = FileLock(path.with_name(f".{path.name}.lock"))
@@ -158,15 +158,15 @@ def made_once(path: Path) -> Iterator[None]:
         lock.release()
 
 
-def read_text(path: str | os.PathLike[str], most: int) -> str:
-    """Return a regular file's text; raise for devices, pipes and over ``most`` bytes."""
+def read_text(path: str | os.PathLike[str], max_bytes: int) -> str:
+    """Return a regular file's text; raise for devices, pipes and over ``max_bytes`` bytes."""
     path = Path(path)
     if not stat.S_ISREG(path.stat().st_mode):
         raise ValueError("no ordinary file")
     with path.open("rb") as file:
-        data = file.read(most + 1)
-    if len(data) > most:
-        raise ValueError(f"{max(path.stat().st_size, len(data))} bytes, at most {most}")
+        data = file.read(max_bytes + 1)
+    if len(data) > max_bytes:
+        raise ValueError(f"{max(path.stat().st_size, len(data))} bytes, at most {max_bytes}")
     return data.decode("utf-8")
 
 
@@ -178,7 +178,7 @@ def check_path_encoding(path: str | os.PathLike[str]) -> None:
         raise InputError(f"{path}: a path that is not UTF-8; expected one that is") from None
 
 
-def reason(error: BaseException) -> str:
+def format_read_error(error: BaseException) -> str:
     """Return why a file cannot be read: it does not exist, or the system's or a reader's reason."""
     missing = isinstance(error, FileNotFoundError)
     return "no such file" if missing else str(getattr(error, "strerror", None) or error)
@@ -198,7 +198,7 @@ def escape_glob(name: str) -> str:
     return "".join(f"[{letter}]" if letter in "[]*?" else letter for letter in name)
 
 
-def open_folder(folder: str | os.PathLike[str]) -> Path:
+def make_writable_folder(folder: str | os.PathLike[str]) -> Path:
     """Create a folder if it is missing and return it; raise unless it is writable."""
     folder = Path(folder)
     try:

@@ -20,7 +20,7 @@ def flag_word(flag: Any) -> str:
     return flag_words(flag.attrs).get(int(flag), "") if "flag_meanings" in flag.attrs else ""
 
 
-def runs_of(flags: Iterable[Any]) -> list[tuple[int, int]]:
+def runs_of_true(flags: Iterable[Any]) -> list[tuple[int, int]]:
     """Return first and last index of each run of true flags."""
     runs: list[tuple[int, int]] = []
     for index, holds in enumerate(flags):

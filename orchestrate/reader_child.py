@@ -29,7 +29,7 @@ PAGES = Path("/proc/self/statm")  # of the address space in use; only Linux limi
 Arrays = list[NDArray[Any]]
 
 
-def serve() -> None:
+def serve_requests() -> None:
     """Answer one request after the other, until the parent process closes the pipe."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's, which ends this process
     requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
@@ -37,23 +37,23 @@ def serve() -> None:
     for number in range(3):  # what libraries print
         os.dup2(nowhere, number)
     for line in requests:
-        write_answer(answers, *answer(json.loads(line)))
+        write_answer(answers, *run_reader(json.loads(line)))
 
 
-def answer(request: dict[str, Any]) -> tuple[dict[str, Any], Arrays]:
+def run_reader(request: dict[str, Any]) -> tuple[dict[str, Any], Arrays]:
     """Run a reader; return what it returned or why it failed, and the arrays of that."""
-    notes = Notes()
+    log = LogCollector()
     arrays: Arrays = []
     try:
         module, _, name = request["reader"].partition(":")
         reader: Callable[..., Any] = getattr(import_module(module), name)
         set_limits(request["seconds"], request["memory"])
-        value = pack(reader(Path(request["path"]), *request["arguments"]), arrays)
+        value = pack_for_json(reader(Path(request["path"]), *request["arguments"]), arrays)
         size, room = sum(array.nbytes for array in arrays), request["room"]
         if size > room:
             text = f"its numbers take {size} bytes, from a file of its size expected at most {room}"
             return {"failed": text}, []
-        return {"value": value, "notes": notes.lines}, arrays
+        return {"value": value, "notes": log.lines}, arrays
     except InputError as error:
         return {"refused": str(error)}, []
     except MemoryError as error:
@@ -61,10 +61,10 @@ def answer(request: dict[str, Any]) -> tuple[dict[str, Any], Arrays]:
     except BaseException as error:  # what damaged files raise in libraries is stated nowhere
         return {"failed": first_line(error)}, []
     finally:
-        notes.close()
+        log.close()
 
 
-class Notes(logging.Handler):
+class LogCollector(logging.Handler):
     """Collect what our own readers log: the parent process logs it again."""
 
     def __init__(self) -> None:
@@ -104,7 +104,7 @@ def set_limits(seconds: float, memory: int) -> None:
         limit(resource.RLIMIT_AS, pages * resource.getpagesize() + memory)
 
 
-def pack(value: Any, arrays: Arrays) -> Any:
+def pack_for_json(value: Any, arrays: Arrays) -> Any:
     """Return a value as plain data for JSON; its arrays are appended to ``arrays``."""
     if isinstance(value, np.ndarray) and value.dtype.kind == "O":
         return {"texts": [str(one) for one in value.ravel()], "shape": value.shape}
@@ -118,9 +118,9 @@ def pack(value: Any, arrays: Arrays) -> Any:
     if is_dataclass(value):
         value = {one.name: getattr(value, one.name) for one in fields(value)}
     if isinstance(value, dict):
-        return {"pairs": [[str(key), pack(one, arrays)] for key, one in value.items()]}
+        return {"pairs": [[str(key), pack_for_json(one, arrays)] for key, one in value.items()]}
     if isinstance(value, (list, tuple)):
-        return [pack(one, arrays) for one in value]
+        return [pack_for_json(one, arrays) for one in value]
     if value is None or isinstance(value, (str, int, float)):
         return value
     raise ValueError(f"data of the type {type(value).__name__}")

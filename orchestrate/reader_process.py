@@ -26,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import InputError, first_line, printable
+from .errors import InputError, first_line, printable_line
 
 log = logging.getLogger(__name__)
 SECONDS, BYTES_A_SECOND = 10.0, 1e6  # processor time: some, and more for a large file
@@ -42,16 +42,16 @@ for name in ("orchestrate", "fmu_src"):
     sys.modules[name].__path__ = [f"{root}/{name}"]
 import numpy
 numpy.f2py = sys.modules["numpy.f2py"] = types.ModuleType("numpy.f2py")
-from orchestrate.reader_child import serve
-serve()
+from orchestrate.reader_child import serve_requests
+serve_requests()
 """  # SciPy imports all of NumPy, its compiler of Fortran too: 0.1 s
 
 Reader = Callable[..., Any]
 
 
-def allowed_memory(size: int) -> int:
+def reader_memory(file_size: int) -> int:
     """Return how many bytes of memory the reader of a file may use, by the file's size."""
-    return MEMORY + MEMORY_PER_BYTE * size
+    return MEMORY + MEMORY_PER_BYTE * file_size
 
 
 def read_in_process(
@@ -59,48 +59,48 @@ def read_in_process(
     path: Path,
     *arguments: object,
     expected: str,
-    keep: bool = True,
-    numbers: int | None = None,
+    keep_process: bool = True,
+    array_bytes: int | None = None,
 ) -> Any:
     """Return what a reader, a function of a module, returns for a path and plain arguments.
 
     Dataclasses come back as dicts. ``expected`` ends the line on a file that cannot be read;
-    without ``keep`` the process is not used again. ``numbers`` are the bytes that arrays may take
+    without ``keep_process`` the process is not used again. ``array_bytes`` is what arrays may take
     whatever the file's size, NUMBERS by default.
     """
     whole, size = path.absolute(), path.stat().st_size
     seconds = SECONDS + size / BYTES_A_SECOND
     request = {
         **{"reader": f"{reader.__module__}:{reader.__qualname__}", "path": str(whole)},
-        **{"arguments": arguments, "seconds": seconds, "memory": allowed_memory(size)},
-        "room": (NUMBERS if numbers is None else numbers) + NUMBERS_PER_BYTE * size,
+        **{"arguments": arguments, "seconds": seconds, "memory": reader_memory(size)},
+        "room": (NUMBERS if array_bytes is None else array_bytes) + NUMBERS_PER_BYTE * size,
     }
-    child = IDLE.pop(os.getpid(), None) if keep else None
+    child = IDLE.pop(os.getpid(), None) if keep_process else None
     answer = child.ask(request) if child else {}
     if child is None or not (answer or child.timed_out()):  # it may suffer from files before
-        child = start_child(path, whole.parent)
+        child = start_reader_process(path, whole.parent)
         answer = child.ask(request)
-    if not keep or not answer or IDLE.setdefault(os.getpid(), child) is not child:
+    if not keep_process or not answer or IDLE.setdefault(os.getpid(), child) is not child:
         child.close()
     late = f"not read within {seconds:.3g} s"
     answer = answer or {"failed": late if child.timed_out() else "its reader broke down"}
     for note in answer.get("notes", ()):
-        log.info("%s", printable(note.replace(str(whole), str(path))))
+        log.info("%s", printable_line(note.replace(str(whole), str(path))))
     if "value" in answer:
         return answer["value"]
-    text = answer.get("refused") or f"{path}: {printable(answer['failed'], 200)}; {expected}"
+    text = answer.get("refused") or f"{path}: {printable_line(answer['failed'], 200)}; {expected}"
     raise InputError(text.replace(str(whole), str(path)))
 
 
-def start_child(path: Path, folder: Path) -> Child:
+def start_reader_process(path: Path, folder: Path) -> ReaderProcess:
     try:
-        return Child(folder)
+        return ReaderProcess(folder)
     except OSError as error:
         text = f"the process that reads files cannot be started ({first_line(error)})"
         raise InputError(f"{path}: {text}; expected room for a process") from None
 
 
-class Child:
+class ReaderProcess:
     """A process that reads files, one after the other."""
 
     def __init__(self, folder: Path) -> None:
@@ -121,7 +121,7 @@ class Child:
 
     def ask(self, request: dict[str, Any]) -> dict[str, Any]:
         """Return the answer to a request; an empty one where the process has ended without it."""
-        timer = threading.Timer(WAITING * request["seconds"], self.end_late)
+        timer = threading.Timer(WAITING * request["seconds"], self.kill_late)
         timer.start()
         answer: dict[str, Any] = {}
         try:
@@ -137,14 +137,14 @@ class Child:
                 self.close()
         return answer
 
-    def receive(self, most: int) -> dict[str, Any]:
-        length = int.from_bytes(self.exactly(8), "little")
-        if length > most:
+    def receive(self, max_bytes: int) -> dict[str, Any]:
+        length = int.from_bytes(self.read_exactly(8), "little")
+        if length > max_bytes:
             raise ValueError
-        answer: dict[str, Any] = json.loads(self.exactly(length))
-        return {name: self.unpack(value, [most]) for name, value in answer.items()}
+        answer: dict[str, Any] = json.loads(self.read_exactly(length))
+        return {name: self.unpack_value(value, [max_bytes]) for name, value in answer.items()}
 
-    def exactly(self, count: int) -> bytearray:
+    def read_exactly(self, count: int) -> bytearray:
         """Read a number of bytes."""
         assert self.process.stdout is not None
         data = bytearray(count)
@@ -152,26 +152,26 @@ class Child:
             raise EOFError
         return data
 
-    def unpack(self, value: Any, room: list[int]) -> Any:
+    def unpack_value(self, value: Any, room: list[int]) -> Any:
         if isinstance(value, list):
-            return [self.unpack(one, room) for one in value]
+            return [self.unpack_value(one, room) for one in value]
         if not isinstance(value, dict):
             return value
         if "pairs" in value:
-            return {name: self.unpack(one, room) for name, one in value["pairs"]}
+            return {name: self.unpack_value(one, room) for name, one in value["pairs"]}
         if "texts" in value:
             texts = value["texts"]
-            take(room, 4 * len(texts) * max(map(len, texts), default=0))
+            reserve_bytes(room, 4 * len(texts) * max(map(len, texts), default=0))
             return np.array(texts, str).reshape(value["shape"])
         kind = np.dtype(value.get("array") or value["scalar"])
         if kind.kind not in "biufcSU":
             raise ValueError
         size = prod(value["shape"]) * kind.itemsize
-        take(room, size)
-        array = np.ndarray(value["shape"], kind, self.exactly(size))
+        reserve_bytes(room, size)
+        array = np.ndarray(value["shape"], kind, self.read_exactly(size))
         return array if "array" in value else array[()]
 
-    def end_late(self) -> None:
+    def kill_late(self) -> None:
         self.is_late = True
         self.process.kill()
 
@@ -188,19 +188,19 @@ class Child:
         self.process.wait()
 
 
-def take(room: list[int], size: int) -> None:
+def reserve_bytes(room: list[int], size: int) -> None:
     """Take bytes of the room that is left; raise if there is less."""
     room[0] -= size
     if size < 0 or room[0] < 0:
         raise ValueError
 
 
-IDLE: dict[int, Child] = {}  # by the process that started it: a fork must not ask its parent's
+IDLE: dict[int, ReaderProcess] = {}  # by process id: a fork must not ask its parent's
 
 
-def end_idle() -> None:
+def close_idle_process() -> None:
     if child := IDLE.pop(os.getpid(), None):
         child.close()
 
 
-atexit.register(end_idle)
+atexit.register(close_idle_process)

@@ -65,53 +65,53 @@ class Units:
     def __str__(self) -> str:
         return ", ".join(self.words)
 
-    def with_defaults(self, usual: Units) -> Units:
-        """Return a copy in which kinds without a chosen unit take that of ``usual``."""
+    def with_defaults(self, defaults: Units) -> Units:
+        """Return a copy in which kinds without a chosen unit take that of ``defaults``."""
         names = [field.name for field in fields(self)]
-        return Units(**{name: getattr(self, name) or getattr(usual, name) for name in names})
+        return Units(**{name: getattr(self, name) or getattr(defaults, name) for name in names})
 
 
 def with_units(data: xr.Dataset, units: Units | str) -> xr.Dataset:
     """Return a dataset marked to be displayed in the given units; its numbers stay in SI."""
     chosen = units if isinstance(units, Units) else Units.from_text(units)
-    text = str(chosen.with_defaults(units_of(data)))
+    text = str(chosen.with_defaults(display_units_of(data)))
     return data.assign_attrs({SHOWN_IN: text}) if text else data
 
 
-def units_of(data: xr.Dataset) -> Units:
+def display_units_of(data: xr.Dataset) -> Units:
     return Units.from_text(str(data.attrs.get(SHOWN_IN, "")))
 
 
-def has_own_frequency(data: xr.Dataset) -> bool:
+def is_in_si(data: xr.Dataset) -> bool:
     """Return whether a dataset's structure is in SI: sqrt(k1/m1) is known and not 1 rad/s."""
     omega = omega_of(data)
     return math.isfinite(omega) and not math.isclose(omega, 1.0, rel_tol=1e-9)
 
 
-def is_in_ratios(data: xr.Dataset) -> bool:
+def shows_ratios(data: xr.Dataset) -> bool:
     """Return whether lengths are shown as the paper's ratios: of a structure that is not in SI."""
-    in_si = has_own_frequency(data) or math.isnan(omega_of(data))
-    return not (in_si or units_of(data).length)
+    in_si = is_in_si(data) or math.isnan(omega_of(data))
+    return not (in_si or display_units_of(data).length)
 
 
-def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
+def with_readable_lengths(*datasets: xr.Dataset) -> list[xr.Dataset]:
     """Return datasets with display lengths in m, mm or um, so that the largest is 1 at least.
 
-    Answers stay as they are where a unit of length was asked for, or a structure is not in SI.
+    They stay as they are where a unit of length was asked for, or a structure is not in SI.
     """
-    if not all(has_own_frequency(data) and not units_of(data).length for data in answers):
-        return list(answers)
-    largest = max(map(largest_length, answers), default=0.0)
+    if not all(is_in_si(data) and not display_units_of(data).length for data in datasets):
+        return list(datasets)
+    largest = max(map(largest_length, datasets), default=0.0)
     sizes = {size: word for word, size in FACTORS["length"].items() if size <= largest < math.inf}
     word = sizes[max(sizes)] if sizes else ""
-    return [with_units(data, word) for data in answers]
+    return [with_units(data, word) for data in datasets]
 
 
 def largest_length(data: xr.Dataset) -> float:
     """Return the largest length of a dataset's variables, axes and gaps, m; 0 if it has none."""
     shown = [*data.data_vars.values(), *(data[name] for name in data.dims if name in data.coords)]
     lengths = [array for array in shown if array.attrs.get("units") == "m"]
-    if "xi_rel_max" in data and (unit := length_of_ratio(data)) is not None:
+    if "xi_rel_max" in data and (unit := unit_of_xi(data)) is not None:
         lengths.append(data.xi_rel_max * unit)
     sizes = [float(abs(one).max()) for one in lengths if one.dtype.kind == "f" and one.size]
     return max(filter(math.isfinite, sizes), default=0.0)
@@ -126,7 +126,7 @@ def omega_of(data: xr.Dataset | Mapping[str, float]) -> float:
         return math.nan
 
 
-def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
+def unit_of_xi(data: xr.Dataset) -> xr.DataArray | float | None:
     """Return the unit in m that the paper's displacements xi are over, as an excitation has it.
 
     It is a eta^2, without box motion the largest static displacement by what pushes; None where
@@ -140,31 +140,33 @@ def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
         return None
     else:
         omega = omega_of(data)
-    box = {name: number_of(data, name) for name in ("level", "amplitude", "frequency")}
+    box = {name: parameter_of(data, name) for name in ("level", "amplitude", "frequency")}
     if box["level"] is None and box["amplitude"] is not None and box["frequency"] is not None:
         box["level"] = box["amplitude"] * box["frequency"] ** 2
     if box["level"] is None or np.all(box["level"] != 0.0):
         return None if box["level"] is None else box["level"] / omega**2
-    pushes = [number_of(data, name, 0.0) for name in ("box_acceleration", "force1", "force2")]
-    stiffness = [omega**2, number_of(data, "k1"), number_of(data, "k2")]
+    pushes = [parameter_of(data, name, 0.0) for name in ("box_acceleration", "force1", "force2")]
+    stiffness = [omega**2, parameter_of(data, "k1"), parameter_of(data, "k2")]
     if any(one is None for one in (*pushes, *stiffness)) or np.any(box["level"] != 0.0):
         return None
-    return static_length(pushes, [1.0 / one for one in stiffness]) + box["level"]  # along it too
+    return (
+        largest_static_displacement(pushes, [1.0 / one for one in stiffness]) + box["level"]
+    )  # along it too
 
 
-def static_length(pushes: Iterable[Any], softness: Iterable[Any]) -> Any:
+def largest_static_displacement(pushes: Iterable[Any], softness: Iterable[Any]) -> Any:
     """Return the largest static displacement, m, by the box's acceleration and both forces."""
     import numpy as np  # commands whose help is asked for do without
 
     return reduce(np.maximum, (abs(p) * s for p, s in zip(pushes, softness, strict=True)))
 
 
-def number_of(data: xr.Dataset, name: str, usual: float | None = None) -> Any:
+def parameter_of(data: xr.Dataset, name: str, default: float | None = None) -> Any:
     """Return a parameter's values along a dataset, or the number all share; None if not known."""
     if name in data.coords:
         return data[name]
-    told = data.attrs.get(name, usual)
-    return told if is_finite_number(told) else None
+    value = data.attrs.get(name, default)
+    return value if is_finite_number(value) else None
 
 
 def is_finite_number(value: Any) -> bool:
@@ -174,7 +176,7 @@ def is_finite_number(value: Any) -> bool:
         return False
 
 
-def period_of(data: xr.Dataset) -> float:
+def excitation_period_of(data: xr.Dataset) -> float:
     """Return the box's excitation period, s, of a dataset at one frequency; nan for others."""
     for holder in (data.attrs, data.coords):
         for name, factor in (("frequency", 1.0), ("eta", omega_of(data))):
@@ -185,9 +187,9 @@ def period_of(data: xr.Dataset) -> float:
     return math.nan
 
 
-def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
+def display_scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
     """Return the divisor from an SI unit to the display unit of a dataset, and that unit's name."""
-    units = units_of(data)
+    units = display_units_of(data)
     word, factor = unit, 1.0
     if unit in ("rad/s", "Hz") and units.frequency:
         word = units.frequency
@@ -202,41 +204,47 @@ def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
         factor = FACTORS["acceleration"][units.acceleration] ** power
     elif unit == "s" and units.time:
         word = units.time
-        factor = period_of(data) if word == "periods" else 1.0
+        factor = excitation_period_of(data) if word == "periods" else 1.0
     return (factor, word) if math.isfinite(factor) else (1.0, unit)
 
 
-def text_of(data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g") -> str:
+def format_quantity(
+    data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g"
+) -> str:
     """Format an SI value with unit, in a dataset's display units: ``12.5 Hz``, ``eta = 0.8``."""
-    number, word = shown_number(data, value, unit, form)
+    number, word = format_number_and_unit(data, value, unit, form)
     return f"eta = {number}" if word == "eta" else f"{number} {word}".rstrip()
 
 
-def range_text(data: xr.Dataset, low: float, high: float, unit: str, form: str = ".4g") -> str:
+def format_quantity_range(
+    data: xr.Dataset, low: float, high: float, unit: str, form: str = ".4g"
+) -> str:
     """Format two SI values as a range in a dataset's display units: ``41 to 45 Hz``."""
-    (first, word), (last, _) = (shown_number(data, end, unit, form) for end in (low, high))
+    (first, word), (last, _) = (
+        format_number_and_unit(data, end, unit, form) for end in (low, high)
+    )
     return f"eta = {first} to {last}" if word == "eta" else f"{first} to {last} {word}".rstrip()
 
 
-def shown_number(
+def format_number_and_unit(
     data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g"
 ) -> tuple[str, str]:
     """Convert an SI value to a dataset's display unit; return its text and the unit's name."""
-    factor, word = text_scale(data, unit)
+    factor, word = text_scale_of(data, unit)
     return format(float(value) / factor, form), word
 
 
-def text_scale(data: xr.Dataset, unit: str) -> tuple[float, str]:
-    """Return divisor and unit as :func:`scale_of` does, of ratios no unit.
+def text_scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
+    """Return divisor and unit as :func:`display_scale_of` does, of ratios no unit.
 
     Where lengths are the paper's ratios, they have none, nor have speeds and accelerations.
     """
-    factor, word = scale_of(data, unit)
-    is_ratio = word == unit in ("m", "m/s", "m/s2") and is_in_ratios(data)
+    factor, word = display_scale_of(data, unit)
+    is_ratio = word == unit in ("m", "m/s", "m/s2") and shows_ratios(data)
     return factor, "" if word == "1" or is_ratio else word
 
 
-def as_shown(data: xr.Dataset) -> xr.Dataset:
+def in_display_units(data: xr.Dataset) -> xr.Dataset:
     """Convert a dataset's values and ``units`` attributes from SI to its display units.
 
     Beside a frequency ratio a frequency stays in rad/s; what is named for its unit keeps it.
@@ -245,7 +253,7 @@ def as_shown(data: xr.Dataset) -> xr.Dataset:
         return data
     changed: dict[str, Any] = {}
     for name, array in data.variables.items():
-        factor, word = scale_of(data, str(array.attrs.get("units", "")))
+        factor, word = display_scale_of(data, str(array.attrs.get("units", "")))
         if str(name).endswith("hertz") or (word == "eta" and "eta" in data.variables):
             continue
         if array.dtype.kind == "f" and word != array.attrs.get("units", ""):

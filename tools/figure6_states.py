@@ -10,7 +10,7 @@ import numpy as np
 
 import orchestrate
 from orchestrate.explorer.sweep_data import FILE, STAMP
-from orchestrate.files import write_whole
+from orchestrate.files import write_atomically
 from orchestrate.fmu import OSCILLATOR
 from orchestrate.fmu.webassembly import kernel_digest
 
@@ -26,7 +26,7 @@ def main() -> None:
     data = data.assign_attrs({STAMP: kernel_digest(OSCILLATOR)})
     small = {"zlib": True, "complevel": 9, "shuffle": True}
     encoding = dict.fromkeys((*KEPT, "eta"), small)
-    write_whole(FILE, lambda place: data.to_netcdf(place, engine="netcdf4", encoding=encoding))
+    write_atomically(FILE, lambda place: data.to_netcdf(place, engine="netcdf4", encoding=encoding))
     print(f"{FILE}  {FILE.stat().st_size / 1024:.0f} kB")
 
 

@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from orchestrate.files import write_whole
+from orchestrate.files import write_atomically
 from orchestrate.paper.claims import WORDS
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
@@ -89,7 +89,7 @@ def main(folder: str) -> None:
     results = json.loads(CLAIMS.read_text("utf-8"))
     for path in PAGES:
         text = fill_page(path.read_text("utf-8"), results)
-        write_whole(path, lambda file, text=text: file.write_text(text, "utf-8"))
+        write_atomically(path, lambda file, text=text: file.write_text(text, "utf-8"))
 
 
 if __name__ == "__main__":

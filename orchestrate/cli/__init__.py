@@ -38,7 +38,7 @@ from typing import Any
 import cyclopts
 from cyclopts.exceptions import CycloptsError
 
-from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable
+from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable_line
 from ..model.spelling import closest, did_you_mean
 from ..version import __version__
 from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
@@ -248,4 +248,4 @@ def print_warnings_in_one_line(chosen: Command) -> Iterator[None]:
 
 
 def print_error(line: str) -> None:
-    print(printable(line), file=sys.stderr)
+    print(printable_line(line), file=sys.stderr)

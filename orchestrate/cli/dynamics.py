@@ -15,7 +15,14 @@ from ..flags import flag_word
 from ..lazy import xr
 from ..model import PARAMETERS, Structure
 from ..model.ranges import PUSHES
-from ..units import is_in_ratios, number_of, range_text, text_of, units_of, with_units
+from ..units import (
+    display_units_of,
+    format_quantity,
+    format_quantity_range,
+    parameter_of,
+    shows_ratios,
+    with_units,
+)
 from . import printing
 from .answer import Asked, Runs, is_curve
 from .command import Keywords, option
@@ -87,9 +94,9 @@ def motion_of(data: xr.Dataset, state: xr.DataArray, periods: int) -> xr.Dataset
     varied = {name: data[name].item() for name in PARAMETERS if name in data.coords}
     structure = Structure.from_attributes(data.attrs).replace(**varied)
     names = ("frequency", "amplitude", *PUSHES)
-    box: Keywords = {name: float(number_of(data, name, 0.0)) for name in names}
+    box: Keywords = {name: float(parameter_of(data, name, 0.0)) for name in names}
     motion = orchestrate.simulate(structure, **box, start=state.values, periods=periods)
-    return with_units(motion, units_of(data))
+    return with_units(motion, display_units_of(data))
 
 
 def attractor_table(data: xr.Dataset, over: str = "") -> Iterator[str]:
@@ -100,7 +107,7 @@ def attractor_table(data: xr.Dataset, over: str = "") -> Iterator[str]:
     columns = printing.columns_of(rows, names, form=".4g")
     parts = [rows.isel(row=i) for i in range(rows.sizes["row"])]
     columns["largest gap"] = [printing.format_largest_gap(part) for part in parts]
-    in_si = " (SI)" * (not is_in_ratios(data))
+    in_si = " (SI)" * (not shows_ratios(data))
     (columns[f"state at phase 0{in_si}"],) = printing.columns_of(rows, "state").values()
     yield from printing.table(columns)
 
@@ -166,7 +173,10 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
         started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
         axes = [data[name] for name in data.attractor_of.dims]
         ends = [(axis.min().item(), axis.max().item(), str(axis.attrs["units"])) for axis in axes]
-        sides = [f"{a.name} {range_text(data, *end)}" for a, end in zip(axes, ends, strict=True)]
+        sides = [
+            f"{a.name} {format_quantity_range(data, *end)}"
+            for a, end in zip(axes, ends, strict=True)
+        ]
         yield f"{data.sizes['attractor']} found, of {started} starts in {', '.join(sides)}"
         yield from attractor_table(data)
         if overlapping:
@@ -214,7 +224,7 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
         yield "multipliers " + ", ".join(f"{real:.6f}{other:+.6f}i" for real, other in parts)
         for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
             if math.isfinite(time):
-                closing = text_of(data, speed, "m/s")
+                closing = format_quantity(data, speed, "m/s")
                 yield f"impact at {printing.time_text(data, time, '.8g')}, closing at {closing}"
         periods, states = printing.columns_of(data, "sample state", form=".8g").values()
         yield from printing.table({"period": periods, "state at phase 0": states})

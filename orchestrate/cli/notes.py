@@ -15,7 +15,7 @@ from ..constants import GRAVITY, TURN
 from ..lazy import np, xr
 from ..model import Structure
 from ..model.ranges import COMPLETE, OF_LENGTH
-from ..units import text_of
+from ..units import format_quantity
 from .command import Keywords
 
 OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
@@ -160,7 +160,7 @@ def clearance_notes(structure: Structure, question: Keywords, shown: xr.Dataset)
         )
     pressed = structure.clearance < 0.0
     kind, event = ("pressed together", "opens") if pressed else ("open", "touches")
-    length = text_of(shown, abs(structure.clearance), "m")
+    length = format_quantity(shown, abs(structure.clearance), "m")
     yield (
         f"{kind} by {length}, it first {event} at {ratio:.4g} times this level: from rest the "
         + ("response is linear")

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..files import escape_glob
 from ..lazy import xr
-from ..units import FACTORS, Units, scale_of
+from ..units import FACTORS, Units, display_scale_of
 from .command import Options, option
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class InUnits(Options):
         arrays = [one for data in answers for one in data.variables.values()]
         kinds = {str(one.attrs.get("units", "1")) for one in arrays if one.dtype.kind == "f"}
         chosen = self.read_units()
-        changed = any(scale_of(data, kind)[1] != kind for data in answers for kind in kinds)
+        changed = any(display_scale_of(data, kind)[1] != kind for data in answers for kind in kinds)
         if chosen.words and not changed and kinds.isdisjoint(chosen.words):
             words = ", ".join(sorted(kinds - {"1"}))
             print(f"--units {chosen}: these have no such numbers, only {words}")
@@ -274,10 +274,10 @@ class Files:
 
 def write_unstored_netcdf(files: Files, data: xr.Dataset) -> None:
     """Write the NetCDF file of a result that was not stored while it was computed."""
-    from ..files import open_folder
+    from ..files import make_writable_folder
     from ..running.store import write_netcdf
 
-    open_folder(files.result.parent)
+    make_writable_folder(files.result.parent)
     write_netcdf(data, files.result)
 
 

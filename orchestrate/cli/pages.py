@@ -146,11 +146,11 @@ class Report(InUnits, InFolder, Command):
   {program} report results/map.nc results/resonance.nc --output study"""
 
     def __call__(self) -> None:
-        from ..files import open_folder
+        from ..files import make_writable_folder
 
         check_output(self.output)
         answers = [read_earlier_result("FILE", path) for path in self.results]
-        page = open_folder(self.output) / f"report_{self.results[0].stem}.html"
+        page = make_writable_folder(self.output) / f"report_{self.results[0].stem}.html"
         words = {"title": self.title or "", "notes": self.notes or ""}
         print(orchestrate.report(*answers, output=page, **words, units=self.read_units()))
 

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from .. import units
-from ..flags import flag_word, flag_words, runs_of
+from ..flags import flag_word, flag_words, runs_of_true
 from ..lazy import np, xr
 
 MOST_ROWS = 10  # of the exponents of a range
@@ -59,8 +59,10 @@ def describe(data: xr.Dataset, names: str) -> Iterator[str]:
             yield f"{meaning(array)}: {value_text(top, array.name)}{where and f' at {where}'}"
         else:
             unit, root = str(array.attrs.get("units", "1")), float((array**2).mean()) ** 0.5
-            text = units.range_text(data, float(array.min()), float(array.max()), unit)
-            mean = f", rms {units.text_of(data, root, unit, '.4g')}" * ("time" in array.dims)
+            text = units.format_quantity_range(data, float(array.min()), float(array.max()), unit)
+            mean = f", rms {units.format_quantity(data, root, unit, '.4g')}" * (
+                "time" in array.dims
+            )
             yield f"{meaning(array)}: {text}{mean}"
 
 
@@ -74,7 +76,7 @@ def value_text(data: xr.Dataset, name: Any) -> str:
     if name == "xi_rel_max":
         return format_largest_gap(data)
     unit = str(data[name].attrs.get("units", "1"))
-    return flag_word(data[name]) or units.text_of(data, data[name], unit, ".4g")
+    return flag_word(data[name]) or units.format_quantity(data, data[name], unit, ".4g")
 
 
 def parameter_text(data: xr.Dataset, name: str) -> str:
@@ -158,7 +160,7 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g"
             title = f"{before or ('frequency' if name == 'eta' else name)} {unit}".rstrip()
             columns[title] = [number for _, number, _ in parts]
             continue
-        factor, word = units.text_scale(data, str(array.attrs.get("units", "1")))
+        factor, word = units.text_scale_of(data, str(array.attrs.get("units", "1")))
         title = f"{name} {word.replace('SI', '')}".rstrip()
         if "flag_meanings" in array.attrs:
             words = flag_words(array.attrs)
@@ -182,9 +184,9 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
         yield "no impacts"
         return
     first = int(data.impact_velocity.values.argmax())
-    speed = units.text_of(data, data.impact_velocity[first], "m/s", ".4g")
+    speed = units.format_quantity(data, data.impact_velocity[first], "m/s", ".4g")
     hardest = f"at {time_text(data, float(data.impact_time[first]))}"
-    if not units.is_in_ratios(data):
+    if not units.shows_ratios(data):
         hardest = f"{float(data.impulse[first]):.4g} N s {hardest}"
     sticks = int(data.sticks.sum())
     yield f"{count} impacts, the fastest at {speed} ({hardest}); {sticks} begin permanent contact"
@@ -195,9 +197,9 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
 
 def time_text(data: xr.Dataset, time: float, form: str = ".4g") -> str:
     """Format a time in display units, as tau where a result in ratios was asked in none."""
-    if units.is_in_ratios(data) and not units.units_of(data).time:
+    if units.shows_ratios(data) and not units.display_units_of(data).time:
         return f"tau = {time:{form}}"
-    return units.text_of(data, time, "s", form)
+    return units.format_quantity(data, time, "s", form)
 
 
 def varied_parameter(data: xr.Dataset) -> str:
@@ -227,18 +229,18 @@ def parameter_parts(
     data: xr.Dataset, name: str, value: float, form: str = ".6g"
 ) -> tuple[str, str, str]:
     """Return a parameter's name (may be empty), formatted value and unit for display."""
-    chosen, omega = units.units_of(data), units.omega_of(data)
+    chosen, omega = units.display_units_of(data), units.omega_of(data)
     if name == "eta" and chosen.frequency not in ("", "eta") and math.isfinite(omega):
         name, value = "frequency", value * omega
     if name == "frequency":
         shown = data if chosen.frequency else units.with_units(data, "Hz")
-        number, unit = units.shown_number(shown, value, "rad/s", form)
+        number, unit = units.format_number_and_unit(shown, value, "rad/s", form)
         return ("eta", number, "") if unit == "eta" else ("", number, unit)
     if name == "level":
         shown = data if chosen.acceleration else units.with_units(data, "g")
-        return ("", *units.shown_number(shown, value, "m/s2", form))
+        return ("", *units.format_number_and_unit(shown, value, "m/s2", form))
     unit = data[name].attrs.get("units", "1") if name in data.variables else "1"
-    return (name, *units.shown_number(data, value, str(unit), form))
+    return (name, *units.format_number_and_unit(data, value, str(unit), form))
 
 
 def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
@@ -249,7 +251,7 @@ def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
 
 def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) -> str:
     """Format the widest ranges of a dataset's parameter in which flags are true; or nowhere."""
-    values, runs = data[name].values, runs_of(flags)
+    values, runs = data[name].values, runs_of_true(flags)
     if not runs:
         return "nowhere"
     longest = sorted(sorted(runs, key=lambda run: run[0] - run[1])[:max_ranges])
@@ -271,10 +273,10 @@ def format_share(count: int, whole: int, word: str = "") -> str:
 
 def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
     """Format a response's largest gap over a eta^2, as length too if the box's motion is known."""
-    ratio, length = float(data.xi_rel_max), units.length_of_ratio(data)
+    ratio, length = float(data.xi_rel_max), units.unit_of_xi(data)
     parts = [f"xi_Rel = {ratio:{form}}"]
-    if length is not None and math.isfinite(float(length)) and not units.is_in_ratios(data):
-        parts.append(units.text_of(data, ratio * float(length), "m", ".4g"))
+    if length is not None and math.isfinite(float(length)) and not units.shows_ratios(data):
+        parts.append(units.format_quantity(data, ratio * float(length), "m", ".4g"))
     return ", ".join(parts)
 
 

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from ..errors import InputError
 from ..lazy import xr
 from ..model import Drive, Structure
-from ..units import text_of
+from ..units import format_quantity
 from . import printing
 from .answer import Asked, Overlay, is_curve
 from .command import Keywords, option, option_names
@@ -86,7 +86,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
             yield f"in this range it first {level.attrs['event']} at {where}: {text}"
         if data.attrs.get("clearance", 0.0) < 0.0:
             at_rest = Structure.from_attributes(data.attrs).as_delaminated().at_rest
-            ends = " and ".join(text_of(data, abs(x), "m", ".4g") for x in at_rest)
+            ends = " and ".join(format_quantity(data, abs(x), "m", ".4g") for x in at_rest)
             middle = "x1 and x2 count from the box's middle"
             yield f"{middle}: the preload by itself holds them {ends} from it"
 

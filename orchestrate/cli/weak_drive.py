@@ -13,7 +13,7 @@ import orchestrate
 from ..errors import InputError
 from ..lazy import np, xr
 from ..model import Drive, Structure
-from ..units import text_of, units_of, with_units
+from ..units import display_units_of, format_quantity, with_units
 from . import grammar, printing
 from .answer import Asked, Only, Runs
 from .command import Keywords, Options, option
@@ -41,7 +41,7 @@ def draw_couple(
     if job.control or not isinstance(job.schedule, Ramp):
         resonance = own_resonance.dividing_speed(*system) * job.structure.omega
         return draw_over_time(results, resonance, title)
-    units = units_of(next(iter(results.values())))
+    units = display_units_of(next(iter(results.values())))
     under = None if branches is None else with_units(branches, units)
     return draw_ramps(results, with_units(averaged.stationary_curve(*system), units), under, title)
 
@@ -241,7 +241,7 @@ def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
     for i in (stable[1:] != stable[:-1]).nonzero()[0]:
         low, high = sorted(at.speed.values[i : i + 2])
         if not ((located > 2.0 * low - high) & (located < 2.0 * high - low)).any():
-            speeds.append(text_of(at, low, "rad/s", ".5g"))
+            speeds.append(format_quantity(at, low, "rad/s", ".5g"))
     return ", ".join(speeds)
 
 
@@ -258,7 +258,9 @@ def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
         "motions": [str(int(leg.voltage.notnull().sum())) for leg in legs],
         "stable": [str(int(leg.stable.sum())) for leg in legs],
         "ends by": [str(leg.end.item()) for leg in legs],
-        "at": [f"{float(a.voltage):.5f} V, {text_of(a, a.speed, 'rad/s', '.6g')}" for a in last],
+        "at": [
+            f"{float(a.voltage):.5f} V, {format_quantity(a, a.speed, 'rad/s', '.6g')}" for a in last
+        ],
     }
     unlocated = [unlocated_changes(leg, data.bifurcation_speed.values) for leg in legs]
     if any(unlocated):

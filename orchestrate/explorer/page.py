@@ -16,13 +16,13 @@ from markupsafe import Markup
 from ..dynamics.clusters import AttractorSettings
 from ..dynamics.lyapunov import BATCHES, BLOCKS, SIGMAS, WANDER
 from ..errors import InputError
-from ..files import open_folder, write_whole
+from ..files import make_writable_folder, write_atomically
 from ..fmu.channel import StepAnswer
 from ..fmu.webassembly import WebKernel, loop_tables, numbers_in, web_kernel
 from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.ranges import EXCITATION, PUSHES, STRUCTURE
-from ..units import Units, units_of
+from ..units import Units, display_units_of
 from ..version import __version__
 from ..weak_drive.connection import FORCE, MOTOR
 from ..weak_drive.master import CUBIC, Links, Pair, Scheme
@@ -64,7 +64,7 @@ def explore(
     else:
         chosen = read_sweep(data)
         check_units(asked, chosen.level)
-        asked = asked.with_defaults(units_of(data))
+        asked = asked.with_defaults(display_units_of(data))
     path = Path(output)
     if path.is_dir():
         raise InputError(f"output = {str(output)!r}: is a folder; expected a file to write")
@@ -73,10 +73,10 @@ def explore(
             f"output = {str(output)!r}: a file that is no page of the explorer; expected a name "
             "that is free, or such a page to be replaced"
         )
-    open_folder(path.parent)
+    make_writable_folder(path.parent)
     kernel, drawn = web_kernel(build_folder), branch_json(branches) | record_json(record)
     text = render_page(chosen, shown_in(asked, chosen.level), drawn, kernel)
-    return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
+    return write_atomically(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
 def first_bytes(path: Path) -> bytes:

@@ -19,7 +19,13 @@ from fmu_src.export.errors import CannotExport
 from fmu_src.export.platforms import chosen, this_machine, usual
 
 from ..errors import InputError, StoreError
-from ..files import is_private, made_once, make_private, open_folder, write_whole
+from ..files import (
+    creation_lock,
+    forbid_writing_by_others,
+    is_written_by_trusted_only,
+    make_writable_folder,
+    write_atomically,
+)
 from .exported import NOT_PRIVATE, SHIPPED, default_folder
 
 log = logging.getLogger(__name__)
@@ -39,7 +45,7 @@ def library_path(source: Path, folder: str | PathLike[str] | None = None) -> Pat
             if is_trusted(path) and sources.is_current(path, token):
                 return path
         path = paths[0]
-        with made_once(path):
+        with creation_lock(path):
             if not (is_trusted(path) and sources.is_current(path, token)):
                 compile_library(source, platform, folders[0])
         if is_trusted(path):
@@ -67,7 +73,7 @@ def is_trusted(path: Path) -> bool:
     """Return whether a library came with the package, or nobody else can have written it."""
     if path.is_relative_to(SHIPPED):
         return True
-    return all(part.exists() and is_private(part) for part in trusted_parts(path))
+    return all(part.exists() and is_written_by_trusted_only(part) for part in trusted_parts(path))
 
 
 def trusted_parts(path: Path) -> tuple[Path, ...]:
@@ -95,10 +101,10 @@ def compile_library(source: Path, platform: str, folder: Path) -> Path:
     path = folder / FORM / sources.file_name(source, platform)
     log.info("compiling %s", path)
     library = sources.export(source, platform)
-    open_folder(path.parent)
-    write_whole(path, lambda target: target.write_bytes(library))
+    make_writable_folder(path.parent)
+    write_atomically(path, lambda target: target.write_bytes(library))
     digest = sources.digest(library).encode()
-    write_whole(sources.digest_file(path), lambda target: target.write_bytes(digest))
+    write_atomically(sources.digest_file(path), lambda target: target.write_bytes(digest))
     for part in trusted_parts(path):
-        make_private(part)
+        forbid_writing_by_others(part)
     return path

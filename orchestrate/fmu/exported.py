@@ -14,7 +14,13 @@ from fmu_src.export import forms as sources
 from fmu_src.export.errors import CannotExport
 
 from ..errors import InputError, StoreError
-from ..files import is_private, made_once, make_private, open_folder, write_whole
+from ..files import (
+    creation_lock,
+    forbid_writing_by_others,
+    is_written_by_trusted_only,
+    make_writable_folder,
+    write_atomically,
+)
 from ..version import __version__
 from .description import Description, describe, describe_runnable
 
@@ -69,14 +75,14 @@ def export(
     name: str, form: str, folder: Path, platforms: tuple[str, ...] = (), level: int = logging.INFO
 ) -> Path:
     check(name, form)
-    open_folder(folder)
+    make_writable_folder(folder)
     announce(folder, level)
     log.info("exporting %s", folder / form / f"{name}.fmu")
     try:
         path = export_or_copy(name, form, folder, platforms)
         if folder == default_folder():
-            make_private(path)
-            make_private(path.parent)
+            forbid_writing_by_others(path)
+            forbid_writing_by_others(path.parent)
         return path
     except OSError as error:
         reason = error.strerror or error
@@ -93,12 +99,12 @@ def export_or_copy(name: str, form: str, folder: Path, platforms: tuple[str, ...
     log.info("%s is copied from the installed package", path)
     path.parent.mkdir(parents=True, exist_ok=True)
     shipped = (SHIPPED / form / path.name).read_bytes()
-    return write_whole(path, lambda target: target.write_bytes(shipped))
+    return write_atomically(path, lambda target: target.write_bytes(shipped))
 
 
 def export_once(name: str, form: str, folder: Path, level: int) -> Description:
     path = folder / form / f"{name}.fmu"
-    with made_once(path):
+    with creation_lock(path):
         if not is_current_and_trusted(form, name, folder):
             export(name, form, folder, level=level)
     return describe(path, name)
@@ -133,7 +139,7 @@ def is_current_and_trusted(form: str, name: str, folder: str | PathLike[str]) ->
         return False
     if not current or Path(folder) != default_folder():
         return current  # another folder was named, and so trusted
-    if is_private(path) and is_private(path.parent):
+    if is_written_by_trusted_only(path) and is_written_by_trusted_only(path.parent):
         return True
     warn_once(f"{path}: {NOT_PRIVATE}")
     return False

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, StoreError
-from ..temporary import process_folder
+from ..temporary import process_temporary_folder
 from .description import Description
 
 _lock = threading.RLock()
@@ -25,7 +25,7 @@ def unpacked(description: Description) -> Path:
     """Return the folder with an FMU's unpacked files; unpack it there once per process."""
     with _lock:
         try:
-            folder = process_folder() / description.digest[:32]
+            folder = process_temporary_folder() / description.digest[:32]
             if not folder.is_dir():
                 unpack(described_bytes(description), folder)
         except OSError as error:

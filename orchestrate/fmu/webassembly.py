@@ -17,7 +17,7 @@ from fmu_src.export.forms import MODELS
 from fmu_src.export.sources import load_model, model_sources
 
 from ..errors import InputError
-from ..files import made_once, open_folder, write_whole
+from ..files import creation_lock, make_writable_folder, write_atomically
 from ..model.ranges import PUSHES
 from . import events, oscillator
 from .exported import SHIPPED, default_folder
@@ -52,7 +52,7 @@ def web_kernel(folder: str | PathLike[str] | None = None) -> WebKernel:
         if module:
             return WebKernel(module, variables, guid)
     try:
-        with made_once(folders[0] / FILE):
+        with creation_lock(folders[0] / FILE):
             module = read_module(folders[0] / FILE, guid)
             module = module or compile_module(folders[0]).read_bytes()
     except CannotExport as reason:
@@ -145,6 +145,6 @@ def compile_module(folder: Path) -> Path:
     path = folder / FILE
     log.info("compiling %s", path)
     module = sources.export()
-    open_folder(path.parent)
-    write_whole(path, lambda target: target.write_bytes(module))
+    make_writable_folder(path.parent)
+    write_atomically(path, lambda target: target.write_bytes(module))
     return path

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..files import write_whole
+from ..files import write_atomically
 from ..lazy import xr
 from ..model.arguments import checked_path
 from ..response.labels import variable
@@ -188,4 +188,4 @@ def write_channels_toml(found: xr.Dataset, setup: ChannelSetup, path: Path) -> P
                 remark = f"  # write it: {usual}" if (key, value) == ("unit", "") else ""
                 lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}{remark}")
     text = "\n".join(lines) + "\n"
-    return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
+    return write_atomically(path, lambda place: place.write_text(text, encoding="utf-8"))

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError, printable
-from ..files import check_path_encoding, reason, write_whole
+from ..errors import InputError, printable_line
+from ..files import check_path_encoding, format_read_error, write_atomically
 from ..lazy import xr
 from ..model.arguments import checked_path
 from ..reader_process import read_in_process
@@ -187,12 +187,12 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     if kind in ("wav", "lvm", "tdms"):
         raise InputError(f"{path}: {kind.upper()} is only read; expected .csv, .uff, .mat or .nc")
     if kind == "csv":
-        return write_whole(path, lambda place: write_csv(place, columns))
+        return write_atomically(path, lambda place: write_csv(place, columns))
     if kind == "uff":
-        return write_whole(path, lambda place: write_uff(place, columns, rate, binary))
+        return write_atomically(path, lambda place: write_uff(place, columns, rate, binary))
     if kind == "mat":
-        return write_whole(path, lambda place: write_mat(place, columns, rate))
-    return write_whole(path, lambda place: data.to_netcdf(place, engine="netcdf4"))
+        return write_atomically(path, lambda place: write_mat(place, columns, rate))
+    return write_atomically(path, lambda place: data.to_netcdf(place, engine="netcdf4"))
 
 
 def file_kind(path: Path) -> str:
@@ -208,7 +208,7 @@ def check_file(path: Path) -> None:
     try:
         status = path.stat()
     except OSError as error:
-        raise InputError(f"{path}: {reason(error)}; expected a record") from None
+        raise InputError(f"{path}: {format_read_error(error)}; expected a record") from None
     if not stat.S_ISREG(status.st_mode):
         raise InputError(f"{path}: no ordinary file; expected one")
     if not 0 < status.st_size <= MOST_BYTES:
@@ -287,11 +287,11 @@ COMPILED = (
 
 
 def read_columns(path: Path, *arguments: object) -> Columns:
-    """Read the columns of a file in a process of its own; names and other texts are printable."""
+    """Read the columns of a file in a process of its own; make names and texts printable."""
     kind = file_kind(path)
     check_file(path)
     reader, keep = READERS[kind], kind not in COMPILED
-    content = read_in_process(reader, path, *arguments, expected=EXPECTED[kind], keep=keep)
+    content = read_in_process(reader, path, *arguments, expected=EXPECTED[kind], keep_process=keep)
     columns = [
         Column(**{n: in_one_line(one) for n, one in each.items()}) for each in content["columns"]
     ]
@@ -300,4 +300,4 @@ def read_columns(path: Path, *arguments: object) -> Columns:
 
 def in_one_line(value: Any) -> Any:
     """Return a text as a short line without control characters, anything else as it is."""
-    return printable(value, MOST_LETTERS) if isinstance(value, str) else value
+    return printable_line(value, MOST_LETTERS) if isinstance(value, str) else value

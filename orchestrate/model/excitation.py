@@ -13,7 +13,7 @@ from functools import lru_cache
 from os import PathLike
 
 from ..errors import InputError
-from ..units import static_length
+from ..units import largest_static_displacement
 from .described import Described
 from .ranges import EXCITATION, PUSHES, RATIO_QUANTITIES, construct_or_explain, exact_inverse
 from .structure import Structure
@@ -109,7 +109,7 @@ class Excitation(Described):
         """
         if self.amplitude == 0.0:
             softness = 1.0 / structure.omega**2, 1.0 / structure.k1, 1.0 / structure.k2
-            return float(static_length(self.pushes, softness))
+            return float(largest_static_displacement(self.pushes, softness))
         eta = self.eta(structure)
         length = self.amplitude * (eta * eta)
         return 1.0 if math.isclose(length, 1.0, rel_tol=2e-15) else length

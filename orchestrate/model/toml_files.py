@@ -39,7 +39,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..files import read_text, write_whole
+from ..files import read_text, write_atomically
 from .described import Described
 from .drive import Drive
 from .excitation import Excitation
@@ -195,7 +195,7 @@ def write(
     if shaker is not None:
         tables["shaker"] = shaker.parameters()
     text = "\n".join(toml_table(name, values) for name, values in tables.items())
-    return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
+    return write_atomically(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
 def toml_table(name: str, values: Mapping[str, float | bool]) -> str:

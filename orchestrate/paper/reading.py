@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ..dynamics.stable_windows import StableWindow
-from ..flags import runs_of
+from ..flags import runs_of_true
 
 Edges = tuple[float, float]  # two neighbouring frequencies
 NOWHERE = float("nan"), float("nan")
@@ -37,12 +37,12 @@ def edges_of_run(data: xr.Dataset, run: tuple[int, int] | None) -> tuple[Edges, 
 def edges_around(data: xr.Dataset, flags: np.ndarray, inside: float) -> tuple[Edges, Edges]:
     """Return lower and upper edge of the run of true flags around a frequency."""
     index = int(np.abs(data.eta.values - inside).argmin())
-    there = (run for run in runs_of(flags) if run[0] <= index <= run[1])
+    there = (run for run in runs_of_true(flags) if run[0] <= index <= run[1])
     return edges_of_run(data, next(there, None))
 
 
 def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
-    longest = max(runs_of(flags), key=lambda run: run[1] - run[0], default=None)
+    longest = max(runs_of_true(flags), key=lambda run: run[1] - run[0], default=None)
     return edges_of_run(data, longest)
 
 

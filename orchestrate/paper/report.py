@@ -9,7 +9,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from ..files import write_whole
+from ..files import write_atomically
 from ..show.page import Page, Section, Table
 from .claims import NO, PARTLY, WORDS
 from .pictures import PARTS
@@ -70,7 +70,7 @@ def write_report(
     sections = list(claim_sections(content, size)) if content["claims"] else []
     sections += [picture_section(name, picture) for name, picture in pictures.items()]
     text = Page(TITLE, about, sections).html().encode()
-    return write_whole(output / "report.html", lambda path: path.write_bytes(text))
+    return write_atomically(output / "report.html", lambda path: path.write_bytes(text))
 
 
 def claim_sections(content: Mapping[str, Any], size: Resolution) -> Iterator[Section]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..files import open_folder, write_whole
+from ..files import make_writable_folder, write_atomically
 from ..fmu import OSCILLATOR, finder
 from ..show.figure_files import save
 from .claims import read_table
@@ -39,7 +39,7 @@ def reproduce(
     """Compute the paper, or some parts; take stored results; write pictures, claims and report."""
     parts = choose_parts(figures)
     fmu = finder(running)(OSCILLATOR)
-    open_folder(output)
+    make_writable_folder(output)
     data = Datasets(output, resolution, running)
     found = write_claims(data) if CLAIMS in parts else {"claims": [], "regions": []}
     shown = {name: PARTS[name].results(data) for name in parts if name != CLAIMS}
@@ -59,7 +59,9 @@ def choose_parts(names: Sequence[str] | None) -> list[str]:
 def write_claims(data: Datasets) -> dict[str, Any]:
     checked = {"claims": check_claims(read_table(), data), "regions": region_rows(data)}
     text = json.dumps(checked, indent=1, ensure_ascii=False) + "\n"
-    write_whole(data.folder / "claims.json", lambda path: path.write_text(text, encoding="utf-8"))
+    write_atomically(
+        data.folder / "claims.json", lambda path: path.write_text(text, encoding="utf-8")
+    )
     return checked
 
 

@@ -28,8 +28,8 @@ from queue import SimpleQueue
 from typing import Any
 
 from ..errors import WorkerError
-from ..files import write_whole
-from ..temporary import process_folder, remove_leftovers
+from ..files import write_atomically
+from ..temporary import process_temporary_folder, remove_folders_of_ended_processes
 from .identity import changed_modules, code_digests
 from .job import Job, Table, last_entries
 
@@ -63,9 +63,9 @@ def compute(
 
 @functools.lru_cache(maxsize=16)
 def write_fmu_once(model: str, content: bytes) -> Path:
-    folder = process_folder() / f"sent-{hashlib.sha256(content).hexdigest()[:32]}"
+    folder = process_temporary_folder() / f"sent-{hashlib.sha256(content).hexdigest()[:32]}"
     folder.mkdir(exist_ok=True)
-    return write_whole(folder / f"{model}.fmu", lambda path: path.write_bytes(content))
+    return write_atomically(folder / f"{model}.fmu", lambda path: path.write_bytes(content))
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ def processes(count: int, foreign: str = "") -> Iterator[Workers]:
             yield Workers(pool, lambda: count + 1)
     except BaseException as error:
         pool.shutdown(wait=True, kill_workers=True)
-        remove_leftovers()
+        remove_folders_of_ended_processes()
         if isinstance(error, BrokenExecutor):
             raise WorkerError(f"{format_end(error)}; {RESUMES}") from None
         raise

@@ -22,10 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..files import write_whole
+from ..files import write_atomically
 from ..flags import flag_words
 from ..lazy import xr
-from ..units import as_shown, with_units
+from ..units import in_display_units, with_units
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -92,7 +92,7 @@ def to_dataframe(data: xr.Dataset, units: str = "") -> pd.DataFrame:
 
 
 def without_repetition(data: xr.Dataset) -> xr.Dataset:
-    shown = as_shown(data)
+    shown = in_display_units(data)
     twice = [
         name
         for name in map(str, shown.variables)
@@ -142,7 +142,7 @@ def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
     written = []
     for name, frame in frames.items():
         file = path if len(frames) == 1 else path.with_name(f"{path.stem}.{name}.csv")
-        written.append(write_whole(file, partial(frame.to_csv, index=False)))
+        written.append(write_atomically(file, partial(frame.to_csv, index=False)))
     return written
 
 
@@ -165,7 +165,7 @@ def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
             for sheet in book.sheets.values():
                 write_texts_as_texts(sheet)
 
-    return [write_whole(path, sheets)]
+    return [write_atomically(path, sheets)]
 
 
 def write_texts_as_texts(sheet: Any) -> None:
@@ -179,7 +179,7 @@ def write_texts_as_texts(sheet: Any) -> None:
 def metadata_table(data: xr.Dataset) -> pd.DataFrame:
     import pandas as pd
 
-    data = as_shown(data)
+    data = in_display_units(data)
     rows = [
         (str(name), array.attrs.get("units", ""), array.attrs.get("long_name", ""))
         for name, array in data.variables.items()
@@ -205,7 +205,7 @@ def write_mat(data: xr.Dataset, path: Path) -> list[Path]:
         with path_to_write.open("wb") as file:
             savemat(file, content, long_field_names=True, oned_as="column", do_compression=True)
 
-    return [write_whole(path, save)]
+    return [write_atomically(path, save)]
 
 
 WRITERS: dict[str, Callable[[xr.Dataset, Path], list[Path]]] = {

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..lazy import xr
-from ..reader_process import allowed_memory, read_in_process
+from ..reader_process import read_in_process, reader_memory
 from .array_blocks import block_indices
 
 MAX_LOADED = 2**28  # bytes of numbers that are read whole; more are read when they are used
@@ -21,7 +21,10 @@ EXPECTED = "expected a NetCDF file that is whole"
 def read_dataset(path: Path) -> xr.Dataset:
     """Return the dataset of a file, a large one lazily, after all of it was read elsewhere once."""
     content = read_in_process(
-        *(netcdf_content, path, MAX_LOADED), expected=EXPECTED, keep=False, numbers=MAX_LOADED
+        *(netcdf_content, path, MAX_LOADED),
+        expected=EXPECTED,
+        keep_process=False,
+        array_bytes=MAX_LOADED,
     )
     if content["is_large"]:
         return xr.open_dataset(path, engine="netcdf4", cache=False)
@@ -33,7 +36,7 @@ def read_dataset(path: Path) -> xr.Dataset:
 
 
 def check_size(path: Path, size: int) -> None:
-    most = allowed_memory(path.stat().st_size)
+    most = reader_memory(path.stat().st_size)
     if size > most:
         raise InputError(f"{path}: unpacks to {size} bytes; expected at most {most}")
 

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from ..files import open_folder
+from ..files import make_writable_folder
 from ..lazy import xr
 from .bar import DELAY, progress_bar, refresh
 from .chunk_schedule import ChunkSchedule, Task
@@ -46,7 +46,7 @@ def answer(
 def answer_all(
     jobs: Sequence[Job], folder: Path, options: RunOptions, find: FmuFinder
 ) -> dict[str, Path]:
-    open_folder(folder)
+    make_writable_folder(folder)
     Runner(jobs, replace(options, store=folder), find).run()
     return {job.name: folder / f"{job.name}.nc" for job in jobs}
 

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError, StaleError, StoreError, first_line, printable
-from ..files import check_path_encoding, open_folder, write_whole
+from ..errors import InputError, StaleError, StoreError, first_line, printable_line
+from ..files import check_path_encoding, make_writable_folder, write_atomically
 from ..lazy import xr
 from .array_blocks import BLOCK, block_indices, file_block_shape
 from .checksum import ATTRIBUTE, checksum
@@ -115,7 +115,7 @@ class Disk(Store):
         super().__init__()
         self.path, self.identity, self.options = path, identity, options
         check_path_encoding(path)
-        open_folder(path.parent)
+        make_writable_folder(path.parent)
         if path.is_dir():
             raise InputError(
                 f"{path}: a folder; expected a place for a file: remove it, or choose another"
@@ -260,7 +260,7 @@ def load(path: Path, read: Callable[[Path], xr.Dataset] | None = None) -> xr.Dat
     except Exception as error:
         if path.is_file() and not is_netcdf(path):
             raise StoreError(f"{path}: not readable; expected a NetCDF file") from error
-        line = printable(first_line(error)).removeprefix(f"{path}: ")
+        line = printable_line(first_line(error)).removeprefix(f"{path}: ")
         raise StoreError(f"{path}: damaged ({line}); {ANEW}") from error
     if not fits:
         raise StoreError(
@@ -359,4 +359,4 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
                 for block in block_indices(dataset[name].shape):
                     target[block] = dataset.variables[name][block].values
 
-    return write_whole(path, write)
+    return write_atomically(path, write)

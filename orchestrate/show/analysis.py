@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..units import as_shown
+from ..units import in_display_units
 from .colours import BESIDES_RED, BLACK, BLUE, DIRECTION_STYLES, GREY, RED, STRUCTURES
 from .kinds import draws
 from .labels import in_shown_units, plain_title
@@ -39,7 +39,7 @@ def draw(
     if other:
         wrong = results[other[0]].attrs["analysis"]
         raise ValueError(f"others[{other[0]!r}]: result of {wrong}; expected one of {kind}")
-    figure = DRAW[kind]({name: as_shown(result) for name, result in results.items()})
+    figure = DRAW[kind]({name: in_display_units(result) for name, result in results.items()})
     set_title(figure, title or in_shown_units(data, plain_title(str(data.attrs["title"]))))
     return figure
 

@@ -11,7 +11,7 @@ from ..errors import InputError
 from ..flags import flag_word
 from ..lazy import xr
 from ..model.ranges import EXCITATION, STRUCTURE
-from ..units import OVER_OMEGA, as_shown, scale_of
+from ..units import OVER_OMEGA, display_scale_of, in_display_units
 from .kinds import required_kind
 from .labels import plain_title
 from .page import Section, Table, format_number
@@ -48,7 +48,7 @@ def answer_section(answer: xr.Dataset) -> Section:
 
 def scalar_table(answer: xr.Dataset) -> Table:
     rows = []
-    for name, array in as_shown(answer).data_vars.items():
+    for name, array in in_display_units(answer).data_vars.items():
         if not array.dims and array.dtype.kind in "iufb":
             value = format_number(float(array), str(array.attrs.get("units", "")), 5)
             meaning = str(array.attrs.get("long_name", ""))
@@ -60,7 +60,7 @@ def parameter_table(answer: xr.Dataset) -> Table:
     rows = []
     for name, quantity in {**STRUCTURE, **EXCITATION}.items():
         if name in answer.attrs and not isinstance(answer.attrs[name], str):
-            factor, unit = scale_of(answer, quantity.unit)
+            factor, unit = display_scale_of(answer, quantity.unit)
             value = float(answer.attrs[name]) / factor
             shown = OVER_OMEGA if unit == "eta" else unit
             rows.append((name, quantity.description, format_number(value, shown, 6)))

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..units import as_shown
+from ..units import in_display_units
 from .analysis import note_hidden
 from .colours import BESIDES_RED, BLACK, BLUE, GREEN, GREY, ORANGE, RED
 from .kinds import draws
@@ -75,7 +75,7 @@ def write_values(
 def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
     title = title or plain_title(str(data.attrs["title"]))
     figure, (axes,) = make_panels(1, 1, (8.0, 3.8), title)
-    data = as_shown(data)
+    data = in_display_units(data)
     right = data.decides.values > 0
     rows = (("guess", data.heard, BLUE), ("sound twin", data.sound_heard, ORANGE))
     for words, values, colour in rows:
@@ -99,7 +99,7 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
 @draws("detect", "fit")
 @styled
 def draw_orders_and_fits(data: xr.Dataset, title: str = "") -> Figure:
-    data = with_hypothesis_dimension(as_shown(data))
+    data = with_hypothesis_dimension(in_display_units(data))
     channels = [str(channel) for channel in data.channel.values]
     rows, columns = data.sizes["order"], len(channels)
     size, title = (1.5 + 6.0 * columns, 0.9 + 1.9 * rows), title or data.attrs.get("title", "")
@@ -151,7 +151,7 @@ def best_fits(data: xr.Dataset) -> list[str]:
 @styled
 def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
     figure, (axes,) = make_panels(1, 1, (8.0, 3.4), title or str(data.attrs.get("title", "")))
-    data = as_shown(data)
+    data = in_display_units(data)
     for number, name in enumerate(best_fits(data)):
         one = data.sel(hypothesis=name)
         words = f"{name}: {float(one.misfit):.3g}"

@@ -10,7 +10,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ..errors import InputError
-from ..files import write_whole
+from ..files import write_atomically
 from .style import set_title, style_context
 
 SLIDE_HEIGHT, SLIDE_PART, SLIDE_PIXELS = 4.2, 0.75, 1920.0  # inches at least, of its own; across
@@ -67,6 +67,6 @@ def save(
             with style_context():
                 figure.savefig(temporary, format=ending, metadata=UNDATED.get(ending), **options)
 
-        write_whole(target, write)
+        write_atomically(target, write)
         written.append(target)
     return written

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..constants import TURN
-from ..units import units_of, with_units
+from ..units import display_units_of, with_units
 from . import labels
 from .colours import BLACK, BLUE, GREY, RED
 from .kinds import BONDED, draws
@@ -60,7 +60,7 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
     if bonded is not None:
         axes["masses"].plot(time_axis(data, bonded)[0], bonded.x1 / factor, **GLUED)
         axes["phases"].plot(bonded.x1 / factor, bonded.v1 / pace, **GLUED)
-        alike = with_units(bonded, units_of(data))  # one axis has one unit
+        alike = with_units(bonded, display_units_of(data))  # one axis has one unit
         top = max(top, draw_spectrum(axes["spectrum"], alike, (("1", GLUED),)))
     axes["spectrum"].set_ylim(SPECTRUM_FLOOR * (top or 1.0), 2.0 * (top or 1.0))
     axes["masses"].set_ylabel(in_unit("displacement", unit))
@@ -80,7 +80,7 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
 
 def time_axis(data: xr.Dataset, motion: xr.Dataset) -> tuple[np.ndarray, str]:
     """Return a motion's times in the display unit (periods or s), and the axis label."""
-    if units_of(data).time == "s":
+    if display_units_of(data).time == "s":
         return motion.time.values, "time in s"
     return motion.periods_done.values, "time in periods, $t/T$"
 

@@ -11,7 +11,14 @@ import xarray as xr
 
 from ..constants import GRAVITY, TURN
 from ..model.ranges import ADDED, STRUCTURE
-from ..units import has_own_frequency, is_finite_number, is_in_ratios, omega_of, scale_of, units_of
+from ..units import (
+    display_scale_of,
+    display_units_of,
+    is_finite_number,
+    is_in_si,
+    omega_of,
+    shows_ratios,
+)
 
 UNITS = {"m": "kg", "k": "N/m", "d": "N s/m", "x": "m", "f": "Hz"}  # of both masses' quantities
 SYMBOLS = {
@@ -103,9 +110,9 @@ def branch_title(data: xr.Dataset, over: Iterable[str]) -> str:
 
 
 def has_frequency_unit(data: xr.Dataset) -> bool:
-    if units_of(data).frequency:
-        return units_of(data).frequency != "eta"
-    return has_own_frequency(data) or "frequency" in data.dims
+    if display_units_of(data).frequency:
+        return display_units_of(data).frequency != "eta"
+    return is_in_si(data) or "frequency" in data.dims
 
 
 def is_constant(values: xr.DataArray) -> bool:
@@ -132,8 +139,8 @@ def typeset_unit(unit: str) -> str:
 
 def format_length(data: xr.Dataset, length: float) -> str:
     """Format a length in a dataset's display unit, or with an SI prefix."""
-    factor, word = scale_of(data, "m")
-    if not units_of(data).length:
+    factor, word = display_scale_of(data, "m")
+    if not display_units_of(data).length:
         factor, letter = si_prefix(length)
         word = f"{letter}m"
     return f"{length / factor:.4g} {typeset_unit(word)}"
@@ -141,7 +148,9 @@ def format_length(data: xr.Dataset, length: float) -> str:
 
 def format_frequency(data: xr.Dataset, frequency: float) -> str:
     """Format a frequency given in rad/s in a dataset's display unit, by default Hz."""
-    factor, word = scale_of(data, "rad/s") if units_of(data).frequency else (TURN, "Hz")
+    factor, word = (
+        display_scale_of(data, "rad/s") if display_units_of(data).frequency else (TURN, "Hz")
+    )
     if word == "eta":
         return format_parameters({"eta": float(f"{frequency / factor:.5g}")})
     letter = r"$\Omega$" if word == "rad/s" else r"$\Omega/2\pi$"
@@ -149,7 +158,7 @@ def format_frequency(data: xr.Dataset, frequency: float) -> str:
 
 
 def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
-    units, texts = units_of(data), {}
+    units, texts = display_units_of(data), {}
     if "eta" in known:
         omega = omega_of(data)
         by_unit = units.frequency not in ("", "eta") and math.isfinite(omega)
@@ -175,14 +184,14 @@ def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str,
 def is_papers_amplitude(data: xr.Dataset, known: Mapping[str, float]) -> bool:
     """Return whether the amplitude is 1/eta^2 m, so that displacements are the paper's ratios."""
     eta = known.get("eta", known.get("frequency", math.nan) / omega_of(data))
-    return is_in_ratios(data) and math.isclose(known["amplitude"] * eta**2, 1.0, rel_tol=1e-9)
+    return shows_ratios(data) and math.isclose(known["amplitude"] * eta**2, 1.0, rel_tol=1e-9)
 
 
 def format_level(data: xr.Dataset, level: float) -> str:
     """Format the box's peak acceleration, in m/s2, in the unit that an answer is shown in."""
     peak, in_g = f"{level:.4g} m/s$^2$", f"{level / GRAVITY:.3g} g"
     both = {"": f"{peak} ({in_g})", "m/s2": peak, "g": in_g}
-    return rf"$a\,\Omega^2$ = {both[units_of(data).acceleration]}"
+    return rf"$a\,\Omega^2$ = {both[display_units_of(data).acceleration]}"
 
 
 def format_voltage(voltage: float, error: float) -> str:
@@ -235,7 +244,7 @@ def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
 
 
 def in_shown_units(data: xr.Dataset, text: str) -> str:
-    factor, word = scale_of(data, "m/s2")
+    factor, word = display_scale_of(data, "m/s2")
     unit = typeset_unit(word)
     return ACCELERATION.sub(lambda match: f"{float(match[1]) / factor:.4g} {unit}", text)
 

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from ..errors import InputError
 from ..flags import flag_words
 from ..model.ranges import OF_LENGTH, STRUCTURE
-from ..units import length_of_ratio, omega_of
+from ..units import omega_of, unit_of_xi
 from .colours import BIFURCATION_MARKS, BLUE, RED
 from .kinds import kind_of
 from .scales import ETA, acceleration_scale, axis_values, frequency_scale, parameter_scale
@@ -163,7 +163,7 @@ def length_factors(
     if not factor:
         return np.ones(branch.sizes["point"])
     if amplitude is None or not amplitude.any():
-        return np.broadcast_to(np.asarray(length_of_ratio(branch)), branch.sizes["point"]) / factor
+        return np.broadcast_to(np.asarray(unit_of_xi(branch)), branch.sizes["point"]) / factor
     return np.asarray(amplitude * branch.eta.values**2 / factor)
 
 

@@ -12,7 +12,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from ..constants import TURN
-from ..units import as_shown, scale_of
+from ..units import display_scale_of, in_display_units
 from .colours import BLACK, BLUE, GREY, STRUCTURES
 from .scales import acceleration_scale, label_with_unit
 from .style import draw_line, make_panels, styled
@@ -32,7 +32,7 @@ def draw_over_time(runs: Mapping[str, xr.Dataset], resonance: float, title: str 
     count, rows = len(runs), len(ROWS) + 1
     size = (6.5 * count, 2.6 * rows)
     figure, axes = make_panels(rows, count, size, title, sharex=True, sharey="row")
-    shown = {name: as_shown(data) for name, data in runs.items()}
+    shown = {name: in_display_units(data) for name, data in runs.items()}
     for column, (name, data) in enumerate(shown.items()):
         panels, time = axes[column::count], data.time.values
         for panel, what in zip(panels, ROWS, strict=False):
@@ -41,7 +41,7 @@ def draw_over_time(runs: Mapping[str, xr.Dataset], resonance: float, title: str 
                 time, data[what], "." if what == "impacts" else "-", markersize=2.5, **points
             )
         dashed: Any = {"linewidth": 1.0, "linestyle": "--", "label": "resonance"}
-        panels[0].axhline(resonance / scale_of(data, "rad/s")[0], color=GREY, **dashed)
+        panels[0].axhline(resonance / display_scale_of(data, "rad/s")[0], color=GREY, **dashed)
         panels[0].set_title(f"{name}: {format_passage(data)}")
         middle = 0.5 * (time[POWER_REVOLUTIONS:] + time[:-POWER_REVOLUTIONS])
         draw_powers(panels[-1], middle, mean_powers(data))
@@ -64,12 +64,14 @@ def draw_passage(
     felt, unit = acceleration_scale(next(iter(runs.values())))
     top = max(float(spectrum.acceleration.max()) for spectrum in spectra.values()) / felt
     for column, (name, shown) in enumerate(runs.items()):
-        data, panels = as_shown(shown), axes[column::count]
+        data, panels = in_display_units(shown), axes[column::count]
         begin, words = time_origin(data)
         time = data.time.values - begin
         instant: Any = {"alpha": 0.6, "label": "at the instant"}
         panels[0].plot(time, np.abs(data.speed), color=BLUE, linewidth=0.4, **instant)
-        mean_speed = mean_rate(data, np.abs(data.angle.values), 1) / scale_of(data, "rad/s")[0]
+        mean_speed = (
+            mean_rate(data, np.abs(data.angle.values), 1) / display_scale_of(data, "rad/s")[0]
+        )
         draw_line(panels[0], time, mean_speed, "-", BLACK, 1.2, "mean of a revolution")
         draw_line(panels[1], time, data.voltage, "-", BLACK, 1.0)
         draw_line(panels[2], time, data.x1, "-", STRUCTURES.get(name, BLUE), 0.3)

@@ -15,7 +15,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator
 from ..constants import TURN
 from ..flags import flag_words
 from ..model import Structure
-from ..units import is_in_ratios, length_of_ratio, omega_of, scale_of, units_of
+from ..units import display_scale_of, display_units_of, omega_of, shows_ratios, unit_of_xi
 from . import labels
 from .colours import BESIDES_RED, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW
 from .kinds import MORE, draws
@@ -85,8 +85,8 @@ def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] =
 
 def shown_values(data: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
     """Return a quantity and its label; gaps and impulses in SI, or in the unit asked for."""
-    in_si = has_frequency_unit(data) or units_of(data).length
-    unit = length_of_ratio(data) if name in ("xi_rel_max", "impulse_max") and in_si else None
+    in_si = has_frequency_unit(data) or display_units_of(data).length
+    unit = unit_of_xi(data) if name in ("xi_rel_max", "impulse_max") and in_si else None
     if unit is None:
         return data[name], COLUMNS[name]
     if name == "impulse_max":  # over m1 omega a eta^2
@@ -139,7 +139,9 @@ def is_geometric(values: np.ndarray) -> bool:
 @styled
 def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -> Figure:
     y, x = map(str, data.attractor_of.dims)
-    by_ratio = "eta" in data.coords and not units_of(data).frequency  # else the title has it
+    by_ratio = (
+        "eta" in data.coords and not display_units_of(data).frequency
+    )  # else the title has it
     eta = rf"$\eta$ = {float(data.eta):.4g}" if by_ratio else ""
     words = title or labels.join([title_from_attributes(data, ("eta", x, y)), eta])
     figure, (plane,) = make_panels(1, 1, (6.4, 5.6), words)
@@ -186,8 +188,8 @@ def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
     """Return the divisor to display units and the axis label of a coordinate of the plane."""
     if name == "phase":
         return 1.0, labels.symbol(name)
-    factor, word = scale_of(data, "m/s" if name.startswith("v") else "m")
-    unit = "" if is_in_ratios(data) else labels.typeset_unit(word)
+    factor, word = display_scale_of(data, "m/s" if name.startswith("v") else "m")
+    unit = "" if shows_ratios(data) else labels.typeset_unit(word)
     words = labels.gap_name(data) if name == "x_rel" else labels.symbol(name).rpartition(" in ")[0]
     return factor, in_unit(words, unit)
 
@@ -228,7 +230,7 @@ def label_attractors(plane: Axes, data: xr.Dataset) -> None:
 
 def gap_text(data: xr.Dataset, gap: float) -> str:
     """Format a gap over a eta^2, as a length where a unit of length is asked for."""
-    length = length_of_ratio(data) if units_of(data).length else None
+    length = unit_of_xi(data) if display_units_of(data).length else None
     if length is None:
         return f"{XI_REL} = {gap:.3g}"
     return f"gap = {labels.format_length(data, gap * float(length))}"

@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 
 from ..errors import InputError
-from ..files import write_whole
+from ..files import write_atomically
 from ..lazy import xr
 from ..units import Units, with_units
 from .answers import answer_section, origin_section, signs_section, title_of
@@ -73,7 +73,7 @@ def report(
     about = notes or (record if record not in heading else "")
     page = Page(heading, about, [*sections, origin_section([first, *others])], verdict)
     text = page.html().encode()
-    return write_whole(Path(output), lambda path: path.write_bytes(text))
+    return write_atomically(Path(output), lambda path: path.write_bytes(text))
 
 
 def sections_of(answer: xr.Dataset) -> list[Section]:

@@ -11,11 +11,11 @@ from ..errors import InputError
 from ..units import (
     FACTORS,
     OVER_OMEGA,
-    is_in_ratios,
-    length_of_ratio,
+    display_scale_of,
+    display_units_of,
     omega_of,
-    scale_of,
-    units_of,
+    shows_ratios,
+    unit_of_xi,
 )
 from .labels import gap_name, has_frequency_unit, si_prefix, symbol, typeset_unit
 from .style import XI_REL
@@ -58,19 +58,19 @@ def varied_dimension(data: xr.DataArray) -> str:
 
 def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
     """Return the divisor from rad/s to the display unit of frequencies, and that unit."""
-    if units_of(data).frequency:
-        return scale_of(data, "rad/s")
+    if display_units_of(data).frequency:
+        return display_scale_of(data, "rad/s")
     return FACTORS["frequency"]["Hz"], "Hz"
 
 
 def length_scale(data: xr.Dataset, largest: float, unit: str = "m") -> tuple[float, str]:
     """Return the divisor from m, or m/s, to the display unit, and that unit; none of a ratio."""
-    if is_in_ratios(data):
+    if shows_ratios(data):
         return 1.0, ""
-    if not units_of(data).length:
+    if not display_units_of(data).length:
         factor, prefix = si_prefix(largest)
         return factor, prefix + unit
-    factor, word = scale_of(data, unit)
+    factor, word = display_scale_of(data, unit)
     return factor, typeset_unit(word)
 
 
@@ -88,8 +88,8 @@ def in_unit(words: str, unit: str, space: str = " ") -> str:
 
 def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, str]:
     """Return the divisor from m/s2 to the display unit, and that unit; none of a ratio."""
-    word = units_of(data).acceleration
-    if is_in_ratios(data) and not word:
+    word = display_units_of(data).acceleration
+    if shows_ratios(data) and not word:
         return 1.0, ""
     word = word or usual
     return FACTORS["acceleration"][word], typeset_unit(word)
@@ -125,9 +125,9 @@ def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
     factor, word = frequency_scale(data)
     if parameter == "frequency" and (has_frequency_unit(data) or word == "eta"):
         return factor, FREQUENCIES[word]
-    if parameter == "eta" and units_of(data).frequency not in ("", "eta"):
+    if parameter == "eta" and display_units_of(data).frequency not in ("", "eta"):
         return factor / omega_of(data), FREQUENCIES[word]
-    if parameter in ("amplitude", "clearance") and units_of(data).length:
+    if parameter in ("amplitude", "clearance") and display_units_of(data).length:
         factor, unit = length_scale(data, 1.0)
         return factor, f"{symbol(parameter).removesuffix(' m')} {unit}"
     return 1.0, symbol(parameter)
@@ -135,7 +135,7 @@ def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
 
 def gap_scale(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
     """Return the unit of an axis of gaps, m (0: gaps are shown over a eta^2), and its label."""
-    length = length_of_ratio(data) if has_frequency_unit(data) or units_of(data).length else None
+    length = unit_of_xi(data) if has_frequency_unit(data) or display_units_of(data).length else None
     if length is None:
         return 0.0, XI_REL
     factor, unit = length_scale(data, float((values * length).max()))
@@ -144,5 +144,5 @@ def gap_scale(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
 
 def displayed_gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
     """Convert gaps over a eta^2 to display units; return them and the axis label."""
-    (factor, label), length = gap_scale(data, values), length_of_ratio(data)
+    (factor, label), length = gap_scale(data, values), unit_of_xi(data)
     return (values * length / factor if factor and length is not None else values), label

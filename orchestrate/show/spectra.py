@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..units import units_of, with_units
+from ..units import display_units_of, with_units
 from .colours import BLACK, BLUE, ORANGE, STRUCTURES
 from .kinds import draws
 from .labels import format_frequency, has_frequency_unit, title_from_attributes
@@ -95,7 +95,7 @@ def draw_side(
 def draw_motor_spectra(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
     count = data.sizes["kind"]
     figure, axes = make_panels(count, 1, (10, 3.5 * count), title, sharex=True, sharey=True)
-    turning = data if units_of(data).frequency else with_units(data, "rad/s")
+    turning = data if display_units_of(data).frequency else with_units(data, "rad/s")
     felt, unit = acceleration_scale(data)
     shown = data.acceleration.sel(mass=mass) / felt
     top = float(shown.max())

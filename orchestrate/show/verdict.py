@@ -8,7 +8,7 @@ import numpy as np
 
 from ..constants import TURN
 from ..lazy import xr
-from ..units import scale_of, units_of, with_units
+from ..units import display_scale_of, display_units_of, with_units
 from .diagnosis import PARTED, draw_misfit, draw_orders_and_fits
 from .page import MISSING, Section, Table, Verdict, format_number, format_with_error
 
@@ -65,8 +65,8 @@ def no_opening_statement(answer: xr.Dataset) -> str:
     smallest = scalar(answer, "smallest_opening")
     seen = ""
     if math.isfinite(smallest):
-        shown = answer if units_of(answer).length else with_units(answer, "um")
-        factor, unit = scale_of(shown, "m")
+        shown = answer if display_units_of(answer).length else with_units(answer, "um")
+        factor, unit = display_scale_of(shown, "m")
         opening = f"{format_number(smallest / factor)} {unit.replace('um', 'µm')}"
         seen = (
             f" Faces at the sensor that part by {opening} or more would have been seen; away from "
@@ -146,14 +146,14 @@ def sweep_text(answer: xr.Dataset) -> str:
 
 
 def frequencies_text(answer: xr.Dataset, low: float, high: float) -> str:
-    turn, word = scale_of(answer, "Hz")
+    turn, word = display_scale_of(answer, "Hz")
     first, last = (format_number(end / turn, digits=4) for end in (low, high))
     return f"{first} to {last} {'Omega/omega' if word == 'eta' else word}"
 
 
 def format_level(answer: xr.Dataset, *levels: float) -> str:
     """Format levels of the base in the unit that was asked for; empty where one is not known."""
-    felt, unit = scale_of(answer, "m/s2")
+    felt, unit = display_scale_of(answer, "m/s2")
     numbers = " to ".join(format_number(level / felt) for level in levels)
     return f"{numbers} {unit.replace('m/s2', 'm/s²')}" if all(map(math.isfinite, levels)) else ""
 
@@ -243,7 +243,7 @@ def sort_by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
 
 
 def format_parameter(at: xr.Dataset, unit: str) -> str:
-    factor, word = scale_of(at, unit)
+    factor, word = display_scale_of(at, unit)
     if word == "eta":  # a half's own frequency is no ratio to itself
         factor, word = 1.0, unit
     value, error = float(at.value) / factor, scalar(at, "standard_error") / factor

@@ -14,7 +14,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..units import as_shown, omega_of
+from ..units import in_display_units, omega_of
 from . import passage
 from .colours import BIFURCATION_MARKS, BLACK, DIRECTION_STYLES, GREEN, GREY, ORANGE, STRUCTURES
 from .kinds import OTHER, draws
@@ -45,7 +45,7 @@ def draw_ramps(
     branches: xr.Dataset | None = None,
     title: str = "",
 ) -> Figure:
-    shown = {name: drop_spin_up(as_shown(data)) for name, data in runs.items()}
+    shown = {name: drop_spin_up(in_display_units(data)) for name, data in runs.items()}
     figure, axes = make_panels(2, 2, (11, 9.4), title)
     for name, data in shown.items():
         for part, style, direction in split_directions(data):
@@ -55,9 +55,9 @@ def draw_ramps(
                 draw_impacts(axes[2], data.isel(revolution=part), direction)
         mark_jumps(axes[0], data, name)
     if theory is not None:
-        draw_theory(axes, as_shown(theory))
+        draw_theory(axes, in_display_units(theory))
     if branches is not None:
-        draw_branches(axes, as_shown(branches).sel(structure=list(runs)))
+        draw_branches(axes, in_display_units(branches).sel(structure=list(runs)))
     name = list(runs)[-1]
     draw_outward_powers(axes[3], shown[name], name)
     axes[0].set_title("\n".join(format_jumps(*item) for item in runs.items()))
@@ -73,7 +73,7 @@ def draw_ramps(
 
 @styled
 def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
-    shown = {name: as_shown(data) for name, data in runs.items()}
+    shown = {name: in_display_units(data) for name, data in runs.items()}
     jumps = [way for way in ("up", "down") if any(has_jump(data, way) for data in shown.values())]
     rows = max(len(jumps), 1)
     figure, axes = make_panels(rows, 2, (10, 0.8 + 3.6 * rows), title)
@@ -100,7 +100,7 @@ def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
 @styled
 def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
     figure, axes = make_panels(1, 2, (12, 5), title)
-    branches = as_shown(branches)
+    branches = in_display_units(branches)
     draw_branches(axes, branches)
     for name in branches.structure.values:
         of_one = branches.bifurcation_structure == name

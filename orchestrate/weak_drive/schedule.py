@@ -13,7 +13,7 @@ from os import PathLike
 import numpy as np
 
 from ..errors import InputError
-from ..files import read_text, reason
+from ..files import format_read_error, read_text
 from ..model.arguments import checked_numbers
 from ..model.ranges import checked_range
 
@@ -174,7 +174,7 @@ class Course(Schedule):
         try:
             lines = read_text(path, 1 << 22).splitlines()  # bytes: some hundred thousand rows
         except (OSError, ValueError) as error:
-            raise InputError(f"{path}: {reason(error)}; expected a CSV file") from None
+            raise InputError(f"{path}: {format_read_error(error)}; expected a CSV file") from None
         rows: list[list[float]] = []
         for number, line in enumerate(lines, start=1):
             if not line.strip() or line.lstrip().startswith("#"):

@@ -25,7 +25,7 @@ from typing import Literal
 from xml.etree import ElementTree as ET
 
 from ..errors import InputError
-from ..files import write_whole
+from ..files import write_atomically
 from ..fmu.description import Description, describe
 from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
 from ..model.arguments import checked_mapping
@@ -275,7 +275,7 @@ def write_ssp(
     for name, one in components.items():
         files[parameter_file_path(name)] = parameter_values(one.values, version)
     files |= {f"resources/{one.path.name}": one.path.read_bytes() for one in components.values()}
-    return write_whole(path, lambda temporary: write_archive(temporary, files))
+    return write_atomically(path, lambda temporary: write_archive(temporary, files))
 
 
 def fmu_path(model: str) -> Path:

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate.files import HeldLock, write_whole
+from orchestrate.files import HeldLock, write_atomically
 
 ROOT = Path(__file__).resolve().parents[2]
 WRITE = """
 import os, sys
-from orchestrate.files import write_whole
+from orchestrate.files import write_atomically
 
 def write(place):
     place.write_text("half of it")
@@ -21,7 +21,7 @@ def write(place):
     sys.stdin.readline()
     place.write_text("whole")
 
-write_whole(sys.argv[1], write)
+write_atomically(sys.argv[1], write)
 """
 OTHER_CONTAINER = ["unshare", "--user", "--map-root-user", "--pid", "--fork", "--mount-proc"]
 
@@ -61,12 +61,12 @@ def test_one_file_is_written_twice_at_once(tmp_path):
 
     def write(temporary):
         temporary.write_text("mine, ")
-        write_whole(path, lambda place: place.write_text("other"))
+        write_atomically(path, lambda place: place.write_text("other"))
         assert path.read_text() == "other"
         with temporary.open("a") as file:
             file.write("whole")
 
-    write_whole(path, write)
+    write_atomically(path, write)
     assert path.read_text() == "mine, whole"
     assert names(tmp_path) == ["couple.png"]
 
@@ -83,7 +83,7 @@ def test_what_a_process_writes_stays_until_it_is_killed(writer, tmp_path, contai
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()  # until all in it have ended
         assert half.exists()
-        write_whole(tmp_path / "out.txt", lambda place: place.write_text("whole"))
+        write_atomically(tmp_path / "out.txt", lambda place: place.write_text("whole"))
         assert names(tmp_path) == ["out.txt"]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from orchestrate import InputError, reader_process
-from orchestrate.reader_process import IDLE, Child, read_in_process
+from orchestrate.reader_process import IDLE, ReaderProcess, read_in_process
 
 # runpy.run_path, as a reader, does in the process of readers what its file says
 MISHAPS = {
@@ -83,9 +83,9 @@ def test_arrays_come_back_with_their_bits(tmp_path, kind, shape):
 
 
 def test_an_answer_is_of_plain_arrays_and_within_its_size():
-    child = object.__new__(Child)
-    child.exactly = bytearray
-    assert child.unpack({"array": "<f8", "shape": [10]}, [80]).tolist() == [0.0] * 10
+    child = object.__new__(ReaderProcess)
+    child.read_exactly = bytearray
+    assert child.unpack_value({"array": "<f8", "shape": [10]}, [80]).tolist() == [0.0] * 10
     for kind, shape in (("<f8", [11]), ("O", [2]), ("V8", [2]), ("<f8", [-1]), ("<f8", [9, 9])):
         with pytest.raises(ValueError, match="^$"):
-            child.unpack({"array": kind, "shape": shape}, [80])
+            child.unpack_value({"array": kind, "shape": shape}, [80])

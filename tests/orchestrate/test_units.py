@@ -13,10 +13,10 @@ from orchestrate.show.labels import title_from_attributes
 from orchestrate.show.scales import displayed_gaps
 from orchestrate.units import (
     Units,
-    length_of_ratio,
-    scale_of,
-    text_of,
-    units_of,
+    display_scale_of,
+    display_units_of,
+    format_quantity,
+    unit_of_xi,
     with_readable_lengths,
     with_units,
 )
@@ -82,18 +82,18 @@ def test_grammar():
 
 def test_numbers_are_divided_by_what_the_unit_says():
     data = with_units(xr.Dataset(attrs={"k1": 4.0, "m1": 1.0, "frequency": TURN}), "rpm, um, g")
-    assert text_of(data, TURN, "rad/s") == "60 rpm"
-    assert text_of(data, 2e-5, "m") == "20 um"
-    assert text_of(data, 2e-5, "m/s") == "0.02 mm/s"
-    assert text_of(data, G, "m/s2") == "1 g"
-    assert text_of(data, 3.0, "s") == "3 s"
-    assert text_of(with_units(data, "eta, periods"), 3.0, "rad/s") == "eta = 1.5"
-    assert text_of(with_units(data, "periods"), 3.0, "s") == "3 periods"
-    assert scale_of(data, "N") == (1.0, "N")
-    assert length_of_ratio(xr.Dataset(attrs={"k1": 4.0, "m1": 1.0, "level": 0.2})) == 0.05
+    assert format_quantity(data, TURN, "rad/s") == "60 rpm"
+    assert format_quantity(data, 2e-5, "m") == "20 um"
+    assert format_quantity(data, 2e-5, "m/s") == "0.02 mm/s"
+    assert format_quantity(data, G, "m/s2") == "1 g"
+    assert format_quantity(data, 3.0, "s") == "3 s"
+    assert format_quantity(with_units(data, "eta, periods"), 3.0, "rad/s") == "eta = 1.5"
+    assert format_quantity(with_units(data, "periods"), 3.0, "s") == "3 periods"
+    assert display_scale_of(data, "N") == (1.0, "N")
+    assert unit_of_xi(xr.Dataset(attrs={"k1": 4.0, "m1": 1.0, "level": 0.2})) == 0.05
     beam = xr.Dataset({"x": ("t", [2e-5, 0.0], {"units": "m"})}, attrs={"k1": 4.0, "m1": 1.0})
-    assert str(units_of(*with_readable_lengths(beam))) == "um"
-    assert scale_of(with_units(xr.Dataset(), "eta"), "rad/s") == (1.0, "rad/s")  # no omega
+    assert str(display_units_of(*with_readable_lengths(beam))) == "um"
+    assert display_scale_of(with_units(xr.Dataset(), "eta"), "rad/s") == (1.0, "rad/s")  # no omega
 
 
 def test_pictures_are_in_the_units_asked_for_and_in_no_other():

@@ -8,7 +8,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from PIL import Image
 
-from orchestrate.files import write_whole
+from orchestrate.files import write_atomically
 from orchestrate.show.figure_files import png_bytes
 
 COLOURS = 128  # more are not seen in lines and letters
@@ -25,4 +25,4 @@ def write_small(png: bytes, path: Path) -> None:
     def write(place: Path) -> None:
         few.save(place, format="png", optimize=True)
 
-    write_whole(path, write)
+    write_atomically(path, write)

@@ -21,7 +21,7 @@ def impacts_decrease(data: Datasets, claim: Claim) -> Measured:
 def interchange(data: Datasets, claim: Claim) -> Measured:
     """Find T-periodic responses from 0.43 to 0.89, and what is between them."""
     settled = reading.between(data.settled("elastic"), 0.43, 0.89)
-    windows = reading.runs_of(settled.multiplicity.values == 1)
+    windows = reading.runs_of_true(settled.multiplicity.values == 1)
     chaotic, neutral = data.shares("elastic", 0.43, 0.89)
     text = (
         "T-periodic, by number of impacts: "

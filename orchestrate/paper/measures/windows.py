@@ -93,7 +93,7 @@ def many_loops(data: Datasets, claim: Claim) -> Measured:
         and np.abs(gap[in_contact]).max() < NOTHING * size
         and np.abs(rate[in_contact][1:]).max(initial=0.0) < NOTHING * speed
     )
-    released = len([run for run in reading.runs_of(in_contact) if run[1] < len(kinds) - 1])
+    released = len([run for run in reading.runs_of_true(in_contact) if run[1] < len(kinds) - 1])
     loops = len(jumps)  # each ends at an impact; after a contact one begins without
     text = (
         f"{loops} loops in T, each ends at an impact, a jump of only the velocity: {at_zero}; "

@@ -10,7 +10,7 @@ from unittest.mock import Mock
 import pytest
 
 from orchestrate import __main__, cli
-from orchestrate.__main__ import run
+from orchestrate.__main__ import run_command_line
 from orchestrate.cli import main, responses
 from orchestrate.cli.safe_output import SafeStream
 from tests.faults import Surroundings
@@ -131,6 +131,6 @@ def test_an_interrupt_before_the_command_has_begun(monkeypatch, capfd):
             assert cli.main(["sweep", "--eta", "1"]) == 130
         assert capfd.readouterr().err.startswith("interrupted: ")
     monkeypatch.setattr(sys.modules["orchestrate.cli"], "main", Mock(side_effect=KeyboardInterrupt))
-    assert run() == 130 and capfd.readouterr().err == "interrupted\n"
+    assert run_command_line() == 130 and capfd.readouterr().err == "interrupted\n"
     (point,) = entry_points(group="console_scripts", name="vibroimpact")
     assert point.load() is __main__.main

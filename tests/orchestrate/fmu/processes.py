@@ -5,7 +5,7 @@ import signal
 import sys
 
 from orchestrate.fmu import Instance
-from orchestrate.temporary import process_folder
+from orchestrate.temporary import process_temporary_folder
 
 
 def work(path: str) -> None:
@@ -17,7 +17,7 @@ def work(path: str) -> None:
 def main(path: str, ending: str) -> None:
     """Work, then end in one of the ways in which processes end."""
     work(path)
-    mine = process_folder()
+    mine = process_temporary_folder()
     print(mine, flush=True)
     if ending == "kill":
         os.kill(os.getpid(), signal.SIGKILL)
@@ -27,7 +27,7 @@ def main(path: str, ending: str) -> None:
         child = os.fork()
         if child == 0:
             work(path)
-            print(process_folder(), flush=True)
+            print(process_temporary_folder(), flush=True)
             sys.exit()  # runs what is registered for the end of the process, the parent's too
         os.waitpid(child, 0)
         assert list(mine.iterdir()), "the child has removed what is its parent's"

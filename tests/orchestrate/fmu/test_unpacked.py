@@ -14,7 +14,7 @@ from fmu_src.version import VERSION
 from orchestrate.errors import InputError, StoreError
 from orchestrate.fmu import FORMS, OSCILLATOR, Instance, describe, find
 from orchestrate.fmu.unpacked import unpacked
-from orchestrate.temporary import PREFIX, process_folder
+from orchestrate.temporary import PREFIX, process_temporary_folder
 from tests.campaigns import archives
 
 from ...sparing import ordinary
@@ -99,10 +99,10 @@ def test_what_cannot_be_unpacked_leaves_nothing(any_fmu, tmp_path, monkeypatch):
 
     monkeypatch.setattr(fmpy, "extract", full)
     fmu = altered_fmu(any_fmu, tmp_path / "mine.fmu", version=(VERSION, "0.1.3"))
-    before = set(process_folder().iterdir())
+    before = set(process_temporary_folder().iterdir())
     with pytest.raises(StoreError, match=r"cannot be unpacked \(No space left on device\)"):
         Instance(fmu)
-    assert set(process_folder().iterdir()) == before
+    assert set(process_temporary_folder().iterdir()) == before
 
 
 REFUSED = ("path traversal", "link", "bomb", "crowd of files", "a name twice", "no FMU")

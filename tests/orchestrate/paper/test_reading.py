@@ -12,7 +12,7 @@ from orchestrate.paper.reading import (
     is_orbit,
     list_regions,
     relative_peak,
-    runs_of,
+    runs_of_true,
     separated,
     window_edges,
 )
@@ -27,8 +27,8 @@ def sweep_of(n, impacts, gaps=None):
 
 
 def test_runs():
-    assert runs_of([0, 1, 1, 0, 1]) == [(1, 2), (4, 4)]
-    assert runs_of([]) == runs_of([0, 0]) == []
+    assert runs_of_true([0, 1, 1, 0, 1]) == [(1, 2), (4, 4)]
+    assert runs_of_true([]) == runs_of_true([0, 0]) == []
 
 
 def test_windows_and_their_peaks():
