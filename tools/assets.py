@@ -116,11 +116,11 @@ def main() -> None:
     # all FMUs first: what is written below belongs to their sources
     names = "fmi3", "fmi2-python"
     forms = [[find(each.model, name).path for name in names] for each in REFERENCES]
-    for reference, (fmu, with_table) in zip(REFERENCES, forms, strict=True):
+    for reference, (fmu, with_tabulated_fields) in zip(REFERENCES, forms, strict=True):
         rows = reference_rows(reference, fmu)
         write_reference(reference, rows)
         draw_documentation(reference, fmu, rows)
-        table = variable_table(with_table)
+        table = variable_table(with_tabulated_fields)
         page = TABLES.read_text(encoding="utf-8")
         TABLES.write_text(replace_table(page, reference, table), encoding="utf-8")
 

@@ -39,7 +39,7 @@ import cyclopts
 from cyclopts.exceptions import CycloptsError
 
 from ..errors import InputError, StaleError, Terminated, VibroimpactError, printable_line
-from ..model.spelling import closest, did_you_mean
+from ..model.spelling import closest_name, did_you_mean
 from ..version import __version__
 from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
 from .command import Command, explain
@@ -145,7 +145,7 @@ def parse_arguments(arguments: Sequence[str]) -> Command | None:
     name = words[0] if words else "COMMAND is missing"
     help_is_at = f"({program_name()} --help lists them)"
     if name not in COMMANDS and not name.startswith("-"):
-        meant = did_you_mean(closest(name, COMMANDS))
+        meant = did_you_mean(closest_name(name, COMMANDS))
         raise InputError(f"{name}: no command{meant} {help_is_at}")
     app = make_app()
     try:

@@ -24,7 +24,7 @@ import orchestrate
 
 from ..errors import InputError
 from ..model.ranges import RATIO_QUANTITIES, STRUCTURE
-from ..model.spelling import closest, did_you_mean
+from ..model.spelling import closest_name, did_you_mean
 from . import grammar
 
 LINK = re.compile(r"As (?:in|for) :\w+:`orchestrate\.(\w+)`")
@@ -368,4 +368,4 @@ def suggestion(flag: str, error: exceptions.UnknownOptionError, command: type[Co
     said = MEANT.get(flag, "")
     if said.partition(" ")[0] in command.flags():
         return did_you_mean(said)
-    return did_you_mean(closest(flag, command.flags()) if flag.startswith("--") else "")
+    return did_you_mean(closest_name(flag, command.flags()) if flag.startswith("--") else "")

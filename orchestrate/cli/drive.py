@@ -14,7 +14,7 @@ from ..constants import TURN
 from ..errors import InputError
 from ..lazy import xr
 from ..model import Drive, Structure
-from ..model.drive import torque_line
+from ..model.drive import motor_constant_and_resistance
 from ..units import Units
 from .answer import Asked, Runs
 from .command import Keywords, Options, option, option_names
@@ -93,7 +93,13 @@ class OfMotor(Options):
             text = f"--set {twice[0]}={changes[twice[0]]:g}: given with --rated-voltage"
             raise InputError(f"{text}; expected one of them")
         voltage, rpm, torque = given.values()
-        return dict(zip(names, torque_line(voltage, TURN * rpm / 60.0, torque), strict=True))
+        return dict(
+            zip(
+                names,
+                motor_constant_and_resistance(voltage, TURN * rpm / 60.0, torque),
+                strict=True,
+            )
+        )
 
 
 class Stepped(Options):

@@ -56,7 +56,7 @@ def plain_int(text: str) -> int:
 
 def number(name: str, text: str) -> float:
     """Parse a number of a quantity, with one of its units behind it or none."""
-    with_unit = ranges.number_with_unit(name, text.strip())
+    with_unit = ranges.parse_number_with_unit(name, text.strip())
     return float(plain_float(text)) if with_unit is None else with_unit
 
 
@@ -150,7 +150,7 @@ def read_number(option: str, text: str, name: str = "", other: str = "") -> floa
     try:
         return number(name or option_quantity(option), text)
     except ValueError:
-        units = " or ".join([*ranges.known_units(name or option_quantity(option))][:4])
+        units = " or ".join([*ranges.written_unit_factors(name or option_quantity(option))][:4])
         words = f", with {units} if you like" if units else other
         text = f"{text}: expected a number{words}{with_point(text)}"
         raise InputError(f"{option}{'' if option.endswith('=') else ' '}{text}") from None

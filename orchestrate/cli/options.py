@@ -13,11 +13,11 @@ import orchestrate
 from ..constants import GRAVITY
 from ..errors import InputError
 from ..lazy import xr
-from ..model import SETS, Structure, read, resolve
-from ..model.conversions import warn_of_per_cent
+from ..model import SETS, Structure, read, resolve_path
+from ..model.conversions import warn_of_ratios_in_per_cent
 from ..model.ranges import ADDED, PUSHES, STRUCTURE
 from ..model.sections import TO_RAD_S
-from ..model.toml_files import parse
+from ..model.toml_files import read_tables
 from . import grammar
 from .command import Keywords, Options, option, option_names
 from .notes import SETTINGS, heavy_mass_note
@@ -103,7 +103,7 @@ class OfStructure(Options):
 
     @cached_property
     def tables(self) -> dict[str, Any]:
-        return parse(resolve(self.structure)) if self.structure else {}
+        return read_tables(resolve_path(self.structure)) if self.structure else {}
 
     def section(self, name: str) -> dict[str, Any]:
         return self.tables.get(name, {})
@@ -165,7 +165,9 @@ def print_difference(flag: str, path: Any, stored: Structure, asked: Structure) 
 
 def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
     """Print which parameters of the user's beam are taken from a shipped set; warn of per cent."""
-    warn_of_per_cent({name: changes[name] for name in ("zeta1", "zeta2") if name in changes})
+    warn_of_ratios_in_per_cent(
+        {name: changes[name] for name in ("zeta1", "zeta2") if name in changes}
+    )
     if note := heavy_mass_note(structure):
         print(note)
     if source not in SETS or not changes.keys() & {"f1", "f2"}:

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import InputError
 from ..laboratory.pieces import Floats
 from ..lazy import xr
-from ..model.drive import sense_of
+from ..model.drive import sense_of_rotation
 
 REQUIRED_VARIABLES = ("time", "speed", "voltage", "motor")
 MIN_SPEEDS = 8  # speeds that both runs have
@@ -74,7 +74,7 @@ def power_below_jump(run: xr.Dataset) -> tuple[Floats, Floats]:
     time, speed, voltage, work = (run[name].values for name in REQUIRED_VARIABLES)
     if not len(time) > 1:
         raise InputError("record: a run of less than two revolutions; expected more of them")
-    sense = sense_of(voltage)
+    sense = sense_of_rotation(voltage)
     voltage, speed = sense * voltage, sense * speed
     power = np.diff(work) / np.diff(time)
     jump = jump_voltage(run)

@@ -321,7 +321,7 @@ def checked_frequencies(frequencies: ArrayLike) -> Floats:
 
 def checked_positive(name: str, given: ArrayLike, unit: str) -> Floats:
     """Check that all numbers are finite and > 0, and return them as an array."""
-    return np.atleast_1d(np.asarray(checked_numbers(name, given, above=f" > 0, in {unit}")))
+    return np.atleast_1d(np.asarray(checked_numbers(name, given, positive=f" > 0, in {unit}")))
 
 
 def checked_sensors(

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import NOT_NUMBERS, InputError
 from ..lazy import xr
-from ..model.arguments import unmasked
+from ..model.arguments import checked_unmasked
 from ..response.labels import variable
 from .conversion import MOTIONS, differentiated
 from .pieces import Floats
@@ -185,7 +185,7 @@ class Reading:
 
 def plain_numbers(name: str, given: Any, kind: type = float) -> NDArray[Any]:
     """Return an argument as an array; raise unless it has only numbers."""
-    unmasked(name, given)
+    checked_unmasked(name, given)
     try:
         return np.array(given, dtype=kind)
     except NOT_NUMBERS:

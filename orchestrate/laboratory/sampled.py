@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import NOT_NUMBERS, InputError
 from ..lazy import xr
-from ..model.arguments import unmasked
+from ..model.arguments import checked_unmasked
 from .pieces import Pieces
 from .signals import HERTZ, MOST_PIECES, ExcitationSignal, checked_quantity
 
@@ -35,7 +35,7 @@ class Sampled(ExcitationSignal):
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        unmasked("acceleration", self.acceleration)
+        checked_unmasked("acceleration", self.acceleration)
         try:
             values = np.asarray(self.acceleration, dtype=float)
         except NOT_NUMBERS:

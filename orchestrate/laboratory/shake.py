@@ -267,5 +267,5 @@ def check_forces(
         if value and not has_frequency:
             raise InputError(f"{name} = {value!r}: without its frequency; expected frequency= too")
     if beside.force2 or drives == "force2":
-        structure.needs_mass_2("force2")
+        structure.require_mass_2("force2")
     beside.check(structure)

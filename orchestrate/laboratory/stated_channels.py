@@ -10,7 +10,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..model.spelling import expected_one_of
-from ..model.toml_files import parse
+from ..model.toml_files import read_tables
 from .columns import Named
 from .conversion import ByChannel, by_channel
 from .record import CHANNELS
@@ -44,7 +44,7 @@ class ChannelSetup:
         if isinstance(channels, (str, os.PathLike)):
             if not Path(channels).is_file():
                 raise InputError(f"channels = {str(channels)!r}: no such file; {text}")
-            setup = cls.from_mapping(str(channels), parse(Path(channels)))
+            setup = cls.from_mapping(str(channels), read_tables(Path(channels)))
             return replace(setup, file=str(channels))
         if isinstance(channels, Mapping):
             return cls.from_mapping("channels", channels)

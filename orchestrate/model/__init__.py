@@ -25,7 +25,7 @@ from .excitation import Excitation
 from .shaker import Shaker
 from .structure import Structure
 from .structure_numbers import PARAMETERS
-from .toml_files import SETS, read, resolve, write
+from .toml_files import SETS, read, resolve_path, write
 
 __all__ = [
     "PARAMETERS",

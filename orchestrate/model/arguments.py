@@ -1,7 +1,7 @@
 """Checks of arguments, for all packages: an error names the argument, its value, what is expected.
 
 The type of a public function's keyword carries its check, as ``Annotated[int, whole(1)]``: see
-:func:`checks_of`.
+:func:`checks_by_field`.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def checked_path(name: str, value: Any) -> Path:
     return Path(text)
 
 
-def unmasked(name: str, value: Any) -> Any:
+def checked_unmasked(name: str, value: Any) -> Any:
     if np.ma.is_masked(value):
         number, count = int(np.ma.getmaskarray(value).sum()), np.size(value)
         raise InputError(
@@ -90,12 +90,12 @@ def unmasked(name: str, value: Any) -> Any:
 
 
 def checked_numbers(
-    name: str, value: ArrayLike | None, check: Callable[[Any], float] = float, above: str = ""
+    name: str, value: ArrayLike | None, check: Callable[[Any], float] = float, positive: str = ""
 ) -> Numbers | None:
-    """Return an argument as float or tuple of finite floats, ``> 0`` if so; None if not given."""
+    """Return an argument as float or tuple of finite floats, with a text ``positive`` > 0; None if not given."""
     if value is None:
         return None
-    unmasked(name, value)
+    checked_unmasked(name, value)
     try:
         array = np.asarray(value)
         if array.dtype.kind not in "iuf":
@@ -107,9 +107,9 @@ def checked_numbers(
         shape = "x".join(map(str, array.shape))
         raise InputError(f"{name}: {shape} values; expected a number or a list of 1 to {MAX_COUNT}")
     result = tuple(check(number) for number in array.ravel().tolist())
-    bad = [number for number in result if not math.isfinite(number) or (above and number <= 0.0)]
+    bad = [number for number in result if not math.isfinite(number) or (positive and number <= 0.0)]
     if bad:
-        raise InputError(f"{name} = {bad[0]!r}: expected finite numbers{above}")
+        raise InputError(f"{name} = {bad[0]!r}: expected finite numbers{positive}")
     return result if array.ndim else result[0]
 
 
@@ -146,7 +146,7 @@ def whole(minimum: int, maximum: int = MAX_COUNT) -> Check:
 
 
 @cache
-def checks_of(kind: type) -> dict[str, Check]:
+def checks_by_field(kind: type) -> dict[str, Check]:
     types = get_type_hints(kind, include_extras=True)
     checks = {field.name: check_of(types[field.name]) for field in fields(kind)}
     return {name: check for name, check in checks.items() if check is not None}
@@ -164,7 +164,7 @@ def check_of(kind: Any) -> Check | None:
 
 
 # Types of keywords that several public functions have, each with its check: `Annotated` is a type
-# for editors and type checkers, and `checks_of` finds the check. Those of words (`Literal`) and
+# for editors and type checkers, and `checks_by_field` finds the check. Those of words (`Literal`) and
 # flags (`bool`) need no more.
 Transient = Annotated[int, whole(0)]  # periods dropped
 Count = Annotated[int, whole(1)]  # periods, samples, points: at least one

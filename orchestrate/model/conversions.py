@@ -46,7 +46,7 @@ def checked_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]
     return h1, h2
 
 
-def warn_of_per_cent(ratios: Mapping[str, float]) -> None:
+def warn_of_ratios_in_per_cent(ratios: Mapping[str, float]) -> None:
     """Warn about damping ratios, by name, so large that per cent was probably meant."""
     for name, ratio in ratios.items():
         if ratio > 0.3:  # damping ratio above which a half of a beam would hardly ring

@@ -172,7 +172,9 @@ class Drive(Described):
         >>> drive.motor_constant, drive.armature_resistance, round(drive.rotor_inertia, 9)
         (0.06, 12.0, 5e-05)
         """
-        constant, resistance = torque_line(rated_voltage, no_load_speed, stall_torque)
+        constant, resistance = motor_constant_and_resistance(
+            rated_voltage, no_load_speed, stall_torque
+        )
         if (rotor_inertia is None) == (mechanical_time_constant is None):
             raise InputError(
                 f"rotor_inertia = {rotor_inertia} and mechanical_time_constant = "
@@ -253,7 +255,7 @@ class Drive(Described):
         return dict(vars(self))
 
 
-def torque_line(
+def motor_constant_and_resistance(
     rated_voltage: float, no_load_speed: float, stall_torque: float
 ) -> tuple[float, float]:
     """Return motor constant K, N m/A, and resistance R_a, Ohm, from no-load and stall points."""
@@ -273,6 +275,6 @@ def suspension_stiffness(ratio: float, omega: float, mass: float) -> float:
     return mass * (ratio * omega) ** 2
 
 
-def sense_of(voltage: np.ndarray) -> float:
+def sense_of_rotation(voltage: np.ndarray) -> float:
     """Return a motor's sense of rotation by its voltages: -1 where it turns backward, else 1."""
     return -1.0 if -voltage.min(initial=0.0) > voltage.max(initial=0.0) else 1.0

@@ -73,7 +73,7 @@ class Quantity:
         number = as_scalar(value)
         if isinstance(number, str):
             with suppress(ValueError):
-                number = number_with_unit(self.name, number)
+                number = parse_number_with_unit(self.name, number)
         if isinstance(number, bool) or not isinstance(number, numbers.Real):
             raise InputError(f"{self.name} = {value!r}: expected a number, {self.expected}")
         try:
@@ -111,14 +111,14 @@ def checked_range(
     return number
 
 
-def known_units(name: str) -> dict[str, str]:
+def written_unit_factors(name: str) -> dict[str, str]:
     """Return the units that a text may have for a parameter, over its own; empty for most."""
     return next((units for names, units in WRITTEN_UNITS.items() if name in names), {})
 
 
-def number_with_unit(name: str, text: str) -> float | None:
+def parse_number_with_unit(name: str, text: str) -> float | None:
     """Return the number of a text such as ``0.7 %``; None if it does not end in a unit."""
-    known = known_units(name)
+    known = written_unit_factors(name)
     text = text.replace("hz", "Hz")
     unit = next((unit for unit in known if text.endswith(unit)), None)  # mm before m
     if unit is None:
@@ -144,7 +144,9 @@ def checked_flag(name: str, value: Any) -> bool:
     return flag
 
 
-def quantities_of(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Quantity]:
+def quantities_from_variables(
+    variables: Iterable[Any], names: Iterable[str]
+) -> dict[str, Quantity]:
     known = {variable.name: variable for variable in variables}
     return {
         v.name: Quantity(v.name, v.unit, v.description, v.minimum, v.maximum, v.start)
@@ -152,13 +154,13 @@ def quantities_of(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Q
     }
 
 
-STRUCTURE = quantities_of(oscillator.VARIABLES, (*oscillator.STRUCTURE, "stroke"))
+STRUCTURE = quantities_from_variables(oscillator.VARIABLES, (*oscillator.STRUCTURE, "stroke"))
 MECHANICS = oscillator.MECHANICS
 # files made before have none of them
 ADDED = (*(variable.name for variable in oscillator.ADDED), "stroke")
 # with one of these a motion is not in proportion to the shaking
 OF_LENGTH = tuple(name for name, quantity in STRUCTURE.items() if quantity.dimension["m"])
-DRIVE = quantities_of(
+DRIVE = quantities_from_variables(
     motor_shaker.VARIABLES,
     (
         *("box_mass", "box_stiffness", "box_damping"),
@@ -167,7 +169,7 @@ DRIVE = quantities_of(
     ),
 )
 
-ELECTRODYNAMIC_SHAKER = quantities_of(
+ELECTRODYNAMIC_SHAKER = quantities_from_variables(
     electrodynamic_shaker.VARIABLES,
     (
         *("table_mass", "suspension_stiffness", "suspension_damping"),
@@ -182,7 +184,7 @@ PUSHES = {  # loads other than the box's harmonic motion, by the FMU's inputs
     "force1": "force1_amplitude",
     "force2": "force2_amplitude",
 }
-INPUTS = quantities_of(
+INPUTS = quantities_from_variables(
     oscillator.VARIABLES, ("box_amplitude", "box_frequency", "phase_start", *PUSHES.values())
 )
 EXCITATION = {

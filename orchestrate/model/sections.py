@@ -86,34 +86,36 @@ class Section:
     name: str
     values: dict[str, Any]
 
-    def error(self, key: str, text: str) -> InputError:
+    def input_error(self, key: str, text: str) -> InputError:
         value = f" = {self.values[key]!r}" if key in self.values else ""
         return InputError(f"{self.path}: {self.name}.{key}{value}: {text}")
 
-    def allow(self, *known: str) -> None:
+    def allow_only(self, *known: str) -> None:
         """Raise ``InputError`` if the section has a key other than the known ones."""
         for key in self.values:
             if key not in known:
-                raise self.error(key, f"no key of [{self.name}]; {expected_one_of(key, known)}")
+                raise self.input_error(
+                    key, f"no key of [{self.name}]; {expected_one_of(key, known)}"
+                )
 
-    def present(self, keys: Collection[str]) -> list[str]:
+    def present_keys(self, keys: Collection[str]) -> list[str]:
         return [key for key in keys if key in self.values]
 
     def uses_second_form(self, first: Collection[str], second: Collection[str]) -> bool:
         """Return whether the section has keys of ``second``; raise if it mixes both groups."""
-        first_keys, second_keys = self.present(first), self.present(second)
+        first_keys, second_keys = self.present_keys(first), self.present_keys(second)
         if first_keys and second_keys:
             kinds = f"{', '.join(first)}, or {', '.join(second)}"
-            raise self.error(
+            raise self.input_error(
                 second_keys[0], f"given with {first_keys[0]}; expected keys of one kind: {kinds}"
             )
         return bool(second_keys)
 
     def at_most_one(self, keys: Collection[str]) -> str | None:
-        present = self.present(keys)
+        present = self.present_keys(keys)
         if len(present) > 1:
             expected = f"expected one of {', '.join(keys)}"
-            raise self.error(present[1], f"conflicts with {present[0]}; {expected}")
+            raise self.input_error(present[1], f"conflicts with {present[0]}; {expected}")
         return present[0] if present else None
 
     def exactly_one(self, keys: Collection[str]) -> str:
@@ -122,10 +124,10 @@ class Section:
             raise InputError(f"{self.path}: [{self.name}]: expected one of {', '.join(keys)}")
         return key
 
-    def need(self, keys: Collection[str]) -> None:
+    def require_all(self, keys: Collection[str]) -> None:
         for key in keys:
             if key not in self.values:
-                raise self.error(key, f"missing; expected all of {', '.join(keys)}")
+                raise self.input_error(key, f"missing; expected all of {', '.join(keys)}")
 
     def number(self, key: str) -> float:
         """Return a key's value as a float; raise ``InputError`` if it is out of its range."""
@@ -141,14 +143,14 @@ class Section:
             raise InputError(f"{self.path}: {self.name}.{error}") from None
 
     def numbers(self, keys: Collection[str]) -> dict[str, float]:
-        return {key: self.number(key) for key in self.present(keys)}
+        return {key: self.number(key) for key in self.present_keys(keys)}
 
     def rad_s(self, key: str) -> float:
         """Return a key's frequency in rad/s, converted from the unit that its name ends in."""
         unit = next(unit for unit in TO_RAD_S if key.endswith(f"_{unit}"))
         return TO_RAD_S[unit](self.number(key))
 
-    def make(self, maker: Callable[[], Described]) -> Described:
+    def construct(self, maker: Callable[[], Described]) -> Described:
         """Return ``maker()``; an ``InputError`` from it is raised again with file and section."""
         try:
             return maker()
@@ -160,105 +162,109 @@ def read_structure(section: Section) -> Structure:
     if section.values.get("wall") is True:  # one mass, as Structure.one_mass calls its numbers
         own = {OF_ONE_MASS.get(key, key): value for key, value in section.values.items()}
         section = dataclasses.replace(section, values=own)
-    section.allow(*COMMON_KEYS, "preload", *MECHANICS, *MODAL_KEYS, *RATIO_KEYS)
+    section.allow_only(*COMMON_KEYS, "preload", *MECHANICS, *MODAL_KEYS, *RATIO_KEYS)
     values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
     if section.at_most_one(("clearance", "preload")) == "preload":
         values["clearance"] = -section.number("preload")
     values |= {name: section.flag(name) for name in FLAGS if name in section.values}
-    if section.present(MODAL_KEYS):
+    if section.present_keys(MODAL_KEYS):
         section.uses_second_form(MODAL_KEYS, (*MECHANICS[2:], *RATIO_KEYS))
         if wall := values.get("wall", False):
-            for key in section.present(("m2", "f2_hz", "zeta2")):
-                raise section.error(key, "mass 2 is a wall; expected it left out")
-        section.need(("f1_hz", "zeta1") if wall else ("m1", "m2", *MODAL_KEYS))
+            for key in section.present_keys(("m2", "f2_hz", "zeta2")):
+                raise section.input_error(key, "mass 2 is a wall; expected it left out")
+        section.require_all(("f1_hz", "zeta1") if wall else ("m1", "m2", *MODAL_KEYS))
         values |= section.numbers(("m1", "m2", *MODAL_KEYS))
         values = {key.removesuffix("_hz"): value for key, value in values.items()}
-        make = Structure().replace if wall else Structure.from_halves
-        return section.make(lambda: make(**values))
+        construct = Structure().replace if wall else Structure.from_halves
+        return section.construct(lambda: construct(**values))
     if not section.uses_second_form(MECHANICS[1:], RATIO_KEYS):
         values |= section.numbers(MECHANICS)
-        return section.make(lambda: Structure(**values))
+        return section.construct(lambda: Structure(**values))
     if section.uses_second_form(("D",), ("D1", "D2")):
-        section.need(("D1", "D2"))
+        section.require_all(("D1", "D2"))
     values |= section.numbers(("m1", "mu", "kappa", "D", "D1", "D2"))
     omega = section.at_most_one(OMEGAS)
     if omega:
         values["omega"] = section.rad_s(omega)
-    return section.make(lambda: Structure.nondimensional(**values))
+    return section.construct(lambda: Structure.nondimensional(**values))
 
 
 def read_excitation(section: Section, structure: Structure | None) -> Excitation:
-    section.allow(*FREQUENCIES, *AMPLITUDES, "phase", *PUSHES)
+    section.allow_only(*FREQUENCIES, *AMPLITUDES, "phase", *PUSHES)
     key = section.exactly_one(FREQUENCIES)
     amplitude_key = section.at_most_one(AMPLITUDES)
     more = section.numbers(("phase", *PUSHES))
     if key == "eta":
         eta = section.number("eta")
         if structure is None:
-            raise section.error("eta", "it refers to a structure; expected a section [structure]")
+            raise section.input_error(
+                "eta", "it refers to a structure; expected a section [structure]"
+            )
         if amplitude_key is None:
-            return section.make(lambda: Excitation.nondimensional(eta, structure, **more))
+            return section.construct(lambda: Excitation.nondimensional(eta, structure, **more))
         frequency = eta * structure.omega
     else:
         frequency = section.rad_s(key)
     amplitude = section.number(section.exactly_one(AMPLITUDES))
     if amplitude_key == "acceleration_g":
         amplitude = amplitude * GRAVITY / (frequency * frequency)
-    return section.make(lambda: Excitation(frequency=frequency, amplitude=amplitude, **more))
+    return section.construct(lambda: Excitation(frequency=frequency, amplitude=amplitude, **more))
 
 
 def read_drive(motor: Section, box: Section, structure: Structure | None) -> Drive:
-    motor.allow(*SI_MOTOR, *DATASHEET_KEYS, *MOTOR_NUMBERS)
-    box.allow(*SI_BOX, *BOX_NUMBERS)
+    motor.allow_only(*SI_MOTOR, *DATASHEET_KEYS, *MOTOR_NUMBERS)
+    box.allow_only(*SI_BOX, *BOX_NUMBERS)
     by_numbers = motor.uses_second_form((*SI_MOTOR, *DATASHEET_KEYS), MOTOR_NUMBERS)
     if box.uses_second_form(SI_BOX, BOX_NUMBERS) != by_numbers:
         kind = ", ".join(BOX_NUMBERS if by_numbers else SI_BOX)
         form = "non-dimensional" if by_numbers else "SI"
         raise InputError(f"{box.path}: [box] with a {form} [motor]: expected {kind}")
     if not by_numbers:
-        box.need(SI_BOX)
-        return si_drive(motor, box.numbers(SI_BOX))
-    motor.need(MOTOR_NUMBERS)
-    box.need(BOX_NUMBERS)
+        box.require_all(SI_BOX)
+        return read_si_drive(motor, box.numbers(SI_BOX))
+    motor.require_all(MOTOR_NUMBERS)
+    box.require_all(BOX_NUMBERS)
     if structure is None:
-        raise motor.error("beta", "it refers to a structure; expected a section [structure]")
+        raise motor.input_error("beta", "it refers to a structure; expected a section [structure]")
     numbers = {**motor.numbers(MOTOR_NUMBERS), **box.numbers(BOX_NUMBERS)}
-    return motor.make(lambda: Drive.nondimensional(**numbers, structure=structure))
+    return motor.construct(lambda: Drive.nondimensional(**numbers, structure=structure))
 
 
 def read_shaker(section: Section) -> Shaker:
-    section.allow(*SHAKER_SI, *SHAKER_COMMON, "current_control", *DATASHEET)
+    section.allow_only(*SHAKER_SI, *SHAKER_COMMON, "current_control", *DATASHEET)
     values: dict[str, Any] = section.numbers((*SHAKER_SI, *SHAKER_COMMON, *DATASHEET))
     if "current_control" in section.values:
         values |= {"current_control": section.flag("current_control")}
-    section.need(("force_factor", "coil_resistance"))
+    section.require_all(("force_factor", "coil_resistance"))
     if section.uses_second_form(SHAKER_SI, DATASHEET):
-        section.need(("rated_force", "moving_mass", "suspension_resonance", "amplifier_power"))
-        return section.make(lambda: Shaker.from_datasheet(**values))
-    section.need(("table_mass", "suspension_stiffness", "suspension_damping"))
-    return section.make(lambda: Shaker(**values))
+        section.require_all(
+            ("rated_force", "moving_mass", "suspension_resonance", "amplifier_power")
+        )
+        return section.construct(lambda: Shaker.from_datasheet(**values))
+    section.require_all(("table_mass", "suspension_stiffness", "suspension_damping"))
+    return section.construct(lambda: Shaker(**values))
 
 
-def check_masses(structure: Section, motor: Section) -> None:
+def check_m1_given(structure: Section, motor: Section) -> None:
     """Raise if a motor is in SI but the structure's mass m1 is left to its default of 1 kg."""
     if (
-        structure.present(OMEGAS)
-        and not structure.present(("m1",))
-        and not motor.present(("beta",))
+        structure.present_keys(OMEGAS)
+        and not structure.present_keys(("m1",))
+        and not motor.present_keys(("beta",))
     ):
-        key = structure.present(OMEGAS)[0]
-        raise structure.error(
+        key = structure.present_keys(OMEGAS)[0]
+        raise structure.input_error(
             "m1", f"missing with {key}; expected it, as the motor feels the masses"
         )
 
 
-def si_drive(motor: Section, box: dict[str, float]) -> Drive:
+def read_si_drive(motor: Section, box: dict[str, float]) -> Drive:
     values = {**motor.numbers(SI_MOTOR), **box}
     if not motor.uses_second_form(TORQUE_LINE_KEYS, DATASHEET_KEYS):
-        motor.need([name for name in SI_MOTOR if name != "armature_inductance"])
-        return motor.make(lambda: Drive(**values))
-    motor.need(("rated_voltage", "stall_torque", "unbalance_mass", "unbalance_radius"))
+        motor.require_all([name for name in SI_MOTOR if name != "armature_inductance"])
+        return motor.construct(lambda: Drive(**values))
+    motor.require_all(("rated_voltage", "stall_torque", "unbalance_mass", "unbalance_radius"))
     speed = motor.rad_s(motor.exactly_one(SPEEDS))
     motor.exactly_one(("rotor_inertia", "mechanical_time_constant"))
     values |= motor.numbers(("rated_voltage", "stall_torque", "mechanical_time_constant"))
-    return motor.make(lambda: Drive.from_datasheet(**values, no_load_speed=speed))
+    return motor.construct(lambda: Drive.from_datasheet(**values, no_load_speed=speed))

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 def expected_one_of(name: str, known: Iterable[str]) -> str:
     """Return error text "expected one of ..." with the known names and the closest match."""
     names = list(known)
-    return f"expected one of {', '.join(names)}{did_you_mean(closest(name, names))}"
+    return f"expected one of {', '.join(names)}{did_you_mean(closest_name(name, names))}"
 
 
 def did_you_mean(*names: str) -> str:
@@ -17,7 +17,7 @@ def did_you_mean(*names: str) -> str:
     return f"; did you mean {near}?" if near else ""
 
 
-def closest(name: str, names: Iterable[str]) -> str:
+def closest_name(name: str, names: Iterable[str]) -> str:
     """Return the name that begins so, whatever its case, or is most alike; empty if none is."""
     known = {one.lstrip("-"): one for one in sorted(names, key=len)}
     plain = str(name).lstrip("-")

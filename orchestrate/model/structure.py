@@ -14,7 +14,7 @@ from .conversions import (
     checked_thicknesses,
     damping_from_ratio,
     stiffness_from_frequency,
-    warn_of_per_cent,
+    warn_of_ratios_in_per_cent,
 )
 from .described import Described
 from .ranges import ADDED, RATIO_QUANTITIES, STRUCTURE, checked_flag, construct_or_explain
@@ -37,7 +37,7 @@ ALTERNATIVES = {  # names that set the same value
 OF_HALVES = ("m1", "m2", "k1", "k2", "d1", "d2")
 
 
-def with_table(kind: type[Described]) -> type[Described]:
+def with_tabulated_fields(kind: type[Described]) -> type[Described]:
     """Give a class fields for the parameters of the variable table that it does not write out."""
     types, text, before = kind.__annotations__, kind.__doc__ or "", "    bonded : bool"
     last = {name: types.pop(name) for name in FLAGS if name in types}
@@ -51,7 +51,7 @@ def with_table(kind: type[Described]) -> type[Described]:
     return kind
 
 
-def check_names(given: Mapping[str, Any], *known: str) -> None:
+def check_keywords(given: Mapping[str, Any], *known: str) -> None:
     """Raise ``InputError`` for a keyword that is neither known nor a parameter of the contact."""
     names = (*known, *(name for name in STRUCTURE if name not in OF_HALVES))
     for name in given:
@@ -60,7 +60,7 @@ def check_names(given: Mapping[str, Any], *known: str) -> None:
 
 
 @dataclass(frozen=True, kw_only=True)
-@with_table
+@with_tabulated_fields
 class Structure(StructureText, Described):
     """Two masses on springs and dampers that touch without being glued (Figure 1 of the paper).
 
@@ -183,7 +183,7 @@ class Structure(StructureText, Described):
         >>> Structure.one_mass(f=12.0, zeta="1 %", clearance=3e-4).f1
         12.0
         """
-        check_names(added, "m", "k", "d", "f", "zeta")
+        check_keywords(added, "m", "k", "d", "f", "zeta")
         own = {"m1": m, "k1": k, "d1": d, "f1": f, "zeta1": zeta}
         given = {name: value for name, value in own.items() if value is not None}
         one = cls().replace(**given)
@@ -230,7 +230,7 @@ class Structure(StructureText, Described):
         0.02
         """
         numbers = {"mu": mu, "kappa": kappa, "D": D, "D1": D1, "D2": D2, "omega": omega}
-        check_names(added, "m1", *numbers, *FLAGS)
+        check_keywords(added, "m1", *numbers, *FLAGS)
         v = {name: RATIO_QUANTITIES[name].check(x) for name, x in numbers.items() if x is not None}
         m1 = STRUCTURE["m1"].check(m1)
         k1 = m1 * v["omega"] ** 2
@@ -292,9 +292,9 @@ class Structure(StructureText, Described):
         (55.0, 0.007, 0.009167)
         """
         halves = {"f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
-        check_names(added, "m1", "m2", *halves, *FLAGS)
+        check_keywords(added, "m1", "m2", *halves, *FLAGS)
         v = {name: RATIO_QUANTITIES[name].check(value) for name, value in halves.items()}
-        warn_of_per_cent({"zeta1": v["zeta1"], "zeta2": v["zeta2"]})
+        warn_of_ratios_in_per_cent({"zeta1": v["zeta1"], "zeta2": v["zeta2"]})
         m1, m2 = STRUCTURE["m1"].check(m1), STRUCTURE["m2"].check(m2)
         return construct_or_explain(
             {"m1": m1, "m2": m2, **v},
@@ -363,10 +363,10 @@ class Structure(StructureText, Described):
         >>> round(beam.m1, 12), round(beam.f2 / beam.f1, 12), round(beam.omega_3 * beam.f1, 12)
         (1.2, 0.666666666667, 50.0)
         """
-        check_names(added, "mass", "f", "zeta", "thicknesses", *FLAGS)
+        check_keywords(added, "mass", "f", "zeta", "thicknesses", *FLAGS)
         mass, f = STRUCTURE["m1"].check(mass), RATIO_QUANTITIES["f1"].check(f)
         zeta = RATIO_QUANTITIES["zeta1"].check(zeta)
-        warn_of_per_cent({"zeta": zeta})
+        warn_of_ratios_in_per_cent({"zeta": zeta})
         h1, h2 = checked_thicknesses(thicknesses)
         heavy, light = h1 / (h1 + h2), h2 / (h1 + h2)
         stiff, soft = heavy**3 / (heavy**3 + light**3), light**3 / (heavy**3 + light**3)
@@ -445,7 +445,7 @@ class Structure(StructureText, Described):
         wall = changes.get("wall", self.wall)
         for name in changes:
             if name in OF_MASS_2 and wall is True:
-                dataclasses.replace(self, wall=True, bonded=False).needs_mass_2(name)
+                dataclasses.replace(self, wall=True, bonded=False).require_mass_2(name)
             if name not in known:
                 raise InputError(
                     f"{name}: no parameter of a structure; {expected_one_of(name, known)}"
@@ -466,10 +466,10 @@ class Structure(StructureText, Described):
         fixed = dataclasses.replace(self, **changes)
         if ratios:
             with_mass_2 = dataclasses.replace(fixed, wall=False)  # whose ratios are numbers
-            new = {k: v for k, v in with_mass_2._by_ratios(ratios).items() if k not in changes}
+            new = {k: v for k, v in with_mass_2._si_from_ratios(ratios).items() if k not in changes}
             fixed = construct_or_explain(ratios, lambda: dataclasses.replace(fixed, **new))
         if halves:
-            by_halves = fixed._by_halves(halves)
+            by_halves = fixed._si_from_halves(halves)
             new = {k: v for k, v in by_halves.items() if k not in changes}
             fixed = construct_or_explain(halves, lambda: dataclasses.replace(fixed, **new))
         return fixed

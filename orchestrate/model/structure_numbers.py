@@ -46,7 +46,7 @@ class StructureNumbers:
     bonded: bool
     wall: bool
 
-    def needs_mass_2(self, name: str) -> None:
+    def require_mass_2(self, name: str) -> None:
         """Raise ``InputError`` if mass 2, of which a parameter is made, is a wall."""
         if self.wall:
             raise InputError(f"{name}: mass 2 is a wall (wall = True); expected a mass")
@@ -59,13 +59,13 @@ class StructureNumbers:
     @property
     def mu(self) -> float:
         """Mass ratio m2/m1 (2)."""
-        self.needs_mass_2("mu")
+        self.require_mass_2("mu")
         return exact_inverse(self.m2 / self.m1, lambda mu: mu * self.m1, self.m2)
 
     @property
     def kappa(self) -> float:
         """Stiffness ratio k2/k1 (2)."""
-        self.needs_mass_2("kappa")
+        self.require_mass_2("kappa")
         return exact_inverse(self.k2 / self.k1, lambda kappa: kappa * self.k1, self.k2)
 
     @property
@@ -78,7 +78,7 @@ class StructureNumbers:
     @property
     def D2(self) -> float:
         """Damping ratio d2/(2 omega m2) of mass 2 (8)."""
-        self.needs_mass_2("D2")
+        self.require_mass_2("D2")
         omega, m1, mu = self.omega, self.m1, self.mu
         ratio = self.d2 / (2.0 * omega * self.m2)
         return exact_inverse(ratio, lambda D: damping_from_ratio(D, omega, m1) * mu, self.d2)
@@ -91,7 +91,7 @@ class StructureNumbers:
     @property
     def f2(self) -> float:
         """Natural frequency of mass 2 alone, Hz."""
-        self.needs_mass_2("f2")
+        self.require_mass_2("f2")
         return natural_frequency(self.k2, self.m2)
 
     @property
@@ -107,7 +107,7 @@ class StructureNumbers:
     @property
     def D3(self) -> float:
         """Damping ratio of both masses together, in contact (8)."""
-        self.needs_mass_2("D3")
+        self.require_mass_2("D3")
         return (self.d1 + self.d2) / (2.0 * self.omega * (self.m1 + self.m2))
 
     @property
@@ -185,14 +185,14 @@ class StructureNumbers:
                 f"{name}: no parameter of a structure; {expected_one_of(name, PARAMETERS)}"
             )
         if name in OF_MASS_2:
-            self.needs_mass_2(name)
+            self.require_mass_2(name)
         if name != "D":
             return float(getattr(self, name))
         if not self.wall and self.D1 != self.D2:
             raise InputError(f"D: D1 = {self.D1!r} and D2 = {self.D2!r}; expected D1 or D2")
         return self.D1
 
-    def _by_halves(self, changes: dict[str, float]) -> dict[str, float]:
+    def _si_from_halves(self, changes: dict[str, float]) -> dict[str, float]:
         """Return the SI values k and d that change if f1, f2, zeta1 or zeta2 are set."""
         new = {}
         for half, mass in (("1", self.m1), ("2", self.m2)):
@@ -205,7 +205,7 @@ class StructureNumbers:
                 new[f"d{half}"] = damping_from_ratio(ratio, omega, mass)
         return new
 
-    def _by_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
+    def _si_from_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
         """Return the SI values that change if ratios of the paper (mu, kappa, D, omega) are set."""
         both = {"D1": ratios["D"], "D2": ratios["D"]} if "D" in ratios else {}
         all_ratios = {**ratios, **both}

@@ -16,7 +16,7 @@ def format_short(value: float) -> str:
 class StructureText(StructureNumbers):
     """Base of :class:`Structure` with its texts."""
 
-    def _pair(self, letter: str) -> str:
+    def _format_pair(self, letter: str) -> str:
         """Return a letter and its parameter of both halves, for a label: ``k1.0-2.0``."""
         return letter + "-".join(format_short(self.get(f"{letter}{half}")) for half in self.halves)
 
@@ -30,7 +30,7 @@ class StructureText(StructureNumbers):
         """Return what it is in a word or some: bonded, delaminated, or against a wall."""
         return "bonded" if self.bonded else "against a wall" if self.wall else "delaminated"
 
-    def _described(self) -> dict[str, str]:
+    def _texts_by_quantity(self) -> dict[str, str]:
         """Return texts of the halves' masses, frequencies and damping, of e, and of what is set."""
         halves = {
             "masses": ("m", " kg"),
@@ -51,7 +51,7 @@ class StructureText(StructureNumbers):
     def __str__(self) -> str:
         """Return the structure in a line, frequencies in Hz and damping ratios in per cent."""
         return f"{self.kind}: " + ", ".join(
-            f"{name} {text}" for name, text in self._described().items()
+            f"{name} {text}" for name, text in self._texts_by_quantity().items()
         )
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
@@ -59,7 +59,7 @@ class StructureText(StructureNumbers):
         printer.text(f"Structure({self})")
 
     def _repr_html_(self) -> str:
-        rows = {"structure": self.kind, **self._described()}
+        rows = {"structure": self.kind, **self._texts_by_quantity()}
         cells = (f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in rows.items())
         return f"<table>{''.join(cells)}</table>"
 
@@ -71,10 +71,10 @@ class StructureText(StructureNumbers):
             parts = [f"e{format_short(self.e)}", f"D{'-'.join(damping_ratios)}"]
             names: tuple[str, ...] = (*(() if self.wall else ("mu", "kappa")), "gamma", *ADDED)
         else:
-            masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
-            halves = [self._pair(letter) for letter in ("f", "zeta")]
+            masses, *si = (self._format_pair(letter) for letter in ("m", "k", "d"))
+            halves = [self._format_pair(letter) for letter in ("f", "zeta")]
             own = [name for name in MODAL_PARAMETERS if name[-1] in self.halves]
-            numbers = self._by_halves({name: self.get(name) for name in own})
+            numbers = self._si_from_halves({name: self.get(name) for name in own})
             exact = all(getattr(self, name) == value for name, value in numbers.items())
             shorter = exact and len("".join(halves)) < len("".join(si))
             parts = [f"e{format_short(self.e)}", masses, *(halves if shorter else si)]

@@ -43,11 +43,11 @@ from ..files import read_text, write_atomically
 from .described import Described
 from .drive import Drive
 from .excitation import Excitation
-from .ranges import DRIVE, ELECTRODYNAMIC_SHAKER, PUSHES, STRUCTURE, known_units
+from .ranges import DRIVE, ELECTRODYNAMIC_SHAKER, PUSHES, STRUCTURE, written_unit_factors
 from .sections import (
     QUANTITIES,
     Section,
-    check_masses,
+    check_m1_given,
     read_drive,
     read_excitation,
     read_shaker,
@@ -72,7 +72,7 @@ NUMBER = (
 SECTIONS = ("structure", "excitation", "motor", "box", "shaker")
 
 
-def resolve(source: str | PathLike[str]) -> Path:
+def resolve_path(source: str | PathLike[str]) -> Path:
     """Return the TOML file's path for a shipped set's name or a user's path; raise if missing."""
     known = {**SETS, **SHAKERS}
     if str(source) in known:
@@ -93,8 +93,8 @@ def read(
     tables: Mapping[str, Any] | None = None,
 ) -> dict[str, Described]:
     """Read a TOML file; return its structure, excitation, drive and shaker, if any, by name."""
-    path = resolve(source)
-    tables = parse(path) if tables is None else tables
+    path = resolve_path(source)
+    tables = read_tables(path) if tables is None else tables
     for name, values in tables.items():
         if name in SECTIONS and not isinstance(values, dict):
             raise InputError(f"{path}: {name} = {values!r}: expected a section [{name}]")
@@ -114,7 +114,7 @@ def read(
         for name in {"motor", "box"} - sections.keys():
             raise InputError(f"{path}: no section [{name}]; expected [motor] and [box] together")
         if "structure" in sections:
-            check_masses(sections["structure"], sections["motor"])
+            check_m1_given(sections["structure"], sections["motor"])
         contents["drive"] = read_drive(sections["motor"], sections["box"], structure)
     if "shaker" in sections:
         contents["shaker"] = read_shaker(sections["shaker"])
@@ -137,7 +137,7 @@ def read_section(
 Described._reader = read_section
 
 
-def parse(path: Path) -> dict[str, Any]:
+def read_tables(path: Path) -> dict[str, Any]:
     """Return a TOML file's tables as nested dicts; syntax errors raise ``InputError``."""
     import tomllib
 
@@ -150,7 +150,7 @@ def parse(path: Path) -> dict[str, Any]:
     except ValueError as error:  # of the syntax, or of the encoding
         reason = str(error).splitlines()[0]
         if line := re.search(r"\(at line (\d+), column", reason):
-            reason = mistaken_number(text.splitlines()[int(line[1]) - 1]) or reason
+            reason = explain_number(text.splitlines()[int(line[1]) - 1]) or reason
     except RecursionError:
         reason = "nested too deeply"
     expected = "expected sections and key = value"
@@ -159,13 +159,13 @@ def parse(path: Path) -> dict[str, Any]:
     raise InputError(f"{path}: not readable as TOML ({reason}); {expected}")
 
 
-def mistaken_number(line: str) -> str:
+def explain_number(line: str) -> str:
     """Return what is wrong with a number that TOML does not know; nothing where it is not that."""
     pair = re.fullmatch(NUMBER, line)
     if pair is None or not (pair["comma"] or pair["unit"]):
         return ""
     key, number = pair["key"], pair["number"] + pair["comma"].replace(",", ".")
-    quoted = pair["unit"] in known_units(key)
+    quoted = pair["unit"] in written_unit_factors(key)
     meant = f'"{number} {pair["unit"]}"' if quoted else number
     own = f", in {QUANTITIES[key].unit}" if key in QUANTITIES and not quoted else ""
     return f"{line.partition('#')[0].strip()}: write {key} = {meant}{own}"
@@ -194,11 +194,11 @@ def write(
         tables |= {"motor": values, "box": box}
     if shaker is not None:
         tables["shaker"] = shaker.parameters()
-    text = "\n".join(toml_table(name, values) for name, values in tables.items())
+    text = "\n".join(format_toml_section(name, values) for name, values in tables.items())
     return write_atomically(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
-def toml_table(name: str, values: Mapping[str, float | bool]) -> str:
+def format_toml_section(name: str, values: Mapping[str, float | bool]) -> str:
     """Return one section as TOML text; each key has a comment with its meaning and unit."""
     described = {**STRUCTURE, **DRIVE, **ELECTRODYNAMIC_SHAKER}
     lines = [f"[{name}]"]

@@ -20,7 +20,7 @@ from ..errors import NOT_NUMBERS, InputError
 from ..fmu import REST, finder, gap_between
 from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
-from ..model.arguments import Numbers, checked_numbers, unmasked
+from ..model.arguments import Numbers, checked_numbers, checked_unmasked
 from ..model.ranges import COMPLETE, EXCITATION, LEVEL, PUSHES, RATIO_QUANTITIES
 from ..model.spelling import expected_one_of
 from ..running.job import Job, brief, refuse_family
@@ -238,7 +238,7 @@ def make_point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
             amplitude = arguments["level"] / frequency**2
         excitation = Excitation(frequency=frequency, amplitude=amplitude, **pushes)
     if excitation.force2:
-        changed.needs_mass_2("force2")
+        changed.require_mass_2("force2")
     if not (excitation.amplitude or any(excitation.pushes)):
         raise InputError("amplitude = 0.0: expected finite numbers > 0, or a force")
     return Point(changed, excitation)
@@ -310,7 +310,7 @@ def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> 
         expected += f" - clearance, clearance = {structure.clearance!r} m"
     if structure.stroke:
         expected += f", and a gap of at most stroke = {structure.stroke!r} m"
-    given = unmasked(name, REST if value is None else value)
+    given = checked_unmasked(name, REST if value is None else value)
     try:
         rows = np.atleast_2d(np.asarray(given, dtype=float))
     except NOT_NUMBERS:

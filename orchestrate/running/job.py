@@ -17,7 +17,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..lazy import xr
-from ..model.arguments import checks_of
+from ..model.arguments import checks_by_field
 
 Fmus = Mapping[str, Path]  # FMU files by model
 Table = dict[str, np.ndarray]  # arrays by name, their rows along the first axis
@@ -60,7 +60,7 @@ class Job(ABC):
 
     def check_fields(self) -> None:
         """Check the fields whose types have a check, and set them to what it returns."""
-        for name, check in checks_of(type(self)).items():
+        for name, check in checks_by_field(type(self)).items():
             object.__setattr__(self, name, check(name, getattr(self, name)))
 
     def check_family(self) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypedDict
 from ..errors import InputError
 from ..model.arguments import checked_integer, checked_path
 from ..model.ranges import checked_flag
-from ..model.spelling import closest, did_you_mean
+from ..model.spelling import closest_name, did_you_mean
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -125,7 +125,7 @@ def check_keywords(names: Iterable[str], own: Iterable[str] = ()) -> None:
     known = [*own, *running]
     for name in names:
         if name not in known:
-            meant = did_you_mean(OF_COMMANDS.get(name) or closest(name, known))
+            meant = did_you_mean(OF_COMMANDS.get(name) or closest_name(name, known))
             raise TypeError(
                 f"unexpected keyword argument {name!r}: expected the function's own or one of "
                 f"{', '.join(running)}{meant}"

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.drive import sense_of
+from ..model.drive import sense_of_rotation
 from ..response.labels import Variable, variable
 from ..running.job import Table
 from .run import MotorJob
@@ -35,7 +35,7 @@ class RampRecord:
 
     @property
     def sense(self) -> float:
-        return sense_of(self.table["voltage"])
+        return sense_of_rotation(self.table["voltage"])
 
     @property
     def sign(self) -> float:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ...errors import NOT_NUMBERS, InputError
 from ...lazy import xr
-from ...model.arguments import unmasked
+from ...model.arguments import checked_unmasked
 from ...model.ranges import checked_range
 from ...response.labels import variable
 from .channels import (
@@ -88,7 +88,7 @@ def natural_frequencies(channels: Channels, given: ArrayLike | None) -> Floats:
         octaves = math.log2(highest * channels.duration)
         count = max(1, math.floor(octaves * 12))  # twelve in an octave
         return np.asarray(highest * 2.0 ** (np.arange(-count, 1) / 12))
-    unmasked("frequencies", given)
+    checked_unmasked("frequencies", given)
     try:
         natural = np.atleast_1d(np.asarray(given, dtype=float))
     except NOT_NUMBERS:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from orchestrate.errors import InputError
-from orchestrate.model import SETS, Drive, Excitation, Structure, read, resolve, write
+from orchestrate.model import SETS, Drive, Excitation, Structure, read, resolve_path, write
 
 from .strategies import DRIVES, STRUCTURES, WITH_FORCES
 
@@ -34,13 +34,13 @@ def test_what_is_written_is_read(tmp_path, structure, excitation, drive):
 
 
 def test_resolve(tmp_path):
-    assert resolve("paper") == SETS["paper"]
+    assert resolve_path("paper") == SETS["paper"]
     path = write(tmp_path / "a.toml", structure=Structure())
-    assert resolve(path) == resolve(str(path)) == path
+    assert resolve_path(path) == resolve_path(str(path)) == path
     with pytest.raises(InputError, match="bean: no such file; expected .*did you mean beam"):
-        resolve("bean")
+        resolve_path("bean")
     with pytest.raises(InputError, match="a folder"):
-        resolve(tmp_path)
+        resolve_path(tmp_path)
 
 
 @pytest.mark.parametrize(

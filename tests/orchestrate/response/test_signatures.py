@@ -9,7 +9,7 @@ import pytest
 
 import orchestrate
 from orchestrate import InputError
-from orchestrate.model.arguments import checks_of
+from orchestrate.model.arguments import checks_by_field
 from orchestrate.response.questions import Question
 
 from ..running.test_kills import kinds_of_questions
@@ -31,13 +31,13 @@ def test_every_public_signature_is_known_at_run_time_and_is_its_job(name):
         assert key in types
         if parameter.kind is not parameter.VAR_KEYWORD:
             assert (key in fields) != (key in kind.replaced), key
-    assert set(checks_of(kind)) <= set(fields)
+    assert set(checks_by_field(kind)) <= set(fields)
     assert kind.asked == function.__name__ == name
 
 
 @pytest.mark.parametrize("name", ASKED)
 def test_every_keyword_that_has_a_check_refuses_by_its_name_in_one_line(name):
-    for key, check in checks_of(KINDS[name]).items():
+    for key, check in checks_by_field(KINDS[name]).items():
         for wrong in (object(), "\n", math.nan):
             with pytest.raises(InputError, match=rf"^{key}\b[^\n]* expected [^\n]+$"):
                 check(key, wrong)
