@@ -35,6 +35,6 @@ __all__ = [
     "Shaker",
     "Structure",
     "read",
-    "resolve",
+    "resolve_path",
     "write",
 ]

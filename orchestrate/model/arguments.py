@@ -92,7 +92,7 @@ def checked_unmasked(name: str, value: Any) -> Any:
 def checked_numbers(
     name: str, value: ArrayLike | None, check: Callable[[Any], float] = float, positive: str = ""
 ) -> Numbers | None:
-    """Return an argument as float or tuple of finite floats, with a text ``positive`` > 0; None if not given."""
+    """Return a finite float or a tuple of them, > 0 with a text ``positive``; None for None."""
     if value is None:
         return None
     checked_unmasked(name, value)
@@ -164,8 +164,8 @@ def check_of(kind: Any) -> Check | None:
 
 
 # Types of keywords that several public functions have, each with its check: `Annotated` is a type
-# for editors and type checkers, and `checks_by_field` finds the check. Those of words (`Literal`) and
-# flags (`bool`) need no more.
+# for editors and type checkers, and `checks_by_field` finds the check. Those of words
+# (`Literal`) and flags (`bool`) need no more.
 Transient = Annotated[int, whole(0)]  # periods dropped
 Count = Annotated[int, whole(1)]  # periods, samples, points: at least one
 Positive = Annotated[float, checked_positive]
