@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrate.running.journal import pack
+from orchestrate.running.journal import table_to_bytes
 
 Damage = Callable[[Path, random.Random], None]
 
@@ -71,12 +71,14 @@ def put_row(path: Path, index: int, data: bytes) -> None:
 
 def rows_of_nan(path: Path, draw: random.Random) -> None:
     index, data = draw.choice(rows(path))
-    put_row(path, index, pack({name: array * np.nan for name, array in arrays(data).items()}))
+    put_row(
+        path, index, table_to_bytes({name: array * np.nan for name, array in arrays(data).items()})
+    )
 
 
 def a_shorter_row(path: Path, draw: random.Random) -> None:
     index, data = draw.choice(rows(path))
-    put_row(path, index, pack({name: array[:-1] for name, array in arrays(data).items()}))
+    put_row(path, index, table_to_bytes({name: array[:-1] for name, array in arrays(data).items()}))
 
 
 def an_empty_row(path: Path, draw: random.Random) -> None:
@@ -103,9 +105,9 @@ def another_identity(path: Path, draw: random.Random) -> None:
 
 
 def arrays(data: bytes) -> dict[str, np.ndarray]:
-    from orchestrate.running.journal import unpack
+    from orchestrate.running.journal import table_from_bytes
 
-    return unpack(data)
+    return table_from_bytes(data)
 
 
 ROW_DAMAGE: Mapping[str, Damage] = {

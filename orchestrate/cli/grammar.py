@@ -187,13 +187,13 @@ def read_choice(choices: Collection[Any], option: str, text: str) -> Any:
 
 
 def read_earlier_result(option: str, path: Path) -> xr.Dataset:
-    from ..running.store import load_foreign
+    from ..running.store import load_foreign_result
 
     expected = "expected a result of an earlier command"
     if not path.is_file():
         raise InputError(f"{option} {path}: no such file; {expected}")
     try:
-        data = load_foreign(path)
+        data = load_foreign_result(path)
     except StoreError as error:
         netcdf = "" if "expected" in str(error) else "; expected a NetCDF file"
         raise InputError(f"{option} {error}{netcdf}") from None

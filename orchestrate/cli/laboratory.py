@@ -154,11 +154,11 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
             yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
 
     def ask(self) -> tuple[Structure, Keywords]:
-        from ..running.job import refuse_family
+        from ..running.job import refuse_unsupported_structure
 
         structure, shaker = self.read_structure(), self.shaker
         if self.read_sensor() is not None:  # before anything is computed
-            refuse_family("--sensor", structure)
+            refuse_unsupported_structure("--sensor", structure)
         excitation = self.read_excitation()
         if (self.sample_rate or math.inf) < (needed := excitation.usual_rate) / 10.0:
             text = f"--sample-rate {self.sample_rate:g}: too few samples to show the excitation"

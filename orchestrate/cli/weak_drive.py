@@ -86,22 +86,22 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
     ) -> dict[str, xr.Dataset]:
         from ..fmu import finder
         from ..running.options import RunOptions
-        from ..running.runner import answer_all
-        from ..running.store import load
+        from ..running.runner import compute_into_folder
+        from ..running.store import load_result
 
         jobs = [
             replace(self.make_job(one, others[0], question), name=files[state].result.stem)
             for state, one in states.items()
         ]
         running = self.running()
-        answer_all(jobs, self.output, RunOptions.from_keywords(running), finder(running))
+        compute_into_folder(jobs, self.output, RunOptions.from_keywords(running), finder(running))
         self.job, self.stationary = jobs[0], None
         if self.branches:
             delaminated = next(iter(states.values())).as_delaminated()
             name = f"branches_{'_'.join(self.source_names())}_{digest(delaminated, *others)}.nc"
             running = self.running(self.output / name)
             self.stationary = orchestrate.drive_branch(delaminated, *others, **running)
-        return {state: load(files[state].result) for state in states}
+        return {state: load_result(files[state].result) for state in states}
 
     def summaries(self, results: Runs) -> Iterator[str]:
         if self.stationary is not None:

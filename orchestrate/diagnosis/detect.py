@@ -21,7 +21,7 @@ from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Table
 from ..running.options import Running
-from ..running.runner import answer, compute_datasets
+from ..running.runner import compute_dataset, compute_datasets
 from .decision_rule import DELAMINATED, NOT_SEEN, Beam, Findings
 from .even_orders import smallest_openings, thresholds
 from .evidence import Participation
@@ -148,7 +148,7 @@ def detect(
     'no opening seen'
     """
     rest = checked_free(free), participation, checked_settings(settings)
-    return answer(beam_job(record, guess, *rest), running, finder(running))
+    return compute_dataset(beam_job(record, guess, *rest), running, finder(running))
 
 
 def detect_all(

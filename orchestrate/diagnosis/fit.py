@@ -19,9 +19,9 @@ from ..model import Structure
 from ..model.arguments import checked_texts, checked_word
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
-from ..running.job import Table, refuse_family
+from ..running.job import Table, refuse_unsupported_structure
 from ..running.options import Running
-from ..running.runner import answer
+from ..running.runner import compute_dataset
 from .curve_evidence import CurveData
 from .decision_rule import factor_outside
 from .even_orders import EvenOrders, even_orders
@@ -150,7 +150,7 @@ def fit(
         kind=kind,
     )
     check_tones(job)
-    return answer(job, running, finder(running))
+    return compute_dataset(job, running, finder(running))
 
 
 def checked_free(free: Sequence[str]) -> tuple[str, ...]:
@@ -204,7 +204,7 @@ def check_tones(job: FitJob) -> None:
 def delaminated_guess(guess: Structure) -> Structure:
     """Check that both halves of the guess have a spring, and return it as delaminated."""
     structure = checked_structure(guess)
-    refuse_family("the diagnosis", structure)
+    refuse_unsupported_structure("the diagnosis", structure)
     if not (structure.k1 > 0.0 and structure.k2 > 0.0):
         text = "expected k1 > 0 and k2 > 0"
         raise InputError(f"guess: k1 = {structure.k1!r} N/m, k2 = {structure.k2!r} N/m; {text}")

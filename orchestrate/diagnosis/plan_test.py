@@ -28,9 +28,9 @@ from ..model.ranges import checked_range
 from ..response.labels import variable, yes_or_no
 from ..response.questions import checked_structure
 from ..running.executors import InlineExecutor
-from ..running.job import Job, Table, refuse_family
+from ..running.job import Job, Table, refuse_unsupported_structure
 from ..running.options import Running
-from ..running.runner import answer
+from ..running.runner import compute_dataset
 from .decision_rule import DELAMINATED, NOT_DESCRIBED, NOT_SEEN, UNDECIDED, Beam
 from .detect import record_findings
 from .impact_timing import TIMING
@@ -132,7 +132,7 @@ def plan_test(
     >>> bool(plan.counts), plan.sound_verdict.values.tolist()
     (True, ['no opening seen', 'no opening seen', 'no opening seen'])
     """
-    refuse_family("plan_test", checked_structure(structure))
+    refuse_unsupported_structure("plan_test", checked_structure(structure))
     if structure.bonded:
         raise InputError("structure: bonded; expected a guess of the delaminated one")
     sound = SoundStructure.from_structure(structure)
@@ -153,7 +153,7 @@ def plan_test(
         duration=slow_enough(sound.f, sound.zeta, first, last),
         reserve=checked_range("reserve", reserve, low=1.0, high=1e3),
     )
-    return answer(job, running, finder(running))
+    return compute_dataset(job, running, finder(running))
 
 
 def usual_ends(structure: Structure) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from ..model import Structure
 from ..model.arguments import checked_integer
 from ..model.ranges import checked_range
 from ..response.labels import flags, variable
-from ..running.job import refuse_family
+from ..running.job import refuse_unsupported_structure
 from .drive_signs import is_drive_run, signs_against_sound
 from .indicators import INDICATORS
 from .order_windows import sensor_channels
@@ -182,7 +182,7 @@ def sound_structure(
     structure: Structure | None, own: ResponseSigns, channels: Channels
 ) -> SoundStructure:
     """Return the sound structure: the bonded guess, or the oscillator nearest to the record."""
-    refuse_family("signs", structure)
+    refuse_unsupported_structure("signs", structure)
     force = channels.box_label in FORCES
     if structure is not None and not (force and own.curves):
         return SoundStructure.from_structure(structure)

@@ -60,7 +60,7 @@ class BorderJob(Question):
     replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *branches.OF_SETTING, "bifurcation")
     item_columns: ClassVar[tuple[str, ...]] = ()  # points of the curve
 
-    def call_text(self) -> str:
+    def format_call(self) -> str:
         keywords = {"over": self.setting.over, "limits": self.setting.limits}
         more = {"longest": self.longest, "most": self.most}
         values, kind = np.array(self.values), KINDS[self.kind]

@@ -67,7 +67,7 @@ class BranchJob(Question):
     replaced: ClassVar[tuple[str, ...]] = (*OF_EXCITATION, *OF_SETTING)
     item_columns: ClassVar[tuple[str, ...]] = ()  # orbits and bifurcations
 
-    def call_text(self) -> str:
+    def format_call(self) -> str:
         (over,), (limits,) = self.setting.over, self.setting.limits
         switch = {"switch": KINDS[self.switch]} if self.switch >= 0 else {}
         keywords = {**switch, "over": over, "limits": limits}

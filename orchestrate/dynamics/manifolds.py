@@ -115,7 +115,7 @@ class ManifoldJob(SingleOrbitQuestion):
         super().__post_init__()
         self.saddle()  # fail early if there is no saddle
 
-    def call_text(self) -> str:
+    def format_call(self) -> str:
         names = ("length", "spacing", "angle", "distance", "most")
         keywords = {name: getattr(self, name) for name in names}
         return call_from_start(self, self.values, **keywords)

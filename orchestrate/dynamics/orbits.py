@@ -102,7 +102,7 @@ class OrbitJob(SingleOrbitQuestion):
     family: ClassVar[tuple[str, ...]] = FAMILY
     guess: FirstGuess | None
 
-    def call_text(self) -> str:
+    def format_call(self) -> str:
         frequency = self.setting.point(self.values).excitation.frequency
         arguments = {**dict(self.setting.excitation), "period": self.period}
         parts = [f"{self.structure!r}", *(f"{name}={value!r}" for name, value in arguments.items())]

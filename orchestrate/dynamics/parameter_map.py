@@ -29,7 +29,7 @@ from ..response.respond import DecidedResponse, Response, decisions_from, respon
 from ..response.response_loop import LoopSettings, response_loop
 from ..response.signatures import as_given, question
 from ..response.sweep import HOW_DECIDED
-from ..running.job import FAMILY, Chunk, Fmus, Table, json_data
+from ..running.job import FAMILY, Chunk, Fmus, Table, to_json_data
 from ..running.options import RunOptions
 from .clusters import transient_periods
 from .impacts_after_transient import follow_impacts
@@ -74,7 +74,7 @@ class MapJob(questions.Question):
     def parameters(self) -> dict[str, Any]:
         others = super().parameters()
         del others["given"]
-        return {**{name: json_data(value) for name, value in self.given}, **others}
+        return {**{name: to_json_data(value) for name, value in self.given}, **others}
 
     def items(self) -> Sequence[questions.Point]:
         return self.points

@@ -18,9 +18,9 @@ from ..fmu.webassembly import kernel_digest
 from ..lazy import xr
 from ..model import Excitation, Structure
 from ..model.ranges import PUSHES
-from ..running.job import refuse_unknown
+from ..running.job import refuse_unsupported
 from ..running.provenance import describe_dataset
-from ..running.store import load
+from ..running.store import load_result
 from ..units import Units
 
 EXPECTED = "expected a result of orchestrate.sweep along eta or frequency"
@@ -76,7 +76,7 @@ def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     pushes = {name: data.attrs.get(name, 0.0) for name in PUSHES}
     varied = {name: text for name, text in pushes.items() if isinstance(text, str)}
     still = {} if data.amplitude.min() > 0.0 else {"amplitude": "0 m, a box at rest,"}
-    refuse_unknown("the explorer", varied | still)
+    refuse_unsupported("the explorer", varied | still)
     directions = ("up", "down") if direction == "both" else (direction,)
     (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
     data = data.sortby(parameter)
@@ -202,7 +202,7 @@ def first_diagram(structure: Structure, units: Units | None = None) -> SweepData
     units = units or Units()
     if structure != Structure() or not in_ratios(structure, units):
         return empty_sweep(structure, units)
-    data = load(FILE)
+    data = load_result(FILE)
     if not is_current(data):
         log.warning("Figure 6 was computed by another kernel: the page computes its own")
         return empty_sweep(structure, units)

@@ -16,7 +16,7 @@ from ..files import check_path_encoding, format_read_error, write_atomically
 from ..lazy import xr
 from ..model.arguments import checked_path
 from ..reader_process import read_in_process
-from ..running.netcdf import check_size, stored_size
+from ..running.netcdf import check_unpacked_size, unpacked_size
 from .analysis.channels import NAMES_IN_RESULTS
 from .columns import Column, Columns, converted_channels
 from .conversion import SMALLEST, ByChannel, number_by_channel
@@ -221,7 +221,7 @@ def read_netcdf(path: Path) -> Columns:
     import netCDF4
 
     with netCDF4.Dataset(path) as file:
-        check_size(path, stored_size(file))
+        check_unpacked_size(path, unpacked_size(file))
         over_time = {n: one for n, one in file.variables.items() if one.dimensions == ("time",)}
         if "time" not in over_time:
             kind = getattr(file, "question", "")

@@ -14,7 +14,7 @@ from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer, checked_word
 from ..model.ranges import ADDED, STRUCTURE, Quantity, as_scalar
-from ..running.job import refuse_family, refuse_unknown
+from ..running.job import refuse_unsupported, refuse_unsupported_structure
 from .analog_filter import AnalogFilter, Cells, Floats, anti_aliasing, filters_in_series, low_pass
 from .pieces import Pieces
 from .reconstruction import Motion, SmoothParts, smooth_parts, steady_acceleration
@@ -186,8 +186,8 @@ def measure(
     (5121, True)
     """
     structure = structure_of(history)
-    refuse_family("measure", structure)
-    refuse_unknown("measure", {name: history.attrs.get(name) for name in FORCES})
+    refuse_unsupported_structure("measure", structure)
+    refuse_unsupported("measure", {name: history.attrs.get(name) for name in FORCES})
     drives = driven_channel(history)
     sensors = sensor_by_channel(sensor, (drives, *list(ACCELERATIONS)[1:]))
     rate = next(iter(sensors.values())).rate

@@ -22,7 +22,7 @@ from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import Question, checked_state, checked_structure
 from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
-from ..running.job import FAMILY, Table, refuse_unknown
+from ..running.job import FAMILY, Table, refuse_unsupported
 from ..running.options import Running
 from .level_control import LevelControl, shake_on
 from .pieces import Pieces
@@ -238,7 +238,7 @@ def shake(
     """
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
     if shaker is not None:
-        refuse_unknown("a shaker", pushes)
+        refuse_unsupported("a shaker", pushes)
         return shake_on(structure, excitation, shaker, sample_rate, start, running)
     if not isinstance(excitation, ExcitationSignal):
         kinds = "expected a SweptSine, SteppedSine, Random, Shock, Sampled or Hammer, or a sum"

@@ -23,8 +23,8 @@ from ..model import PARAMETERS, Excitation, Structure
 from ..model.arguments import Numbers, checked_numbers, checked_unmasked
 from ..model.ranges import COMPLETE, EXCITATION, LEVEL, PUSHES, RATIO_QUANTITIES
 from ..model.spelling import expected_one_of
-from ..running.job import Job, brief, refuse_family
-from ..running.runner import answer
+from ..running.job import Job, format_brief, refuse_unsupported_structure
+from ..running.runner import compute_dataset
 from .labels import Variable, parameter_variable, variable
 
 State = tuple[float, ...]
@@ -282,7 +282,7 @@ def require_delaminated(structure: object, asked: str = "") -> Structure:
     if checked_structure(structure).bonded:
         raise InputError("bonded = True: expected a delaminated structure (bonded = false)")
     if asked:
-        refuse_family(asked, structure)
+        refuse_unsupported_structure(asked, structure)
     return structure  # type: ignore[return-value]
 
 
@@ -392,7 +392,7 @@ class Question(Job, ABC):
         """Return the job that answers the question: another one where its arguments make it so."""
         return self
 
-    def call_text(self) -> str:
+    def format_call(self) -> str:
         arguments: dict[str, Any] = {}
         for name, value in self.parameters().items():
             inside = isinstance(value, dict) and "sha256" not in value and name != "structure"
@@ -400,14 +400,14 @@ class Question(Job, ABC):
         for name in ("phase", *PUSHES):
             if not arguments.get(name):
                 arguments.pop(name, None)
-        texts = [f"Structure{brief(arguments.pop('structure'))}"]
+        texts = [f"Structure{format_brief(arguments.pop('structure'))}"]
         pairs = [(name, value) for name, value in arguments.items() if value not in (None, "")]
-        texts += [f"{name}={brief(value)}" for name, value in pairs]
+        texts += [f"{name}={format_brief(value)}" for name, value in pairs]
         return f"{self.asked}({', '.join(texts)})"
 
 
 def answer_question(job: Question, running: Mapping[str, Any]) -> xr.Dataset:
-    return answer(job, running, finder(running))
+    return compute_dataset(job, running, finder(running))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -45,8 +45,8 @@ class ResonanceJob(SweepJob):
     def parameters(self) -> dict[str, Any]:
         return {name: value for name, value in super().parameters().items() if name != "start"}
 
-    def independent_series(self) -> int:
-        return len(KINDS) * super().independent_series()
+    def count_independent_series(self) -> int:
+        return len(KINDS) * super().count_independent_series()
 
     def items(self) -> Sequence[Point]:
         both = self.structure.as_bonded(), self.structure.as_delaminated()
@@ -187,8 +187,8 @@ class ResonanceLevelsJob(ResonanceJob):
             ResonanceJob(**own | {"amplitude": self.amplitudes(level)}) for level in self.level
         )
 
-    def independent_series(self) -> int:
-        return len(self.level) * super().independent_series()
+    def count_independent_series(self) -> int:
+        return len(self.level) * super().count_independent_series()
 
     def items(self) -> Sequence[Point]:
         return [point for job in self.level_jobs for point in job.items()]

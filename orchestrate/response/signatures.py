@@ -2,8 +2,8 @@
 
 Each argument is a field of the frozen dataclass that the job's class becomes, with its type and
 default; its type says how it is checked, see
-:func:`orchestrate.model.arguments.checks_by_field`. The function's own lines check what depends on several arguments and end in :func:`as_given`, or return
-a result. Keywords beyond those named are how to compute: jobs, store.
+:func:`orchestrate.model.arguments.checks_by_field`. The function's own lines check what depends on
+several arguments and end in :func:`as_given`, or return a result. Keywords beyond those named are how to compute: jobs, store.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from inspect import Parameter
 from typing import Any, NamedTuple, TypeVar, cast
 
 from ..lazy import xr
-from ..running.options import check_keywords
+from ..running.options import refuse_unknown_keywords
 from .questions import Question, answer_question, checked_structure
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -45,7 +45,7 @@ def question(kind: type[Question]) -> Callable[[Function], Function]:
         @wraps(function)
         def ask(*positional: Any, **keywords: Any) -> xr.Dataset:
             if "running" in own:  # else others are taken too
-                check_keywords(keywords, own)
+                refuse_unknown_keywords(keywords, own)
             changes = function(*positional, **keywords)
             if not isinstance(changes, Changes):
                 return changes

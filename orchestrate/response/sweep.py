@@ -14,7 +14,7 @@ from ..fmu import OSCILLATOR, Instance
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Positive, Transient
-from ..running.array_blocks import lazy_rows
+from ..running.array_blocks import lazy_array_of_rows
 from ..running.job import FAMILY, Table
 from ..running.options import Running
 from ..running.store import StoredRows
@@ -76,11 +76,11 @@ class SweepJob(StartedSeriesQuestion):
         known = {"up": [up], "down": [up[::-1]], "both": [up, up[::-1]]}
         return known.get(self.direction) or [np.arange(len(up))]
 
-    def independent_series(self) -> int:
+    def count_independent_series(self) -> int:
         return len(self.orders())
 
     def count(self) -> int:
-        return self.independent_series() * super().count()
+        return self.count_independent_series() * super().count()
 
     def items(self) -> Sequence[Point]:
         return self.series.points.taken(np.concatenate(self.orders()))
@@ -148,9 +148,9 @@ class SweepJob(StartedSeriesQuestion):
         source = numbers.ravel().view(np.intp)
 
         def read(rows: NDArray[np.intp]) -> NDArray[np.float64]:
-            return gaps.rows(source[rows]) / length[rows % len(length)]
+            return gaps.read_rows(source[rows]) / length[rows % len(length)]
 
-        return lazy_rows(numbers.shape, gaps.shape[1], read)
+        return lazy_array_of_rows(numbers.shape, gaps.shape[1], read)
 
     def variables(self, table: Table) -> dict[str, labels.Variable]:
         along: labels.Dims = (self.series.name,)

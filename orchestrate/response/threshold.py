@@ -18,7 +18,7 @@ from ..errors import InputError
 from ..fmu import traits
 from ..lazy import xr
 from ..model import Structure
-from ..running.job import brief
+from ..running.job import format_brief
 from .labels import Variable, make_dataset, parameter_variable, variable
 from .questions import excitation_numbers, require_delaminated
 
@@ -159,6 +159,6 @@ def contact_threshold(
         f"Level at which the structure {event}: {structure.label()}",
         event=event,
         question="contact_threshold",
-        call=f"contact_threshold({structure!r}, {name}={brief(values)})",
+        call=f"contact_threshold({structure!r}, {name}={format_brief(values)})",
         **{key: float(value) for key, value in structure.parameters().items()},
     )

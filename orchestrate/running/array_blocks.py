@@ -41,7 +41,7 @@ def block_indices(shape: tuple[int, ...]) -> Iterator[Index]:
         yield (slice(first, min(first + step, shape[0])),)
 
 
-def lazy_rows(
+def lazy_array_of_rows(
     leading: tuple[int, ...], width: int, read: Callable[[NDArray[np.intp]], NDArray[np.float64]]
 ) -> Any:
     """Return an xarray variable's data (*leading, width) whose rows ``read`` gives by number."""

@@ -11,7 +11,7 @@ MAX_LABEL = 24  # characters, or little is left for the bar
 LOG_WIDTH = 80
 
 
-class LogLines:
+class LogLineStream:
     """Text stream for tqdm that writes each new state of a bar as a line of its own."""
 
     def __init__(self) -> None:
@@ -32,7 +32,7 @@ def progress_bar(label: str, shown: bool, *, total: int, initial: int, unit: str
     from tqdm import tqdm
 
     options: dict[str, Any] = {
-        **{"total": total, "initial": initial, "unit": unit, "desc": shortened(label)},
+        **{"total": total, "initial": initial, "unit": unit, "desc": shorten_label(label)},
         **{"delay": DELAY, "smoothing": 0.1, "unit_scale": total > 100_000},
     }
     if not shown:
@@ -43,19 +43,19 @@ def progress_bar(label: str, shown: bool, *, total: int, initial: int, unit: str
             from tqdm.auto import tqdm as automatic
         return automatic(dynamic_ncols=True, **options)
     every = {"miniters": max(1.0, total / 10), "mininterval": 0.0, "maxinterval": float("inf")}
-    return tqdm(file=LogLines(), ncols=LOG_WIDTH, **every, **options)
+    return tqdm(file=LogLineStream(), ncols=LOG_WIDTH, **every, **options)
 
 
-def refresh(bar: Any, label: str) -> None:
+def update_bar(bar: Any, label: str) -> None:
     """Show a bar's label, time and time left as they are now; in a log only a new label."""
     if bar.disable:
         return
     bar.delay = 0.0  # it is shown from now on, or tqdm would not end its line
-    if bar.desc != f"{shortened(label)}: ":
-        bar.set_description(shortened(label))
-    elif not isinstance(bar.fp.__dict__.get("_wrapped", bar.fp), LogLines):
+    if bar.desc != f"{shorten_label(label)}: ":
+        bar.set_description(shorten_label(label))
+    elif not isinstance(bar.fp.__dict__.get("_wrapped", bar.fp), LogLineStream):
         bar.refresh()
 
 
-def shortened(label: str) -> str:
+def shorten_label(label: str) -> str:
     return label if len(label) <= MAX_LABEL else f"{label[: MAX_LABEL - 3]}..."

@@ -56,57 +56,61 @@ class ChunkSchedule:
         self.chunks = job.chunks()
         self.result = store.result()
         self.guesses: dict[int, Guess] = {}
-        done = set(range(len(self.chunks))) if self.complete else self.valid_chunks()
+        done = set(range(len(self.chunks))) if self.is_complete else self.load_stored_chunks()
         self.left = {each.index: each for each in self.chunks if each.index not in done}
-        self._stored_items = sum(map(self.size, done))
+        self._stored_items = sum(map(self.item_count, done))
         self.under_way: set[int] = set()
         self._ends: dict[int, Table] = {}  # last entries of the last chunks that are certain
         self.wasted = 0  # items that were guessed in vain
         self.items: Sequence[Any] | None = None
 
-    def valid_chunks(self) -> set[int]:
-        """Return the numbers of stored chunks that fit this job; delete others, keep guesses."""
+    def load_stored_chunks(self) -> set[int]:
+        """Return the numbers of stored chunks that fit this job; delete others, load guesses."""
         valid = set()
-        for index in sorted(self.store.indices(), reverse=True):
-            problem = self.problem(index)
+        for index in sorted(self.store.keep_intact_chunks(), reverse=True):
+            problem = self.problem_of_stored_chunk(index)
             if problem or ~index in valid:  # of a guess that stands already
                 self.store.drop(index, problem)
             elif index < 0:
-                start, table = self.stored_guess(~index)
+                start, table = self.stored_guess_start_and_table(~index)
                 self.guesses[~index] = Guess(start, last_entries(table))
             else:
                 valid.add(index)
         return valid
 
-    def stored_guess(self, index: int) -> tuple[bytes, Table]:
+    def stored_guess_start_and_table(self, index: int) -> tuple[bytes, Table]:
         table = dict(self.store.get(~index))
         return table.pop(START).tobytes(), table
 
-    def problem(self, index: int) -> str:
+    def problem_of_stored_chunk(self, index: int) -> str:
         number = max(index, ~index)
         if number >= len(self.chunks):
             return f"none of the {len(self.chunks)} of this job"
         try:
-            table = self.store.get(index) if index >= 0 else self.stored_guess(number)[1]
+            table = (
+                self.store.get(index)
+                if index >= 0
+                else self.stored_guess_start_and_table(number)[1]
+            )
         except Exception:
             return "not readable"
-        fits = self.job.has_rows_of(table, self.size(number))
-        return "" if fits else f"not of {self.size(number)} items"
+        fits = self.job.has_row_per_item(table, self.item_count(number))
+        return "" if fits else f"not of {self.item_count(number)} items"
 
     @property
-    def complete(self) -> bool:
+    def is_complete(self) -> bool:
         return self.result is not None
 
-    def done(self) -> int:
+    def items_done(self) -> int:
         """Return how far the progress bar is: items computed, those of guessed chunks included."""
-        last = self.job.last_weight - 1 if self.complete else 0
-        return self._stored_items + sum(map(self.size, self.guesses)) + last
+        last = self.job.last_weight - 1 if self.is_complete else 0
+        return self._stored_items + sum(map(self.item_count, self.guesses)) + last
 
-    def size(self, index: int) -> int:
+    def item_count(self, index: int) -> int:
         return self.chunks[index].stop - self.chunks[index].start
 
-    def make_items(self) -> None:
-        """Make the job's items; finish it if all chunks are stored."""
+    def make_items_or_finish(self) -> None:
+        """Make the job's items; where all chunks are stored, make its result in their place."""
         self.items = self.job.items()
         self.finish_if_done()
 
@@ -114,15 +118,19 @@ class ChunkSchedule:
 
     def next_task(self, may_guess: bool = True) -> Task | None:
         guesses = may_guess and self.wasted <= VAIN * self._stored_items
-        finders = (self.certain_tasks, self.continuing_tasks, self.gap_task)[: 3 if guesses else 1]
+        finders = (
+            self.tasks_with_known_start,
+            self.tasks_continuing_guesses,
+            self.tasks_in_longest_gap,
+        )[: 3 if guesses else 1]
         return next((task for find in finders for task in find()), None)
 
     def is_untouched(self, index: int) -> bool:
         return index in self.left and index not in self.under_way and index not in self.guesses
 
-    def certain_tasks(self) -> Iterator[Task]:
+    def tasks_with_known_start(self) -> Iterator[Task]:
         for chunk in self.left.values():
-            if self.is_certain(chunk):
+            if self.can_start_now(chunk):
                 yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
 
     def previous_table(self, chunk: Chunk) -> Table | None:
@@ -130,15 +138,15 @@ class ChunkSchedule:
         if chunk.after is None:
             return None
         if self.job.last_item_uses_all and chunk.index == len(self.chunks) - 1:
-            return self.store.table(chunk.index)
-        return self.end_of(chunk.after)
+            return self.store.joined_table(chunk.index)
+        return self.last_entries_of(chunk.after)
 
-    def end_of(self, index: int) -> Table:
+    def last_entries_of(self, index: int) -> Table:
         if index not in self._ends:
             self._ends[index] = last_entries(self.store.get(index))
         return self._ends[index]
 
-    def is_certain(self, chunk: Chunk) -> bool:
+    def can_start_now(self, chunk: Chunk) -> bool:
         """Return whether a chunk can start now from its true state, and nobody computes it yet."""
         if not self.is_untouched(chunk.index) or chunk.after is None:
             return self.is_untouched(chunk.index)
@@ -146,32 +154,32 @@ class ChunkSchedule:
             return len(self.left) == 1
         return chunk.after not in self.left
 
-    def continuing_tasks(self) -> Iterator[Task]:
+    def tasks_continuing_guesses(self) -> Iterator[Task]:
         """Yield tasks that continue guessed chunks, also instead of guesses with another start."""
         for index in sorted(self.guesses):
             following = index + 1
             if following < len(self.chunks) and self.chunks[following].after == index:
                 previous = self.guesses[index].end
-                if self.is_untouched(following) or self.started_elsewhere(following, previous):
+                if self.is_untouched(following) or self.guess_has_other_start(following, previous):
                     chunk = self.chunks[following]
                     yield Task(chunk, self.items_of(chunk), previous, (), True)
 
-    def started_elsewhere(self, index: int, previous: Table) -> bool:
+    def guess_has_other_start(self, index: int, previous: Table) -> bool:
         guess = None if index in self.under_way else self.guesses.get(index)
         return guess is not None and guess.start != self.job.boundary_state(previous)
 
-    def gap_task(self) -> Iterator[Task]:
+    def tasks_in_longest_gap(self) -> Iterator[Task]:
         """Yield one task amid the longest run of untouched chunks, started by warm-up items."""
-        first, last = max(self.gaps(), key=lambda gap: gap[1] - gap[0], default=(0, 0))
+        first, last = max(self.untouched_runs(), key=lambda gap: gap[1] - gap[0], default=(0, 0))
         if self.job.warmup_items and last - first >= MIN_GAP:
             chunk = self.chunks[min((first + last) // 2, first + REACH)]
             begin = self.chunks[first].start
-            warmup_items = self.item_range(
+            warmup_items = self.items_between(
                 max(chunk.start - self.job.warmup_items, begin), chunk.start
             )
             yield Task(chunk, self.items_of(chunk), None, warmup_items, True)
 
-    def gaps(self) -> Iterator[tuple[int, int]]:
+    def untouched_runs(self) -> Iterator[tuple[int, int]]:
         first = last = 0
         for index in filter(self.is_untouched, self.left):
             if index != last or self.chunks[index].after is None:
@@ -181,28 +189,30 @@ class ChunkSchedule:
         yield first, last
 
     def items_of(self, chunk: Chunk) -> Sequence[Any]:
-        return self.item_range(chunk.start, chunk.stop)
+        return self.items_between(chunk.start, chunk.stop)
 
-    def item_range(self, first: int, last: int) -> Sequence[Any]:
+    def items_between(self, first: int, last: int) -> Sequence[Any]:
         assert self.items is not None, "items not made"
         return self.items[first:last]
 
-    def open_tasks(self) -> int:
+    def estimate_startable_tasks(self) -> int:
         """Return how many workers could compute chunks of this job now, an estimate."""
-        if self.complete:
+        if self.is_complete:
             return 0
-        longest_gap = max((last - first for first, last in self.gaps()), default=0)
-        certain = sum(map(self.is_certain, self.left.values()))
+        longest_gap = max((last - first for first, last in self.untouched_runs()), default=0)
+        certain = sum(map(self.can_start_now, self.left.values()))
         return certain + (longest_gap // MIN_GAP if self.job.warmup_items else 0)
 
     # -- what was computed ------------------------------------------------------------------------
 
     def add_result(self, task: Task, start: bytes, table: Table) -> None:
         index = task.chunk.index
-        assert self.job.has_rows_of(table, self.size(index)), f"{self.job.name}: item_columns"
+        assert self.job.has_row_per_item(table, self.item_count(index)), (
+            f"{self.job.name}: item_columns"
+        )
         self.under_way.discard(index)
         if task.guess:
-            self.wasted += self.size(index) if index in self.guesses else 0
+            self.wasted += self.item_count(index) if index in self.guesses else 0
             self.guesses[index] = Guess(start, last_entries(table))
             self.store.put(~index, {**table, START: np.frombuffer(start, np.uint8)})
         else:
@@ -213,7 +223,7 @@ class ChunkSchedule:
     def store_chunk(self, index: int, table: Table) -> None:
         self.store.put(index, table)
         del self.left[index]
-        self._stored_items += self.size(index)
+        self._stored_items += self.item_count(index)
         if self.job.sequential:
             self._ends.pop(index - 1, None)
             self._ends[index] = last_entries(table)
@@ -223,24 +233,29 @@ class ChunkSchedule:
             after = self.chunks[index].after
             if after is None or after not in self.left:
                 guess = self.guesses.pop(index)
-                if after is None or self.job.boundary_state(self.end_of(after)) == guess.start:
-                    self.store_chunk(index, self.stored_guess(index)[1])
+                if (
+                    after is None
+                    or self.job.boundary_state(self.last_entries_of(after)) == guess.start
+                ):
+                    self.store_chunk(index, self.stored_guess_start_and_table(index)[1])
                 else:
-                    self.wasted += self.size(index)
+                    self.wasted += self.item_count(index)
                 self.store.drop(~index)
 
     def finish_if_done(self) -> None:
-        if self.complete or self.left:
+        if self.is_complete or self.left:
             return
         if self.wasted:
             log.debug("%s: %d items were guessed in vain", self.job.name, self.wasted)
         about = self.job, self.identity, self.fmus, self.store.begun
         # only the store holds the dataset, and lets go of it
-        self.result = self.store.finish(with_provenance(self.job.dataset(self.table()), *about))
+        self.result = self.store.finish(
+            with_provenance(self.job.dataset(self.joined_table()), *about)
+        )
         self.items = None
 
-    def table(self) -> Table:
+    def joined_table(self) -> Table:
         last = len(self.chunks) - 1
         if self.job.last_item_uses_all:
-            return {**self.store.table(last), **self.store.get(last)}
-        return self.store.table(len(self.chunks), self.job.bulk)
+            return {**self.store.joined_table(last), **self.store.get(last)}
+        return self.store.joined_table(len(self.chunks), self.job.bulk)

@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from ..errors import InputError, VibroimpactError, WorkerError
-from .executors import RESUMES, Workers, format_end
+from .executors import RESUMES, Workers, format_broken_pool
 
 CONNECT_TIMEOUT = "5s"
 CONNECTION_ERRORS = (OSError, CancelledError, asyncio.CancelledError)
@@ -19,7 +19,7 @@ NO_DASK = "cluster: needs Dask; pip install distributed brings it"
 
 
 @contextmanager
-def cluster(where: Any, count: int) -> Iterator[Workers]:
+def cluster_workers(where: Any, count: int) -> Iterator[Workers]:
     """Provide workers by a scheduler's address, a Dask client, or an executor of ``count``."""
     if isinstance(where, str):
         with dask_client(where) as client, dask_workers(client) as workers:
@@ -33,7 +33,7 @@ def cluster(where: Any, count: int) -> Iterator[Workers]:
         try:
             yield Workers(where, lambda: count + 1, remote=True)
         except BrokenExecutor as error:
-            raise WorkerError(f"{format_end(error)}; {RESUMES}") from None
+            raise WorkerError(f"{format_broken_pool(error)}; {RESUMES}") from None
     else:
         with dask_workers(where) as workers:
             yield workers

@@ -1,9 +1,9 @@
 """Executors: where chunks are computed. A chunk is the same call for all of them.
 
 - Threads compute where the work is in our own FMUs, past Python, where no interrupt is heard.
-- The present thread computes what else is short (:func:`in_this_process`).
-- Processes of this machine, loky's, compute what else is long (:func:`processes`), and whatever an
-  FMU of somebody else computes: it may crash, exit or hang there.
+- The present thread computes what else is short (:func:`inline_workers`).
+- Processes of this machine, loky's, compute what else is long (:func:`process_workers`), and
+  whatever an FMU of somebody else computes: it may crash, exit or hang there.
 - Workers of a Dask scheduler, or any executor of ``concurrent.futures`` (:mod:`.cluster`).
 """
 
@@ -30,7 +30,7 @@ from typing import Any
 from ..errors import WorkerError
 from ..files import write_atomically
 from ..temporary import process_temporary_folder, remove_folders_of_ended_processes
-from .identity import changed_modules, code_digests
+from .identity import digests_of_code, format_changed_modules
 from .job import Job, Table, last_entries
 
 IDLE_TIMEOUT = 30  # s that worker processes wait for the next question before they end
@@ -38,7 +38,7 @@ RESUMES = "what was stored is kept; repeat the call to resume (without force)"
 _writing = threading.Lock()  # workers may be threads of one process
 
 
-def compute(
+def compute_chunk(
     job: Job,
     fmus: Mapping[str, Path | bytes],
     items: Sequence[Any],
@@ -46,9 +46,9 @@ def compute(
     warmup_items: Sequence[Any],
     code: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Table]:
-    own_code = code_digests(type(job).__module__) if code is not None else {}
+    own_code = digests_of_code(type(job).__module__) if code is not None else {}
     if code is not None and own_code != code:
-        names = changed_modules(own_code, code)
+        names = format_changed_modules(own_code, code)
         raise WorkerError(f"a worker has other sources ({names}); expected the same version there")
     with _writing:
         paths = {
@@ -87,7 +87,7 @@ class InlineExecutor(Executor):
 
 
 @contextmanager
-def in_this_process() -> Iterator[Workers]:
+def inline_workers() -> Iterator[Workers]:
     yield Workers(InlineExecutor(), lambda: 1)
 
 
@@ -125,13 +125,13 @@ class ThreadExecutor(Executor):
 
 
 @contextmanager
-def threads(count: int) -> Iterator[Workers]:
+def thread_workers(count: int) -> Iterator[Workers]:
     with ThreadExecutor(count) as executor:
         yield Workers(executor, lambda: count + (count > 1))
 
 
 @contextmanager
-def processes(count: int, foreign: str = "") -> Iterator[Workers]:
+def process_workers(count: int, foreign_fmus: str = "") -> Iterator[Workers]:
     """Provide loky's processes, new ones for other FMUs; an error kills them."""
     import loky
 
@@ -140,7 +140,7 @@ def processes(count: int, foreign: str = "") -> Iterator[Workers]:
             count,
             timeout=IDLE_TIMEOUT,
             initializer=initialize_worker,
-            initargs=(os.getpid(), foreign),
+            initargs=(os.getpid(), foreign_fmus),
         )
         pool.submit(int)  # starts them
     try:
@@ -153,11 +153,11 @@ def processes(count: int, foreign: str = "") -> Iterator[Workers]:
         pool.shutdown(wait=True, kill_workers=True)
         remove_folders_of_ended_processes()
         if isinstance(error, BrokenExecutor):
-            raise WorkerError(f"{format_end(error)}; {RESUMES}") from None
+            raise WorkerError(f"{format_broken_pool(error)}; {RESUMES}") from None
         raise
 
 
-def format_end(error: BrokenExecutor) -> str:
+def format_broken_pool(error: BrokenExecutor) -> str:
     names = dict.fromkeys(re.findall(r"(SIG[A-Z]+)\(|EXIT\((\d+)\)", str(error)))
     ends = [f"by {name}" if name else f"with exit code {code}" for name, code in names]
     return (
@@ -180,26 +180,26 @@ def sigint_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def initialize_worker(parent: int, _: str) -> None:
+def initialize_worker(parent_id: int, _: str) -> None:
     """Set up a worker process: no Ctrl-C, no report of a crash, an end when its parent ends."""
     os.environ.setdefault("PYTHONFAULTHANDLER", "0")  # or loky's report of a crash has many lines
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch() -> None:
-        wait_for_end(parent)
+        wait_for_end_of_parent(parent_id)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
 
 
-def wait_for_end(parent: int) -> None:
+def wait_for_end_of_parent(parent_id: int) -> None:
     """Return when the parent process has ended; on Windows its number stays a child's parent."""
     if sys.platform == "win32":
         import _winapi
 
         with suppress(OSError):  # it has ended before
-            process = _winapi.OpenProcess(_winapi.SYNCHRONIZE, False, parent)
+            process = _winapi.OpenProcess(_winapi.SYNCHRONIZE, False, parent_id)
             _winapi.WaitForSingleObject(process, _winapi.INFINITE)
         return
-    while os.getppid() == parent:
+    while os.getppid() == parent_id:
         time.sleep(0.5)

@@ -42,8 +42,8 @@ def write(data: xr.Dataset, path: Path) -> list[Path]:
     return WRITERS[ending](data, path)
 
 
-def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
-    data = without_repetition(data)
+def tables_by_dimensions(data: xr.Dataset) -> dict[str, pd.DataFrame]:
+    data = prepare_for_tables(data)
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, array in data.data_vars.items():
         groups.setdefault(tuple(map(str, array.dims)), []).append(str(name))
@@ -87,11 +87,12 @@ def to_dataframe(data: xr.Dataset, units: str = "") -> pd.DataFrame:
     """
     if not getattr(data, "data_vars", None):
         raise InputError(f"data = {data!r}: expected a result, an xarray.Dataset with variables")
-    made = tables(with_units(data, units))
+    made = tables_by_dimensions(with_units(data, units))
     return max(made.values(), key=lambda table: table.shape[1])
 
 
-def without_repetition(data: xr.Dataset) -> xr.Dataset:
+def prepare_for_tables(data: xr.Dataset) -> xr.Dataset:
+    """Convert to display units, coordinates to 13 digits; drop a second frequency in Hz."""
     shown = in_display_units(data)
     twice = [
         name
@@ -138,7 +139,7 @@ def column_heading(name: str, data: xr.Dataset) -> str:
 
 
 def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
-    frames = tables(data)
+    frames = tables_by_dimensions(data)
     written = []
     for name, frame in frames.items():
         file = path if len(frames) == 1 else path.with_name(f"{path.stem}.{name}.csv")
@@ -149,7 +150,7 @@ def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
 def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
     import pandas as pd
 
-    frames = tables(data)
+    frames = tables_by_dimensions(data)
     for name, frame in frames.items():
         if len(frame) > MAX_SHEET_ROWS:
             raise InputError(
@@ -157,18 +158,18 @@ def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
                 f"{MAX_SHEET_ROWS}; expected csv, mat or nc"
             )
 
-    def sheets(path_to_write: Path) -> None:
+    def write_sheets(path_to_write: Path) -> None:
         with path_to_write.open("wb") as file, pd.ExcelWriter(file, engine="openpyxl") as book:
             for name, frame in frames.items():
                 frame.to_excel(book, sheet_name=name[:MAX_SHEET_NAME], index=False, inf_rep="inf")
             metadata_table(data).to_excel(book, sheet_name="about", index=False)
             for sheet in book.sheets.values():
-                write_texts_as_texts(sheet)
+                mark_texts_as_texts(sheet)
 
-    return [write_atomically(path, sheets)]
+    return [write_atomically(path, write_sheets)]
 
 
-def write_texts_as_texts(sheet: Any) -> None:
+def mark_texts_as_texts(sheet: Any) -> None:
     """Keep texts from being formulas or errors, for which openpyxl takes ``=1+1`` and ``#REF!``."""
     for row in sheet.iter_rows():
         for cell in row:
@@ -201,11 +202,11 @@ def write_mat(data: xr.Dataset, path: Path) -> list[Path]:
     content["dimensions"] = {str(n): ", ".join(map(str, a.dims)) for n, a in variables}
     content["attributes"] = {name: str(value) for name, value in data.attrs.items()}
 
-    def save(path_to_write: Path) -> None:
+    def write_variables(path_to_write: Path) -> None:
         with path_to_write.open("wb") as file:
             savemat(file, content, long_field_names=True, oned_as="column", do_compression=True)
 
-    return [write_atomically(path, save)]
+    return [write_atomically(path, write_variables)]
 
 
 WRITERS: dict[str, Callable[[xr.Dataset, Path], list[Path]]] = {

@@ -1,7 +1,7 @@
 """Identity of a result, by which a stale one is known: question, parameters, FMUs and code.
 
 These three decide the numbers of a result. If one of them has changed, a stored result does
-not answer the question any more, and :func:`difference` says what has changed.
+not answer the question any more, and :func:`describe_difference` says what has changed.
 """
 
 from __future__ import annotations
@@ -52,50 +52,49 @@ def identity_of(job: Job, fmus: Mapping[str, Fmu]) -> Identity:
     identity: Identity = {
         "question": {"kind": type(job).__name__, **job.parameters()},
         "fmu": {model: fmus[model].guid for model in job.models},
-        "code": code_digests(type(job).__module__),
+        "code": digests_of_code(type(job).__module__),
     }
     restored: Identity = json.loads(json.dumps(identity))  # as it reads back from a file
     return restored
 
 
-def difference(stored: Identity, current: Identity) -> str:
+def describe_difference(stored: Identity, current: Identity) -> str:
     for part in sorted(set(stored) | set(current), key=lambda name: (name != "question", name)):
-        line = first_difference(stored.get(part), current.get(part), "")
+        line = describe_first_difference(stored.get(part), current.get(part), "")
         if line and part == "code":
-            return (
-                f"{changed_modules(stored.get(part) or {}, current.get(part) or {})} changed since"
-            )
+            modules = format_changed_modules(stored.get(part) or {}, current.get(part) or {})
+            return f"{modules} changed since"
         if line:
             return f"made by another FMU: {line}" if part == "fmu" else line
     return ""
 
 
-def same_question(stored: Identity, current: Identity) -> bool:
+def is_same_question(stored: Identity, current: Identity) -> bool:
     return stored.get("question") == current.get("question")
 
 
-def changed_modules(stored: Mapping[str, str], current: Mapping[str, str]) -> str:
+def format_changed_modules(stored: Mapping[str, str], current: Mapping[str, str]) -> str:
     names = sorted(name for name in {*stored, *current} if stored.get(name) != current.get(name))
     shown = ", ".join(f"{name.replace('.', '/')}.py" for name in names[:3])
     return shown if len(names) <= 3 else f"{shown} and {len(names) - 3} more"
 
 
-def first_difference(a: Any, b: Any, name: str) -> str:
-    if a == b:
+def describe_first_difference(stored: Any, current: Any, name: str) -> str:
+    if stored == current:
         return ""
-    if isinstance(a, dict) and isinstance(b, dict):
-        for key in sorted({*a, *b}):
-            line = first_difference(a.get(key), b.get(key), key)
+    if isinstance(stored, dict) and isinstance(current, dict):
+        for key in sorted({*stored, *current}):
+            line = describe_first_difference(stored.get(key), current.get(key), key)
             if line:
                 return line
-    return f"{name} = {json.dumps(a)} there, {json.dumps(b)} here"
+    return f"{name} = {json.dumps(stored)} there, {json.dumps(current)} here"
 
 
 # -- the code that makes a result -----------------------------------------------------------------
 
 
 @functools.cache
-def code_digests(module: str) -> dict[str, str]:
+def digests_of_code(module: str) -> dict[str, str]:
     """Return digests, by name, of a package's module and of all modules that it imports in turn."""
     digests: dict[str, str] = {}
     waiting = [module]
@@ -108,7 +107,7 @@ def code_digests(module: str) -> dict[str, str]:
             or name.split(".")[1:2] in [[p] for p in PACKAGES_WITHOUT_NUMBERS]
         ):
             continue
-        digests[name], imported = read_source(path, name)
+        digests[name], imported = read_digest_and_imports(path, name)
         waiting += imported
     return dict(sorted(digests.items()))
 
@@ -126,7 +125,7 @@ def source_file(module: str) -> Path | None:
 
 
 @functools.cache
-def read_source(path: Path, module: str) -> tuple[str, tuple[str, ...]]:
+def read_digest_and_imports(path: Path, module: str) -> tuple[str, tuple[str, ...]]:
     """Return the digest of a Python file (with its C file) and the module names that it imports."""
     source = path.read_bytes().replace(b"\r\n", b"\n")
     c_source = path.with_suffix(".c")  # what the module has compiled
@@ -143,16 +142,16 @@ def imported_names(source: bytes, package: str) -> Iterator[str]:
     for node in import_statements(source):
         if isinstance(node, ast.Import):
             for alias in node.names:
-                yield from prefixes(alias.name)
+                yield from dotted_prefixes(alias.name)
         elif isinstance(node, ast.ImportFrom):
             parts = package.split(".")
             base = parts[: len(parts) - node.level + 1] if node.level else []
             prefix = ".".join([*base, *([node.module] if node.module else [])])
             for alias in node.names:
-                yield from prefixes(f"{prefix}.{alias.name}")
+                yield from dotted_prefixes(f"{prefix}.{alias.name}")
 
 
-def prefixes(name: str) -> Iterator[str]:
+def dotted_prefixes(name: str) -> Iterator[str]:
     """Yield a dotted name and its parents, shortest first: ``a``, ``a.b``, ``a.b.c``."""
     parts = name.split(".")
     for count in range(1, len(parts) + 1):

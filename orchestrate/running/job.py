@@ -63,21 +63,21 @@ class Job(ABC):
         for name, check in checks_by_field(type(self)).items():
             object.__setattr__(self, name, check(name, getattr(self, name)))
 
-    def check_family(self) -> None:
+    def require_supported_structure(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
             if isinstance(value, Job):
-                value.check_family()
-            refuse_family(self.asked or type(self).__name__, value, self.family)
+                value.require_supported_structure()
+            refuse_unsupported_structure(self.asked or type(self).__name__, value, self.family)
 
     def count(self) -> int:
         return len(self.items())
 
-    def total(self) -> int:
+    def progress_total(self) -> int:
         """Return what the progress bar counts to: all items, the last by its weight."""
         return self.count() + self.last_weight - 1
 
-    def independent_series(self) -> int:
+    def count_independent_series(self) -> int:
         """Return how many equally long, independent series a sequential job's items form."""
         return 1
 
@@ -89,7 +89,7 @@ class Job(ABC):
     def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
         """Compute a chunk's items by the FMUs, in a worker; return arrays, see `item_columns`."""
 
-    def has_rows_of(self, table: Table, count: int) -> bool:
+    def has_row_per_item(self, table: Table, count: int) -> bool:
         names = set(table if self.item_columns is None else self.item_columns).intersection(table)
         lengths = {len(table[name]) for name in names if table[name].ndim}
         return bool(table) and lengths <= {count}
@@ -109,18 +109,18 @@ class Job(ABC):
     def parameters(self) -> dict[str, Any]:
         """Return the job's fields as JSON data for its identity; long lists summarized."""
         return {
-            field.name: json_data(getattr(self, field.name))
+            field.name: to_json_data(getattr(self, field.name))
             for field in fields(self)
             if field.name != "name"
         }
 
-    def call_text(self) -> str:
+    def format_call(self) -> str:
         """Return question and parameters in one line; of a long list, its ends and count."""
-        parts = [f"{name}={brief(value)}" for name, value in self.parameters().items()]
+        parts = [f"{name}={format_brief(value)}" for name, value in self.parameters().items()]
         return f"{self.asked or type(self).__name__}({', '.join(parts)})"
 
     def chunks(self) -> list[Chunk]:
-        count, series = self.count() - self.last_item_uses_all, self.independent_series()
+        count, series = self.count() - self.last_item_uses_all, self.count_independent_series()
         chunks: list[Chunk] = []
         for number in range(series):
             begin, end = number * count // series, (number + 1) * count // series
@@ -132,13 +132,15 @@ class Job(ABC):
         return chunks
 
 
-def refuse_family(asked: str, structure: Any, known: tuple[str, ...] = ()) -> None:
-    given = {name: getattr(structure, name, None) for name in FAMILY if name not in known}
+def refuse_unsupported_structure(
+    asked: str, structure: Any, supported: tuple[str, ...] = ()
+) -> None:
+    given = {name: getattr(structure, name, None) for name in FAMILY if name not in supported}
     are_numbers = all(isinstance(value, (bool, float)) for value in given.values())
-    refuse_unknown(asked, given if given and are_numbers and not structure.bonded else {})
+    refuse_unsupported(asked, given if given and are_numbers and not structure.bonded else {})
 
 
-def refuse_unknown(asked: str, given: Mapping[str, Any]) -> None:
+def refuse_unsupported(asked: str, given: Mapping[str, Any]) -> None:
     for name, value in given.items():
         if value:
             text = f"{asked} does not know it yet; expected a question without it"
@@ -150,25 +152,25 @@ def last_entries(table: Table) -> Table:
     return {name: values[-1:].copy() for name, values in table.items()}
 
 
-def json_data(value: Any) -> Any:
+def to_json_data(value: Any) -> Any:
     """Convert a value to JSON data recursively; long number lists become ends, count and digest."""
     if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: json_data(getattr(value, field.name)) for field in fields(value)}
+        return {field.name: to_json_data(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
-        return {str(key): json_data(part) for key, part in value.items()}
+        return {str(key): to_json_data(part) for key, part in value.items()}
     if isinstance(value, np.generic):
         return value.item()
     if isinstance(value, (tuple, list, np.ndarray)):
-        return summarize_list(value)
+        return to_json_list(value)
     return value
 
 
-def summarize_list(values: Any) -> Any:
+def to_json_list(values: Any) -> Any:
     parts = list(values)
     if len(parts) <= MAX_LISTED or not all(
         isinstance(part, (int, float, np.number)) for part in parts
     ):
-        return [json_data(part) for part in parts]
+        return [to_json_data(part) for part in parts]
     numbers = np.asarray(parts, dtype=float)
     summary = {"first": float(numbers[0]), "last": float(numbers[-1]), "count": len(numbers)}
     steps = np.diff(numbers)
@@ -178,11 +180,11 @@ def summarize_list(values: Any) -> Any:
     return {**summary, "sha256": hashlib.sha256(numbers.tobytes()).hexdigest()[:16]}
 
 
-def brief(value: Any) -> str:
+def format_brief(value: Any) -> str:
     """Format a parameter's JSON value as text of one line; a summarized list as its range."""
     if isinstance(value, dict) and "sha256" in value:
         step = f" by {value['step']:g}" if "step" in value else ""
         return f"{value['first']:g} ... {value['last']:g}{step} ({value['count']} values)"
     if isinstance(value, dict):
-        return f"({', '.join(f'{name}={brief(part)}' for name, part in value.items())})"
+        return f"({', '.join(f'{name}={format_brief(part)}' for name, part in value.items())})"
     return f"{value!r}"

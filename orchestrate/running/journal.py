@@ -32,18 +32,18 @@ def journal_path(result: Path, anew: bool = False) -> Path:
     return result.with_name(f"{result.name}{'.anew' * anew}.journal")
 
 
-def discard(path: Path) -> None:
+def delete_journal_files(path: Path) -> None:
     for ending in ENDINGS:
         Path(f"{path}{ending}").unlink(missing_ok=True)
 
 
-def pack(table: Table) -> bytes:
+def table_to_bytes(table: Table) -> bytes:
     stream = io.BytesIO()
     np.savez(stream, **table)  # type: ignore[arg-type]
     return stream.getvalue()
 
 
-def unpack(data: bytes) -> Table:
+def table_from_bytes(data: bytes) -> Table:
     with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
         return dict(arrays)
 
@@ -65,9 +65,9 @@ class Journal:
         self._identity_text = b""  # part of each row's checksum
         try:
             self._db = sqlite3.connect(path, timeout=30.0, isolation_level=None)
-            self._prepare()
-            self._begin(json.dumps(identity), begun)
-            self.identity, self.begun = self._read()
+            self._create_tables()
+            self._write_identity_if_new(json.dumps(identity), begun)
+            self.identity, self.begun = self._read_identity()
         except (sqlite3.Error, OSError, ValueError, KeyError, TypeError) as error:
             self.close()
             raise StoreError(
@@ -75,7 +75,7 @@ class Journal:
                 f"journal of this job: {ANEW}"
             ) from error
 
-    def _prepare(self) -> None:
+    def _create_tables(self) -> None:
         self._db.execute("PRAGMA journal_mode=WAL")
         self._db.execute("PRAGMA synchronous=NORMAL")  # a power cut may cost the last chunks
         self._db.execute("CREATE TABLE IF NOT EXISTS about (name TEXT PRIMARY KEY, text TEXT)")
@@ -83,7 +83,7 @@ class Journal:
             "CREATE TABLE IF NOT EXISTS chunks (i INTEGER PRIMARY KEY, sha256 TEXT, data BLOB)"
         )
 
-    def _begin(self, identity: str, begun: str) -> None:
+    def _write_identity_if_new(self, identity: str, begun: str) -> None:
         """Write identity, start time and their checksum into a new journal; keep an old one's."""
         self._db.execute("BEGIN IMMEDIATE")
         if not self._db.execute("SELECT 1 FROM about LIMIT 1").fetchall():
@@ -92,7 +92,7 @@ class Journal:
             self._db.executemany("INSERT INTO about VALUES (?, ?)", entries.items())
         self._db.execute("COMMIT")
 
-    def _read(self) -> tuple[Identity, str]:
+    def _read_identity(self) -> tuple[Identity, str]:
         """Return the journal's identity and start time; raise ValueError if it is damaged."""
         if self._db.execute("PRAGMA quick_check(1)").fetchall() != [("ok",)]:
             raise ValueError("damaged")
@@ -109,16 +109,16 @@ class Journal:
     def _row_checksum(self, index: int, data: bytes) -> str:
         return checksum_of_parts(self._identity_text, str(index).encode(), data)
 
-    def indices(self) -> set[int]:
-        """Return the numbers of the intact stored chunks; delete those with a wrong checksum."""
+    def keep_intact_chunks(self) -> set[int]:
+        """Delete chunks with a wrong checksum; return the numbers of the others."""
         numbers = {index for (index,) in self._query("SELECT i FROM chunks")}
         for index in sorted(numbers):  # one after the other: together they may not fit in memory
-            if not self._content(index):
+            if not self._verified_data(index):
                 self.drop(index, "damaged")
                 numbers.remove(index)
         return numbers
 
-    def _content(self, index: int) -> bytes:
+    def _verified_data(self, index: int) -> bytes:
         rows = self._query("SELECT sha256, CAST(data AS BLOB) FROM chunks WHERE i = ?", index)
         for digest, data in rows:
             if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
@@ -134,12 +134,12 @@ class Journal:
         return not self._query("SELECT 1 FROM chunks LIMIT 1")
 
     def get(self, index: int) -> Table:
-        if data := self._content(index):
-            return unpack(data)
+        if data := self._verified_data(index):
+            return table_from_bytes(data)
         raise StoreError(f"{self.path}: chunk {index} is damaged; repeat the call to recompute it")
 
     def put(self, index: int, table: Table) -> None:
-        data = pack(table)
+        data = table_to_bytes(table)
         values = index, self._row_checksum(index, data), data
         self._query("INSERT OR REPLACE INTO chunks VALUES (?, ?, ?)", *values)
 
@@ -157,9 +157,9 @@ class Journal:
         if hasattr(self, "_db"):
             self._db.close()
 
-    def remove(self) -> None:
+    def delete(self) -> None:
         self.close()
-        discard(self.path)
+        delete_journal_files(self.path)
 
 
 def lock_result(path: Path) -> HeldLock:

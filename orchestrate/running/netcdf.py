@@ -21,7 +21,7 @@ EXPECTED = "expected a NetCDF file that is whole"
 def read_dataset(path: Path) -> xr.Dataset:
     """Return the dataset of a file, a large one lazily, after all of it was read elsewhere once."""
     content = read_in_process(
-        *(netcdf_content, path, MAX_LOADED),
+        *(read_netcdf_content, path, MAX_LOADED),
         expected=EXPECTED,
         keep_process=False,
         array_bytes=MAX_LOADED,
@@ -35,38 +35,38 @@ def read_dataset(path: Path) -> xr.Dataset:
     return xr.decode_cf(xr.Dataset(variables, attrs=content["attributes"])).load()
 
 
-def check_size(path: Path, size: int) -> None:
+def check_unpacked_size(path: Path, size: int) -> None:
     most = reader_memory(path.stat().st_size)
     if size > most:
         raise InputError(f"{path}: unpacks to {size} bytes; expected at most {most}")
 
 
-def stored_size(file: Any) -> int:
+def unpacked_size(file: Any) -> int:
     return sum(
         prod(one.shape) * (one.dtype.itemsize if isinstance(one.dtype, np.dtype) else TEXT)
         for one in file.variables.values()
     )
 
 
-def netcdf_content(path: Path, most: int) -> dict[str, Any]:
+def read_netcdf_content(path: Path, max_loaded: int) -> dict[str, Any]:
     import netCDF4
 
     with netCDF4.Dataset(path) as file:
         file.set_auto_maskandscale(False)
         file.set_auto_chartostring(False)
-        size = stored_size(file)
-        check_size(path, size)
-        is_large = size > most
+        size = unpacked_size(file)
+        check_unpacked_size(path, size)
+        is_large = size > max_loaded
         return {
             "is_large": is_large,
             "attributes": {name: file.getncattr(name) for name in file.ncattrs()},
             "variables": {
-                name: variable_content(one, is_large) for name, one in file.variables.items()
+                name: read_variable_content(one, is_large) for name, one in file.variables.items()
             },
         }
 
 
-def variable_content(variable: Any, is_large: bool) -> dict[str, Any]:
+def read_variable_content(variable: Any, is_large: bool) -> dict[str, Any]:
     values = None
     if is_large:
         for block in block_indices(variable.shape):

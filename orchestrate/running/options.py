@@ -84,7 +84,7 @@ class RunOptions:
             raise InputError(f"force = {self.force!r}: {text}")
         for name in ("progress", "force", "keep_stale"):
             object.__setattr__(self, name, checked_flag(name, getattr(self, name)))
-        for name, value in self.paths():
+        for name, value in self.path_arguments():
             checked_path(name, value)
         if self.jobs is not None:
             object.__setattr__(self, "jobs", checked_integer("jobs", self.jobs, 1, MAX_JOBS))
@@ -97,22 +97,22 @@ class RunOptions:
 
     @classmethod
     def from_keywords(cls, running: Mapping[str, object]) -> RunOptions:
-        check_keywords(running)
+        refuse_unknown_keywords(running)
         return cls(**running)  # type: ignore[arg-type]
 
-    def paths(self) -> Iterator[tuple[str, object]]:
+    def path_arguments(self) -> Iterator[tuple[str, object]]:
         fmus = self.fmu.values() if isinstance(self.fmu, Mapping) else (self.fmu,)
         every = [("store", self.store), *(("fmu", fmu) for fmu in fmus)]
         every.append(("build_folder", self.build_folder))
         yield from ((name, value) for name, value in every if value is not None)
 
     @property
-    def workers(self) -> int:
+    def worker_count(self) -> int:
         """Number of workers, threads or processes: ``jobs``, or all cores this process may use."""
         usable = getattr(os, "sched_getaffinity", None)
         return self.jobs or (len(usable(0)) if usable else os.cpu_count() or 1)
 
-    def path(self, name: str) -> Path | None:
+    def result_path(self, name: str) -> Path | None:
         """Return the NetCDF path of a named result below ``store``; None without ``store``."""
         if self.store is None:
             return None
@@ -120,7 +120,7 @@ class RunOptions:
         return path if path.suffix == ".nc" else path / f"{name}.nc"
 
 
-def check_keywords(names: Iterable[str], own: Iterable[str] = ()) -> None:
+def refuse_unknown_keywords(names: Iterable[str], own: Iterable[str] = ()) -> None:
     running = [field.name for field in fields(RunOptions)]
     known = [*own, *running]
     for name in names:

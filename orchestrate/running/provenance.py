@@ -9,13 +9,13 @@ from typing import Any
 from ..lazy import xr
 from ..version import __version__
 from .identity import Fmu, Identity
-from .job import Job, brief
+from .job import Job, format_brief
 
 
 def with_provenance(
     dataset: xr.Dataset, job: Job, identity: Identity, fmus: Mapping[str, Fmu], begun: str
 ) -> xr.Dataset:
-    call = job.call_text()
+    call = job.format_call()
     attributes: dict[str, Any] = {
         **flatten_parameters(job.parameters()),
         **fmu_attributes(fmus),
@@ -57,5 +57,5 @@ def flatten_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
         elif isinstance(value, (int, float, str)):
             attributes[name] = value
         elif value is not None:
-            attributes[name] = brief(value)
+            attributes[name] = format_brief(value)
     return attributes

@@ -22,9 +22,9 @@ import numpy as np
 
 from ..files import make_writable_folder
 from ..lazy import xr
-from .bar import DELAY, progress_bar, refresh
+from .bar import DELAY, progress_bar, update_bar
 from .chunk_schedule import ChunkSchedule, Task
-from .executors import Workers, compute, in_this_process, processes, threads
+from .executors import Workers, compute_chunk, inline_workers, process_workers, thread_workers
 from .identity import Fmu, identity_of
 from .job import Job, Table
 from .options import RunOptions
@@ -36,18 +36,18 @@ MIN_PARALLEL_SECONDS = 2.0  # estimated work left from which starting processes 
 POLL_SECONDS = 0.5  # between two looks at the clock while chunks are computed
 
 
-def answer(
-    job: Job, running: Mapping[str, object], find: FmuFinder, foreign: str = ""
+def compute_dataset(
+    job: Job, running: Mapping[str, object], find_fmu: FmuFinder, foreign: str = ""
 ) -> xr.Dataset:
     """Compute one job, or read its stored result; ``foreign``: digest of somebody else's FMU."""
-    return Runner([job], RunOptions.from_keywords(running), find, foreign).run()[job.name]
+    return Runner([job], RunOptions.from_keywords(running), find_fmu, foreign).run()[job.name]
 
 
-def answer_all(
-    jobs: Sequence[Job], folder: Path, options: RunOptions, find: FmuFinder
+def compute_into_folder(
+    jobs: Sequence[Job], folder: Path, options: RunOptions, find_fmu: FmuFinder
 ) -> dict[str, Path]:
     make_writable_folder(folder)
-    Runner(jobs, replace(options, store=folder), find).run()
+    Runner(jobs, replace(options, store=folder), find_fmu).run()
     return {job.name: folder / f"{job.name}.nc" for job in jobs}
 
 
@@ -55,13 +55,13 @@ class Runner:
     """Compute several jobs with common workers."""
 
     def __init__(
-        self, jobs: Sequence[Job], options: RunOptions, find: FmuFinder, foreign: str = ""
+        self, jobs: Sequence[Job], options: RunOptions, find_fmu: FmuFinder, foreign: str = ""
     ) -> None:
         for job in jobs:
-            job.check_family()
+            job.require_supported_structure()
         self.jobs, self.options = jobs, options
         self.in_threads = all(job.in_threads for job in jobs)
-        self.fmus: dict[str, Fmu] = {model: find(model) for job in jobs for model in job.models}
+        self.fmus: dict[str, Fmu] = {model: find_fmu(model) for job in jobs for model in job.models}
         others = (str(fmu.path.resolve()) for fmu in self.fmus.values() if options.fmu is not None)
         self.foreign = ",".join(filter(None, [foreign, *others]))  # FMUs of somebody else
         self.schedules: dict[str, ChunkSchedule] = {}
@@ -71,8 +71,8 @@ class Runner:
 
     def run(self) -> dict[str, xr.Dataset]:
         try:
-            self.open()
-            if not self.finished():
+            self.open_stores()
+            if not self.all_complete():
                 self.compute_all()
             results = ((name, schedule.result) for name, schedule in self.schedules.items())
             return {name: result for name, result in results if result is not None}
@@ -86,7 +86,7 @@ class Runner:
             for schedule in self.schedules.values():
                 schedule.store.close()
 
-    def open(self) -> None:
+    def open_stores(self) -> None:
         for job in self.jobs:
             fmus = {model: self.fmus[model] for model in job.models}
             identity = identity_of(job, fmus)
@@ -97,80 +97,93 @@ class Runner:
                 store.close()
                 raise
 
-    def finished(self) -> bool:
-        return all(schedule.complete for schedule in self.schedules.values())
+    def all_complete(self) -> bool:
+        return all(schedule.is_complete for schedule in self.schedules.values())
 
     def compute_all(self) -> None:
-        with self.bar() as bar:
+        with self.make_bar() as bar:
             if not (self.options.cluster or self.foreign):
-                with threads(1) if self.in_threads else in_this_process() as workers:
-                    self.work(workers, self.fmus_to_send(workers), bar, self.little_left)
-            if not self.finished():
-                with self.workers() as workers:
+                with thread_workers(1) if self.in_threads else inline_workers() as workers:
+                    self.compute_while(
+                        workers, self.fmus_to_send(workers), bar, self.is_little_left
+                    )
+            if not self.all_complete():
+                with self.choose_workers() as workers:
                     fmus = self.fmus_to_send(workers)
-                    self.hand_out(workers, fmus, bar)  # workers start while this process imports
+                    self.submit_tasks(workers, fmus)  # workers start while this process imports
                     threading.Thread(target=import_xarray, daemon=True).start()
-                    self.work(workers, fmus, bar, lambda: True)
+                    self.compute_while(workers, fmus, bar, lambda: True)
 
-    def workers(self) -> AbstractContextManager[Workers]:
-        count = self.options.workers
+    def choose_workers(self) -> AbstractContextManager[Workers]:
+        count = self.options.worker_count
         if self.options.cluster:
-            from .cluster import cluster  # brings asyncio, which worker processes do without
+            from .cluster import (
+                cluster_workers,  # brings asyncio, which worker processes do without
+            )
 
-            return cluster(self.options.cluster, count)
+            return cluster_workers(self.options.cluster, count)
         if self.foreign:
-            return processes(min(count, max(1, self.busy_workers())), self.foreign)
-        return threads(count) if self.in_threads else processes(count)
+            return process_workers(min(count, max(1, self.count_usable_workers())), self.foreign)
+        return thread_workers(count) if self.in_threads else process_workers(count)
 
-    def done(self) -> int:
-        return sum(schedule.done() for schedule in self.schedules.values())
+    def items_done(self) -> int:
+        return sum(schedule.items_done() for schedule in self.schedules.values())
 
-    def little_left(self) -> bool:
-        if self.options.workers == 1 or not self.computed_items:
+    def is_little_left(self) -> bool:
+        if self.options.worker_count == 1 or not self.computed_items:
             return True
-        left = sum(schedule.job.total() for schedule in self.schedules.values()) - self.done()
+        left = (
+            sum(schedule.job.progress_total() for schedule in self.schedules.values())
+            - self.items_done()
+        )
         seconds = (time.perf_counter() - self.start_time) / self.computed_items * left
-        return seconds < MIN_PARALLEL_SECONDS or self.busy_workers() < 2
+        return seconds < MIN_PARALLEL_SECONDS or self.count_usable_workers() < 2
 
-    def busy_workers(self) -> int:
+    def count_usable_workers(self) -> int:
         return sum(
-            schedule.open_tasks() for schedule in self.schedules.values() if self.ready(schedule)
+            schedule.estimate_startable_tasks()
+            for schedule in self.schedules.values()
+            if self.make_ready(schedule)
         )
 
-    def bar(self) -> Any:
-        total = sum(schedule.job.total() for schedule in self.schedules.values())
+    def make_bar(self) -> Any:
+        total = sum(schedule.job.progress_total() for schedule in self.schedules.values())
         unit = self.jobs[0].item if len(self.jobs) == 1 else "item"
         shown = self.options.progress
-        return progress_bar(self.title(), shown, total=total, initial=self.done(), unit=unit)
+        return progress_bar(
+            self.bar_label(), shown, total=total, initial=self.items_done(), unit=unit
+        )
 
-    def title(self) -> str:
+    def bar_label(self) -> str:
         return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"
 
-    def work(
+    def compute_while(
         self,
         workers: Workers,
         fmus: Mapping[str, Path | bytes],
         bar: Any,
-        go_on: Callable[[], bool],
+        may_submit: Callable[[], bool],
     ) -> None:
-        while not self.finished() and (go_on() or self.futures):
-            if go_on():
-                self.hand_out(workers, fmus, bar)
+        while not self.all_complete() and (may_submit() or self.futures):
+            if may_submit():
+                self.submit_tasks(workers, fmus)
             if not self.futures:
-                assert self.finished() or not go_on(), "nothing is under way, nothing is ready"
+                assert self.all_complete() or not may_submit(), (
+                    "nothing is under way, nothing is ready"
+                )
                 continue
             if time.perf_counter() - self.start_time > DELAY:
                 notes = (
                     schedule.job.progress_note(t.chunk.start)
                     for schedule, t in self.futures.values()
                 )
-                refresh(bar, next(filter(None, notes), self.title()))
+                update_bar(bar, next(filter(None, notes), self.bar_label()))
             finished, _ = wait(self.futures, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
             for future in finished:
                 schedule, task = self.futures.pop(future)
                 schedule.add_result(task, *future.result())
                 self.computed_items += len(task.items)
-            bar.update(self.done() - bar.n)
+            bar.update(self.items_done() - bar.n)
 
     def fmus_to_send(self, workers: Workers) -> dict[str, Path | bytes]:
         """Return FMUs by model as workers get them: paths, or bytes for remote workers."""
@@ -179,9 +192,9 @@ class Runner:
             for model, fmu in self.fmus.items()
         }
 
-    def hand_out(self, workers: Workers, fmus: Mapping[str, Path | bytes], bar: Any) -> None:
+    def submit_tasks(self, workers: Workers, fmus: Mapping[str, Path | bytes]) -> None:
         for schedule in self.schedules.values():
-            while len(self.futures) < workers.max_in_flight() and self.ready(schedule):
+            while len(self.futures) < workers.max_in_flight() and self.make_ready(schedule):
                 # nothing that is sure waits behind a guess
                 task = schedule.next_task(len(self.futures) + 1 < workers.max_in_flight())
                 if task is None:
@@ -190,7 +203,7 @@ class Runner:
                 schedule.under_way.add(task.chunk.index)
                 code = schedule.identity["code"] if workers.remote else None
                 future = workers.executor.submit(
-                    compute,
+                    compute_chunk,
                     schedule.job,
                     chosen,
                     task.items,
@@ -200,13 +213,13 @@ class Runner:
                 )
                 self.futures[future] = schedule, task
 
-    def ready(self, schedule: ChunkSchedule) -> bool:
-        """Return whether a job has chunks to compute; make its items at first."""
-        if schedule.complete:
+    def make_ready(self, schedule: ChunkSchedule) -> bool:
+        """Make a job's items where they are missing; return whether it has chunks to compute."""
+        if schedule.is_complete:
             return False
         if schedule.items is None:
-            schedule.make_items()
-        return not schedule.complete
+            schedule.make_items_or_finish()
+        return not schedule.is_complete
 
 
 def import_xarray() -> None:
@@ -216,8 +229,8 @@ def import_xarray() -> None:
 
 
 def compute_datasets(
-    jobs: Iterable[Job], running: Mapping[str, object], find: FmuFinder
+    jobs: Iterable[Job], running: Mapping[str, object], find_fmu: FmuFinder
 ) -> list[xr.Dataset]:
     listed = list(jobs)
-    results = Runner(listed, RunOptions.from_keywords(running), find).run()
+    results = Runner(listed, RunOptions.from_keywords(running), find_fmu).run()
     return [results[job.name] for job in listed]

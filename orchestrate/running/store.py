@@ -20,10 +20,10 @@ from ..files import check_path_encoding, make_writable_folder, write_atomically
 from ..lazy import xr
 from .array_blocks import BLOCK, block_indices, file_block_shape
 from .checksum import ATTRIBUTE, checksum
-from .identity import Identity, difference, same_question
+from .identity import Identity, describe_difference, is_same_question
 from .job import Table
-from .journal import ANEW, Journal, discard, journal_path, lock_result
-from .netcdf import MAX_LOADED, check_size, read_dataset
+from .journal import ANEW, Journal, delete_journal_files, journal_path, lock_result
+from .netcdf import MAX_LOADED, check_unpacked_size, read_dataset
 from .options import RunOptions
 
 log = logging.getLogger(__name__)
@@ -37,7 +37,7 @@ STARTED: set[Path] = set()  # journals with chunks that this process has seen or
 FINISHED: set[Path] = set()  # results that it has; both say how much an interruption loses
 
 
-def now() -> str:
+def timestamp() -> str:
     """Return the present time, UTC, as ISO 8601 text; SOURCE_DATE_EPOCH overrides it."""
     fixed = os.environ.get("SOURCE_DATE_EPOCH")
     if fixed and not (re.fullmatch("[0-9]{1,12}", fixed) and int(fixed) <= LAST_SECOND):
@@ -52,7 +52,7 @@ class Store:
     """Storage of one job's computed chunks and its final dataset, in memory."""
 
     def __init__(self) -> None:
-        self.begun = now()
+        self.begun = timestamp()
         self._chunks: dict[int, Table] = {}
         self._result: xr.Dataset | None = None
 
@@ -60,8 +60,8 @@ class Store:
         """Return the job's finished dataset, or None before it is finished."""
         return self._result
 
-    def indices(self) -> set[int]:
-        """Return the numbers of the intact chunks that are stored."""
+    def keep_intact_chunks(self) -> set[int]:
+        """Delete stored chunks that are damaged; return the numbers of the others."""
         return set(self._chunks)
 
     def get(self, index: int) -> Table:
@@ -85,7 +85,7 @@ class Store:
     def close(self) -> None:
         """Release all files and locks of the store."""
 
-    def table(self, count: int, bulk: Sequence[str] = ()) -> Table:
+    def joined_table(self, count: int, bulk: Sequence[str] = ()) -> Table:
         """Return the arrays of the first ``count`` chunks joined; ``bulk`` is for those on disk."""
         parts = [self.get(index) for index in range(count)]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -94,11 +94,11 @@ class Store:
 class StoredRows:
     """A column of all chunks on disk, of which chosen rows are read."""
 
-    def __init__(self, store: Disk, name: str, lengths: Sequence[int], width: int) -> None:
+    def __init__(self, store: DiskStore, name: str, lengths: Sequence[int], width: int) -> None:
         self.store, self.name, self.ends = store, name, np.cumsum(lengths)
         self.shape = int(self.ends[-1]), width
 
-    def rows(self, chosen: NDArray[np.intp]) -> NDArray[np.float64]:
+    def read_rows(self, chosen: NDArray[np.intp]) -> NDArray[np.float64]:
         result = np.empty((len(chosen), self.shape[1]))
         chunk = np.searchsorted(self.ends, chosen, side="right")
         for index in np.unique(chunk).tolist():
@@ -108,7 +108,7 @@ class StoredRows:
         return result
 
 
-class Disk(Store):
+class DiskStore(Store):
     """Storage of one job on disk: an SQLite journal of chunks, then a NetCDF file of the result."""
 
     def __init__(self, path: Path, identity: Identity, options: RunOptions) -> None:
@@ -126,54 +126,52 @@ class Disk(Store):
             anew = journal_path(path, anew=True)
             if path.exists() and options.force:
                 read_identity(path)  # of another's file there is nothing to replace
-                self._open(anew)
+                self._open_journal(anew)
             elif path.exists() and self._is_resumable(anew):
-                self._open(anew)
+                self._open_journal(anew)
             elif path.exists():
                 identity = read_identity(path)
-                self._result = load(path)  # first of all, or damage is taken for another question
-                self.check(identity, path)
+                self._result = load_result(path)  # first, or damage is taken for another question
+                self.check_identity(identity, path)
                 FINISHED.add(path)
-                discard(journal_path(path))  # where the process was killed before it did so
+                delete_journal_files(journal_path(path))  # of a process killed before it did so
             else:
-                self._open(journal_path(path))
+                self._open_journal(journal_path(path))
         except BaseException:
             self.close()
             raise
 
-    def _open(self, path: Path) -> None:
+    def _open_journal(self, path: Path) -> None:
         """Open the journal at a path, with ``force`` an empty one; note if it has chunks."""
         if self.options.force and not path.is_dir():
-            discard(path)
-        self._journal = self.open_journal(path)
-        self.begun = self._journal.begun
-        if not self._journal.is_empty():
-            STARTED.add(path)
-
-    def open_journal(self, path: Path) -> Journal:
-        journal = Journal(path, self.identity, now())
+            delete_journal_files(path)
+        journal = Journal(path, self.identity, timestamp())
         try:
-            self.check(journal.identity, path)
+            self.check_identity(journal.identity, path)
         except InputError:
             journal.close()
             raise
-        return journal
+        self._journal, self.begun = journal, journal.begun
+        if not journal.is_empty():
+            STARTED.add(path)
 
     def _is_resumable(self, path: Path) -> bool:
         """Return whether a run with ``force`` has left a journal of the present code and FMUs."""
         if self.options.keep_stale or not path.exists():
             return False
         try:
-            with closing(Journal(path, self.identity, now())) as journal:
-                return not (journal.is_empty() or difference(journal.identity, self.identity))
+            with closing(Journal(path, self.identity, timestamp())) as journal:
+                return not (
+                    journal.is_empty() or describe_difference(journal.identity, self.identity)
+                )
         except StoreError:
             return False
 
-    def check(self, stored: Identity, path: Path) -> None:
-        reason = difference(stored, self.identity)
+    def check_identity(self, stored: Identity, path: Path) -> None:
+        reason = describe_difference(stored, self.identity)
         if not reason:
             return
-        if not same_question(stored, self.identity):
+        if not is_same_question(stored, self.identity):
             raise InputError(
                 f"{path}: contains the result of a different calculation ({reason}); choose "
                 "another place, or force to replace it"
@@ -190,8 +188,8 @@ class Disk(Store):
         assert self._journal is not None, "finished"
         return self._journal
 
-    def indices(self) -> set[int]:
-        return self.journal.indices()
+    def keep_intact_chunks(self) -> set[int]:
+        return self.journal.keep_intact_chunks()
 
     def get(self, index: int) -> Table:
         return self.journal.get(index)
@@ -200,7 +198,7 @@ class Disk(Store):
         self.journal.put(index, table)
         STARTED.add(self.journal.path)
 
-    def table(self, count: int, bulk: Sequence[str] = ()) -> Table:
+    def joined_table(self, count: int, bulk: Sequence[str] = ()) -> Table:
         """Return ``count`` chunks' arrays joined, those of ``bulk`` as :class:`StoredRows`."""
         columns: dict[str, list[np.ndarray]] = {}
         shapes: dict[str, list[tuple[int, ...]]] = {name: [] for name in bulk}
@@ -227,12 +225,12 @@ class Disk(Store):
         write_netcdf(dataset, self.path)
         FINISHED.add(self.path)
         STARTED.discard(self.journal.path)
-        self.journal.remove()
+        self.journal.delete()
         for anew in (False, True):  # of runs that were killed as they finished
-            discard(journal_path(self.path, anew))
+            delete_journal_files(journal_path(self.path, anew))
         self._journal = None
         del dataset  # there may be no room for both it and what is read
-        self._result = load(self.path)
+        self._result = load_result(self.path)
         return self._result
 
     def close(self) -> None:
@@ -240,21 +238,21 @@ class Disk(Store):
         if self._journal is not None:
             with suppress(StoreError):
                 if self._journal.is_empty():
-                    self._journal.remove()
+                    self._journal.delete()
             self._journal.close()
         self._lock.release()
 
 
 def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
-    path = options.path(name)
-    return Store() if path is None else Disk(path, identity, options)
+    path = options.result_path(name)
+    return Store() if path is None else DiskStore(path, identity, options)
 
 
-def load(path: Path, read: Callable[[Path], xr.Dataset] | None = None) -> xr.Dataset:
+def load_result(path: Path, read: Callable[[Path], xr.Dataset] | None = None) -> xr.Dataset:
     """Return a file's dataset, read in this process; raise ``StoreError`` if damaged (checksum)."""
     check_path_encoding(path)
     try:
-        data = (read or open_result)(path)
+        data = (read or read_result)(path)
         stored_checksum = data.attrs.pop(ATTRIBUTE, None)
         fits = stored_checksum is None or stored_checksum == checksum(data)
     except Exception as error:
@@ -270,15 +268,15 @@ def load(path: Path, read: Callable[[Path], xr.Dataset] | None = None) -> xr.Dat
     return data
 
 
-def load_foreign(path: Path) -> xr.Dataset:
-    return load(path, read_dataset)
+def load_foreign_result(path: Path) -> xr.Dataset:
+    return load_result(path, read_dataset)
 
 
-def open_result(path: Path) -> xr.Dataset:
+def read_result(path: Path) -> xr.Dataset:
     with small_chunk_cache():
         # what is read of a large one, for the checksum or by a user, does not stay in memory
         data = xr.open_dataset(path, engine="netcdf4", cache=False)
-    check_size(path, data.nbytes)
+    check_unpacked_size(path, data.nbytes)
     if data.nbytes > MAX_LOADED:
         return data
     with data:

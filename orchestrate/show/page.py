@@ -12,7 +12,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from ..running.store import now
+from ..running.store import timestamp
 from ..version import __version__
 from .figure_files import Figure, png_bytes, png_size
 
@@ -86,7 +86,7 @@ class Page:
             style=Markup(style),
             policy=content_security_policy(style),
             version=__version__,
-            date=now().replace("T", " ").removesuffix(":00Z").removesuffix("Z"),
+            date=timestamp().replace("T", " ").removesuffix(":00Z").removesuffix("Z"),
         )
 
 

@@ -29,7 +29,7 @@ from ..model.structure import Structure
 from ..response.labels import parameter_variable, variable, yes_or_no
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
-from ..running.runner import answer
+from ..running.runner import compute_dataset
 from . import averaged
 from .capture_rule import DECISIONS, NO_LOAD, UNDECIDED, CaptureOutcome, settling_test, usual_limit
 from .controllers import Controller
@@ -328,4 +328,4 @@ def capture(
     job = CaptureJob("capture", *what, *how)
     for each in job.items():  # refused now, not amid the work
         couple_job(*each, Constant(voltages[-1], job.time_limit(each)), scheme, 0.0, control)
-    return answer(job, running, finder(running))
+    return compute_dataset(job, running, finder(running))

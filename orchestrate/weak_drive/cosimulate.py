@@ -35,7 +35,7 @@ from ..model.structure import Structure
 from ..response.questions import checked_state, checked_structure
 from ..response.simulate import IN_TIME
 from ..running.options import Running
-from ..running.runner import answer
+from ..running.runner import compute_dataset
 from .connection import FORCE, MOTION, OURS, checked_links, checked_units, checked_variable
 from .controllers import InputControl
 from .cosimulation_job import AT_THE_DURATION, IN_TIME_TOO, CosimulateJob, Values
@@ -196,7 +196,7 @@ def cosimulate(
         points=points,
     )
     check_inputs(job.inputs, links)
-    found = answer(job, running, finder(running), job.drive_sha256 if foreign else "")
+    found = compute_dataset(job, running, finder(running), job.drive_sha256 if foreign else "")
     warn_of_run(found, links, estimate)
     return found
 

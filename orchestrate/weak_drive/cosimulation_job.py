@@ -29,7 +29,7 @@ from ..model.arguments import Count, Positive
 from ..response.labels import Variable, variable, yes_or_no
 from ..response.questions import Question
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
-from ..running.job import Chunk, Fmus, Table, brief, json_data
+from ..running.job import Chunk, Fmus, Table, format_brief, to_json_data
 from .connection import MOTION, PUSHES, Connection, Link, checked_links
 from .controllers import InputControl
 from .inputs import Input, Inputs
@@ -157,12 +157,14 @@ class CosimulateJob(CoupledJob, Question):
         known = super().parameters()
         return {**known, "structure": None} if self.alone else known
 
-    def call_text(self) -> str:
+    def format_call(self) -> str:
         values: dict[str, Any] = {"connect": dict(self.connect), "units": dict(self.units)}
         values |= {"parameters": dict(self.start_values)}
         values |= {name: getattr(self, name) for name in ("duration", "step", "record", "start")}
         texts = (f"{name}={value!r}" for name, value in values.items() if value)
-        structure = "None" if self.alone else f"Structure{brief(json_data(self.structure))}"
+        structure = (
+            "None" if self.alone else f"Structure{format_brief(to_json_data(self.structure))}"
+        )
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
     def steps(self) -> int:

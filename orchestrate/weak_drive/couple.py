@@ -17,7 +17,7 @@ from ..model.ranges import checked_flag, checked_range
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
-from ..running.job import Fmus, Table, refuse_family
+from ..running.job import Fmus, Table, refuse_unsupported_structure
 from ..running.options import Running
 from . import averaged, own_resonance
 from .controllers import Controller
@@ -189,7 +189,7 @@ def bracket_variables(
 
 
 def require_motor(structure: Structure, drive: Drive) -> None:
-    refuse_family("a motor", checked_structure(structure))
+    refuse_unsupported_structure("a motor", checked_structure(structure))
     if not isinstance(drive, Drive):
         raise InputError(f"drive = {drive!r}: expected a Drive, such as Drive.from_file('quick')")
     if not drive.motor_constant > 0.0:
@@ -399,7 +399,7 @@ def couple(
     True
     """
     from ..fmu.exported import finder
-    from ..running.runner import answer
+    from ..running.runner import compute_dataset
 
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
@@ -407,4 +407,4 @@ def couple(
     schedule = schedule_from_arguments(structure, drive, voltage, *settings)
     scheme = scheme_from_arguments(structure, step, tolerance, control is not None)
     job = couple_job(structure, drive, schedule, scheme, speed_start, control, hold, hysteresis)
-    return answer(job, running, finder(running))
+    return compute_dataset(job, running, finder(running))

@@ -29,7 +29,7 @@ from ..model.structure import Structure
 from ..response.labels import Variable, variable
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
-from ..running.runner import answer
+from ..running.runner import compute_dataset
 from . import averaged, own_resonance
 from .couple import KINDS as STRUCTURES
 from .couple import MAX_STEPS, require_motor
@@ -316,4 +316,4 @@ def drive_branch(
     most, period, steps = (checked_integer(*count) for count in least)
     own = (float(longest), most, period, steps, settle)
     job = DriveBranchJob("drive_branch", structure, drive, (first, last), *own)
-    return answer(job, running, finder(running))
+    return compute_dataset(job, running, finder(running))

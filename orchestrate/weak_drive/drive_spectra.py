@@ -27,7 +27,7 @@ from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
-from ..running.runner import answer
+from ..running.runner import compute_dataset
 from . import averaged, own_resonance
 from .couple import KINDS, MAX_STEPS, couple_job, require_motor, scheme_from_arguments
 from .run import MotorRun, begin_run
@@ -213,4 +213,4 @@ def drive_spectra(
     if voltage is None:
         fmus = {model: find_fmu(model).path for model in DriveSpectraJob.models}
         jobs = [next((job for job in jobs if job.is_captured(fmus)), jobs[-1])]
-    return answer(jobs[0], running, find_fmu)
+    return compute_dataset(jobs[0], running, find_fmu)

@@ -24,7 +24,7 @@ from ..model.structure import Structure
 from ..response.labels import variable
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
-from ..running.runner import answer
+from ..running.runner import compute_dataset
 from .capture import System, check_parameter_values
 from .couple import (
     DIRECTIONS,
@@ -211,4 +211,4 @@ def jump_voltages(
         raise InputError(f"over = {over!r}: {expected}")
     varied = check_parameter_values(over, values, System(structure, drive))
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme, over or "", varied)
-    return answer(job, running, finder(running))
+    return compute_dataset(job, running, finder(running))

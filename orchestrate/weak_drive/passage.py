@@ -24,7 +24,7 @@ from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
 from ..running.job import Table
 from ..running.options import Running
-from ..running.runner import answer
+from ..running.runner import compute_dataset
 from . import couple
 from .controllers import Controller
 from .energy_balance import ACCOUNTS
@@ -159,7 +159,7 @@ def passage(
     scheme = couple.scheme_from_arguments(structure, step, sampled=True)
     run = couple.couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     fields = {**vars(run), "name": run.name.replace("couple", "passage"), "around": around}
-    return answer(PassageJob(**fields), running, finder(running))
+    return compute_dataset(PassageJob(**fields), running, finder(running))
 
 
 def waterfall(

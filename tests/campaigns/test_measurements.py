@@ -17,7 +17,7 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.errors import InputError, StoreError
-from orchestrate.running.store import load_foreign
+from orchestrate.running.store import load_foreign_result
 
 from . import measurements
 from .findings import expect_none
@@ -32,7 +32,7 @@ PLANT = "open({!r}, 'w').close()\nraise SystemError('a planted module ran')\n"
 def read(path: Path, kind: str, arguments: dict[str, Any]) -> xr.Dataset:
     """Read a file as a user does."""
     if kind == "stored":
-        return load_foreign(path)
+        return load_foreign_result(path)
     if kind == "curve":
         return orchestrate.read_curve(path, **arguments)
     return orchestrate.read_record(path, **arguments)

@@ -31,7 +31,7 @@ def interrupt(*_, **__):
 
 PLACES = {
     "orchestrate.response.sweep.SweepJob.work": BEGINS_ANEW,
-    "orchestrate.running.store.Disk.finish": INTERRUPTED,
+    "orchestrate.running.store.DiskStore.finish": INTERRUPTED,
     "orchestrate.cli.output.Files.write": f"interrupted: the result is stored; {RESUME}",
 }
 

@@ -42,7 +42,7 @@ class Sums(Squares):
 
     sequential: ClassVar[bool] = True
 
-    def independent_series(self) -> int:
+    def count_independent_series(self) -> int:
         return 2
 
     def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:

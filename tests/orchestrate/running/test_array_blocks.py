@@ -21,7 +21,7 @@ BOX = {"frequency": FREQUENCIES, "amplitude": 0.5}
 def small(monkeypatch):
     """Blocks of some rows, and files of any size opened lazily; how many rows were read at once."""
     counts = []
-    rows = store.StoredRows.rows
+    rows = store.StoredRows.read_rows
 
     def counted(stored, chosen):
         counts.append(len(chosen))
@@ -32,7 +32,7 @@ def small(monkeypatch):
     monkeypatch.setattr(store, "MIN_COMPRESSED", 100)
     monkeypatch.setattr(store, "MAX_LOADED", 1000)
     monkeypatch.setattr(netcdf, "MAX_LOADED", 1000)
-    monkeypatch.setattr(store.StoredRows, "rows", counted)
+    monkeypatch.setattr(store.StoredRows, "read_rows", counted)
     return counts
 
 
@@ -55,17 +55,17 @@ def test_blocks_make_up_an_array_in_its_order(tmp_path, small, shape):
     assert all(len(part) <= 400 for part in parts)
     data = xr.Dataset({"x": ([f"d{i}" for i in range(len(shape))], values)})
     path = store.write_netcdf(data, tmp_path / "a.nc")
-    assert store.load(path).equals(data) and store.load_foreign(path).equals(data)
+    assert store.load_result(path).equals(data) and store.load_foreign_result(path).equals(data)
 
 
 IMPORTING = """
 import threading
-from orchestrate.running.array_blocks import lazy_rows
+from orchestrate.running.array_blocks import lazy_array_of_rows
 from orchestrate.running.runner import import_xarray
 thread = threading.Thread(target=import_xarray)
 thread.start()
 {pause}
-lazy_rows((3,), 2, None)
+lazy_array_of_rows((3,), 2, None)
 """
 
 

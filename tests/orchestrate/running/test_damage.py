@@ -13,7 +13,7 @@ import xarray as xr
 from orchestrate.errors import InputError, StoreError
 from orchestrate.running.checksum import ATTRIBUTE, checksum
 from orchestrate.running.journal import Journal, journal_path
-from orchestrate.running.runner import answer
+from orchestrate.running.runner import compute_dataset
 from tests.faults import FILE_DAMAGE, ROW_DAMAGE, a_shorter_row, rows, too_many_rows
 from tests.sparing import ordinary
 
@@ -40,13 +40,15 @@ def journal(find, path, monkeypatch) -> Path:
 
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt) as ended:
         patch.setattr(Squares, "work", stop)
-        answer(JOB, {"store": path, "jobs": 1}, find)
+        compute_dataset(JOB, {"store": path, "jobs": 1}, find)
     assert ended.value.__notes__ == ["what was stored is kept: the same call resumes"]
     return journal_path(path)
 
 
 def numbers(find, path, **running) -> list[float]:
-    values: list[float] = answer(JOB, {"store": path, **running}, find).square.values.tolist()
+    values: list[float] = compute_dataset(
+        JOB, {"store": path, **running}, find
+    ).square.values.tolist()
     return values
 
 
@@ -101,7 +103,7 @@ def test_a_row_damaged_while_the_job_runs_makes_no_shorter_result(journal, path,
 
     with monkeypatch.context() as patch, pytest.raises(StoreError, match="chunk 2 is damaged"):
         patch.setattr(Squares, "work", damage)
-        answer(JOB, {"store": path, "jobs": 1}, find)
+        compute_dataset(JOB, {"store": path, "jobs": 1}, find)
     assert not path.exists()
     assert numbers(find, path) == SQUARES
 
@@ -123,7 +125,7 @@ def test_killed_while_it_is_finished_it_leaves_nothing_behind(
     with monkeypatch.context() as patch:
         patch.setattr(Path, "unlink", killed)
         with suppress(KeyboardInterrupt):
-            answer(JOB, {"store": path, "jobs": 1}, find)
+            compute_dataset(JOB, {"store": path, "jobs": 1}, find)
     assert journal.exists() == (stop == 0)
     assert numbers(find, path) == SQUARES
     assert {file.name for file in tmp_path.iterdir()} == {path.name, "model.fmu"}
@@ -132,7 +134,7 @@ def test_killed_while_it_is_finished_it_leaves_nothing_behind(
 @pytest.mark.parametrize("damage", FILE_DAMAGE)
 @pytest.mark.parametrize("seed", ordinary(range(4)))
 def test_a_damaged_result(find, path, damage, seed):
-    answer(JOB, {"store": path}, find)
+    compute_dataset(JOB, {"store": path}, find)
     FILE_DAMAGE[damage](path, random.Random(seed))
     if right_or_told(path, path, find):
         path.unlink()  # the remedy
@@ -140,14 +142,14 @@ def test_a_damaged_result(find, path, damage, seed):
 
 
 def test_other_tools_read_a_result_and_numbers_changed_by_hand_are_told(find, path):
-    answer(JOB, {"store": path}, find)
+    compute_dataset(JOB, {"store": path}, find)
     with xr.open_dataset(path) as data:
         assert data.attrs[ATTRIBUTE] == checksum(data)
     with netCDF4.Dataset(path, "a") as file:
         assert file["square"][:].tolist() == SQUARES
         file["square"][4] = 17.0
     with pytest.raises(StoreError, match="do not fit its checksum"):
-        answer(JOB, {"store": path}, find)
+        compute_dataset(JOB, {"store": path}, find)
     with netCDF4.Dataset(path, "a") as file:
         file.delncattr(ATTRIBUTE)  # as the message says; and as results of earlier versions are
     assert numbers(find, path)[4] == 17.0

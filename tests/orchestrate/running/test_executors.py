@@ -10,8 +10,8 @@ import pytest
 from orchestrate.errors import InputError, WorkerError
 from orchestrate.fmu import OSCILLATOR
 from orchestrate.running import cluster, runner
-from orchestrate.running.executors import compute
-from orchestrate.running.runner import answer
+from orchestrate.running.executors import compute_chunk
+from orchestrate.running.runner import compute_dataset
 
 from .sums import Forgetful, Gathered, Squares, Sums
 
@@ -31,14 +31,14 @@ def dask():
 @pytest.mark.parametrize("where", ["processes", "threads", "executor", "client", "address"])
 def test_all_give_what_this_process_gives(find, monkeypatch, where, dask):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    alone = [answer(job, {"jobs": 1}, find) for job in JOBS]
+    alone = [compute_dataset(job, {"jobs": 1}, find) for job in JOBS]
     monkeypatch.setattr(runner, "MIN_PARALLEL_SECONDS", 0.0)
     monkeypatch.setattr(Squares, "in_threads", where == "threads")
     with ThreadPoolExecutor(2) as executor:
         clusters = {"executor": executor, "client": dask, "address": dask.scheduler.address}
         running = {"jobs": 2, "cluster": clusters.get(where)}
         for job, expected in zip(JOBS, alone, strict=True):
-            assert answer(job, running, find).identical(expected)
+            assert compute_dataset(job, running, find).identical(expected)
 
 
 class Dying(Squares):
@@ -53,22 +53,22 @@ class Dying(Squares):
 def test_a_worker_that_dies_is_told_and_what_it_did_before_is_kept(find, monkeypatch, tmp_path):
     monkeypatch.setattr(runner, "MIN_PARALLEL_SECONDS", 0.0)
     with pytest.raises(WorkerError, match=r"ended without a word \(by SIGKILL\).*kept"):
-        answer(Dying("dying", size=30), {"jobs": 2, "store": tmp_path / "dying.nc"}, find)
+        compute_dataset(Dying("dying", size=30), {"jobs": 2, "store": tmp_path / "dying.nc"}, find)
     assert (tmp_path / "dying.nc.journal").is_file()
 
 
 def test_a_worker_with_other_sources_computes_nothing():
     with pytest.raises(WorkerError, match=r"other sources \(orchestrate/version\.py\)"):
-        compute(JOB, {}, [1], None, (), {"orchestrate.version": "other"})
-    assert compute(JOB, {}, [3], None, (), None)[1]["square"] == [9.0]
+        compute_chunk(JOB, {}, [1], None, (), {"orchestrate.version": "other"})
+    assert compute_chunk(JOB, {}, [3], None, (), None)[1]["square"] == [9.0]
 
 
 def test_an_fmu_of_somebody_else_runs_in_a_process(find, monkeypatch, tmp_path):
     running = {"jobs": 1, "fmu": {OSCILLATOR: tmp_path / "model.fmu"}}
-    assert answer(Where("where"), {"jobs": 1}, find).square == os.getpid()
+    assert compute_dataset(Where("where"), {"jobs": 1}, find).square == os.getpid()
     for other in (
-        answer(Where("a"), running, find),
-        answer(Where("b"), {"jobs": 1}, find, "digest"),
+        compute_dataset(Where("a"), running, find),
+        compute_dataset(Where("b"), {"jobs": 1}, find, "digest"),
     ):
         assert other.square != os.getpid()
 
@@ -118,7 +118,7 @@ def test_a_scheduler_that_ends_and_workers_that_die_are_told(find, when):
         error = distributed.KilledWorker("compute", None, 3)
         words = "workers of the cluster ended"
     with pytest.raises(WorkerError, match=words):
-        answer(JOB, {"cluster": Lost(when, error)}, find)
+        compute_dataset(JOB, {"cluster": Lost(when, error)}, find)
 
 
 @pytest.mark.parametrize("error", [OSError("refused"), MemoryError("an array of 3 EiB")])
@@ -129,4 +129,4 @@ def test_where_no_scheduler_answers(find, monkeypatch, error):
     pytest.importorskip("distributed")
     monkeypatch.setattr(cluster, "check_scheduler", greet)
     with pytest.raises(InputError, match="no scheduler answers there"):
-        answer(JOB, {"cluster": "tcp://127.0.0.1:1"}, find)
+        compute_dataset(JOB, {"cluster": "tcp://127.0.0.1:1"}, find)

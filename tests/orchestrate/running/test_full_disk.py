@@ -7,7 +7,7 @@ import subprocess
 import pytest
 
 from orchestrate.errors import StoreError
-from orchestrate.running.runner import answer
+from orchestrate.running.runner import compute_dataset
 
 from .sums import Noise
 
@@ -38,14 +38,14 @@ def test_it_goes_on_when_there_is_room(find, tmp_path, small_disk, monkeypatch, 
     folder, resize = small_disk
     resize(room)
     whole = tmp_path / "whole.nc"
-    answer(Noise("noise"), {"store": whole}, find)
+    compute_dataset(Noise("noise"), {"store": whole}, find)
     with pytest.raises(StoreError) as caught:
-        answer(Noise("noise"), {"store": folder / "noise.nc"}, find)
+        compute_dataset(Noise("noise"), {"store": folder / "noise.nc"}, find)
     assert "\n" not in str(caught.value)
     assert str(folder) in str(caught.value)
     assert not (folder / "noise.nc").exists()
     resize("4m")
-    answer(Noise("noise"), {"store": folder / "noise.nc"}, find)
+    compute_dataset(Noise("noise"), {"store": folder / "noise.nc"}, find)
     assert (folder / "noise.nc").read_bytes() == whole.read_bytes()
     left = {path.suffix for path in folder.iterdir()} - {".nc"}
     # NetCDF's library keeps the file open that it could not finish: the next process removes it
@@ -56,4 +56,4 @@ def test_a_read_only_folder(find, small_disk):
     folder, _ = small_disk
     subprocess.run(["mount", "-o", "remount,ro", str(folder)], check=True)
     with pytest.raises(StoreError, match="expected a folder that can be written"):
-        answer(Noise("noise"), {"store": folder / "noise.nc"}, find)
+        compute_dataset(Noise("noise"), {"store": folder / "noise.nc"}, find)

@@ -10,7 +10,7 @@ from orchestrate.fmu import OSCILLATOR, find
 from orchestrate.model import Structure
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.chunk_schedule import ChunkSchedule
-from orchestrate.running.executors import compute
+from orchestrate.running.executors import compute_chunk
 from orchestrate.running.options import RunOptions
 from orchestrate.running.store import Store, open_store
 from tests.sparing import ordinary
@@ -25,13 +25,13 @@ def play(schedule: ChunkSchedule, workers: int, seed: int, stop: int = -1) -> No
     """Compute a job, or so many chunks of it, as if by workers that end in a random order."""
     draw, busy = random.Random(seed), []
     fmus = {model: fmu.path for model, fmu in schedule.fmus.items()}
-    schedule.make_items()
-    while not schedule.complete and stop != 0:
+    schedule.make_items_or_finish()
+    while not schedule.is_complete and stop != 0:
         while len(busy) < workers and (task := schedule.next_task()) is not None:
             schedule.under_way.add(task.chunk.index)
             busy.append(task)
         task = busy.pop(draw.randrange(len(busy)))
-        chunk = compute(schedule.job, fmus, task.items, task.previous, task.warmup_items)
+        chunk = compute_chunk(schedule.job, fmus, task.items, task.previous, task.warmup_items)
         schedule.add_result(task, *chunk)
         stop -= 1
 
@@ -56,19 +56,19 @@ def test_a_guess_is_stored_for_a_run_that_is_interrupted(tmp_path, monkeypatch):
     path = tmp_path / "job.nc"
     store = open_store("job", {}, RunOptions(store=path))
     schedule = ChunkSchedule(Forgetful("job"), store, {}, MODELS)
-    schedule.make_items()
+    schedule.make_items_or_finish()
     certain = schedule.next_task()
     schedule.under_way.add(certain.chunk.index)
     guess = schedule.next_task()
     assert (certain.guess, guess.guess, guess.chunk.index) == (False, True, 3)  # 1 and the reach
     schedule.under_way.add(guess.chunk.index)
-    made = compute(schedule.job, {}, guess.items, guess.previous, guess.warmup_items)
+    made = compute_chunk(schedule.job, {}, guess.items, guess.previous, guess.warmup_items)
     schedule.add_result(guess, *made)
     store.close()
     again = ChunkSchedule(
         Forgetful("job"), open_store("job", {}, RunOptions(store=path)), {}, MODELS
     )
-    assert (set(again.guesses), again.done()) == ({3}, 10)
+    assert (set(again.guesses), again.items_done()) == ({3}, 10)
     play(again, 2, seed=0)
     assert np.array_equal(again.result.value, again.job.work({}, again.job.items(), None)["value"])
 

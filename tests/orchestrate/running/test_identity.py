@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from orchestrate.running import identity
-from orchestrate.running.identity import code_digests, difference
-from orchestrate.running.job import brief, json_data
+from orchestrate.running.identity import describe_difference, digests_of_code
+from orchestrate.running.job import format_brief, to_json_data
 
 
 def package(folder, **sources):
@@ -20,7 +20,11 @@ def package(folder, **sources):
 
 def forget():
     """What is read once in a process is read again."""
-    for function in (identity.read_source, identity.source_file, identity.code_digests):
+    for function in (
+        identity.read_digest_and_imports,
+        identity.source_file,
+        identity.digests_of_code,
+    ):
         function.cache_clear()
 
 
@@ -42,7 +46,7 @@ def ours(tmp_path, monkeypatch):
 
 
 def test_code_is_the_closure_of_imports(ours):
-    assert list(code_digests("small.sweep")) == ["small.deep", "small.sweep", "small.tools"]
+    assert list(digests_of_code("small.sweep")) == ["small.deep", "small.sweep", "small.tools"]
 
 
 @pytest.mark.parametrize(
@@ -57,17 +61,17 @@ def test_code_is_the_closure_of_imports(ours):
 )
 def test_an_edit_of_what_decides_numbers_is_seen_and_no_other(ours, file, text, told):
     (ours / "tools.c").write_text("int limit = 1;")
-    before = code_digests("small.sweep")
+    before = digests_of_code("small.sweep")
     (ours / file).write_text(text)
     forget()
-    line = difference({"code": before}, {"code": code_digests("small.sweep")})
+    line = describe_difference({"code": before}, {"code": digests_of_code("small.sweep")})
     assert line == (f"{told} changed since" if told else "")
 
 
 def test_a_long_list_is_told_by_its_ends_and_a_digest():
     etas = np.arange(100, 8001) / 1000.0
-    told = json_data(tuple(etas))
+    told = to_json_data(tuple(etas))
     assert (told["first"], told["last"], told["count"], told["step"]) == (0.1, 8.0, 7901, 0.001)
     etas[17] += 1e-15
-    assert json_data(etas)["sha256"] != told["sha256"]
-    assert brief(told) == "0.1 ... 8 by 0.001 (7901 values)"
+    assert to_json_data(etas)["sha256"] != told["sha256"]
+    assert format_brief(told) == "0.1 ... 8 by 0.001 (7901 values)"

@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from orchestrate.errors import StoreError
-from orchestrate.running.store import load, load_foreign, write_netcdf
+from orchestrate.running.store import load_foreign_result, load_result, write_netcdf
 
 
 def test_a_result_of_others_is_the_library_s_dataset(tmp_path):
@@ -28,17 +28,17 @@ def test_a_result_of_others_is_the_library_s_dataset(tmp_path):
     )
     packing = {"dtype": "i2", "scale_factor": 0.5, "_FillValue": -9}
     data.to_netcdf(path, engine="netcdf4", encoding={"packed": packing})
-    own, foreign = load(path), load_foreign(path)
+    own, foreign = load_result(path), load_foreign_result(path)
     xr.testing.assert_identical(own, foreign)
     assert [foreign[n].dtype for n in foreign] == [own[n].dtype for n in own]
     assert list(map(type, foreign.attrs.values())) == list(map(type, own.attrs.values()))
     write_netcdf(data.drop_vars("moment"), path)  # with its checksum
-    xr.testing.assert_identical(load(path), load_foreign(path))
+    xr.testing.assert_identical(load_result(path), load_foreign_result(path))
     changed = xr.load_dataset(path)
     changed["number"] = 2.6
     changed.to_netcdf(path)
     with pytest.raises(StoreError, match="do not fit its checksum"):
-        load_foreign(path)
+        load_foreign_result(path)
 
 
 def forge(path, kind):
@@ -61,7 +61,7 @@ def forge(path, kind):
 def test_a_forged_result_is_one_line(tmp_path, kind):
     path = tmp_path / "a.nc"
     forge(path, kind)
-    for read in (load_foreign, load)[: 1 if kind == "types" else 2]:
+    for read in (load_foreign_result, load_result)[: 1 if kind == "types" else 2]:
         with pytest.raises(StoreError, match=r"a\.nc: damaged \(.*\); remove it") as error:
             read(path)
         assert str(error.value).isprintable() and len(str(error.value)) < 1200

@@ -6,7 +6,7 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError
 from orchestrate.running.journal import Journal, journal_path, lock_result
-from orchestrate.running.runner import answer
+from orchestrate.running.runner import compute_dataset
 
 from .conftest import Find
 from .sums import Squares, Sums
@@ -26,7 +26,7 @@ def interrupted(monkeypatch, job, running, find, item):
 
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(type(job), "work", stop)
-        answer(job, {**running, "jobs": 1}, find)
+        compute_dataset(job, {**running, "jobs": 1}, find)
 
 
 def computed(monkeypatch):
@@ -43,13 +43,13 @@ def computed(monkeypatch):
 def test_an_interrupted_job_goes_on_and_is_read_when_it_is_finished(find, tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     whole, broken = tmp_path / "whole.nc", tmp_path / "results" / "sums.nc"
-    answer(Sums("sums", size=20), {"store": whole}, find)
+    compute_dataset(Sums("sums", size=20), {"store": whole}, find)
     in_folder = {"store": tmp_path / "results"}  # a place without an ending is a folder
     interrupted(monkeypatch, Sums("sums", size=20), in_folder, find, 8)
     assert not broken.exists()
     items = computed(monkeypatch)
     for _ in range(2):
-        first = answer(Sums("sums", size=20), in_folder, find)
+        first = compute_dataset(Sums("sums", size=20), in_folder, find)
         assert items == list(range(6, 20)), "two chunks were there"
     assert broken.read_bytes() == whole.read_bytes()
     assert first.identical(xr.load_dataset(whole).drop_attrs().assign_attrs(first.attrs))
@@ -58,35 +58,37 @@ def test_an_interrupted_job_goes_on_and_is_read_when_it_is_finished(find, tmp_pa
 
 def test_another_question_is_refused_and_nothing_is_lost(find, tmp_path):
     path, other = tmp_path / "squares.nc", Squares("squares", size=11)
-    answer(JOB, {"store": path}, find)
+    compute_dataset(JOB, {"store": path}, find)
     before = path.read_bytes()
     with pytest.raises(InputError, match=r"squares\.nc: .*size = 10 there, 11 here"):
-        answer(other, {"store": path}, find)
+        compute_dataset(other, {"store": path}, find)
     assert path.read_bytes() == before
-    assert answer(other, {"store": path, "force": True}, find).sizes == {"number": 11}
+    assert compute_dataset(other, {"store": path, "force": True}, find).sizes == {"number": 11}
 
 
 def test_another_fmu_makes_a_result_stale(find: Find, tmp_path):
     path = tmp_path / "squares.nc"
-    answer(JOB, {"store": path}, find)
+    compute_dataset(JOB, {"store": path}, find)
 
     def other(model):
         return type(find(model))(find(model).path, model, "{2}")
 
     with pytest.raises(StaleError, match="made by another FMU"):
-        answer(JOB, {"store": path}, other)
-    assert answer(JOB, {"store": path, "keep_stale": True}, other).attrs["fmu_guid"] == "{1}"
-    assert answer(JOB, {"store": path, "force": True}, other).attrs["fmu_guid"] == "{2}"
+        compute_dataset(JOB, {"store": path}, other)
+    assert (
+        compute_dataset(JOB, {"store": path, "keep_stale": True}, other).attrs["fmu_guid"] == "{1}"
+    )
+    assert compute_dataset(JOB, {"store": path, "force": True}, other).attrs["fmu_guid"] == "{2}"
 
 
 def test_a_result_stays_until_the_one_computed_anew_is_whole(find, tmp_path, monkeypatch):
     path = tmp_path / "squares.nc"
-    answer(JOB, {"store": path}, find)
+    compute_dataset(JOB, {"store": path}, find)
     before, inode = path.read_bytes(), path.stat().st_ino
     interrupted(monkeypatch, JOB, {"store": path, "force": True}, find, 7)
     assert path.read_bytes() == before
     items = computed(monkeypatch)
-    answer(JOB, {"store": path}, find)
+    compute_dataset(JOB, {"store": path}, find)
     assert items == [6, 7, 8, 9], "the chunks from before the Ctrl-C were not taken"
     assert path.stat().st_ino != inode
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
@@ -100,20 +102,25 @@ def test_force_never_reads_a_journal_and_an_older_result_stays(
     """Where the run with force cannot be resumed either."""
     path = tmp_path / "squares.nc"
     if stored:
-        answer(JOB, {"store": path}, find)
+        compute_dataset(JOB, {"store": path}, find)
     interrupted(monkeypatch, JOB, {"store": path, "force": stored}, find, 7)
     place = journal_path(path, anew=stored)
     if damage == "noise":
         place.write_bytes(b"noise" * 1000)
     elif damage:
         journal = Journal(place, {}, "")
-        for index in journal.indices():
+        for index in journal.keep_intact_chunks():
             journal.drop(index, "")
         journal.close()
     items = computed(monkeypatch)
     if stored and damage:
-        assert np.array_equal(answer(JOB, {"store": path}, find).square, SQUARES) and not items
-    assert np.array_equal(answer(JOB, {"store": path, "force": True}, find).square, SQUARES)
+        assert (
+            np.array_equal(compute_dataset(JOB, {"store": path}, find).square, SQUARES)
+            and not items
+        )
+    assert np.array_equal(
+        compute_dataset(JOB, {"store": path, "force": True}, find).square, SQUARES
+    )
     assert items == list(range(10))
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
 
@@ -128,7 +135,7 @@ def test_a_file_of_others_is_never_replaced(find, tmp_path, kind):
     before = path.read_bytes()
     for force in (False, True):
         with pytest.raises(StoreError, match=r"squares\.nc: .*remove it and compute it again"):
-            answer(JOB, {"store": path, "force": force}, find)
+            compute_dataset(JOB, {"store": path, "force": force}, find)
         assert path.read_bytes() == before
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
 
@@ -137,7 +144,7 @@ def test_one_process_at_a_time(find, tmp_path):
     path = tmp_path / "squares.nc"
     lock = lock_result(path)
     with pytest.raises(InputError, match="another process is computing it"):
-        answer(JOB, {"store": path}, find)
+        compute_dataset(JOB, {"store": path}, find)
     lock.release()
-    answer(JOB, {"store": path}, find)
+    compute_dataset(JOB, {"store": path}, find)
     assert {path.name for path in tmp_path.iterdir()} == {"model.fmu", "squares.nc"}

@@ -2,7 +2,7 @@
 
 import pytest
 
-from orchestrate.running.runner import answer
+from orchestrate.running.runner import compute_dataset
 from orchestrate.weak_drive import cosimulate
 
 
@@ -10,5 +10,7 @@ from orchestrate.weak_drive import cosimulate
 def here(monkeypatch):
     """Drives of somebody else run in this process, not each in one of its own."""
     monkeypatch.setattr(
-        cosimulate, "answer", lambda job, *known, foreign=0: answer(job, *known[:2])
+        cosimulate,
+        "compute_dataset",
+        lambda job, *known, foreign=0: compute_dataset(job, *known[:2]),
     )
