@@ -1,9 +1,9 @@
 """Public functions as questions: a function's signature says what its job's fields are.
 
 Each argument is a field of the frozen dataclass that the job's class becomes, with its type and
-default; its type says how it is checked, see
-:func:`orchestrate.model.arguments.checks_by_field`. The function's own lines check what depends on
-several arguments and end in :func:`as_given`, or return a result. Keywords beyond those named are how to compute: jobs, store.
+default; its type says how it is checked, see :func:`orchestrate.model.arguments.checks_by_field`.
+The function's own lines check what depends on several arguments and end in :func:`as_given`, or
+return a result. Keywords beyond those named are how to compute: jobs, store.
 """
 
 from __future__ import annotations
